@@ -1,0 +1,71 @@
+"""The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
+
+from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .contact.laws import Flores, Gonthier, Hertz, HuntCrossley, KelvinVoigt, LankaraniNikravesh, NewtonImpact
+from .description import Model
+from .elements import (
+    AppliedForce2D,
+    AppliedTorque2D,
+    CoordinateDriver,
+    Distance2D,
+    PointMass2D,
+    Prismatic2D,
+    Revolute2D,
+    RigidBody2D,
+    SpringDamper2D,
+)
+from .errors import ConsistencyError, ModelError, SimulationError, TlismniError
+from .events import Event
+from .integrate.simulation import Simulation
+from .methods.registry import METHODS
+from .model.channels import Channel, Input, Parameter
+from .model.markers import Marker2D
+from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
+from .result import Result
+from .simulate import simulate
+from .state import State
+
+__all__ = [
+    "METHODS",
+    "AppliedForce2D",
+    "AppliedTorque2D",
+    "Channel",
+    "ConsistencyError",
+    "Constant",
+    "CoordinateDriver",
+    "Disk2D",
+    "DiskOnDisk2D",
+    "DiskOnHalfPlane2D",
+    "Distance2D",
+    "Event",
+    "Flores",
+    "Gonthier",
+    "HalfPlane2D",
+    "Hertz",
+    "HuntCrossley",
+    "Input",
+    "InputSignal",
+    "KelvinVoigt",
+    "LankaraniNikravesh",
+    "Marker2D",
+    "Model",
+    "ModelError",
+    "NewtonImpact",
+    "Parameter",
+    "PointMass2D",
+    "Polynomial",
+    "Prismatic2D",
+    "Ramp",
+    "Result",
+    "Revolute2D",
+    "RigidBody2D",
+    "Simulation",
+    "SimulationError",
+    "Sine",
+    "SpringDamper2D",
+    "State",
+    "Step",
+    "Table",
+    "TlismniError",
+    "simulate",
+]

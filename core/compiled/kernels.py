@@ -1,0 +1,60 @@
+"""Element kernels as addresses, so that one compiled loop serves any mix of elements, a user's own too.
+
+A kernel is a numba function of the one signature `KERNEL_SIGNATURE`: (job, t, batch) -> None. `batch` is a
+`BATCH` record: the addresses of the batch's tables and of the system's current arrays. The loop calls it through
+its machine address, which costs a few nanoseconds and leaves the loop's compiled code independent of the model,
+so that both are cached on disk.
+"""
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numba import types
+
+from .jit import address_of, caller, record_view
+
+# What a kernel is asked to do.
+RESIDUAL = 0  # add to r, phi, phid, phidd at the current (t, q, v, a, lam)
+TANGENT = 1  # add M + c_v D + c_q K and Phi_q to the sparse values
+ENERGY = 2  # add to energy[KINETIC, POTENTIAL, STRAIN]
+POWER = 3  # write the power of dissipation and input into the work entries of a
+MONITOR = 4  # write gap, gap rate and the unclamped force of contacts into the monitor table
+
+BATCH = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            # sizes
+            "count", "npar", "ncoord", "nrow",
+            # tables of the batch
+            "par",       # (count, npar)  float64
+            "coord",     # (count, ncoord) int64: index into q, v, a, r
+            "row",       # (count, nrow)  int64: index into lam, phi, phid, phidd
+            "slot_s",    # (count, ncoord*ncoord) int64: where d r_i / d q_j goes in `values`
+            "slot_j",    # (count, nrow*ncoord) int64: where Phi_q goes in `values`
+            "slot_jt",   # (count, nrow*ncoord) int64: where its transpose goes
+            "extra",     # (count,) int64: element-specific index (contact number, first work entry ...)
+            # current arrays of the system (shared by all batches)
+            "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor",
+            "signals",   # float64 pool of the time functions' parameters
+            "memory",    # float64 contact memories (approach speed, mode)
+            "n_extended", "m_extended", "n_values", "n_inputs", "n_signals", "n_monitor", "n_memory",
+        )
+    ]
+)  # fmt: skip
+
+BATCH_TYPE = nb.from_dtype(BATCH)
+KERNEL_SIGNATURE = types.void(types.int64, types.float64, BATCH_TYPE)
+
+
+call_kernel = caller(KERNEL_SIGNATURE)
+"""call_kernel(address, job, t, batch)."""
+
+batch_at = record_view(BATCH_TYPE)
+"""batch_at(address): the batch record there."""
+
+
+def kernel_address(kernel: Any) -> int:
+    """Machine address of a kernel. Raises TypeError if it is not a numba function of KERNEL_SIGNATURE."""
+    return address_of(kernel, KERNEL_SIGNATURE)

@@ -1,0 +1,57 @@
+"""Records of addresses and sizes, and the arrays that they point to."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class ArrayRecord:
+    """One numpy record whose integer fields are sizes or addresses of float64/int64 arrays.
+
+    Parameters
+    ----------
+    dtype : structured dtype, every field int64.
+    arrays : arrays by field name, C-contiguous, float64 or int64. They are kept alive and are reachable as
+        `record.arrays[name]`; their fields hold their addresses.
+    sizes : plain integers by field name.
+
+    Raises
+    ------
+    TypeError : for an array of another dtype or layout, or a field left out.
+    """
+
+    def __init__(self, dtype: np.dtype, arrays: Mapping[str, NDArray], sizes: Mapping[str, int]) -> None:
+        self.arrays = dict(arrays)
+        table = np.zeros(1, dtype)
+        names = set(dtype.names or ())
+        given = set(self.arrays) | set(sizes)
+        if names != given:
+            raise TypeError(
+                f"the fields of the record are {sorted(names)}: missing {sorted(names - given)}, "
+                f"unknown {sorted(given - names)}"
+            )
+        self.table = table
+        for name, array in arrays.items():
+            self.set_array(name, array)
+        for name, size in sizes.items():
+            table[name] = size
+
+    def set_array(self, name: str, array: NDArray) -> None:
+        """Let field `name` point to `array`."""
+        if not isinstance(array, np.ndarray) or array.dtype not in (np.float64, np.int64):
+            raise TypeError(f"array '{name}' must be float64 or int64, not {getattr(array, 'dtype', type(array))}")
+        if not array.flags.c_contiguous:
+            raise TypeError(f"array '{name}' must be C-contiguous")
+        self.arrays[name] = array
+        self.table[name] = array.ctypes.data
+
+    @property
+    def record(self) -> np.void:
+        """The record to hand to a compiled function (a view: valid while this object lives)."""
+        return self.table[0]
+
+    @property
+    def address(self) -> int:
+        """Address of the record itself, to be stored in another record."""
+        return int(self.table.ctypes.data)

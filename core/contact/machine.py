@@ -1,0 +1,149 @@
+"""The contact state machine: what an event does to modes, velocities and structure."""
+
+import logging
+from typing import TYPE_CHECKING
+
+from ..errors import SimulationError
+from ..events import Event
+from ..system.assembly import ContactInfo
+from .impact import apply_impact
+from .laws import ForceLaw, NewtonImpact
+from .modes import (
+    ACTIVE,
+    APPROACH_SPEED,
+    CLOSED,
+    IMPULSE_JUMP,
+    LARGEST_APPROACH,
+    LOSS_JUMP,
+    MODE,
+    OPEN,
+    RELEASED,
+)
+
+if TYPE_CHECKING:
+    from ..integrate.simulation import Simulation
+
+logger = logging.getLogger(__name__)
+
+MOST_EVENTS_AT_ONCE = 50
+"""Events without progress in time before a run is given up."""
+
+
+def handle(sim: "Simulation", k: int) -> None:
+    """Contact k has an event at the workspace's current point (the newest row of the history)."""
+    contact = sim.assembly.contacts[k]
+    mode = sim.memory[k, MODE]
+    if isinstance(contact.law, NewtonImpact):
+        if mode == OPEN:
+            _impact(sim, k, contact, contact.law)
+        else:
+            _open(sim, k, contact)
+    elif mode == OPEN:
+        _begin_force(sim, k, contact, contact.law)
+    else:
+        _end_force(sim, k, contact, contact.law, mode)
+
+
+def _impact(sim: "Simulation", k: int, contact: ContactInfo, law: NewtonImpact) -> None:
+    memory = sim.memory[k]
+    approach = -sim.gap_rate(k)
+    if approach <= 0.0:
+        # a touch without approach: a constraint only if the bodies are pressed together
+        if sim.presses(k):
+            _close(sim, k, "close", approach)
+        return
+    largest = max(memory[LARGEST_APPROACH], approach)
+    resting = law.restitution * approach <= law.rest_ratio * largest
+    plastic = law.restitution == 0.0
+    restitution = law.restitution
+    kinetic, before = sim.kinetic_energy(), sim.workspace.arrays["v"].copy()
+    stays = False
+    if resting or plastic:
+        impact = _strike(sim, k, contact, 0.0)
+        stays = sim.presses(k)
+        if resting and not plastic and not stays:
+            sim.workspace.arrays["v"][:] = before
+            sim.use_modes()
+            impact = _strike(sim, k, contact, restitution)
+        else:
+            restitution = 0.0
+    else:
+        impact = _strike(sim, k, contact, restitution)
+    memory[APPROACH_SPEED] = approach
+    memory[LARGEST_APPROACH] = largest
+    memory[IMPULSE_JUMP] += impact.impulse
+    memory[LOSS_JUMP] += impact.energy_loss
+    sim.add_input_work(sim.kinetic_energy() - kinetic + impact.energy_loss)
+    sim.add_event(
+        Event(
+            sim.t_internal, "impact", contact.name, impact.impulse, impact.energy_loss, approach,
+            restitution * approach, impact.residual,
+        )
+    )  # fmt: skip
+    if stays:
+        _close(sim, k, "rest" if resting and not plastic else "close", 0.0)
+    else:
+        sim.use_modes()
+
+
+def _strike(sim: "Simulation", k: int, contact: ContactInfo, restitution: float):  # type: ignore[no-untyped-def]
+    sim.use_modes(closing=k)
+    impact = apply_impact(sim.workspace, contact.row, restitution)
+    if impact is None:
+        raise SimulationError(
+            f"impact at contact '{contact.name}', t = {sim.t_internal:.9g} s: the matrix of the velocity increment "
+            "is singular, so the contact repeats what other constraints say. Remove one of them.",
+            t=sim.t_internal,
+            loop="impact",
+        )
+    return impact
+
+
+def _close(sim: "Simulation", k: int, kind: str, approach: float) -> None:
+    sim.memory[k, MODE] = CLOSED
+    sim.use_modes()
+    sim.add_event(Event(sim.t_internal, kind, sim.assembly.contacts[k].name, approach_speed=max(approach, 0.0)))
+
+
+def _open(sim: "Simulation", k: int, contact: ContactInfo) -> None:
+    sim.memory[k, MODE] = OPEN
+    sim.use_modes()
+    sim.add_event(Event(sim.t_internal, "open", contact.name, separation_speed=max(sim.gap_rate(k), 0.0)))
+
+
+def _begin_force(sim: "Simulation", k: int, contact: ContactInfo, law: ForceLaw) -> None:
+    memory = sim.memory[k]
+    approach = -sim.gap_rate(k)
+    memory[MODE] = ACTIVE
+    memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed)
+    memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
+    sim.open_accounts[k] = sim.contact_accounts(k)
+    sim.use_modes()
+    sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
+
+
+def _end_force(sim: "Simulation", k: int, contact: ContactInfo, law: ForceLaw, mode: float) -> None:
+    memory = sim.memory[k]
+    if mode == RELEASED:
+        if sim.gap(k) >= 0.0 or sim.gap_rate(k) > 0.0:
+            memory[MODE] = OPEN
+        else:
+            # pressed again before the shapes came apart
+            memory[MODE] = ACTIVE
+            memory[LOSS_JUMP] -= sim.elastic_energy(k, contact)
+        sim.use_modes()
+        return
+    early = law.release == "force"
+    if early:
+        # what the spring still holds when the force has reached zero is never given back
+        memory[LOSS_JUMP] += sim.elastic_energy(k, contact)
+    memory[MODE] = RELEASED if early else OPEN
+    impulse, loss = sim.contact_accounts(k)
+    impulse_before, loss_before = sim.open_accounts.get(k, (0.0, 0.0))
+    sim.use_modes()
+    sim.add_event(
+        Event(
+            sim.t_internal, "open", contact.name, impulse - impulse_before, loss - loss_before,
+            float(memory[APPROACH_SPEED]), sim.gap_rate(k),
+        )
+    )  # fmt: skip

@@ -1,0 +1,16 @@
+"""Contact modes and the layout of a contact's memory (one row of floats for each contact, part of the state)."""
+
+OPEN = 0.0
+CLOSED = 1.0  # CCM: the gap is a constraint
+ACTIVE = 2.0  # CCFM: the force law acts
+RELEASED = 3.0  # CCFM: the force has reached zero while the shapes still overlap
+
+MODE_NAMES = {OPEN: "open", CLOSED: "closed", ACTIVE: "active", RELEASED: "released"}
+
+# columns of the memory
+MODE = 0
+APPROACH_SPEED = 1  # at the last first touch, m/s
+LARGEST_APPROACH = 2  # since the start, m/s
+IMPULSE_JUMP = 3  # sum of impact impulses, N s
+LOSS_JUMP = 4  # sum of energy lost at impacts and releases, J
+MEMORY_SIZE = 5

@@ -1,0 +1,201 @@
+"""The model: bodies, joints, forces, contacts, inputs and parameters as frozen data, with a JSON round trip."""
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, ValidationError, model_validator
+
+from .contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from .contact.laws import NewtonImpact
+from .elements import Body, Element, Force, Joint, PointMass2D
+from .errors import ModelError
+from .model.base import Record, Vector2
+from .model.channels import Input, Parameter
+from .model.markers import GROUND
+from .model.signals import InputSignal
+
+Contact = Annotated[DiskOnHalfPlane2D | DiskOnDisk2D, Field(discriminator="type")]
+
+
+class Model(Record):
+    """A multibody model: pure data.
+
+    Examples
+    --------
+    >>> from tlismni.core import Model, PointMass2D
+    >>> ball = Model(name="ball", bodies=[PointMass2D(name="ball", mass=1.0, position=(0.0, 1.0))])
+    >>> Model.from_json(ball.to_json()) == ball
+    True
+    """
+
+    format: Literal["tlismni-model-1"] = "tlismni-model-1"
+    name: str = "model"
+    description: str = ""
+    gravity: Vector2 = (0.0, -9.81)
+    """m/s^2."""
+    bodies: tuple[Body, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    forces: tuple[Force, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise ModelError(_explain(error)) from None
+
+    @model_validator(mode="after")
+    def _check(self) -> "Model":
+        names = [e.name for e in self.elements()] + [i.name for i in self.inputs]
+        twice = [name for name, count in Counter(names).items() if count > 1]
+        if twice:
+            raise ValueError(f"names must be unique in a model; used more than once: {twice}")
+        reserved = {GROUND, "energy", "residual", "time"} & set(names)
+        if reserved:
+            raise ValueError(f"{sorted(reserved)} are reserved names: choose others")
+        bodies = {body.name: body for body in self.bodies}
+        inputs = {i.name for i in self.inputs}
+        for element in self.elements():
+            for marker in element.markers():
+                if marker.body != GROUND and marker.body not in bodies:
+                    raise ValueError(
+                        f"'{element.name}' refers to body '{marker.body}', which does not exist; "
+                        f"bodies are {sorted(bodies)} and '{GROUND}'"
+                    )
+                if isinstance(bodies.get(marker.body), PointMass2D) and marker.point != (0.0, 0.0):
+                    raise ValueError(
+                        f"'{element.name}' has a marker at {marker.point} of point mass '{marker.body}', "
+                        "which has no extension: use (0, 0), or a RigidBody2D"
+                    )
+            for signal in element.signals():
+                if isinstance(signal, InputSignal) and signal.channel not in inputs:
+                    raise ValueError(
+                        f"'{element.name}' uses input channel '{signal.channel}', which is not declared in inputs; "
+                        f"declared are {sorted(inputs)}"
+                    )
+        for parameter in self.parameters:
+            for target in parameter.targets:
+                value = self._value_at(target)
+                if isinstance(value, bool) or not isinstance(value, int | float):
+                    raise ValueError(f"parameter '{parameter.name}': '{target}' holds {value!r}, which is no number")
+        return self
+
+    def elements(self) -> Iterator[Element]:
+        """All elements in the order bodies, joints, forces, contacts."""
+        yield from self.bodies
+        yield from self.joints
+        yield from self.forces
+        yield from self.contacts
+
+    def _value_at(self, target: str) -> Any:
+        name, *fields = target.split(".")
+        found = {e.name: e for e in self.elements()}.get(name)
+        if found is None or not fields:
+            raise ValueError(f"parameter target '{target}' must be 'element.field', with the name of an element")
+        value: Any = found
+        for field in fields:
+            if not isinstance(value, Record) or field not in type(value).model_fields:
+                raise ValueError(f"parameter target '{target}': there is no field '{field}' in {type(value).__name__}")
+            value = getattr(value, field)
+        return value
+
+    def parameter_value(self, name: str) -> float:
+        """Present value of the parameter `name`. Raises ModelError for an unknown name."""
+        return float(self._value_at(self._parameter(name).targets[0]))
+
+    def _parameter(self, name: str) -> Parameter:
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter
+        raise ModelError(f"model '{self.name}' has no parameter '{name}'; it has {[p.name for p in self.parameters]}")
+
+    def with_parameters(self, values: Mapping[str, float]) -> "Model":
+        """The same model with other parameter values.
+
+        Raises
+        ------
+        ModelError : for an unknown name, or a value outside the parameter's or the field's range.
+        """
+        data = self.model_dump(mode="json")
+        elements = {e["name"]: e for kind in ("bodies", "joints", "forces", "contacts") for e in data[kind]}
+        for name, value in values.items():
+            parameter = self._parameter(name)
+            low, high = parameter.minimum, parameter.maximum
+            if (low is not None and value < low) or (high is not None and value > high):
+                raise ModelError(f"parameter '{name}' = {value} is outside its range [{low}, {high}]")
+            for target in parameter.targets:
+                element, *path, last = target.split(".")
+                record = elements[element]
+                for field in path:
+                    record = record[field]
+                record[last] = float(value)
+        return Model(**data)
+
+    def to_json(self) -> str:
+        """The model as JSON text."""
+        return self.model_dump_json(indent=2)
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> "Model":
+        """The model in a JSON text. Raises ModelError with the place and the cause if it is not one."""
+        try:
+            data = json.loads(text)
+        except (ValueError, UnicodeDecodeError) as error:
+            raise ModelError(f"this is not JSON: {error}") from None
+        if not isinstance(data, dict):
+            raise ModelError(f"a model file holds one JSON object, not {type(data).__name__}")
+        return cls(**data)
+
+    def save(self, path: str | Path) -> None:
+        """Write the model file."""
+        Path(path).write_text(self.to_json(), encoding="utf-8")
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Model":
+        """Read a model file. Raises ModelError if it cannot be read or is no model."""
+        try:
+            text = Path(path).read_bytes()
+        except OSError as error:
+            raise ModelError(f"model file '{path}' cannot be read: {error.strerror or error}") from None
+        try:
+            return cls.from_json(text)
+        except ModelError as error:
+            raise ModelError(f"model file '{path}': {error}") from None
+
+    def assemble(self) -> Any:
+        """The model as flat tables (`Assembly`)."""
+        from .system.assembly import assemble
+
+        return assemble(self)
+
+    def identity(self) -> str:
+        """What makes this model the same as another: its JSON."""
+        return self.model_dump_json()
+
+    def coordinate_channels(self, assembly: Any, layout: Any) -> Any:
+        """Channels of the bodies' coordinates."""
+        from .integrate.output import planar_coordinate_channels
+
+        return planar_coordinate_channels(assembly, layout)
+
+    @property
+    def has_constraint_contacts(self) -> bool:
+        """True if some contact is a constraint (CCM)."""
+        return any(isinstance(c.law, NewtonImpact) for c in self.contacts)
+
+
+def _explain(error: ValidationError) -> str:
+    """One line a problem: where, what was given, what was needed."""
+    lines = []
+    for problem in error.errors():
+        place = ".".join(str(part) for part in problem["loc"]) or "model"
+        given = problem.get("input")
+        shown = f" (given: {given!r})" if isinstance(given, str | int | float | bool | None) else ""
+        message = problem["msg"].removeprefix("Value error, ")
+        lines.append(f"{place}: {message}{shown}")
+    return "; ".join(lines)

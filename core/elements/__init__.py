@@ -1,0 +1,35 @@
+"""Elements: one file each, with its record and its kernel. A new one is a file and its name in one tuple here."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from .applied_load2d import AppliedForce2D, AppliedTorque2D
+from .base import Element
+from .coordinate_driver import CoordinateDriver
+from .distance2d import Distance2D
+from .planar_body import PlanarBody, PointMass2D, RigidBody2D
+from .prismatic2d import Prismatic2D
+from .revolute2d import Revolute2D
+from .spring_damper2d import SpringDamper2D
+
+Body = Annotated[PointMass2D | RigidBody2D, Field(discriminator="type")]
+Joint = Annotated[Revolute2D | Prismatic2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
+Force = Annotated[SpringDamper2D | AppliedForce2D | AppliedTorque2D, Field(discriminator="type")]
+
+__all__ = [
+    "AppliedForce2D",
+    "AppliedTorque2D",
+    "Body",
+    "CoordinateDriver",
+    "Distance2D",
+    "Element",
+    "Force",
+    "Joint",
+    "PlanarBody",
+    "PointMass2D",
+    "Prismatic2D",
+    "Revolute2D",
+    "RigidBody2D",
+    "SpringDamper2D",
+]

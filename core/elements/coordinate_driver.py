@@ -1,0 +1,67 @@
+"""Driver: one coordinate of a body follows a time function. Phi = q_k - f(t)."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Literal
+
+from ..compiled.jit import compiled
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT
+from ..compiled.views import imat, vec
+from ..model.base import Name
+from ..model.channels import Channel
+from ..model.markers import Marker2D
+from ..model.signals import Signal, evaluate_signal
+from .base import Element, Numbering, Row
+
+
+@compiled
+def coordinate_driver_kernel(job: int, t: float, b: Any) -> None:
+    if job != RESIDUAL and job != TANGENT and job != POWER:
+        return
+    coord = imat(b.coord, b.count, 1)
+    row = imat(b.row, b.count, 1)
+    extra = imat(b.extra, b.count, 2)
+    lam = vec(b.lam, b.m_extended)
+    a = vec(b.a, b.n_extended)
+    for e in range(b.count):
+        i, k = coord[e, 0], row[e, 0]
+        if job == TANGENT:
+            values = vec(b.values, b.n_values)
+            values[imat(b.slot_j, b.count, 1)[e, 0]] += 1.0
+            values[imat(b.slot_jt, b.count, 1)[e, 0]] += 1.0
+            continue
+        f, df, ddf = evaluate_signal(vec(b.signals, b.n_signals), vec(b.inputs, 3 * b.n_inputs), extra[e, 0], t)
+        if job == RESIDUAL:
+            vec(b.phi, b.m_extended)[k] = vec(b.q, b.n_extended)[i] - f
+            vec(b.phid, b.m_extended)[k] = vec(b.v, b.n_extended)[i] - df
+            vec(b.phidd, b.m_extended)[k] = a[i] - ddf
+            vec(b.r, b.n_extended)[i] += lam[k]
+        else:
+            a[extra[e, 1]] -= lam[k] * df
+
+
+class CoordinateDriver(Element):
+    """Coordinate `coordinate` of `body` follows `motion`(t). Channel: the driving force or torque."""
+
+    type: Literal["CoordinateDriver"] = "CoordinateDriver"
+    kernel: ClassVar[Any] = coordinate_driver_kernel
+    constraint_rows: ClassVar[int] = 1
+    jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 0),)
+
+    body: Name
+    coordinate: Literal["x", "y", "angle"]
+    motion: Signal
+    """Position in m or rad over time in s. An input channel moves with the rate it is given (0 unless set)."""
+
+    def row(self, numbering: Numbering) -> Row:
+        index = numbering.coordinates(self.body)[("x", "y", "angle").index(self.coordinate)]
+        return Row((), (index,), (numbering.signal(self.motion), numbering.work("input")))
+
+    def markers(self) -> Sequence[Marker2D]:
+        return (Marker2D(body=self.body),)
+
+    def signals(self) -> Sequence[Signal]:
+        return (self.motion,)
+
+    def multiplier_channels(self) -> Sequence[Channel]:
+        unit = "N.m" if self.coordinate == "angle" else "N"
+        return (Channel(f"{self.name}.reaction", unit, "reaction of the body on the driver"),)

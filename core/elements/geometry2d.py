@@ -1,0 +1,160 @@
+"""Scalar functions of two planar markers, with gradient and Hessian in (x_a, y_a, theta_a, x_b, y_b, theta_b).
+
+Used by the prismatic joint, the distance joint and the gap functions. rho = R(theta) u is a marker's offset,
+rho' = J rho with J = [[0, -1], [1, 0]], rho'' = -rho.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.kernels import RESIDUAL
+from ..compiled.views import imat, vec
+
+HESSIAN_PAIRS = np.array([(i, j) for i in range(6) for j in range(i, 6)], dtype=np.int64)
+"""Upper triangle in the order of the Hessian tuples returned here."""
+
+FULL_PATTERN: Sequence[tuple[int, int]] = tuple((i, j) for i in range(6) for j in range(6))
+ROW_PATTERN: Sequence[tuple[int, int]] = tuple((0, j) for j in range(6))
+
+
+@compiled
+def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
+    """Height of point b (offset w) over the line through point a (offset u) with normal at `angle` in a's frame.
+
+    Returns (g, gradient(6), Hessian(21)), lengths in m.
+    """
+    ta, tb = q[coord[2]], q[coord[5]]
+    ca, sa = math.cos(ta), math.sin(ta)
+    nx, ny = math.cos(ta + angle), math.sin(ta + angle)
+    ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
+    cb, sb = math.cos(tb), math.sin(tb)
+    bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    # e = r_b + rho_b - r_a: n . rho_a does not depend on theta_a
+    ex, ey = q[coord[3]] + bx - q[coord[0]], q[coord[4]] + by - q[coord[1]]
+    g = nx * (ex - ax) + ny * (ey - ay)
+    mx, my = -ny, nx  # n' = J n
+    gradient = (-nx, -ny, mx * ex + my * ey, nx, ny, -nx * by + ny * bx)
+    z = 0.0
+    hessian = (
+        z, z, -mx, z, z, z,
+        z, -my, z, z, z,
+        -(nx * ex + ny * ey), mx, my, -mx * by + my * bx,
+        z, z, z,
+        z, z,
+        -(nx * bx + ny * by),
+    )  # fmt: skip
+    return g, gradient, hessian
+
+
+@compiled
+def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """Half the squared distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21)."""
+    ta, tb = q[coord[2]], q[coord[5]]
+    ca, sa = math.cos(ta), math.sin(ta)
+    ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
+    cb, sb = math.cos(tb), math.sin(tb)
+    bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    dx = q[coord[3]] + bx - q[coord[0]] - ax
+    dy = q[coord[4]] + by - q[coord[1]] - ay
+    gradient = (-dx, -dy, dx * ay - dy * ax, dx, dy, -dx * by + dy * bx)
+    z = 0.0
+    hessian = (
+        1.0, z, -ay, -1.0, z, by,
+        1.0, ax, z, -1.0, -bx,
+        ax * ax + ay * ay + dx * ax + dy * ay, ay, -ax, -(ax * bx + ay * by),
+        1.0, z, -by,
+        1.0, bx,
+        bx * bx + by * by - dx * bx - dy * by,
+    )  # fmt: skip
+    return 0.5 * (dx * dx + dy * dy), gradient, hessian
+
+
+@compiled
+def distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """Distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21); 1/0 where they meet."""
+    half, gradient, hessian = half_square_distance(q, coord, ux, uy, wx, wy)
+    d = math.sqrt(2.0 * half)
+    s = 1.0 / d
+    g0, g1, g2, g3, g4, g5 = (
+        s * gradient[0],
+        s * gradient[1],
+        s * gradient[2],
+        s * gradient[3],
+        s * gradient[4],
+        s * gradient[5],
+    )
+    h = hessian
+    scaled = (
+        s * (h[0] - g0 * g0), s * (h[1] - g0 * g1), s * (h[2] - g0 * g2), s * (h[3] - g0 * g3),
+        s * (h[4] - g0 * g4), s * (h[5] - g0 * g5),
+        s * (h[6] - g1 * g1), s * (h[7] - g1 * g2), s * (h[8] - g1 * g3), s * (h[9] - g1 * g4),
+        s * (h[10] - g1 * g5),
+        s * (h[11] - g2 * g2), s * (h[12] - g2 * g3), s * (h[13] - g2 * g4), s * (h[14] - g2 * g5),
+        s * (h[15] - g3 * g3), s * (h[16] - g3 * g4), s * (h[17] - g3 * g5),
+        s * (h[18] - g4 * g4), s * (h[19] - g4 * g5),
+        s * (h[20] - g5 * g5),
+    )  # fmt: skip
+    return d, (g0, g1, g2, g3, g4, g5), scaled
+
+
+@compiled
+def along(gradient: Any, x: Any, coord: Any) -> float:
+    """gradient . x at the six coordinates."""
+    total = 0.0
+    for i in range(6):
+        total += gradient[i] * x[coord[i]]
+    return total
+
+
+@compiled
+def curvature(hessian: Any, v: Any, coord: Any) -> float:
+    """v^T H v at the six coordinates."""
+    total = 0.0
+    for k in range(21):
+        i, j = HESSIAN_PAIRS[k, 0], HESSIAN_PAIRS[k, 1]
+        w = 1.0 if i == j else 2.0
+        total += w * hessian[k] * v[coord[i]] * v[coord[j]]
+    return total
+
+
+@compiled
+def add_hessian(values: Any, slot: Any, hessian: Any, factor: float) -> None:
+    """values[slot(i, j)] += factor H_ij for all 36 pairs."""
+    for k in range(21):
+        i, j = HESSIAN_PAIRS[k, 0], HESSIAN_PAIRS[k, 1]
+        values[slot[6 * i + j]] += factor * hessian[k]
+        if i != j:
+            values[slot[6 * j + i]] += factor * hessian[k]
+
+
+@compiled
+def constrain(
+    b: Any, job: int, e: int, row: int, local_row: int, factor: float, g: float, gradient: Any, hessian: Any
+) -> None:
+    """Residual or tangent of the scalar constraint `factor * g = 0` of element `e` of the batch."""
+    coord = imat(b.coord, b.count, 6)[e]
+    if job == RESIDUAL:
+        q_r = vec(b.r, b.n_extended)
+        lam = vec(b.lam, b.m_extended)[row]
+        v = vec(b.v, b.n_extended)
+        a = vec(b.a, b.n_extended)
+        vec(b.phi, b.m_extended)[row] = factor * g
+        vec(b.phid, b.m_extended)[row] = factor * along(gradient, v, coord)
+        vec(b.phidd, b.m_extended)[row] = factor * (along(gradient, a, coord) + curvature(hessian, v, coord))
+        for i in range(6):
+            q_r[coord[i]] += factor * gradient[i] * lam
+    else:
+        values = vec(b.values, b.n_values)
+        lam = vec(b.lam, b.m_extended)[row]
+        c_q = vec(b.coef, 2)[0]
+        add_hessian(values, imat(b.slot_s, b.count, 36)[e], hessian, c_q * factor * lam)
+        nrow = b.nrow
+        slot_j = imat(b.slot_j, b.count, 6 * nrow)[e]
+        slot_jt = imat(b.slot_jt, b.count, 6 * nrow)[e]
+        for i in range(6):
+            values[slot_j[6 * local_row + i]] += factor * gradient[i]
+            values[slot_jt[6 * local_row + i]] += factor * gradient[i]

@@ -1,0 +1,85 @@
+"""Planar prismatic joint: marker b slides along the axis of marker a, without turning against it.
+
+Phi_1 = n . (p_b - p_a) with n normal to the axis of a, Phi_2 = theta_b - theta_a - relative_angle.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar, Literal
+
+from ..compiled.jit import compiled
+from ..compiled.kernels import RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..model.channels import Channel
+from ..model.markers import Marker2D
+from .base import Element, Numbering, Row
+from .geometry2d import FULL_PATTERN, constrain, height_over_line
+
+
+@compiled
+def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
+    if job != RESIDUAL and job != TANGENT:
+        return
+    par = mat(b.par, b.count, 6)
+    coord = imat(b.coord, b.count, 6)
+    row = imat(b.row, b.count, 2)
+    q = vec(b.q, b.n_extended)
+    v = vec(b.v, b.n_extended)
+    a = vec(b.a, b.n_extended)
+    lam = vec(b.lam, b.m_extended)
+    r = vec(b.r, b.n_extended)
+    values = vec(b.values, b.n_values)
+    slot_j = imat(b.slot_j, b.count, 12)
+    slot_jt = imat(b.slot_jt, b.count, 12)
+    for e in range(b.count):
+        g, gradient, hessian = height_over_line(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4])
+        constrain(b, job, e, row[e, 0], 0, 1.0, g, gradient, hessian)
+        ta, tb, k = coord[e, 2], coord[e, 5], row[e, 1]
+        if job == RESIDUAL:
+            vec(b.phi, b.m_extended)[k] = q[tb] - q[ta] - par[e, 5]
+            vec(b.phid, b.m_extended)[k] = v[tb] - v[ta]
+            vec(b.phidd, b.m_extended)[k] = a[tb] - a[ta]
+            r[tb] += lam[k]
+            r[ta] -= lam[k]
+        else:
+            values[slot_j[e, 8]] -= 1.0
+            values[slot_jt[e, 8]] -= 1.0
+            values[slot_j[e, 11]] += 1.0
+            values[slot_jt[e, 11]] += 1.0
+
+
+class Prismatic2D(Element):
+    """Marker `b` slides along the first axis of marker `a` and keeps the relative angle of the bodies.
+
+    Its channels are the normal force and the torque on body a's side of the constraint (multipliers with the
+    sign of the force on body b reversed, as M a + Phi_q^T lambda = Q has it).
+    """
+
+    type: Literal["Prismatic2D"] = "Prismatic2D"
+    kernel: ClassVar[Any] = prismatic2d_kernel
+    constraint_rows: ClassVar[int] = 2
+    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
+    jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = (*((0, j) for j in range(6)), (1, 2), (1, 5))
+
+    a: Marker2D
+    b: Marker2D
+    relative_angle: float | None = None
+    """theta_b - theta_a, rad; left out: as in the start configuration."""
+
+    def row(self, numbering: Numbering) -> Row:
+        relative = self.relative_angle
+        if relative is None:
+            relative = numbering.initial(self.b.body)[2] - numbering.initial(self.a.body)[2]
+        return Row(
+            (*self.a.point, *self.b.point, self.a.angle + 0.5 * math.pi, relative),
+            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+        )
+
+    def markers(self) -> Sequence[Marker2D]:
+        return (self.a, self.b)
+
+    def multiplier_channels(self) -> Sequence[Channel]:
+        return (
+            Channel(f"{self.name}.normal_force", "N", "force of body b on body a along the normal of the axis"),
+            Channel(f"{self.name}.torque", "N.m", "torque of body b on body a"),
+        )

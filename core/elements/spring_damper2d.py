@@ -1,0 +1,77 @@
+"""Translational spring-damper between two markers: F = k (l - l0) + c l', along the line of the markers."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Literal
+
+from ..compiled.jit import compiled
+from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..model.base import NonNegative, Positive
+from ..model.markers import Marker2D
+from .base import Element, Numbering, Row
+from .geometry2d import FULL_PATTERN, HESSIAN_PAIRS, add_hessian, along, distance
+
+
+@compiled
+def spring_damper2d_kernel(job: int, t: float, b: Any) -> None:
+    par = mat(b.par, b.count, 7)
+    coord = imat(b.coord, b.count, 6)
+    extra = imat(b.extra, b.count, 1)
+    q = vec(b.q, b.n_extended)
+    v = vec(b.v, b.n_extended)
+    for e in range(b.count):
+        length, gradient, hessian = distance(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])
+        k, c = par[e, 4], par[e, 5]
+        stretch = length - par[e, 6]
+        rate = along(gradient, v, coord[e])
+        force = k * stretch + c * rate
+        if job == RESIDUAL:
+            r = vec(b.r, b.n_extended)
+            for i in range(6):
+                r[coord[e, i]] += force * gradient[i]
+        elif job == TANGENT:
+            values = vec(b.values, b.n_values)
+            coef = vec(b.coef, 2)
+            slot = imat(b.slot_s, b.count, 36)[e]
+            add_hessian(values, slot, hessian, coef[0] * force)
+            for i in range(6):
+                for j in range(6):
+                    values[slot[6 * i + j]] += (coef[0] * k + coef[1] * c) * gradient[i] * gradient[j]
+            # the rate depends on q through the direction: c G_i (H v)_j
+            for m in range(21):
+                i, j = HESSIAN_PAIRS[m, 0], HESSIAN_PAIRS[m, 1]
+                for p in range(6):
+                    values[slot[6 * p + j]] += coef[0] * c * gradient[p] * hessian[m] * v[coord[e, i]]
+                    if i != j:
+                        values[slot[6 * p + i]] += coef[0] * c * gradient[p] * hessian[m] * v[coord[e, j]]
+        elif job == ENERGY:
+            vec(b.energy, 3)[2] += 0.5 * k * stretch * stretch
+        elif job == POWER:
+            vec(b.a, b.n_extended)[extra[e, 0]] += c * rate * rate
+
+
+class SpringDamper2D(Element):
+    """Spring and damper between markers `a` and `b`."""
+
+    type: Literal["SpringDamper2D"] = "SpringDamper2D"
+    kernel: ClassVar[Any] = spring_damper2d_kernel
+    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
+
+    a: Marker2D
+    b: Marker2D
+    stiffness: NonNegative
+    """N/m."""
+    damping: NonNegative = 0.0
+    """N s/m."""
+    natural_length: Positive
+    """m. The direction of the force is that of the line: the markers must not meet."""
+
+    def row(self, numbering: Numbering) -> Row:
+        return Row(
+            (*self.a.point, *self.b.point, self.stiffness, self.damping, self.natural_length),
+            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+            (numbering.work("dampers"),),
+        )
+
+    def markers(self) -> Sequence[Marker2D]:
+        return (self.a, self.b)

@@ -1,0 +1,9 @@
+"""Errors about a user's equations."""
+
+
+class EquationError(ValueError):
+    """A user's equation function gives something unusable; the message names it, the value and the remedy."""
+
+
+class NotDifferentiableError(EquationError):
+    """A user's function cannot be differentiated by the tool at hand (another one may do)."""

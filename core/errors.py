@@ -1,0 +1,32 @@
+"""The errors that the solver raises. Each message says what was given, what was needed and how to mend it."""
+
+from typing import Any
+
+
+class TlismniError(Exception):
+    """Base of all errors of this library that are not plain bad arguments."""
+
+
+class ModelError(TlismniError, ValueError):
+    """A model, or something said about one, is wrong."""
+
+
+class ConsistencyError(TlismniError):
+    """No consistent start could be found from the given q0, v0, or the constraints contradict each other."""
+
+
+class SimulationError(TlismniError):
+    """A run failed. Says when, in which loop, what was tried and what to change; carries what was computed.
+
+    Attributes
+    ----------
+    t : time reached, s.
+    loop : "outer", "inner", "step size", "event" or "impact".
+    partial : the `Result` up to that time, or None.
+    """
+
+    def __init__(self, message: str, *, t: float, loop: str, partial: Any = None) -> None:
+        super().__init__(message)
+        self.t = t
+        self.loop = loop
+        self.partial = partial

@@ -1,0 +1,32 @@
+"""Events: what happened at a contact, and when."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Event:
+    """One event of one contact.
+
+    kind : "impact" (velocity jump), "close" (a force law begins to act, or a contact becomes a constraint),
+    "open" (it ends), "rest" (accumulating impacts end in persistent contact).
+    """
+
+    t: float
+    """s."""
+    kind: str
+    contact: str
+    impulse: float = 0.0
+    """N s; for "open" of a force law: the impulse of the whole contact."""
+    energy_loss: float = 0.0
+    """J."""
+    approach_speed: float = 0.0
+    """m/s, before."""
+    separation_speed: float = 0.0
+    """m/s, after."""
+    velocity_increment_residual: float = 0.0
+    """Largest violation of the constraints at velocity-increment level, m/s."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        return asdict(self)

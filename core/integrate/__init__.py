@@ -1,0 +1,1 @@
+"""The time loop: steps, error control, events, dense output, samples."""

@@ -1,0 +1,209 @@
+"""The Python side of the time loop: what happens at event rate."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..contact.modes import ACTIVE, CLOSED, MODE, OPEN
+from ..errors import ConsistencyError, SimulationError
+from ..linalg import SingularMatrixError
+from ..methods.history import recall
+from ..system.evaluate import evaluate_residuals
+from ..system.partition import prepare
+from ..system.records import (
+    FAILED_NORM,
+    INNER_DIVERGED,
+    NOT_FINITE,
+    OK,
+    OUTER_DIVERGED,
+    OUTER_SLOW,
+    REANALYZE,
+    SINGULAR,
+)
+from .locate import find_root, first_crossing
+from .loop import accept, run, trial_step
+from .records import (
+    CHUNK,
+    EVENT,
+    FIXED_STEP,
+    FULL,
+    REACHED,
+    STEP_SIZE,
+    STEP_TOO_SMALL,
+    STOP_TIME,
+    TARGET_TIME,
+    TRIAL_STEP,
+)
+from .watch import crossed
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+CHUNK_STEPS = 20_000
+_REASONS = {
+    OUTER_DIVERGED: ("outer", "the outer loop diverged"),
+    OUTER_SLOW: ("outer", "the outer loop did not converge"),
+    INNER_DIVERGED: ("inner", "the inner loop on the dependent coordinates did not converge"),
+    SINGULAR: ("outer", "the system matrix became singular"),
+    REANALYZE: ("outer", "the pivots of the system matrix kept degrading"),
+    NOT_FINITE: ("outer", "a value became infinite or NaN"),
+    STEP_TOO_SMALL: ("step size", "the error control asked for a step below what the time can resolve"),
+}
+
+
+def advance_to(sim: "Simulation", t: float, stop: float) -> None:
+    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`."""
+    ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
+    repaired_at = math.nan
+    while True:
+        now = sim.t_internal
+        if sim.pending:
+            if now > t:
+                return
+            sim._handle_pending()
+            continue
+        if now >= t:
+            return
+        next_break = min((b for b in sim.assembly.breakpoints if b > now), default=math.inf)
+        sim.clock[STOP_TIME] = min(stop, next_break)
+        sim.clock[TARGET_TIME] = t
+        code = run(ws, ms, lc, CHUNK_STEPS)
+        sim.flush()
+        if code in (CHUNK, FULL):
+            sim.report_progress(sim.t_internal)
+        elif code == REACHED:
+            if sim.t_internal == next_break:
+                restart_at_newest(sim)
+        elif code == EVENT:
+            _locate(sim)
+        elif code in (REANALYZE, SINGULAR, INNER_DIVERGED) and repaired_at != sim.t_internal:
+            repaired_at = sim.t_internal
+            _repair(sim)
+        elif code in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
+            continue
+        else:
+            _fail(sim, code)
+
+
+def _shrink(sim: "Simulation") -> bool:
+    """A smaller step after a failure of a repaired system; False if it cannot be smaller."""
+    h = 0.25 * sim.clock[TRIAL_STEP]
+    sim.clock[STEP_SIZE] = h
+    return bool(h > 1e-13 * max(abs(sim.t_internal), 1e-6))
+
+
+def _repair(sim: "Simulation") -> None:
+    """New partition and orderings at the newest row."""
+    recall(sim.workspace.record, sim._method.record, 0)
+    try:
+        prepare(sim.workspace)
+    except (ConsistencyError, SingularMatrixError) as error:
+        raise SimulationError(
+            f"at t = {sim.t_internal:.9g} s the constraints cannot be partitioned: {error}",
+            t=sim.t_internal,
+            loop="inner",
+        ) from error
+
+
+def _fail(sim: "Simulation", code: int) -> None:
+    loop, reason = _REASONS.get(code, ("outer", f"status {code}"))
+    t, h, settings = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.settings
+    tried = f"fixed step {h:.3g} s" if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"
+    if settings.outer == "simple" and loop == "outer":
+        rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
+        remedy = (
+            f"The simple iteration contracts only if c_q omega^2 < 1 (its factor was {rate:.3g}; c_q = beta h^2 or "
+            "(h b)^2): use outer='newton', or a smaller step"
+        )
+    elif settings.step:
+        remedy = "Use a smaller step, or error-controlled steps (step=None)"
+    elif loop == "inner":
+        remedy = "The mechanism may be at a singular position; start elsewhere, or set a smaller max_step"
+    elif code == STEP_TOO_SMALL:
+        remedy = "Loosen rtol and atol, or look for a force that jumps or grows without bound near this time"
+    else:
+        remedy = "Look for a force that is not finite or not smooth near this time; try a smaller max_step"
+    raise SimulationError(
+        f"method '{settings.method}' stopped at t = {t:.9g} s: {reason} (tried: {tried}). {remedy}.",
+        t=t,
+        loop=loop,
+    )
+
+
+def _locate(sim: "Simulation") -> None:
+    """End the step at the first event in it, and make that event pending."""
+    ws, lc = sim.workspace.record, sim._loop.record
+    h = float(sim.clock[TRIAL_STEP])
+    contacts = range(len(sim.assembly.contacts))
+    watched = [k for k in contacts if crossed(ws, lc, k, h)]
+    ends = {k: (sim.gap(k), sim.gap_rate(k), _gap_acceleration(sim, k)) for k in watched}
+    found = {k: _event_step(sim, k, h, ends[k]) for k in watched}
+    step = min(found.values())
+    _trial(sim, step, h)
+    accept(ws, sim._method.record, lc)
+    sim.flush()
+    sim.pending = [k for k in watched if found[k] <= step * (1.0 + 1e-12)]
+
+
+def _gap_acceleration(sim: "Simulation", k: int) -> float:
+    return float(sim.workspace.arrays["phidd"][sim.assembly.contacts[k].row])
+
+
+def _trial(sim: "Simulation", step: float, full: float) -> None:
+    """Make the step again with another size. Small fractions of it are made by the one-step starter: the
+    multistep coefficients of a grid with a very small last step lose digits."""
+    table = sim._loop.table
+    usual = (int(table["starter"][0]), int(table["rows"][0]))
+    if step < 0.1 * full or usual[1] == 1:
+        table["starter"] = sim.fine_starter
+        table["rows"] = 10**9 if usual[1] > 1 else usual[1]
+    try:
+        for attempt in range(2):
+            status = trial_step(sim.workspace.record, sim._method.record, sim._loop.record, step)
+            if status == OK:
+                return
+            if attempt == 0:
+                _repair(sim)
+        _fail(sim, status)
+    finally:
+        table["starter"], table["rows"] = usual
+
+
+def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, float]) -> float:
+    """Step size at which contact k has its event."""
+    mode = float(sim.memory[k, MODE])
+    arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
+    by_force = mode == CLOSED or (mode == ACTIVE and end[0] <= 0.0) or (mode not in (OPEN, ACTIVE) and end[0] <= 0.0)
+    if by_force:
+        sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
+
+        def value(step: float) -> float:
+            _trial(sim, step, h)
+            return sign * float(arrays["monitor"][k])
+
+        return find_root(value, 0.0, h, 0.5 * h, 0.0)
+    down = mode == OPEN
+    sign = 1.0 if down else -1.0
+    start = tuple(float(x) for x in sim.watch[k])
+    low, high = first_crossing(h, (start[0], start[1], start[2]), end, down)
+
+    def gap(step: float) -> float:
+        _trial(sim, step, h)
+        return sign * float(arrays["phi"][contact.row])
+
+    size = float(np.max(np.abs(arrays["q"][: sim.assembly.n]), initial=1.0))
+    guess = 0.5 * (low + high) * h
+    low_step, high_step = low * h, high * h
+    if high < 1.0 and gap(high_step) > 0.0:
+        low_step, high_step = high_step, h
+        guess = 0.5 * (low_step + high_step)
+    return find_root(gap, low_step, high_step, guess, 2e-16 * size)
+
+
+def restart_at_newest(sim: "Simulation") -> None:
+    """Accelerations anew at the newest row (a force or its rate jumps there); the history starts again."""
+    recall(sim.workspace.record, sim._method.record, 0)
+    evaluate_residuals(sim.workspace.record)
+    sim.use_modes()
+    sim._new_history()

@@ -1,0 +1,147 @@
+"""Dense output: Hermite interpolation of (q, v, a) through the newest rows, then projection.
+
+The interpolant gives the independent coordinates; the dependent ones follow from the constraints and (a, lambda)
+from the augmented system, so that a sample between steps satisfies every level as well as a step's end does.
+It is a pure function of the history: asking does not change what comes after.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.views import ivec, vec
+from ..linalg import factor, lu_at
+from ..methods.history import history_row, history_time, recall
+from ..methods.multistep import rows_available
+from ..stage.inner import inner_loop
+from ..stage.solver import solve_increment, weighted_norm
+from ..system.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.records import OK, OUTER_SLOW, SINGULAR
+
+
+@compiled
+def _divided_differences(z: Any, table: Any, count: int) -> None:
+    """Newton coefficients in place; table[j] holds f, and seeds for confluent nodes stand in `table[:, 1:3]`."""
+    # z has each node `repeat` times in a row; table[:, 0] = f, table[:, 1] = f', table[:, 2] = f''/2
+    for order in range(1, count):
+        for j in range(count - 1, order - 1, -1):
+            if z[j] != z[j - order]:
+                table[j, 0] = (table[j, 0] - table[j - 1, 0]) / (z[j] - z[j - order])
+            elif order == 1:
+                table[j, 0] = table[j, 1]
+            else:
+                table[j, 0] = table[j, 2]
+
+
+@compiled
+def _newton_value(z: Any, table: Any, count: int, s: float) -> Any:
+    """Value and derivative of the Newton form at s."""
+    f, df = table[count - 1, 0], 0.0
+    for j in range(count - 2, -1, -1):
+        df = df * (s - z[j]) + f
+        f = f * (s - z[j]) + table[j, 0]
+    return f, df
+
+
+@compiled
+def interpolate(ws: Any, ms: Any, t: float) -> None:
+    """q, v and the work accounts at t from the newest rows, into the workspace."""
+    n = ws.n_ext
+    rows = min(rows_available(ms), 3)
+    h = history_time(ms, 0) - history_time(ms, 1)
+    s = (t - history_time(ms, 0)) / h
+    z = np.empty(9)
+    table = np.empty((9, 3))
+    q, v = vec(ws.q, n), vec(ws.v, n)
+    for i in range(ws.n):
+        for j in range(rows):
+            row = history_row(ws, ms, j)
+            node = (history_time(ms, j) - history_time(ms, 0)) / h
+            for l in range(3):
+                z[3 * j + l] = node
+                table[3 * j + l, 0] = row[i]
+                table[3 * j + l, 1] = h * row[n + i]
+                table[3 * j + l, 2] = 0.5 * h * h * row[2 * n + i]
+        _divided_differences(z, table, 3 * rows)
+        f, df = _newton_value(z, table, 3 * rows, s)
+        q[i], v[i] = f, df / h
+    for i in range(n - ws.n_work, n):
+        for j in range(rows):
+            row = history_row(ws, ms, j)
+            node = (history_time(ms, j) - history_time(ms, 0)) / h
+            for l in range(2):
+                z[2 * j + l] = node
+                table[2 * j + l, 0] = row[n + i]
+                table[2 * j + l, 1] = h * row[2 * n + i]
+        _divided_differences(z, table, 2 * rows)
+        v[i], _ = _newton_value(z, table, 2 * rows, s)
+    newest = history_row(ws, ms, 0)
+    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    for i in range(ws.n):
+        a[i] = newest[2 * n + i]
+    for i in range(ws.m_ext):
+        lam[i] = newest[4 * n + i]
+    vec(ws.t, 1)[0] = t
+
+
+@compiled
+def solve_accelerations(ws: Any) -> int:
+    """(a, lambda) of the current (q, v) from the augmented system [M, Phi_q^T; Phi_q, 0], with matrices of its own."""
+    n = ws.n
+    a, lam = vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext)
+    active = ivec(ws.active, ws.m_act)
+    increment = vec(ws.rhs, n + ws.m_act)
+    evaluate_tangent(ws, 0.0, 0.0)
+    if factor(lu_at(ws.kkt_query), ws.values) != 0:
+        return SINGULAR
+    previous = np.inf
+    weight = np.ones(n)
+    for _ in range(10):
+        evaluate_residuals(ws)
+        solve_increment(ws, ws.kkt_query)
+        for i in range(n):
+            a[i] += increment[i]
+        for i in range(ws.m_act):
+            lam[active[i]] += increment[n + i]
+        norm = weighted_norm(increment, weight, n)
+        size = weighted_norm(a, weight, n)
+        if norm <= 1e-14 * (1.0 + size) or norm >= previous:
+            evaluate_residuals(ws)
+            return OK if norm <= 1e-8 * (1.0 + size) else OUTER_SLOW
+        previous = norm
+    return OUTER_SLOW
+
+
+@compiled
+def project(ws: Any) -> int:
+    """Dependent coordinates and velocities of the current point, then accelerations and multipliers."""
+    evaluate_residuals(ws)
+    evaluate_tangent(ws, 0.0, 0.0)
+    if ws.m_act > 0:
+        if factor(lu_at(ws.lu_d_query), ws.values) != 0:
+            return SINGULAR
+        status = inner_loop(ws, ws.lu_d_query, 0.1, False)
+        if status != OK:
+            return status
+    status = solve_accelerations(ws)
+    if status != OK:
+        return status
+    if ws.m_act > 0:
+        status = inner_loop(ws, ws.lu_d_query, 1.0, True)
+    evaluate_power(ws)
+    return status
+
+
+@compiled
+def query(ws: Any, ms: Any, t: float) -> int:
+    """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point."""
+    for back in range(min(rows_available(ms), 2)):
+        if t == history_time(ms, back):
+            recall(ws, ms, back)
+            evaluate_residuals(ws)
+            return OK
+    if rows_available(ms) < 2:
+        return SINGULAR
+    interpolate(ws, ms, t)
+    return project(ws)

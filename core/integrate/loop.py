@@ -1,0 +1,153 @@
+"""The compiled time loop: steps until the stop time, an event, a full buffer or a failure."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.views import ivec, mat, vec
+from ..methods.history import history_row, history_time, push
+from ..methods.multistep import rows_available
+from ..methods.records import call_step
+from ..system.records import (
+    ATOL,
+    CONTROL_SIZE,
+    COUNTERS_SIZE,
+    NOT_FINITE,
+    OK,
+    REANALYZE,
+    REJECTED,
+    RTOL,
+    STEPS,
+)
+from .records import (
+    CHUNK,
+    CLOCK_SIZE,
+    EVENT,
+    FAILURES,
+    FIXED_STEP,
+    FULL,
+    MAX_STEP,
+    REACHED,
+    STEP_SIZE,
+    STEP_TOO_SMALL,
+    STOP_TIME,
+    TARGET_TIME,
+    TRIAL_STEP,
+)
+from .sample import write_sample
+from .watch import any_crossed, remember
+
+SAFETY = 0.9
+MIN_FACTOR = 0.2
+MAX_FACTOR = 2.0
+DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more: equal steps are cheaper and safer
+
+
+@compiled
+def set_weights(ws: Any, ms: Any) -> None:
+    """Error weights atol + rtol |y| at the newest row (with fixed steps: of the outer loop's convergence test)."""
+    control = vec(ws.control, CONTROL_SIZE)
+    row = history_row(ws, ms, 0)
+    weight_q, weight_v = vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)
+    for i in range(ws.n):
+        weight_q[i] = control[ATOL] + control[RTOL] * abs(row[i])
+        weight_v[i] = control[ATOL] + control[RTOL] * abs(row[ws.n_ext + i])
+
+
+@compiled
+def all_finite(ws: Any) -> bool:
+    """No NaN or infinity in q, v, a, lam."""
+    for address, count in ((ws.q, ws.n), (ws.v, ws.n_ext), (ws.a, ws.n_ext), (ws.lam, ws.m_ext - 1)):
+        x = vec(address, count)
+        for i in range(count):
+            if not np.isfinite(x[i]):
+                return False
+    return True
+
+
+@compiled
+def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
+    """One step of size h from the newest row, not accepted yet; its end is the workspace's current point."""
+    starting = rows_available(ms) < lc.rows
+    set_weights(ws, ms)
+    status = call_step(lc.starter if starting else lc.step, ws, ms, h)
+    if status == OK and not all_finite(ws):
+        return NOT_FINITE
+    return status
+
+
+@compiled
+def accept(ws: Any, ms: Any, lc: Any) -> None:
+    """The current point becomes the newest row, and a sample if samples are wanted."""
+    push(ws, ms)
+    remember(ws, lc)
+    ivec(ws.counters, COUNTERS_SIZE)[STEPS] += 1
+    if lc.capacity > 0:
+        cursor = ivec(lc.cursor, 1)
+        write_sample(ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
+        cursor[0] += 1
+
+
+@compiled
+def _factor(error: float, order: float, multistep: bool) -> float:
+    """By how much the step may change."""
+    if error <= 0.0:
+        factor = MAX_FACTOR
+    else:
+        factor = min(MAX_FACTOR, max(MIN_FACTOR, SAFETY * error ** (-1.0 / (order + 1.0))))
+    if multistep and 1.0 <= factor < DEAD_BAND:
+        return 1.0
+    return factor
+
+
+@compiled
+def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
+    """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
+    clock = vec(lc.clock, CLOCK_SIZE)
+    counters = ivec(ws.counters, COUNTERS_SIZE)
+    error = vec(ms.error, 2)
+    for _ in range(chunk):
+        t = history_time(ms, 0)
+        stop = clock[STOP_TIME]
+        remaining = stop - t
+        if t >= clock[TARGET_TIME] or remaining <= 4e-16 * abs(stop):
+            return REACHED
+        if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+            return FULL
+        fixed = clock[FIXED_STEP] > 0.0
+        wanted = clock[FIXED_STEP] if fixed else min(clock[STEP_SIZE], clock[MAX_STEP])
+        h = wanted
+        if h >= remaining * (1.0 - 1e-10):
+            h = remaining
+        elif not fixed and h > 0.5 * remaining:
+            h = 0.5 * remaining
+        clock[TRIAL_STEP] = h
+        multistep = lc.rows > 1 and rows_available(ms) >= lc.rows
+        status = trial_step(ws, ms, lc, h)
+        if status == REANALYZE:
+            return status
+        if status != OK or (not fixed and not error[0] <= 1.0):
+            counters[REJECTED] += 1
+            clock[FAILURES] += 1.0
+            if fixed:
+                return status
+            if status != OK:
+                h *= 0.25
+            else:
+                h *= min(0.9, _factor(error[0], error[1], False))
+            clock[STEP_SIZE] = h
+            if t + 0.01 * h == t or h < 1e-300:
+                return STEP_TOO_SMALL if status == OK else status
+            continue
+        clock[FAILURES] = 0.0
+        if ws.n_contacts > 0 and any_crossed(ws, lc, h):
+            return EVENT
+        if h == remaining:
+            # the stop time itself, not t + h with its rounding
+            vec(ws.t, 1)[0] = stop
+        accept(ws, ms, lc)
+        if not fixed:
+            proposed = h * _factor(error[0], error[1], multistep)
+            clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed
+    return CHUNK

@@ -1,0 +1,36 @@
+"""The loop record: clock, sample buffer and what the watch over contacts remembers."""
+
+import numba as nb
+import numpy as np
+
+LOOP = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "step", "starter", "rows",          # addresses of the step functions, rows that `step` needs
+            "clock",                            # (CLOCK_SIZE,) float64
+            "watch",                            # (n_contacts, 3) float64: gap, rate, acceleration at the newest row
+            "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
+            "cursor",                           # (1,) int64: samples in the buffer
+            "grows_by_multistep",               # 1: keep the step unless it can grow by a fifth
+        )
+    ]
+)  # fmt: skip
+LOOP_TYPE = nb.from_dtype(LOOP)
+
+# columns of `clock`
+STEP_SIZE = 0  # proposed next step
+STOP_TIME = 1
+MAX_STEP = 2
+FIXED_STEP = 3  # 0: error controlled
+TRIAL_STEP = 4  # step of the last trial (an event or a failure)
+FAILURES = 5  # rejected trials in a row
+TARGET_TIME = 6  # `run` returns once it is reached; a step may go beyond it
+CLOCK_SIZE = 7
+
+# what `run` returns besides the status of a failed step
+REACHED = 100
+EVENT = 101
+FULL = 102
+CHUNK = 103
+STEP_TOO_SMALL = 104

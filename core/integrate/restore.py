@@ -1,0 +1,97 @@
+"""State of a simulation as a value, and going on from one."""
+
+import hashlib
+import json
+from typing import TYPE_CHECKING
+
+from ..errors import ModelError, SimulationError
+from ..events import Event
+from ..methods.history import recall
+from ..state import State
+from ..system.records import OK
+from .dense_output import query
+from .watch import remember
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+_WORKSPACE = ("memory", "inputs", "counters", "rate", "t", "q", "v", "a", "aux", "lam")
+
+
+def model_hash(sim: "Simulation") -> str:
+    """Hash of the model and the settings: a state fits only these."""
+    text = json.dumps([sim.system.identity(), repr(sim.settings)])
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def get_state(sim: "Simulation") -> State:
+    """Copy everything that decides the future."""
+    workspace, structure = sim.workspace, sim.workspace.structure
+    arrays = {name: workspace.arrays[name].copy() for name in _WORKSPACE}
+    arrays |= {f"method_{name}": x.copy() for name, x in sim.method_arrays.items()}
+    arrays["clock"], arrays["watch"] = sim.clock.copy(), sim.watch.copy()
+    if structure.dependent is None or structure.lu_d is None or structure.lu_d_query is None:
+        raise RuntimeError("a simulation always has a partition once it is built")
+    arrays["dependent"] = structure.dependent.copy()
+    for name in ("kkt", "lu_d", "kkt_query", "lu_d_query"):
+        factorization = getattr(structure, name)
+        perm_r, perm_c = factorization.analysis()
+        arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"] = perm_r.copy(), perm_c.copy()
+        arrays[f"{name}_values"] = factorization.lu_values.copy()
+        arrays[f"{name}_pivots"] = factorization.pivots.copy()
+    closed, engaged = workspace.key
+    facts = {
+        "t": sim.t,
+        "closed": sorted(closed),
+        "engaged": sorted(engaged),
+        "pending": list(sim.pending),
+        "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
+        "handled": [repr(sim._times_handled[0]), sim._times_handled[1]],
+        "events": [event.to_dict() for event in sim.events],
+    }
+    return State(arrays, facts, model_hash(sim))
+
+
+def set_state(sim: "Simulation", state: State) -> None:
+    """Make `sim` what it was when `state` was taken."""
+    expected = model_hash(sim)
+    if state.model_hash != expected:
+        raise ModelError(
+            f"the state belongs to another model, method or tolerance (hash {state.model_hash[:12]}, this simulation "
+            f"has {expected[:12]}): restore it into a simulation built the same way"
+        )
+    workspace, facts, arrays = sim.workspace, state.facts, state.arrays
+    workspace.engage(frozenset(facts["closed"]), frozenset(facts["engaged"]))
+    workspace.set_partition(arrays["dependent"])
+    structure = workspace.structure
+    for name in ("kkt", "lu_d", "kkt_query", "lu_d_query"):
+        factorization = getattr(structure, name)
+        factorization.analyze_with(arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"])
+        factorization.lu_values[:] = arrays[f"{name}_values"]
+        factorization.pivots[:] = arrays[f"{name}_pivots"]
+    for name in _WORKSPACE:
+        workspace.arrays[name][...] = arrays[name]
+    for name, x in sim.method_arrays.items():
+        x[...] = arrays[f"method_{name}"]
+    sim.clock[:], sim.watch[:] = arrays["clock"], arrays["watch"]
+    sim.t = float(facts["t"])
+    sim.pending = [int(k) for k in facts["pending"]]
+    sim.open_accounts = {int(k): (v[0], v[1]) for k, v in facts["open_accounts"].items()}
+    sim._times_handled = (float(facts["handled"][0]), int(facts["handled"][1]))
+    sim.events = [Event(**event) for event in facts["events"]]
+
+
+def restart_here(sim: "Simulation") -> None:
+    """Start anew from the present time `sim.t`: what was computed beyond it is dropped (an input has changed)."""
+    ws, ms = sim.workspace.record, sim._method.record
+    if sim.t == sim.t_internal:
+        recall(ws, ms, 0)
+    elif query(ws, ms, sim.t) != OK:
+        raise SimulationError(
+            f"the state at t = {sim.t:.9g} s cannot be projected onto the constraints", t=sim.t, loop="inner"
+        )
+    if sim.t != sim.t_internal:
+        sim.pending = []
+    sim.use_modes()
+    sim._new_history()
+    remember(ws, sim._loop.record)

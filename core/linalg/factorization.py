@@ -1,0 +1,236 @@
+"""The Python side of the linear solver: analysis, storage, and what restores a solver's state."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import SingularMatrixError
+from .ordering import choose_pivots, singular_place
+from .record import COLUMNS, DENSE, GROWTH, LU, OK, PROGRAM, UNREADY
+from .solve import factor, solve
+from .symbolic import Operations, count_operations, fill_pattern, operation_list
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+# Largest n that is factored densely. Measured (benchmarks/linalg_timing.py): from n = 5 on the sparse
+# refactorisation is faster even for full matrices, because it does not search for pivots.
+DENSE_LIMIT = 4
+# The list of operations is written down while it is at most this many times the fill. Measured: 1.2-1.5 times
+# faster than by columns for chains (1.1 operations an entry), 1.2-1.7 times slower for spring grids (10-30).
+PROGRAM_LIMIT = 4
+# Indices are unsigned 32-bit.
+_LARGEST_INDEX = 2**32 - 1
+
+
+class Factorization:
+    """LU factorisation of a square matrix whose pattern stays and whose values change.
+
+    Parameters
+    ----------
+    n : size of the matrix.
+    rows, cols : (nnz,) int64, place of each entry; no place twice.
+    slots : (nnz,) int64, index of each entry in the caller's source array of float64.
+    dense : factor densely; by default for n <= DENSE_LIMIT.
+    source_size : length of the source array; by default what `slots` needs.
+
+    Attributes
+    ----------
+    record : the LU record for `factor` and `solve`. Its memory stays; `analyze` changes its content.
+    address : of the record, for `lu_at`.
+    arrays : what the addresses in the record point to.
+
+    Raises
+    ------
+    ValueError : for arrays of different lengths, indices out of range, or an entry given twice.
+    """
+
+    def __init__(
+        self,
+        n: int,
+        rows: ArrayLike,
+        cols: ArrayLike,
+        slots: ArrayLike,
+        dense: bool | None = None,
+        source_size: int | None = None,
+    ) -> None:
+        self.n = int(n)
+        self.rows, self.cols, self.slots = (np.array(a, dtype=np.int64, ndmin=1) for a in (rows, cols, slots))
+        if source_size is None:
+            source_size = int(self.slots.max(initial=-1)) + 1
+        self.source_size = int(source_size)
+        self.dense = self.n <= DENSE_LIMIT if dense is None else bool(dense)
+        self._check()
+        self._table = np.zeros(1, LU)
+        self.arrays: dict[str, NDArray] = {}
+        self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
+        self._set(
+            n=self.n,
+            nnz=len(self.rows),
+            kind=UNREADY,
+            entry_from=self.slots.astype(np.uint32),
+            work=np.zeros(self.n),
+        )
+        if self.dense:
+            self._set(
+                kind=DENSE,
+                entry_to=(self.rows * self.n + self.cols).astype(np.uint32),
+                values=np.zeros(self.n * (self.n + 1)),
+                pivots=np.arange(self.n),
+            )
+
+    @property
+    def record(self) -> np.void:
+        """The record to hand to a compiled function (a view: valid while this object lives)."""
+        return self._table[0]
+
+    @property
+    def address(self) -> int:
+        """Address of the record, to be stored in another record."""
+        return int(self._table.ctypes.data)
+
+    @property
+    def lu_values(self) -> Floats:
+        """The numeric factors and the limits on the growth of L as one array, to be copied out and back."""
+        return self.arrays.get("values", np.empty(0))
+
+    @property
+    def pivots(self) -> Ints:
+        """Dense: (n,) row of the matrix at each pivot; belongs to the numeric state. Sparse: empty."""
+        return self.arrays.get("pivots", np.empty(0, np.int64))
+
+    @property
+    def fill(self) -> int:
+        """Number of stored entries of L and U, diagonal included."""
+        return self.n * self.n if self.dense else int(self.record["nl"] + self.record["nu"]) + self.n
+
+    def analysis(self) -> tuple[Ints, Ints]:
+        """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense."""
+        return self._permutations
+
+    def analyze(self, values: Floats) -> None:
+        """Take ordering and pivots from the source array `values`, and factor with them.
+
+        Raises
+        ------
+        SingularMatrixError : if there are no pivots, or a value is not finite.
+        """
+        values = self._source(values)
+        entries = values[self.slots]
+        bad = np.flatnonzero(~np.isfinite(entries))
+        if len(bad):
+            e = bad[0]
+            raise SingularMatrixError(
+                f"entry ({self.rows[e]}, {self.cols[e]}) of the {self.n} x {self.n} matrix is {entries[e]}"
+            )
+        if not self.dense:
+            self.analyze_with(*choose_pivots(self.n, self.rows, self.cols, entries))
+        if factor(self.record, values.ctypes.data) != OK:
+            place = singular_place(self.n, self.rows, self.cols, entries)
+            raise SingularMatrixError(f"the {self.n} x {self.n} matrix is singular: {place}")
+        if not self.dense:
+            largest = np.ones(self.n)
+            nl = int(self.record["nl"])
+            np.maximum.at(largest, self.arrays["l_col"], np.abs(self.lu_values[:nl]))
+            self._growth_limits()[:] = GROWTH * largest
+
+    def analyze_with(self, perm_r: ArrayLike, perm_c: ArrayLike) -> None:
+        """Rebuild pattern and storage from the permutations of an earlier `analysis()`, without values.
+
+        The structure is the same, entry for entry. The limits on the growth of L are part of `lu_values`:
+        until that is copied back, `factor` does not return 2.
+        """
+        perm_r, perm_c = (np.array(p, dtype=np.int64, ndmin=1) for p in (perm_r, perm_c))
+        if self.dense:
+            if len(perm_r) or len(perm_c):
+                raise ValueError("a dense factorisation has no permutations: analyze_with needs empty arrays")
+            return
+        for name, p in (("perm_r", perm_r), ("perm_c", perm_c)):
+            if not np.array_equal(np.sort(p), np.arange(self.n)):
+                raise ValueError(f"{name} must be a permutation of 0..{self.n - 1}")
+        n = self.n
+        row, col = perm_r[self.rows], perm_c[self.cols]
+        l, u = fill_pattern(n, row, col)
+        nl, nu = len(l.row), len(u.row)
+        if nl + nu + 2 * n > _LARGEST_INDEX:
+            raise ValueError(f"{nl + nu + 2 * n} stored values are more than 32-bit indices can reach")
+        if count_operations(l, u) <= PROGRAM_LIMIT * (nl + nu + n):
+            kind, operations = PROGRAM, operation_list(n, l, u)
+        else:
+            kind, operations = COLUMNS, Operations(*(np.zeros((k, 0), np.uint32) for k in (1, 3, 1, 2)))
+        entry_to = nl + nu + row
+        below, above = row > col, row < col
+        entry_to[below] = l.find(n, row[below], col[below])
+        entry_to[above] = nl + u.find(n, row[above], col[above])
+        order = np.argsort(entry_to)  # written in ascending order
+        indices = {
+            "entry_to": entry_to[order],
+            "entry_from": self.slots[order],
+            "row_at": np.argsort(perm_r),
+            "col_at": np.argsort(perm_c),
+            "step_start": operations.step_start,
+            "sum_start": operations.sum_start,
+            **dict(zip(("step_to", "step_left", "step_right"), operations.steps, strict=True)),
+            **dict(zip(("sum_left", "sum_right"), operations.sums, strict=True)),
+            **{f"{name}_{field}": value for name, t in (("l", l), ("u", u)) for field, value in t._asdict().items()},
+        }
+        self._set(
+            kind=kind,
+            nl=nl,
+            nu=nu,
+            n_steps=operations.steps.shape[1],
+            n_sums=operations.sums.shape[1],
+            values=np.zeros(nl + nu + 2 * n),
+            **{name: array.astype(np.uint32) for name, array in indices.items()},
+        )
+        self._growth_limits()[:] = np.inf
+        self._permutations = (perm_r, perm_c)
+
+    def factor(self, values: Floats) -> int:
+        """`factor` on the source array, from Python."""
+        return int(factor(self.record, self._source(values).ctypes.data))
+
+    def solve(self, b: ArrayLike) -> Floats:
+        """Solution of A x = b as a new (n,) array, from Python."""
+        x = np.array(b, dtype=np.float64, ndmin=1)
+        if x.shape != (self.n,):
+            raise ValueError(f"b has shape {x.shape}, the matrix needs ({self.n},)")
+        solve(self.record, x.ctypes.data)
+        return x
+
+    def _growth_limits(self) -> Floats:
+        return self.lu_values[len(self.lu_values) - self.n :]
+
+    def _check(self) -> None:
+        if self.n < 0:
+            raise ValueError(f"n = {self.n} must not be negative")
+        lengths = [a.shape for a in (self.rows, self.cols, self.slots)]
+        if len(set(lengths)) != 1 or len(lengths[0]) != 1:
+            raise ValueError(f"rows, cols and slots must be vectors of one length, not of shapes {lengths}")
+        limits = (
+            ("rows", self.rows, self.n),
+            ("cols", self.cols, self.n),
+            ("slots", self.slots, self.source_size),
+        )
+        for name, array, limit in limits:
+            if len(array) and (array.min() < 0 or array.max() >= limit):
+                raise ValueError(f"{name} must be in 0..{limit - 1}, they range from {array.min()} to {array.max()}")
+        if self.source_size > _LARGEST_INDEX:
+            raise ValueError(f"a source array of {self.source_size} is more than 32-bit indices can reach")
+        place, count = np.unique(self.rows * self.n + self.cols, return_counts=True)
+        if np.any(count > 1):
+            twice = int(place[np.argmax(count > 1)])
+            raise ValueError(f"entry ({twice // self.n}, {twice % self.n}) is given more than once")
+
+    def _source(self, values: Floats) -> Floats:
+        values = np.ascontiguousarray(values, dtype=np.float64)
+        if values.ndim != 1 or len(values) < self.source_size:
+            raise ValueError(f"the source array has shape {values.shape}, it needs {self.source_size} values")
+        return values
+
+    def _set(self, **fields: int | NDArray) -> None:
+        for name, value in fields.items():
+            if isinstance(value, np.ndarray):
+                self.arrays[name] = value = np.ascontiguousarray(value)
+                self._table[name] = value.ctypes.data
+            else:
+                self._table[name] = value

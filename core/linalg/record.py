@@ -1,0 +1,51 @@
+"""The record of sizes and addresses through which compiled code reaches a factorisation."""
+
+import numba as nb
+import numpy as np
+
+from ..compiled.jit import record_view
+
+# Values of LU.kind.
+UNREADY = 0  # sparse, not analysed yet: factor returns REANALYSE
+DENSE = 1  # rows with partial pivoting
+PROGRAM = 2  # sparse, the refactorisation is a flat list of multiply-subtracts
+COLUMNS = 3  # sparse, left-looking by columns (more than a few operations for each entry)
+
+# Returned by `factor`.
+OK = 0
+NO_PIVOT = 1  # a pivot is zero to rounding, or a value is not finite
+REANALYSE = 2  # the pivots fit the values no longer (or `analyze` was never called)
+
+# A pivot that is this much smaller than a term of its own sum holds nothing but rounding.
+PIVOT_NOISE = 1e-14
+# An entry of L may grow by this factor over the largest of its column at analysis (at least over 1).
+GROWTH = 1e5
+
+LU = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "n", "kind", "nnz",
+            "entry_to",    # (nnz,) uint32: position of each matrix entry in `values`
+            "entry_from",  # (nnz,) uint32: its position in the source array
+            "values",      # dense: (n, n) rows, then (n,) 1/pivot
+                           # sparse: (nl,) L, (nu,) U, (n,) 1/pivot, (n,) largest |L| allowed in the column
+            "work",        # (n,) float64
+            "pivots",      # (n,) int64, dense: row of the matrix at each pivot
+            # sparse: L (unit diagonal) and U by columns; U is stored divided by the pivot of its column
+            "nl", "nu",
+            "l_start", "u_start",                # (n + 1,) uint32
+            "l_row", "l_col", "u_row", "u_col",  # (nl,), (nu,) uint32, rows ascending in each column
+            "row_at", "col_at",                  # (n,) uint32: row and column of the matrix at each pivot
+            # PROGRAM: values[to] -= values[left] * values[right], then the sums of the pivots
+            "n_steps", "n_sums",
+            "step_start", "step_to", "step_left", "step_right",  # (n + 1,), (n_steps,) uint32
+            "sum_start", "sum_left", "sum_right",                # (n + 1,), (n_sums,) uint32
+        )
+    ]
+)  # fmt: skip
+
+LU_TYPE = nb.from_dtype(LU)
+
+lu_at = record_view(LU_TYPE)
+"""lu_at(address): the LU record at `Factorization.address`, for records that store the address of another."""

@@ -1,0 +1,29 @@
+"""BDF inside TLISMNI: coordinates and velocities, orders 1 to 5, variable step on the actual grid.
+
+Error estimate: (y - extrapolation of degree k) h/(t_{n+1} - t_{n-k}), the next difference over k + 1 for equal steps.
+"""
+
+from typing import Any
+
+from ..compiled.jit import compiled
+from ..compiled.views import vec
+from ..system.records import OK
+from .coefficients import bdf_coefficients, extrapolation_weights
+from .history import history_time
+from .multistep import bdf_stage, nodes, predictor_error, weight_rows
+
+
+@compiled
+def bdf_step(ws: Any, ms: Any, h: float) -> int:
+    k = ms.order
+    table = weight_rows(ms)
+    if nodes(ms, h, k + 1, table[0]):
+        bdf_coefficients(table[0], k, table[1])
+        extrapolation_weights(table[0], k + 1, table[2])
+    status = bdf_stage(ws, ms, h, k, table[1], table[2])
+    if status != OK:
+        return status
+    span = history_time(ms, 0) + h - history_time(ms, k)
+    vec(ms.error, 2)[0] = predictor_error(ws, ms, table[2], k + 1) * h / span
+    vec(ms.error, 2)[1] = k
+    return OK

@@ -1,0 +1,92 @@
+"""Extended BDF inside TLISMNI (Cash 1980), k = 1..8, order k + 1: three stages a step.
+
+(i) BDF to t_{n+1}; (ii) the same formula one step further, to t_{n+2} = t_{n+1} + h;
+(iii) y_{n+1} = sum A_j y_{n-j} + h B y'_{n+1} + h B1 ybar'_{n+2}.
+Error estimate: ||y_{n+1} - ybar_{n+1}||, the difference of orders k + 1 and k: safe, and free.
+"""
+
+from typing import Any
+
+from ..compiled.jit import compiled
+from ..compiled.views import mat, vec
+from ..stage.solver import weighted_norm
+from ..system.records import OK
+from .coefficients import bdf_coefficients, ebdf_coefficients, extrapolation_weights
+from .history import history_time
+from .multistep import bdf_stage, combine_stars, finish_stage, nodes, predict, weight_rows
+
+NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED, SCRATCH = range(8)
+
+
+@compiled
+def _coefficients(ms: Any, h: float, k: int, table: Any) -> None:
+    """All coefficients of the step, renewed when the grid has changed."""
+    if not nodes(ms, h, k + 1, table[NODES]):
+        return
+    s = table[NODES]
+    bdf_coefficients(s, k, table[BDF])
+    extrapolation_weights(s, k + 1, table[EXTRAPOLATION])
+    advanced = table[ADVANCED_NODES]
+    advanced[0] = -1.0
+    for j in range(k):
+        advanced[j + 1] = s[j] - 1.0
+    bdf_coefficients(advanced, k, table[ADVANCED])
+    extrapolation_weights(advanced, k + 1, table[ADVANCED_EXTRAPOLATION])
+    ebdf_coefficients(s, k, table[EXTENDED], table[SCRATCH:])
+
+
+@compiled
+def ebdf_step(ws: Any, ms: Any, h: float) -> int:
+    k, n = ms.order, ws.n_ext
+    table = weight_rows(ms)
+    _coefficients(ms, h, k, table)
+    t_new = history_time(ms, 0) + h
+    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
+    bar_q, bar_v, bar_a = vec(ws.base_q, n), vec(ws.base_v, n), vec(ws.base_a, n)
+    bar_lam = mat(ws.stage_a, 8, n + ws.m_ext)[0]
+
+    status = bdf_stage(ws, ms, h, k, table[BDF], table[EXTRAPOLATION])
+    if status != OK:
+        return status
+    for i in range(n):
+        bar_q[i], bar_v[i], bar_a[i] = q[i], v[i], a[i]
+    for i in range(ws.m_ext):
+        bar_lam[i] = lam[i]
+
+    coefficients, extrapolation = table[ADVANCED], table[ADVANCED_EXTRAPOLATION]
+    for i in range(n):
+        q_star[i] = coefficients[0] * bar_q[i]
+        v_star[i] = coefficients[0] * bar_v[i]
+    for i in range(ws.n):
+        a[i] = extrapolation[0] * bar_a[i]
+    for i in range(ws.m_ext):
+        lam[i] = extrapolation[0] * bar_lam[i]
+    c_v = h * coefficients[k]
+    combine_stars(ws, ms, coefficients[1:], 0, k - 1, c_v)
+    predict(ws, ms, extrapolation[1:], 0, k)
+    status = finish_stage(ws, t_new + h, c_v)
+    if status != OK:
+        return status
+
+    coefficients = table[EXTENDED]
+    ahead = h * coefficients[k + 1]
+    for i in range(n):
+        q_star[i] = ahead * v[i]
+        v_star[i] = ahead * a[i]
+    for i in range(ws.n):
+        a[i] = bar_a[i]
+    for i in range(ws.m_ext):
+        lam[i] = bar_lam[i]
+    c_v = h * coefficients[k]
+    combine_stars(ws, ms, coefficients, 0, k, c_v)
+    status = finish_stage(ws, t_new, c_v)
+    if status != OK:
+        return status
+    for i in range(ws.n):
+        bar_q[i] -= q[i]
+        bar_v[i] -= v[i]
+    error = vec(ms.error, 2)
+    error[0] = max(weighted_norm(bar_q, vec(ws.weight_q, n), ws.n), weighted_norm(bar_v, vec(ws.weight_v, n), ws.n))
+    error[1] = k
+    return OK

@@ -1,0 +1,71 @@
+"""History: the last accepted points, as rows (q, v, a, aux, lam) of a ring.
+
+Rows hold the full coordinates, never only the independent ones: a new partition costs nothing.
+"""
+
+from typing import Any
+
+from ..compiled.jit import compiled, inlined
+from ..compiled.views import ivec, mat, vec
+
+
+@inlined
+def row_index(ms: Any, back: int) -> int:
+    """Ring position of the row `back` steps before the newest."""
+    return (ivec(ms.ring, 2)[0] - back) % ms.capacity
+
+
+@inlined
+def history_row(ws: Any, ms: Any, back: int) -> Any:
+    """The row `back` steps before the newest."""
+    return mat(ms.history, ms.capacity, ws.row_length)[row_index(ms, back)]
+
+
+@inlined
+def history_time(ms: Any, back: int) -> float:
+    """Its time."""
+    return vec(ms.times, ms.capacity)[row_index(ms, back)]
+
+
+@compiled
+def push(ws: Any, ms: Any) -> None:
+    """The current point of the workspace becomes the newest row."""
+    ring = ivec(ms.ring, 2)
+    ring[0] = (ring[0] + 1) % ms.capacity
+    ring[1] = min(ring[1] + 1, ms.capacity)
+    row = mat(ms.history, ms.capacity, ws.row_length)[ring[0]]
+    n = ws.n_ext
+    q, v, a, aux = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.aux, n)
+    lam = vec(ws.lam, ws.m_ext)
+    for i in range(n):
+        row[i] = q[i]
+        row[n + i] = v[i]
+        row[2 * n + i] = a[i]
+        row[3 * n + i] = aux[i]
+    for i in range(ws.m_ext):
+        row[4 * n + i] = lam[i]
+    vec(ms.times, ms.capacity)[ring[0]] = vec(ws.t, 1)[0]
+
+
+@compiled
+def restart(ws: Any, ms: Any) -> None:
+    """Forget the history; the current point of the workspace is its only row."""
+    ivec(ms.ring, 2)[1] = 0
+    push(ws, ms)
+
+
+@compiled
+def recall(ws: Any, ms: Any, back: int) -> None:
+    """The row `back` steps before the newest becomes the current point of the workspace."""
+    row = history_row(ws, ms, back)
+    n = ws.n_ext
+    q, v, a, aux = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.aux, n)
+    lam = vec(ws.lam, ws.m_ext)
+    for i in range(n):
+        q[i] = row[i]
+        v[i] = row[n + i]
+        a[i] = row[2 * n + i]
+        aux[i] = row[3 * n + i]
+    for i in range(ws.m_ext):
+        lam[i] = row[4 * n + i]
+    vec(ws.t, 1)[0] = history_time(ms, back)

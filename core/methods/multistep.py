@@ -1,0 +1,126 @@
+"""What BDF and EBDF share: nodes, linear combinations of history rows, one BDF stage.
+
+The formulas are applied to (q, v) with (v, a) as derivatives: v_i = P_v + h b a_i, q_i = P_q + h b v_i, hence
+c_v = h b, c_q = (h b)^2, q* = P_q + h b P_v, v* = P_v.
+"""
+
+from typing import Any
+
+from ..compiled.jit import compiled, inlined
+from ..compiled.views import ivec, mat, vec
+from ..stage.solver import solve_stage, weighted_norm
+from ..system.evaluate import evaluate_power
+from .history import history_row, history_time
+from .records import MAX_NODES
+
+
+@compiled
+def nodes(ms: Any, h: float, count: int, out: Any) -> bool:
+    """s_j = (t_j - t_new)/h of the newest `count` rows into `out`; True if they differ from what stood there."""
+    t_new = history_time(ms, 0) + h
+    changed = False
+    for j in range(count):
+        if abs((history_time(ms, j) - t_new) / h - out[j]) > 1e-12:
+            changed = True
+    if changed:
+        for j in range(count):
+            out[j] = (history_time(ms, j) - t_new) / h
+    return changed
+
+
+@compiled
+def combine_stars(ws: Any, ms: Any, weights: Any, first: int, count: int, c_v: float) -> None:
+    """q*, v* from rows first ... first + count - 1 of the history with `weights`, added to what stands there.
+
+    On the way in q_star and v_star hold what other terms give to P_q and P_v.
+    """
+    n = ws.n_ext
+    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
+    for j in range(count):
+        row = history_row(ws, ms, first + j)
+        w = weights[j]
+        for i in range(n):
+            q_star[i] += w * row[i]
+            v_star[i] += w * row[n + i]
+    for i in range(n):
+        q_star[i] += c_v * v_star[i]
+
+
+@compiled
+def predict(ws: Any, ms: Any, weights: Any, first: int, count: int) -> None:
+    """Extrapolate a and lambda through rows of the history, on top of what stands in a and lam."""
+    n = ws.n_ext
+    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    for j in range(count):
+        row = history_row(ws, ms, first + j)
+        w = weights[j]
+        for i in range(ws.n):
+            a[i] += w * row[2 * n + i]
+        for i in range(ws.m_ext):
+            lam[i] += w * row[4 * n + i]
+
+
+@compiled
+def clear(address: int, n: int) -> None:
+    """Zero a vector."""
+    x = vec(address, n)
+    for i in range(n):
+        x[i] = 0.0
+
+
+@compiled
+def finish_stage(ws: Any, t: float, c_v: float) -> int:
+    """Solve the stage; then power and work accounts."""
+    status = solve_stage(ws, t, c_v * c_v, c_v)
+    if status != 0:
+        return status
+    evaluate_power(ws)
+    n = ws.n_ext
+    v, v_star, a = vec(ws.v, n), vec(ws.v_star, n), vec(ws.a, n)
+    for i in range(n - ws.n_work, n):
+        v[i] = v_star[i] + c_v * a[i]
+    return status
+
+
+@compiled
+def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolation: Any) -> int:
+    """y_{n+1} = sum_j coefficients_j y_{n-j} + coefficients_k h y'_{n+1}."""
+    n = ws.n_ext
+    c_v = h * coefficients[k]
+    clear(ws.q_star, n)
+    clear(ws.v_star, n)
+    combine_stars(ws, ms, coefficients, 0, k, c_v)
+    clear(ws.a, ws.n)
+    clear(ws.lam, ws.m_ext)
+    predict(ws, ms, extrapolation, 0, k + 1)
+    return finish_stage(ws, history_time(ms, 0) + h, c_v)
+
+
+@compiled
+def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
+    """Norm of (q, v) less its extrapolation through `count` rows: the next backward difference."""
+    n = ws.n_ext
+    q, v = vec(ws.q, n), vec(ws.v, n)
+    difference = vec(ws.rhs, ws.n)
+    norm = 0.0
+    for kind in range(2):
+        for i in range(ws.n):
+            difference[i] = v[i] if kind else q[i]
+        for j in range(count):
+            row = history_row(ws, ms, j)
+            for i in range(ws.n):
+                difference[i] -= weights[j] * row[kind * n + i]
+        norm = max(norm, weighted_norm(difference, vec(ws.weight_v if kind else ws.weight_q, n), ws.n))
+    return norm
+
+
+@inlined
+def weight_rows(ms: Any) -> Any:
+    """Table of the coefficients."""
+    return mat(ms.weights, 24, MAX_NODES)
+
+
+@inlined
+def rows_available(ms: Any) -> int:
+    """Number of rows in the history."""
+    return ivec(ms.ring, 2)[1]

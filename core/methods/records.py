@@ -1,0 +1,42 @@
+"""The method record: history and parameters of an integration formula."""
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numba import types
+
+from ..compiled.jit import address_of, caller
+from ..system.records import WORKSPACE_TYPE
+
+METHOD = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "capacity",   # rows of history that are kept
+            "order",      # k of a multistep formula
+            "history",    # (capacity, row_length) float64, a ring
+            "times",      # (capacity,) float64
+            "ring",       # (2,) int64: position of the newest row, number of rows
+            "parameters", # (8,) float64: alpha, beta, gamma ...
+            "weights",    # (24, MAX_NODES) float64: nodes and the coefficients that belong to them
+            "error",      # (2,) float64: error norm of the last step, order of its estimate
+        )
+    ]
+)  # fmt: skip
+METHOD_TYPE = nb.from_dtype(METHOD)
+
+MAX_NODES = 12
+"""Most rows of history that a formula uses, and the width of `weights`."""
+
+STEP_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
+"""A step: from the newest row of history by h; leaves the new point in the workspace and its error norm."""
+
+
+call_step = caller(STEP_SIGNATURE)
+"""call_step(address, ws, ms, h)."""
+
+
+def step_address(step: Any) -> int:
+    """Machine address of a step function."""
+    return address_of(step, STEP_SIGNATURE)

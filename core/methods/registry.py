@@ -1,0 +1,119 @@
+"""The methods by name: their step, their options and how much history they need."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..errors import ModelError
+from .bdf import bdf_step
+from .ebdf import ebdf_step
+from .newmark import newmark_step
+from .sdirk import sdirk_fine_step, sdirk_step
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of a method."""
+
+    default: float
+    minimum: float
+    maximum: float
+    description: str
+    integer: bool = False
+
+
+@dataclass(frozen=True)
+class Formula:
+    """An integration formula ready to run."""
+
+    step: Any
+    order: int = 0
+    parameters: tuple[float, ...] = ()
+    rows: int = 1
+    """Rows of history that a step needs; below that the starter works."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method as users know it."""
+
+    name: str
+    description: str
+    options: Mapping[str, Option]
+    formula: Callable[[Mapping[str, float]], Formula] = field(repr=False)
+
+
+def _hht(values: Mapping[str, float]) -> Formula:
+    alpha = values["alpha"]
+    return Formula(newmark_step, 2, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha))
+
+
+METHODS = {
+    method.name: method
+    for method in (
+        Method(
+            "newmark",
+            "TLISMNI with Newmark's formula, accelerations as unknowns; order 2 for gamma = 1/2",
+            {
+                "beta": Option(0.25, 0.01, 2.0, "beta; 1/4 with gamma 1/2 is the average acceleration"),
+                "gamma": Option(0.5, 0.5, 1.5, "gamma; above 1/2 it damps, at order 1"),
+            },
+            lambda o: Formula(newmark_step, 2, (0.0, o["beta"], o["gamma"])),
+        ),
+        Method(
+            "hht",
+            "TLISMNI with the HHT-alpha formula, accelerations as unknowns; order 2",
+            {"alpha": Option(-0.05, -1.0 / 3.0, 0.0, "numerical damping: 0 none, -1/3 most")},
+            _hht,
+        ),
+        Method(
+            "bdf",
+            "TLISMNI with the BDF of fixed order, coordinates and velocities as unknowns",
+            {"order": Option(3, 1, 5, "order k", integer=True)},
+            lambda o: Formula(bdf_step, int(o["order"]), (), int(o["order"]) + 1),
+        ),
+        Method(
+            "ebdf",
+            "TLISMNI with Cash's extended BDF of fixed k, order k + 1; A-stable up to k = 3",
+            {"k": Option(4, 1, 8, "number of steps k; the order is k + 1", integer=True)},
+            lambda o: Formula(ebdf_step, int(o["k"]), (), int(o["k"]) + 1),
+        ),
+        Method(
+            "irk",
+            "TLISMNI with the implicit Runge-Kutta method SDIRK of order 4, L-stable, self-starting",
+            {},
+            lambda o: Formula(sdirk_step, 4),
+        ),
+    )
+}
+
+STARTER = sdirk_step
+FINE_STARTER = sdirk_fine_step
+
+
+def get_formula(name: str, options: Mapping[str, Any]) -> Formula:
+    """The formula of method `name` with `options`.
+
+    Raises
+    ------
+    ModelError : for an unknown method or option, or a value outside its range.
+    """
+    if name not in METHODS:
+        raise ModelError(f"unknown method '{name}'; known are {sorted(METHODS)}")
+    method = METHODS[name]
+    unknown = set(options) - set(method.options)
+    if unknown:
+        raise ModelError(f"method '{name}' has no option {sorted(unknown)}; it has {sorted(method.options)}")
+    values = {key: option.default for key, option in method.options.items()}
+    for key, value in options.items():
+        option = method.options[key]
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ModelError(f"option {key} of method '{name}' must be a number, not {value!r}")
+        if option.integer and int(value) != value:
+            raise ModelError(f"option {key} of method '{name}' must be a whole number, not {value!r}")
+        if not option.minimum <= value <= option.maximum:
+            raise ModelError(
+                f"option {key} of method '{name}' must be from {option.minimum:g} to {option.maximum:g}, not {value!r}"
+            )
+        values[key] = float(value)
+    return method.formula(values)

@@ -1,0 +1,128 @@
+"""SDIRK of order 4, five stages, L-stable, embedded order 3 (Hairer and Wanner, Solving ODEs II, table 6.5).
+
+Self-starting: it gives the multistep formulas their starting values, and is the method "irk" for now.
+Each stage has c_v = h gamma, c_q = (h gamma)^2: one matrix for all.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.views import mat, vec
+from ..stage.solver import solve_stage, weighted_norm
+from ..system.evaluate import evaluate_power
+from ..system.records import OK
+from .history import history_row, history_time
+
+A = np.array(
+    [
+        [1 / 4, 0, 0, 0, 0],
+        [1 / 2, 1 / 4, 0, 0, 0],
+        [17 / 50, -1 / 25, 1 / 4, 0, 0],
+        [371 / 1360, -137 / 2720, 15 / 544, 1 / 4, 0],
+        [25 / 24, -49 / 48, 125 / 16, -85 / 12, 1 / 4],
+    ]
+)
+B_EMBEDDED = np.array([59 / 48, -17 / 96, 225 / 32, -85 / 12, 0])
+C = np.array([1 / 4, 3 / 4, 11 / 20, 1 / 2, 1])
+STAGES = 5
+
+
+@compiled
+def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
+    """One step from (base_q, base_v, base_a) at t. Returns (status, error norm); the result is in the workspace."""
+    n = ws.n_ext
+    base_q, base_v = vec(ws.base_q, n), vec(ws.base_v, n)
+    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
+    v, a = vec(ws.v, n), vec(ws.a, n)
+    stage_v, stage_a = mat(ws.stage_v, 8, n), mat(ws.stage_a, 8, n)
+    c_v = h * A[0, 0]
+    first_work = n - ws.n_work
+    for s in range(STAGES):
+        for i in range(n):
+            p_q, p_v = base_q[i], base_v[i]
+            for j in range(s):
+                p_q += h * A[s, j] * stage_v[j, i]
+                p_v += h * A[s, j] * stage_a[j, i]
+            q_star[i] = p_q + c_v * p_v
+            v_star[i] = p_v
+        status = solve_stage(ws, t + C[s] * h, c_v * c_v, c_v)
+        if status != OK:
+            return status, 0.0
+        evaluate_power(ws)
+        for i in range(first_work, n):
+            v[i] = v_star[i] + c_v * a[i]
+        for i in range(n):
+            stage_v[s, i] = v[i]
+            stage_a[s, i] = a[i]
+    error = vec(ws.rhs, ws.n)
+    for i in range(ws.n):
+        total = 0.0
+        for j in range(STAGES):
+            total += (A[4, j] - B_EMBEDDED[j]) * stage_v[j, i]
+        error[i] = h * total
+    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    for i in range(ws.n):
+        total = 0.0
+        for j in range(STAGES):
+            total += (A[4, j] - B_EMBEDDED[j]) * stage_a[j, i]
+        error[i] = h * total
+    return OK, max(norm, weighted_norm(error, vec(ws.weight_v, n), ws.n))
+
+
+@compiled
+def base_from_row(ws: Any, ms: Any) -> None:
+    """Start from the newest row of history."""
+    n = ws.n_ext
+    row = history_row(ws, ms, 0)
+    base_q, base_v, a = vec(ws.base_q, n), vec(ws.base_v, n), vec(ws.a, n)
+    lam = vec(ws.lam, ws.m_ext)
+    for i in range(n):
+        base_q[i] = row[i]
+        base_v[i] = row[n + i]
+        a[i] = row[2 * n + i]
+    for i in range(ws.m_ext):
+        lam[i] = row[4 * n + i]
+
+
+@compiled
+def sdirk_step(ws: Any, ms: Any, h: float) -> int:
+    """One step, with the error estimate of the embedded formula."""
+    base_from_row(ws, ms)
+    status, norm = sdirk_from_base(ws, history_time(ms, 0), h)
+    vec(ms.error, 2)[0] = norm
+    vec(ms.error, 2)[1] = 3.0
+    return status
+
+
+@compiled
+def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
+    """One grid step in as many equal parts as keep the embedded error of each below one: starting values that
+    do not spoil the order of a fixed-step multistep method."""
+    n = ws.n_ext
+    parts = 1
+    while True:
+        base_from_row(ws, ms)
+        t = history_time(ms, 0)
+        worst = 0.0
+        status = OK
+        for part in range(parts):
+            status, norm = sdirk_from_base(ws, t + part * h / parts, h / parts)
+            if status != OK:
+                return status
+            worst = max(worst, norm)
+            if worst > 1.0 and parts < 4096:
+                break
+            q, v = vec(ws.q, n), vec(ws.v, n)
+            base_q, base_v = vec(ws.base_q, n), vec(ws.base_v, n)
+            for i in range(n):
+                base_q[i] = q[i]
+                base_v[i] = v[i]
+        if worst <= 1.0 or parts >= 4096:
+            break
+        parts = min(4096, max(2 * parts, int(parts * min(worst, 1e8) ** 0.25) + 1))
+    vec(ws.t, 1)[0] = history_time(ms, 0) + h
+    vec(ms.error, 2)[0] = 0.0
+    vec(ms.error, 2)[1] = 3.0
+    return OK

@@ -1,0 +1,1 @@
+"""The vocabulary of model records that elements are built from. `Model` itself is in `core/description.py`."""

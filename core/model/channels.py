@@ -1,0 +1,41 @@
+"""Channels: what a model shows and takes. One list names the recorded columns, the FMU's variables and the
+quantities that a cross-check compares."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from .base import Name, Record
+
+
+class Input(Record):
+    """An input channel: a number that comes from outside during the run (a force, a prescribed motion ...)."""
+
+    name: Name
+    unit: str = "1"
+    """SI unit, e.g. "N", "N.m", "m", "rad"."""
+    start: float = 0.0
+    description: str = ""
+
+
+class Parameter(Record):
+    """A number of the model that may be changed from outside before a run, by name."""
+
+    name: Name
+    unit: str = "1"
+    minimum: float | None = None
+    maximum: float | None = None
+    description: str = ""
+    targets: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Where the number stands: "element.field" or "element.field.field", e.g. "stop.law.restitution"."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One column of the results: name, unit, kind of value."""
+
+    name: str
+    unit: str
+    description: str
+    kind: Literal["real", "integer", "boolean"] = "real"

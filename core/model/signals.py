@@ -1,0 +1,172 @@
+"""Time functions as data, and their compiled evaluation with two derivatives.
+
+Each signal of a model is a run of numbers in one pool: a kind and its parameters. `evaluate_signal` returns
+f, f' and f'' (a driven constraint needs all three).
+"""
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+from scipy.interpolate import CubicSpline
+
+from ..compiled.jit import compiled
+from .base import Name, Positive, Record
+
+CONSTANT, STEP, RAMP, SINE, POLYNOMIAL, TABLE, INPUT = range(7)
+
+
+class Constant(Record):
+    """f(t) = value."""
+
+    type: Literal["Constant"] = "Constant"
+    value: float
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        return [CONSTANT, self.value]
+
+    def breakpoints(self) -> list[float]:
+        return []
+
+
+class Step(Record):
+    """f jumps from `before` to `after` at `time` (s). Not for drivers: a jump in position is no motion."""
+
+    type: Literal["Step"] = "Step"
+    time: float
+    before: float = 0.0
+    after: float = 1.0
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        return [STEP, self.time, self.before, self.after]
+
+    def breakpoints(self) -> list[float]:
+        return [self.time]
+
+
+class Ramp(Record):
+    """f goes linearly from `before` at `start` (s) to `after` at `start + duration`."""
+
+    type: Literal["Ramp"] = "Ramp"
+    start: float
+    duration: Positive
+    before: float = 0.0
+    after: float = 1.0
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        return [RAMP, self.start, self.duration, self.before, self.after]
+
+    def breakpoints(self) -> list[float]:
+        return [self.start, self.start + self.duration]
+
+
+class Sine(Record):
+    """f(t) = offset + amplitude sin(angular_frequency t + phase); angular_frequency in rad/s, phase in rad."""
+
+    type: Literal["Sine"] = "Sine"
+    amplitude: float
+    angular_frequency: float
+    phase: float = 0.0
+    offset: float = 0.0
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        return [SINE, self.amplitude, self.angular_frequency, self.phase, self.offset]
+
+    def breakpoints(self) -> list[float]:
+        return []
+
+
+class Polynomial(Record):
+    """f(t) = c0 + c1 t + c2 t^2 + ...; `coefficients` from the constant upwards."""
+
+    type: Literal["Polynomial"] = "Polynomial"
+    coefficients: Annotated[tuple[float, ...], Field(min_length=1)]
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        return [POLYNOMIAL, len(self.coefficients), *self.coefficients]
+
+    def breakpoints(self) -> list[float]:
+        return []
+
+
+class Table(Record):
+    """Not-a-knot cubic spline through (times, values); outside, the first or last cubic goes on."""
+
+    type: Literal["Table"] = "Table"
+    times: Annotated[tuple[float, ...], Field(min_length=4)]
+    values: Annotated[tuple[float, ...], Field(min_length=4)]
+
+    @model_validator(mode="after")
+    def _check(self) -> "Table":
+        if len(self.times) != len(self.values):
+            raise ValueError(f"times has {len(self.times)} entries, values has {len(self.values)}: give as many")
+        if any(b <= a for a, b in zip(self.times, self.times[1:], strict=False)):
+            raise ValueError("times must grow strictly")
+        return self
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        spline = CubicSpline(self.times, self.values)
+        return [TABLE, len(self.times), *self.times, *np.asarray(spline.c).T.ravel()]
+
+    def breakpoints(self) -> list[float]:
+        return []
+
+
+class InputSignal(Record):
+    """The value of the model's input channel `channel`."""
+
+    type: Literal["Input"] = "Input"
+    channel: Name
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        return [INPUT, inputs[self.channel]]
+
+    def breakpoints(self) -> list[float]:
+        return []
+
+
+Signal = Annotated[Constant | Step | Ramp | Sine | Polynomial | Table | InputSignal, Field(discriminator="type")]
+"""Any time function."""
+
+
+@compiled
+def evaluate_signal(pool: Any, inputs: Any, offset: int, t: float) -> Any:
+    """(f, f', f'') at time `t` of the signal that starts at `pool[offset]`."""
+    kind = int(pool[offset])
+    if kind == CONSTANT:
+        return pool[offset + 1], 0.0, 0.0
+    if kind == INPUT:
+        k = int(pool[offset + 1])
+        return inputs[3 * k], inputs[3 * k + 1], inputs[3 * k + 2]
+    if kind == SINE:
+        amplitude, w = pool[offset + 1], pool[offset + 2]
+        s = math.sin(w * t + pool[offset + 3])
+        c = math.cos(w * t + pool[offset + 3])
+        return pool[offset + 4] + amplitude * s, amplitude * w * c, -amplitude * w * w * s
+    if kind == POLYNOMIAL:
+        f, df, ddf = 0.0, 0.0, 0.0
+        for k in range(int(pool[offset + 1]) - 1, -1, -1):
+            ddf = ddf * t + 2.0 * df
+            df = df * t + f
+            f = f * t + pool[offset + 2 + k]
+        return f, df, ddf
+    if kind == STEP:
+        return (pool[offset + 3] if t >= pool[offset + 1] else pool[offset + 2]), 0.0, 0.0
+    if kind == RAMP:
+        start, duration, before, after = pool[offset + 1], pool[offset + 2], pool[offset + 3], pool[offset + 4]
+        if t < start:
+            return before, 0.0, 0.0
+        if t >= start + duration:
+            return after, 0.0, 0.0
+        rate = (after - before) / duration
+        return before + rate * (t - start), rate, 0.0
+    # TABLE: knots, then the four coefficients of each interval, highest power first
+    n = int(pool[offset + 1])
+    knots = pool[offset + 2 : offset + 2 + n]
+    i = min(max(np.searchsorted(knots, t, side="right") - 1, 0), n - 2)
+    c = offset + 2 + n + 4 * i
+    x = t - knots[i]
+    f = ((pool[c] * x + pool[c + 1]) * x + pool[c + 2]) * x + pool[c + 3]
+    df = (3.0 * pool[c] * x + 2.0 * pool[c + 1]) * x + pool[c + 2]
+    return f, df, 6.0 * pool[c] * x + 2.0 * pool[c + 1]

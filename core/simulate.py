@@ -1,0 +1,95 @@
+"""simulate: one call from a model to a result."""
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .errors import ModelError, SimulationError, TlismniError
+from .integrate.simulation import Simulation
+from .result import Result
+
+
+def simulate(
+    system: Any,
+    t_end: float,
+    method: str = "ebdf",
+    rtol: float = 1e-6,
+    atol: float = 1e-9,
+    *,
+    step: float | None = None,
+    t_eval: ArrayLike | None = None,
+    t0: float = 0.0,
+    record: bool = True,
+    progress: Callable[[float], None] | None = None,
+    **options: Any,
+) -> Result:
+    """Integrate a `Model` or `EquationSystem` from t0 to t_end.
+
+    Parameters
+    ----------
+    system : Model or EquationSystem.
+    t_end : end time, s.
+    method : "newmark", "hht", "bdf", "ebdf", "irk".
+    rtol, atol : tolerances of the error control, on coordinates and velocities.
+    step : fixed step in s instead of error control.
+    t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.
+    record : False records only start and end (for timing).
+    progress : called with the time reached, now and then.
+    options : method options (alpha, order, k ...) and those of `Simulation` (max_step, outer, ...).
+
+    Returns
+    -------
+    Result. A failed run raises SimulationError, which carries the partial result as `.partial`.
+
+    Raises
+    ------
+    ModelError : for bad arguments. ConsistencyError : for a start that does not meet the constraints.
+    """
+    if isinstance(t_end, bool) or not isinstance(t_end, int | float) or not math.isfinite(t_end):
+        raise ModelError(f"t_end must be a finite number, not {t_end!r}")
+    if t_end < t0:
+        raise ModelError(f"t_end = {t_end!r} lies before t0 = {t0!r}")
+    times = None if t_eval is None else _check_times(t_eval, t0, t_end)
+    started = time.perf_counter()
+    sim = Simulation(system, method, rtol, atol, step=step, t0=t0, record=record and times is None, **options)
+    sim.progress = progress
+    rows = []
+    try:
+        if times is None:
+            if not record:
+                rows.append(sim.sample())
+            sim.run_to(t_end)
+            if not record:
+                rows.append(sim.sample())
+        else:
+            for t in times:
+                sim.run_to(t_end, until=float(t))
+                rows.append(sim.sample())
+            sim.run_to(t_end)
+    except TlismniError as error:
+        if isinstance(error, SimulationError):
+            error.partial = _result(sim, rows, time.perf_counter() - started)
+        raise
+    return _result(sim, rows, time.perf_counter() - started)
+
+
+def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
+    sim.flush()
+    blocks = sim.samples if sim.samples else [row[None, :] for row in rows]
+    samples = np.concatenate(blocks) if blocks else np.zeros((0, sim.buffer.shape[1]))
+    return Result(samples, sim.table, sim.events, {**sim.stats, "wall_time": wall_time})
+
+
+def _check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:
+    times = np.asarray(t_eval, dtype=float)
+    if times.ndim != 1 or not np.all(np.isfinite(times)):
+        raise ModelError(f"t_eval must be a list of finite times, not an array of shape {times.shape}")
+    if len(times) and (times[0] < t0 or times[-1] > t_end or np.any(np.diff(times) < 0)):
+        raise ModelError(
+            f"t_eval must ascend within [t0, t_end] = [{t0:g}, {t_end:g}]; it goes from {times[0]:g} to {times[-1]:g}"
+        )
+    return times

@@ -1,0 +1,86 @@
+"""The inner loop: dependent coordinates, velocities and accelerations from the constraints.
+
+Newton on Phi with the square sparse matrix Phi_qd; velocities and accelerations use the same factorisation.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.views import ivec, vec
+from ..linalg import lu_at, solve
+from ..system.evaluate import constraint_norm, evaluate_residuals
+from ..system.records import (
+    ACCELERATION_TOLERANCE,
+    CONTROL_SIZE,
+    COUNTERS_SIZE,
+    INNER,
+    INNER_DIVERGED,
+    MAX_INNER,
+    OK,
+    POSITION_TOLERANCE,
+    VELOCITY_TOLERANCE,
+)
+
+
+@compiled
+def correct_dependent(ws: Any, lu_address: int, residual_address: int, x_address: int) -> None:
+    """x_d -= Phi_qd^-1 residual."""
+    active = ivec(ws.active, ws.m_act)
+    dependent = ivec(ws.dependent, ws.m_act)
+    residual = vec(residual_address, ws.m_ext)
+    rhs = vec(ws.rhs, ws.m_act)
+    for i in range(ws.m_act):
+        rhs[i] = residual[active[i]]
+    solve(lu_at(lu_address), ws.rhs)
+    x = vec(x_address, ws.n_ext)
+    for i in range(ws.m_act):
+        x[dependent[i]] -= rhs[i]
+
+
+@compiled
+def rounding_level(ws: Any, x_address: int) -> float:
+    """What rounding leaves in a constraint whose terms are as large as the entries of x."""
+    x = vec(x_address, ws.n)
+    largest = 1.0
+    for i in range(ws.n):
+        if abs(x[i]) > largest:
+            largest = abs(x[i])
+    return largest
+
+
+@compiled
+def inner_loop(ws: Any, lu_address: int, slack: float, accelerations: bool) -> int:
+    """Correct q_d, v_d (and a_d) until the constraints hold to the tolerances times `slack`.
+
+    Expects the residuals of the current point; leaves those of the corrected one. The tolerances are absolute
+    for quantities up to 1 and relative to the largest entry of q, v, a beyond.
+    """
+    if ws.m_act == 0:
+        return OK
+    control = vec(ws.control, CONTROL_SIZE)
+    counters = ivec(ws.counters, COUNTERS_SIZE)
+    tol_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
+    tol_v = slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
+    tol_a = control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a) if accelerations else np.inf
+    previous = np.inf
+    for _ in range(int(control[MAX_INNER])):
+        p = constraint_norm(ws, ws.phi)
+        v = constraint_norm(ws, ws.phid)
+        a = constraint_norm(ws, ws.phidd)
+        if p <= tol_p and v <= tol_v and a <= tol_a:
+            return OK
+        worst = max(p / tol_p, v / tol_v, a / tol_a)
+        if not worst < 0.5 * previous:
+            return INNER_DIVERGED
+        previous = worst
+        counters[INNER] += 1
+        if p > tol_p:
+            correct_dependent(ws, lu_address, ws.phi, ws.q)
+        if v > tol_v:
+            correct_dependent(ws, lu_address, ws.phid, ws.v)
+        if a > tol_a:
+            correct_dependent(ws, lu_address, ws.phidd, ws.a)
+        evaluate_residuals(ws)
+    return INNER_DIVERGED

@@ -1,0 +1,192 @@
+"""The stage solver.
+
+Given t, q*, v*, c_q, c_v find (q, v, a, lambda) with
+  q_i = q*_i + c_q a_i,  v_i = v*_i + c_v a_i                       (independent coordinates)
+  Phi(q, t) = 0,  Phi_q v = -Phi_t,  Phi_q a = gamma,  M a + Phi_q^T lambda = Q(q, v, t).
+
+Outer loop `newton`: the increment (da, dlambda) solves [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] (da, dlambda) =
+-(r, Phi_q a - gamma), which to first order is the Newton step of the reduced system, since c_q da moves q along the
+constraints. Outer loop `simple`: the fixed point of Shabana and Hussein (2009), the same with K = D = 0.
+The matrices are kept while the iteration converges fast enough.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.views import ivec, vec
+from ..linalg import factor, lu_at, solve
+from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..system.records import (
+    CONTROL_SIZE,
+    COUNTERS_SIZE,
+    FACTOR_AGE,
+    FACTOR_CQ,
+    FACTOR_CV,
+    FACTORIZATIONS,
+    FAILED_NORM,
+    INNER,
+    LAST_INNER,
+    LAST_OUTER,
+    MAX_OUTER,
+    NEWTON_TOLERANCE,
+    NOT_FINITE,
+    OK,
+    OUTER,
+    OUTER_DIVERGED,
+    OUTER_LOOP,
+    OUTER_RATE,
+    OUTER_SLOW,
+    RATE_SIZE,
+    REANALYZE,
+    SINGULAR,
+    STAGES,
+)
+from .inner import inner_loop
+
+# Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
+MOST_OUTER = 3
+MOST_INNER = 3
+
+
+@compiled
+def refactor(ws: Any, c_q: float, c_v: float) -> int:
+    """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd."""
+    rate = vec(ws.rate, RATE_SIZE)
+    evaluate_tangent(ws, c_q, c_v)
+    rate[FACTOR_AGE] = -1.0
+    for address in (ws.kkt, ws.lu_d):
+        if address == ws.lu_d and ws.m_act == 0:
+            continue
+        status = factor(lu_at(address), ws.values)
+        if status == 2:
+            return REANALYZE
+        if status != 0:
+            return SINGULAR
+    ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+    rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
+    rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
+    return OK
+
+
+@compiled
+def solve_increment(ws: Any, lu_address: int) -> None:
+    """rhs = -matrix^-1 (r, phidd)."""
+    rhs = vec(ws.rhs, ws.n + ws.m_act)
+    r = vec(ws.r, ws.n)
+    phidd = vec(ws.phidd, ws.m_ext)
+    active = ivec(ws.active, ws.m_act)
+    for i in range(ws.n):
+        rhs[i] = -r[i]
+    for i in range(ws.m_act):
+        rhs[ws.n + i] = -phidd[active[i]]
+    solve(lu_at(lu_address), ws.rhs)
+
+
+@compiled
+def weighted_norm(x: Any, weight: Any, n: int) -> float:
+    """Root mean square of x_i / weight_i."""
+    total = 0.0
+    for i in range(n):
+        y = x[i] / weight[i]
+        total += y * y
+    return np.sqrt(total / max(n, 1))
+
+
+@compiled
+def set_from_accelerations(ws: Any, c_q: float, c_v: float) -> None:
+    """q = q* + c_q a, v = v* + c_v a for all coordinates; for the dependent ones this is a prediction."""
+    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
+    q_star, v_star = vec(ws.q_star, ws.n_ext), vec(ws.v_star, ws.n_ext)
+    for i in range(ws.n):
+        q[i] = q_star[i] + c_q * a[i]
+        v[i] = v_star[i] + c_v * a[i]
+
+
+@compiled
+def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+    """Solve one stage from the predicted a, lambda in the workspace. Returns OK or what went wrong.
+
+    On failure with old matrices it tries once more with new ones.
+    """
+    rate = vec(ws.rate, RATE_SIZE)
+    simple = vec(ws.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0
+    tangent_q, tangent_v = (0.0, 0.0) if simple else (c_q, c_v)
+    vec(ws.t, 1)[0] = t
+    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
+    set_from_accelerations(ws, c_q, c_v)
+    evaluate_residuals(ws)
+    if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > MOST_OUTER or rate[LAST_INNER] > MOST_INNER or simple:
+        status = refactor(ws, tangent_q, tangent_v)
+        if status != OK:
+            return status
+    fresh = rate[FACTOR_AGE] == 0.0
+    rate[FACTOR_AGE] += 1.0
+    status = _iterate(ws, c_q, c_v, simple)
+    if status == OK or fresh:
+        return status
+    set_from_accelerations(ws, c_q, c_v)
+    evaluate_residuals(ws)
+    status = refactor(ws, tangent_q, tangent_v)
+    if status != OK:
+        return status
+    rate[FACTOR_AGE] += 1.0
+    return _iterate(ws, c_q, c_v, simple)
+
+
+@compiled
+def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
+    """The outer loop."""
+    control = vec(ws.control, CONTROL_SIZE)
+    counters = ivec(ws.counters, COUNTERS_SIZE)
+    rate = vec(ws.rate, RATE_SIZE)
+    n, m_act = ws.n, ws.m_act
+    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
+    lam = vec(ws.lam, ws.m_ext)
+    active = ivec(ws.active, m_act)
+    weight_q, weight_v = vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)
+    increment = vec(ws.rhs, n + m_act)
+    tolerance = control[NEWTON_TOLERANCE]
+    start_inner = counters[INNER]
+    previous = np.inf
+    slack = 1e4
+    status = OUTER_SLOW
+    for k in range(int(control[MAX_OUTER])):
+        status = inner_loop(ws, ws.lu_d, slack, False)
+        if status != OK:
+            return status
+        if simple and k > 0:
+            status = refactor(ws, 0.0, 0.0)
+            if status != OK:
+                return status
+        solve_increment(ws, ws.kkt)
+        counters[OUTER] += 1
+        norm = max(c_q * weighted_norm(increment, weight_q, n), c_v * weighted_norm(increment, weight_v, n))
+        if not np.isfinite(norm):
+            return NOT_FINITE
+        for i in range(n):
+            q[i] += c_q * increment[i]
+            v[i] += c_v * increment[i]
+            a[i] += increment[i]
+        for i in range(m_act):
+            lam[active[i]] += increment[n + i]
+        evaluate_residuals(ws)
+        if k > 0:
+            contraction = norm / previous
+            rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
+            if contraction > 0.9 and norm > tolerance:
+                rate[FAILED_NORM] = contraction
+                return OUTER_DIVERGED
+        previous = norm
+        known = min(rate[OUTER_RATE], 0.99)
+        if norm * known / (1.0 - known) <= tolerance:
+            status = OK
+            rate[LAST_OUTER] = k + 1
+            break
+        status = OUTER_SLOW
+    if status != OK:
+        return status
+    status = inner_loop(ws, ws.lu_d, 1.0, True)
+    rate[LAST_INNER] = counters[INNER] - start_inner
+    return status

@@ -1,0 +1,219 @@
+"""Assembly: a model's elements as batches of flat tables, independent of which contacts are closed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled.kernels import kernel_address
+from ..contact.laws import ForceLaw, NewtonImpact, law_address
+from ..description import Model
+from ..elements.base import Element, Row
+from ..model.channels import Channel
+from ..model.markers import GROUND
+from ..model.signals import Signal
+
+GROUND_SLOTS = 3
+"""Extended vectors end in the ground's (x, y, angle), which stay zero, and the work accounts."""
+
+
+@dataclass
+class Batch:
+    """All elements that share a kernel, as its tables."""
+
+    address: int
+    par: NDArray[np.float64]
+    coord: NDArray[np.int64]
+    row: NDArray[np.int64]
+    extra: NDArray[np.int64]
+    tangent_pattern: Sequence[tuple[int, int]]
+    jacobian_pattern: Sequence[tuple[int, int]]
+    contact: NDArray[np.int64]
+    """Number of the contact that each element is, or -1."""
+
+
+@dataclass
+class ContactInfo:
+    """What the contact state machine knows of a contact."""
+
+    name: str
+    row: int
+    law: NewtonImpact | ForceLaw
+    impulse_account: int
+    dissipation_account: int
+
+
+@dataclass
+class Assembly:
+    """A system as flat tables: what the workspace is built from."""
+
+    n: int
+    """Number of coordinates."""
+    m: int
+    """Number of rows of Phi: joints first, then one for each contact."""
+    m_joints: int
+    batches: list[Batch]
+    q0: NDArray[np.float64]
+    v0: NDArray[np.float64]
+    row_names: list[str]
+    """Name of the joint or contact that each row belongs to."""
+    coordinate_names: list[str]
+    contacts: list[ContactInfo]
+    work_names: list[str]
+    signals: NDArray[np.float64]
+    input_names: list[str]
+    input_start: NDArray[np.float64]
+    breakpoints: list[float]
+    multiplier_channels: list[Channel]
+    body_columns: list[tuple[str, str, int]]
+    """(body, coordinate name, index)."""
+    coordinate_scale: NDArray[np.float64]
+    """Typical magnitude of each coordinate, so that units do not choose the partition."""
+    keep_alive: list[Any] = field(default_factory=list)
+
+    @property
+    def ground(self) -> int:
+        """Index of the ground's x in extended vectors."""
+        return self.n
+
+    @property
+    def n_extended(self) -> int:
+        """Length of extended vectors."""
+        return self.n + GROUND_SLOTS + len(self.work_names)
+
+    def work_index(self, name: str) -> int:
+        """Index of a work account in extended vectors."""
+        return self.n + GROUND_SLOTS + self.work_names.index(name)
+
+
+class _Numbering:
+    """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
+
+    def __init__(self, model: Model) -> None:
+        self.gravity = model.gravity
+        self.index: dict[str, tuple[int, int, int]] = {}
+        self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
+        self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
+        self.pool: list[float] = []
+        self.work_names: list[str] = []
+        self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
+        n = sum(len(body.coordinate_names) for body in model.bodies)
+        self.n = n
+        self.index[GROUND] = (n, n + 1, n + 2)
+        start = 0
+        for body in model.bodies:
+            count = len(body.coordinate_names)
+            self.index[body.name] = tuple(  # type: ignore[assignment]
+                start + k if k < count else n + k for k in range(GROUND_SLOTS)
+            )
+            q0 = body.initial_state()[0]
+            self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
+            start += count
+
+    def coordinates(self, body: str) -> tuple[int, int, int]:
+        return self.index[body]
+
+    def initial(self, body: str) -> tuple[float, float, float]:
+        return self.initial_positions[body]
+
+    def signal(self, signal: Signal) -> int:
+        offset = len(self.pool)
+        self.pool.extend(float(x) for x in signal.pool(self.inputs))
+        return offset
+
+    def contact(self, name: str) -> int:
+        return self.contact_numbers[name]
+
+    def law_address(self, law: ForceLaw) -> int:
+        return law_address(law)
+
+    def work(self, name: str) -> int:
+        if name not in self.work_names:
+            self.work_names.append(name)
+        return self.n + GROUND_SLOTS + self.work_names.index(name)
+
+
+def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
+    return np.ascontiguousarray(np.array(rows, dtype=dtype).reshape(len(rows), -1))
+
+
+def assemble(model: Model) -> Assembly:
+    """The model as flat tables."""
+    numbering = _Numbering(model)
+    grouped: dict[int, list[tuple[Element, Row, tuple[int, ...]]]] = {}
+    kernels: dict[int, type[Element]] = {}
+    row_names: list[str] = []
+    multipliers: list[Channel] = []
+    contact_rows: dict[str, int] = {}
+    contact_names = set(numbering.contact_numbers)
+    for element in model.elements():
+        kind = type(element)
+        rows = tuple(range(len(row_names), len(row_names) + kind.constraint_rows))
+        row_names += [element.name] * kind.constraint_rows
+        if element.name in contact_names:
+            contact_rows[element.name] = rows[0]
+        multipliers += element.multiplier_channels()
+        address = kernel_address(kind.kernel)
+        kernels[address] = kind
+        grouped.setdefault(address, []).append((element, element.row(numbering), rows))
+    batches = []
+    for address, members in grouped.items():
+        kind = kernels[address]
+        batches.append(
+            Batch(
+                address,
+                _table([row.parameters for _, row, _ in members], np.float64),
+                _table([row.coordinates for _, row, _ in members], np.int64),
+                _table([rows for _, _, rows in members], np.int64),
+                _table([row.extra for _, row, _ in members], np.int64),
+                kind.tangent_pattern,
+                kind.jacobian_pattern,
+                np.array([numbering.contact_numbers.get(e.name, -1) for e, _, _ in members], dtype=np.int64),
+            )
+        )
+    states = [body.initial_state() for body in model.bodies]
+    columns, names = [], []
+    for body in model.bodies:
+        for coordinate, index in zip(body.coordinate_names, numbering.index[body.name], strict=False):
+            columns.append((body.name, coordinate, index))
+            names.append(f"{body.name}.{coordinate}")
+    q0 = np.array([x for q, _ in states for x in q], dtype=np.float64)
+    m_joints = len(row_names) - len(model.contacts)
+    return Assembly(
+        n=numbering.n,
+        m=len(row_names),
+        m_joints=m_joints,
+        batches=batches,
+        q0=q0,
+        v0=np.array([x for _, v in states for x in v], dtype=np.float64),
+        row_names=row_names,
+        coordinate_names=names,
+        contacts=[
+            ContactInfo(
+                c.name,
+                contact_rows[c.name],
+                c.law,
+                numbering.work(f"{c.name}.impulse"),
+                numbering.work(f"{c.name}.dissipation"),
+            )
+            for c in model.contacts
+        ],
+        work_names=numbering.work_names,
+        signals=np.array([*numbering.pool, 0.0]),
+        input_names=[record.name for record in model.inputs],
+        input_start=np.array([record.start for record in model.inputs], dtype=np.float64),
+        breakpoints=sorted({t for e in model.elements() for s in e.signals() for t in s.breakpoints()}),
+        multiplier_channels=multipliers,
+        body_columns=columns,
+        coordinate_scale=_coordinate_scale(model, columns),
+    )
+
+
+def _coordinate_scale(model: Model, columns: Sequence[tuple[str, str, int]]) -> NDArray[np.float64]:
+    """1 for angles; for translations the size of the mechanism, so that m and mm give the same partition."""
+    points = [body.position for body in model.bodies]
+    points += [marker.point for e in model.elements() for marker in e.markers()]
+    size = max((max(abs(x), abs(y)) for x, y in points), default=0.0) or 1.0
+    return np.array([1.0 if coordinate == "angle" else size for _, coordinate, _ in columns])

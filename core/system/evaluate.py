@@ -1,0 +1,74 @@
+"""Compiled evaluation of the system at its current point: one pass over all kernels."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, batch_at, call_kernel
+from ..compiled.views import ivec, vec
+from .records import COUNTERS_SIZE, EVALUATIONS
+
+
+@compiled
+def _all_kernels(ws: Any, job: int) -> None:
+    kernels = ivec(ws.kernels, ws.n_kernels)
+    batches = ivec(ws.batches, ws.n_kernels)
+    t = vec(ws.t, 1)[0]
+    for k in range(ws.n_kernels):
+        call_kernel(kernels[k], job, t, batch_at(batches[k]))
+
+
+@compiled
+def evaluate_residuals(ws: Any) -> None:
+    """r = M a + Phi_q^T lam - Q, and the constraints at position, velocity and acceleration level."""
+    r = vec(ws.r, ws.n_ext)
+    for i in range(ws.n_ext):
+        r[i] = 0.0
+    _all_kernels(ws, RESIDUAL)
+    ivec(ws.counters, COUNTERS_SIZE)[EVALUATIONS] += 1
+
+
+@compiled
+def evaluate_tangent(ws: Any, c_q: float, c_v: float) -> None:
+    """values = [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] at the current point."""
+    coef = vec(ws.coef, 2)
+    coef[0], coef[1] = c_q, c_v
+    values = vec(ws.values, ws.n_values)
+    for i in range(ws.n_values):
+        values[i] = 0.0
+    _all_kernels(ws, TANGENT)
+
+
+@compiled
+def evaluate_power(ws: Any) -> None:
+    """Rates of the work accounts, into the last entries of a."""
+    if ws.n_work == 0:
+        return
+    a = vec(ws.a, ws.n_ext)
+    for i in range(ws.n_ext - ws.n_work, ws.n_ext):
+        a[i] = 0.0
+    _all_kernels(ws, POWER)
+
+
+@compiled
+def evaluate_energy(ws: Any) -> None:
+    """Kinetic, potential and strain energy, J."""
+    energy = vec(ws.energy, 3)
+    energy[:] = 0.0
+    _all_kernels(ws, ENERGY)
+
+
+@compiled
+def constraint_norm(ws: Any, address: int) -> float:
+    """Largest magnitude among the active rows of phi, phid or phidd; NaN counts as infinite."""
+    x = vec(address, ws.m_ext)
+    active = ivec(ws.active, ws.m_act)
+    largest = 0.0
+    for i in range(ws.m_act):
+        y = abs(x[active[i]])
+        if y > largest:
+            largest = y
+        elif y != y:
+            return np.inf
+    return largest

@@ -1,0 +1,61 @@
+"""The workspace record: sizes and addresses of everything that the compiled loop works on."""
+
+import numba as nb
+import numpy as np
+
+WORKSPACE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            # sizes
+            "n", "n_ext", "m_ext", "m_act", "n_kernels", "n_values", "n_contacts", "n_work", "row_length",
+            "n_state",
+            # the current point
+            "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
+            "values", "coef", "energy", "monitor", "memory", "inputs",
+            # model
+            "kernels", "batches", "contact_rows", "contact_release",
+            # structure (changes with the set of engaged contacts)
+            "active", "dependent", "kkt", "lu_d", "kkt_query", "lu_d_query",
+            # stage solver
+            "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
+            "control", "counters", "rate",
+        )
+    ]
+)  # fmt: skip
+WORKSPACE_TYPE = nb.from_dtype(WORKSPACE)
+
+# columns of `control` (float64)
+NEWTON_TOLERANCE = 0
+POSITION_TOLERANCE = 1
+VELOCITY_TOLERANCE = 2
+ACCELERATION_TOLERANCE = 3
+MAX_OUTER = 4
+MAX_INNER = 5
+OUTER_LOOP = 6  # 0 newton, 1 simple
+RTOL = 7
+ATOL = 8
+CONTROL_SIZE = 9
+
+# columns of `rate` (float64): what the convergence tests remember; part of the state
+OUTER_RATE = 0
+FACTOR_AGE = 1  # stages since the last factorisation; < 0: there is none
+FACTOR_CQ = 2
+FACTOR_CV = 3
+LAST_OUTER = 4
+LAST_INNER = 5
+FAILED_NORM = 6
+RATE_SIZE = 7
+
+# columns of `counters` (int64)
+STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES = range(9)
+COUNTERS_SIZE = 9
+
+# status of stages, steps and of the loop
+OK = 0
+OUTER_DIVERGED = 1
+INNER_DIVERGED = 2
+SINGULAR = 3
+REANALYZE = 4
+NOT_FINITE = 5
+OUTER_SLOW = 6

@@ -1,0 +1,108 @@
+"""Structure: sparsity, slots, partition and factorisations for one set of engaged contacts.
+
+An engaged contact is one whose entries belong to the matrix: closed (its row is a constraint) or acting as a
+force (its stiffness is in K).
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..linalg import Factorization
+from .assembly import Assembly, Batch
+
+
+@dataclass
+class Structure:
+    """The matrix [S, Phi_q^T; Phi_q, 0] as slots, for one set of active rows and engaged contacts."""
+
+    active: NDArray[np.int64]
+    """Rows of Phi that are constraints now, (m_act,)."""
+    rows: NDArray[np.int64]
+    cols: NDArray[np.int64]
+    """Coordinates of the entries of the matrix by slot, (nnz,)."""
+    slot_s: list[NDArray[np.int64]]
+    slot_j: list[NDArray[np.int64]]
+    slot_jt: list[NDArray[np.int64]]
+    """Slot tables of the batches; `nnz` is the slot of what belongs nowhere."""
+    kkt: Factorization
+    kkt_query: Factorization
+    lu_d: Factorization | None = None
+    lu_d_query: Factorization | None = None
+    dependent: NDArray[np.int64] | None = None
+
+    @property
+    def nnz(self) -> int:
+        """Number of entries."""
+        return len(self.rows)
+
+    def partition(self, dependent: NDArray[np.int64]) -> None:
+        """Choose the dependent coordinates (m_act,): builds the factorisations of Phi_qd."""
+        n = int(self.kkt.n) - len(self.active)
+        position = np.full(n, -1, dtype=np.int64)
+        position[dependent] = np.arange(len(dependent))
+        slots = np.flatnonzero((self.rows >= n) & (self.cols < n))
+        slots = slots[position[self.cols[slots]] >= 0]
+        rows, cols = self.rows[slots] - n, position[self.cols[slots]]
+        self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
+        self.lu_d, self.lu_d_query = (
+            Factorization(len(self.active), rows, cols, slots, source_size=self.nnz + 1) for _ in range(2)
+        )
+
+
+def build_structure(assembly: Assembly, closed: frozenset[int], engaged: frozenset[int]) -> Structure:
+    """Structure with contacts `closed` as constraints and `engaged` (closed or acting) in the pattern of S."""
+    n, ground = assembly.n, assembly.ground
+    closed_rows = {assembly.contacts[k].row for k in closed}
+    active = np.array(
+        [row for row in range(assembly.m) if row < assembly.m_joints or row in closed_rows], dtype=np.int64
+    )
+    matrix_row = np.full(assembly.m + 1, -1, dtype=np.int64)
+    matrix_row[active] = n + np.arange(len(active))
+    entries: list[tuple[NDArray[np.int64], NDArray[np.int64]]] = [(np.arange(n), np.arange(n))]
+    placed: list[list[tuple[NDArray[np.int64], Any]]] = []
+    for batch in assembly.batches:
+        placed.append(_places(batch, ground, matrix_row, engaged))
+        for places in placed[-1]:
+            keep = places[0] >= 0
+            entries.append((places[0][keep], places[1][keep]))
+    size = n + len(active)
+    keys = np.concatenate([row * size + col for row, col in entries])
+    unique = np.unique(keys)
+    rows, cols = unique // size, unique % size
+
+    def slots(places: Any) -> NDArray[np.int64]:
+        row, col = places
+        found = np.searchsorted(unique, row * size + col)
+        return np.ascontiguousarray(np.where(row >= 0, found, len(unique)))
+
+    tables = [[slots(places) for places in batch] for batch in placed]
+    everything = np.arange(len(unique))
+    kkt, kkt_query = (Factorization(size, rows, cols, everything, source_size=len(unique) + 1) for _ in range(2))
+    return Structure(
+        active, rows, cols, [t[0] for t in tables], [t[1] for t in tables], [t[2] for t in tables], kkt, kkt_query
+    )
+
+
+def _places(batch: Batch, ground: int, matrix_row: NDArray[np.int64], engaged: frozenset[int]) -> Any:
+    """(row, col) of every local entry of S, Phi_q and Phi_q^T, each (count, entries); -1: belongs nowhere."""
+    count, width = batch.coord.shape
+    rows = batch.row.shape[1] if batch.row.size else 0
+    takes_part = np.array([c < 0 or c in engaged for c in batch.contact])[:, None]
+
+    s_row = np.full((count, width * width), -1, dtype=np.int64)
+    s_col = s_row.copy()
+    for i, j in batch.tangent_pattern:
+        here = takes_part[:, 0] & (batch.coord[:, i] < ground) & (batch.coord[:, j] < ground)
+        s_row[here, i * width + j] = batch.coord[here, i]
+        s_col[here, i * width + j] = batch.coord[here, j]
+    j_row = np.full((count, max(rows, 1) * width), -1, dtype=np.int64)
+    j_col = j_row.copy()
+    for k, j in batch.jacobian_pattern:
+        where = matrix_row[batch.row[:, k]]
+        here = (where >= 0) & (batch.coord[:, j] < ground)
+        j_row[here, k * width + j] = where[here]
+        j_col[here, k * width + j] = batch.coord[here, j]
+    return (s_row, s_col), (j_row, j_col), (j_col, j_row)

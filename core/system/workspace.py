@@ -1,0 +1,175 @@
+"""Workspace: the arrays of one running system and the record through which compiled code reaches them."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled.kernels import BATCH
+from ..compiled.records import ArrayRecord
+from ..contact.laws import ForceLaw
+from ..contact.modes import MEMORY_SIZE
+from .assembly import Assembly
+from .records import (
+    CONTROL_SIZE,
+    COUNTERS_SIZE,
+    FACTOR_AGE,
+    RATE_SIZE,
+    WORKSPACE,
+)
+from .structure import Structure, build_structure
+
+_SHARED = (
+    "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
+)  # fmt: skip
+
+
+class Workspace:
+    """Arrays of one running system. Nothing is shared between two workspaces.
+
+    Attributes
+    ----------
+    assembly : what it was built from.
+    arrays : the arrays by name; `record` is what compiled functions get.
+    structure : the present structure; `engage` changes it.
+    """
+
+    def __init__(self, assembly: Assembly) -> None:
+        self.assembly = assembly
+        a = assembly
+        n_ext, m_ext, contacts = a.n_extended, a.m + 1, len(a.contacts)
+        row_length = 4 * n_ext + m_ext
+        arrays: dict[str, NDArray[Any]] = {name: np.zeros(n_ext) for name in (
+            "q", "v", "a", "aux", "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v",
+        )}  # fmt: skip
+        arrays |= {name: np.zeros(m_ext) for name in ("lam", "phi", "phid", "phidd")}
+        arrays |= {
+            "t": np.zeros(1),
+            "values": np.zeros(1),
+            "coef": np.zeros(2),
+            "energy": np.zeros(3),
+            "monitor": np.zeros(max(contacts, 1)),
+            "memory": np.zeros((max(contacts, 1), MEMORY_SIZE)),
+            "inputs": np.zeros((max(len(a.input_names), 1), 3)),
+            "signals": a.signals.copy(),
+            "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
+            "batches": np.zeros(len(a.batches), dtype=np.int64),
+            "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
+            "contact_release": np.array([_release(c.law) for c in a.contacts], dtype=np.int64),
+            "active": np.zeros(0, dtype=np.int64),
+            "dependent": np.zeros(0, dtype=np.int64),
+            "stage_v": np.zeros(8 * n_ext),
+            "stage_a": np.zeros(8 * n_ext + m_ext),
+            "rhs": np.zeros(a.n + a.m),
+            "control": np.zeros(CONTROL_SIZE),
+            "counters": np.zeros(COUNTERS_SIZE, dtype=np.int64),
+            "rate": np.zeros(RATE_SIZE),
+        }
+        arrays["rate"][FACTOR_AGE] = -1.0
+        arrays["inputs"][: len(a.input_start), 0] = a.input_start
+        self._structures: dict[tuple[frozenset[int], frozenset[int]], Structure] = {}
+        self.arrays = arrays
+        self._batches = [self._batch(k) for k in range(len(a.batches))]
+        arrays["batches"][:] = [batch.address for batch in self._batches]
+        record_arrays = {k: v for k, v in arrays.items() if k != "signals"}
+        self._record = ArrayRecord(
+            WORKSPACE,
+            record_arrays,
+            {
+                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_kernels": len(a.batches),
+                "n_values": 1, "n_contacts": contacts, "n_work": len(a.work_names), "row_length": row_length,
+                "n_state": 0, "kkt": 0, "lu_d": 0, "kkt_query": 0, "lu_d_query": 0,
+            },
+        )  # fmt: skip
+        self.structure: Structure
+        self.engage(frozenset(), frozenset())
+
+    @property
+    def record(self) -> np.void:
+        """The workspace record."""
+        return self._record.record
+
+    @property
+    def row_length(self) -> int:
+        """Length of a row of history: q, v, a, aux (each n_ext), lam (m_ext)."""
+        return int(self._record.table["row_length"][0])
+
+    def _batch(self, k: int) -> ArrayRecord:
+        batch, a = self.assembly.batches[k], self.arrays
+        count, width = batch.coord.shape
+        rows = batch.row.shape[1] if batch.row.size else 0
+        return ArrayRecord(
+            BATCH,
+            {
+                "par": batch.par, "coord": batch.coord, "row": batch.row, "extra": batch.extra,
+                "slot_s": np.zeros((count, width * width), dtype=np.int64),
+                "slot_j": np.zeros((count, max(rows, 1) * width), dtype=np.int64),
+                "slot_jt": np.zeros((count, max(rows, 1) * width), dtype=np.int64),
+                "signals": a["signals"],
+                **{name: a[name] for name in _SHARED},
+            },
+            {
+                "count": count, "npar": batch.par.shape[1], "ncoord": width, "nrow": rows,
+                "n_extended": len(a["q"]), "m_extended": len(a["lam"]), "n_values": len(a["values"]),
+                "n_inputs": len(a["inputs"]), "n_signals": len(a["signals"]),
+                "n_monitor": len(a["monitor"]), "n_memory": len(a["memory"]),
+            },
+        )  # fmt: skip
+
+    def engage(self, closed: frozenset[int], engaged: frozenset[int]) -> None:
+        """Make contacts `closed` constraints and give all `engaged` ones a place in the matrix."""
+        key = (closed, closed | engaged)
+        if key not in self._structures:
+            self._structures[key] = build_structure(self.assembly, *key)
+        self.structure = structure = self._structures[key]
+        self.key = key
+        values = np.zeros(structure.nnz + 1)
+        self._set("values", values, n_values=len(values))
+        self._set("active", structure.active, m_act=len(structure.active))
+        for k, batch in enumerate(self._batches):
+            for name, table in (
+                ("slot_s", structure.slot_s[k]),
+                ("slot_j", structure.slot_j[k]),
+                ("slot_jt", structure.slot_jt[k]),
+            ):
+                batch.set_array(name, table)
+            batch.set_array("values", values)
+            batch.table["n_values"] = len(values)
+        self._record.table["kkt"] = structure.kkt.address
+        self._record.table["kkt_query"] = structure.kkt_query.address
+        self.arrays["rate"][FACTOR_AGE] = -1.0
+        if structure.dependent is not None:
+            self._use_partition()
+
+    def set_partition(self, dependent: NDArray[np.int64]) -> None:
+        """Choose the dependent coordinates of the present structure."""
+        self.structure.partition(dependent)
+        self._use_partition()
+        self.arrays["rate"][FACTOR_AGE] = -1.0
+
+    def _use_partition(self) -> None:
+        structure = self.structure
+        if structure.lu_d is None or structure.lu_d_query is None or structure.dependent is None:
+            raise RuntimeError("the structure has no partition yet: call set_partition first")
+        self._set("dependent", structure.dependent)
+        self._record.table["lu_d"] = structure.lu_d.address
+        self._record.table["lu_d_query"] = structure.lu_d_query.address
+
+    def _set(self, name: str, array: NDArray[Any], **sizes: int) -> None:
+        self.arrays[name] = array
+        self._record.set_array(name, array)
+        for size, value in sizes.items():
+            self._record.table[size] = value
+
+    def jacobian(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        """Rows (of the active constraints), columns and values of Phi_q as last evaluated."""
+        structure, n = self.structure, self.assembly.n
+        here = np.flatnonzero((structure.rows >= n) & (structure.cols < n))
+        return structure.rows[here] - n, structure.cols[here], self.arrays["values"][here]
+
+
+def _release(law: Any) -> int:
+    """0: constraint contact; 1: force, released at zero gap; 2: force, released at zero force."""
+    if not isinstance(law, ForceLaw):
+        return 0
+    return 2 if law.release == "force" else 1

@@ -1,0 +1,62 @@
+"""The slave inside an FMU, made from the FMU's resources."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ..core.description import Model
+from . import log as logs
+from .calls import Calls
+from .errors import ExportError, FmuValueError, Status
+from .fmi2_calls import Fmi2Calls
+from .log import LogCallback
+from .slave import Slave
+from .variables import VariableTable
+from .version import package_version
+
+MODEL_FILE, SETTINGS_FILE, PYTHON_FILE = "model.json", "settings.json", "python.json"
+
+INTERFACES: dict[int, type[Calls]] = {2: Fmi2Calls}
+"""Calls by FMI major version."""
+
+
+def read_slave(resources: str | Path, *, token: str | None = None, **arguments: Any) -> Slave:
+    """The slave of the FMU with these resources; `arguments` go to `Slave`.
+
+    Raises
+    ------
+    ExportError : if a file is missing or unreadable.
+    FmuValueError : if `token` is given and is not the FMU's.
+    ModelError : if the model is none that the installed version can read.
+    """
+    try:
+        data = json.loads((Path(resources) / SETTINGS_FILE).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ExportError(
+            f"'{SETTINGS_FILE}' in the FMU's resources cannot be read: {error}; export the FMU anew"
+        ) from None
+    if token is not None and token != data["token"]:
+        raise FmuValueError(
+            f"the guid given is '{token}', this FMU has '{data['token']}': "
+            "modelDescription.xml and resources come from different exports"
+        )
+    model = Model.load(Path(resources) / MODEL_FILE)
+    table = VariableTable.from_data(data["variables"])
+    slave = Slave(model, variables=table, **data["solver"], **arguments)
+    if data["tlismni"] != package_version():
+        text = f"exported with tlismni {data['tlismni']}, running with {package_version()}: results may differ"
+        slave.log.write(Status.WARNING, logs.WARNING, text)
+    return slave
+
+
+def create(interface: int, name: str, token: str, resources: str, logging_on: bool, log: LogCallback) -> Calls:
+    """The calls object that the C shim talks to.
+
+    Raises
+    ------
+    FmuValueError : for an FMI version that is not served.
+    """
+    if interface not in INTERFACES:
+        raise FmuValueError(f"FMI {interface} is not served by tlismni {package_version()}")
+    slave = read_slave(resources, token=token, name=name, on_log=log, logging_on=logging_on)
+    return INTERFACES[interface](slave)

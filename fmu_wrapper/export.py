@@ -1,0 +1,160 @@
+"""Writes a model or scenario as an FMU."""
+
+import json
+import logging
+import math
+import os
+import platform
+import re
+import sys
+import tempfile
+import uuid
+import zipfile
+from pathlib import Path
+from typing import Any
+
+from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
+from .errors import ExportError
+from .libpython import library_record, python_record, shared_library
+from .model_description import fmi2_description
+from .slave import Slave
+from .version import package_version
+
+SHIM = {"win32": "tlismni_shim.dll", "darwin": "tlismni_shim.dylib"}.get(sys.platform, "tlismni_shim.so")
+HERE = Path(__file__).parent
+_SYSTEMS = {"Linux": "linux", "Windows": "win", "Darwin": "darwin"}
+
+
+def export_fmu(
+    source: Any,
+    path: str | Path,
+    fmi_version: str = "2.0",
+    *,
+    t_end: float | None = None,
+    communication_step: float | None = None,
+    **solver: Any,
+) -> Path:
+    """Write `source` as a co-simulation FMU.
+
+    The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it; that Python must be
+    on the machine where the FMU runs. The same source and settings give the same file on one machine.
+
+    Parameters
+    ----------
+    source : Model, or Scenario, whose t_end and solver settings become the FMU's.
+    path : the file to write, "x.fmu".
+    fmi_version : "2.0".
+    t_end : stop time of the default experiment, s.
+    communication_step : preferred communication step, s; without it a round number of a hundredth to a thousandth
+        of `t_end`.
+    solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them become
+        parameters of the FMU, `solver.<name>`.
+
+    Returns
+    -------
+    Path of the FMU.
+
+    Raises
+    ------
+    ExportError : for an FMI version that is not written, a missing shim, a setting that is not JSON data.
+    ModelError, FmuValueError : for a wrong model or setting.
+    """
+    if fmi_version != "2.0":
+        more = "3.0 is not written yet" if str(fmi_version).startswith("3") else "there is no such version here"
+        raise ExportError(f"fmi_version '{fmi_version}': {more}; use fmi_version=\"2.0\"")
+    shim = shim_path()
+    given = {"t_end": t_end, "communication_step": communication_step, **solver}
+    slave = Slave(source, **{k: v for k, v in given.items() if v is not None})
+    solver_data = slave.settings.as_arguments()
+    if solver_data["communication_step"] is None:
+        solver_data["communication_step"] = _round_step(slave.settings.t_end)
+        slave = Slave(slave.model, variables=slave.variables, **solver_data)
+    identifier = c_identifier(slave.model.name)
+    token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
+    about = slave.model.description or getattr(source, "description", "") or f"tlismni model {slave.model.name}"
+    description = fmi2_description(
+        slave.variables,
+        slave.settings,
+        identifier=identifier,
+        name=slave.model.name,
+        token=token,
+        description=about,
+        generator=f"tlismni {package_version()}",
+    )
+    settings = {
+        "token": token,
+        "tlismni": package_version(),
+        "solver": solver_data,
+        "variables": slave.variables.to_data(),
+    }
+    files = {
+        "modelDescription.xml": description,
+        f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
+        f"resources/{SETTINGS_FILE}": _json(settings),
+        f"resources/{PYTHON_FILE}": _json(python_record()),
+        "resources/libpython.txt": library_record().encode(),
+        "resources/boot.py": (HERE / "boot.py").read_bytes(),
+        f"binaries/{fmi2_platform()}/{identifier}{shim.suffix}": shim.read_bytes(),
+    }
+    if shared_library() is None:
+        logging.getLogger(__name__).warning(
+            "this Python (%s) has no shared library: the FMU will load in Python hosts such as fmpy only; "
+            "set TLISMNI_LIBPYTHON in the host's environment, or export with a Python that has libpython",
+            sys.prefix,
+        )
+    return _write(Path(path), files)
+
+
+def shim_path() -> Path:
+    """The compiled shim. Raises ExportError if it was not built."""
+    path = HERE / SHIM
+    if not path.is_file():
+        raise ExportError(
+            f"the FMU shim '{path}' is missing: it is compiled when tlismni is installed; install again with a C "
+            "compiler (or ziglang) at hand, or run `python setup.py build_ext --inplace` in a source tree"
+        )
+    return path
+
+
+def fmi2_platform() -> str:
+    """Folder name of this machine's binaries in an FMI 2.0 FMU."""
+    machine = platform.machine().lower()
+    system = _SYSTEMS.get(platform.system(), platform.system().lower())
+    if machine in ("x86_64", "amd64"):
+        return f"{system}64"
+    return f"{'aarch64' if machine == 'arm64' else machine}-{system}"
+
+
+def c_identifier(name: str) -> str:
+    """`name` as a C identifier."""
+    text = re.sub(r"\W", "_", name, flags=re.ASCII) or "model"
+    return f"_{text}" if text[0].isdigit() else text
+
+
+def _round_step(t_end: float | None) -> float | None:
+    return None if t_end is None else float(f"1e{math.floor(math.log10(t_end)) - 2}")
+
+
+def _json(data: Any) -> bytes:
+    try:
+        return json.dumps(data, indent=1, allow_nan=False).encode()
+    except (TypeError, ValueError) as error:
+        raise ExportError(f"the solver settings cannot be written into an FMU: {error}; use plain data") from None
+
+
+def _write(path: Path, files: dict[str, bytes]) -> Path:
+    """Write the archive with fixed dates, so that equal content is an equal file; whole, or not at all."""
+    handle, temporary = tempfile.mkstemp(suffix=".fmu", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream, zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, data in files.items():
+                info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+                info.compress_type = zipfile.ZIP_DEFLATED
+                info.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
+                archive.writestr(info, data)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return path

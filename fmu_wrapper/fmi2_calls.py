@@ -1,0 +1,192 @@
+"""The calls of FMI 2.0 co-simulation, named as in the standard, for the C shim and for fmpy in process.
+
+Arrays come as buffers and counts are left out: `fmi2GetReal(c, vr, nvr, value)` is `fmi2GetReal(vr, value)` here.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .calls import Calls, fmi_call, numbers_in, references_in, text_of
+from .errors import DiscardError, SnapshotError, UnavailableError
+from .variables import Kind
+
+LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
+
+
+class Fmi2Calls(Calls):
+    """FMI 2.0 calls of one instance. Each answers with a status unless its text says otherwise."""
+
+    @fmi_call()
+    def fmi2SetDebugLogging(self, on: int, categories: Sequence[bytes]) -> None:
+        """Turn logging on or off, for some categories or (none given) all."""
+        self.slave.log.choose(bool(on), [text_of(c, "a log category") for c in categories])
+
+    @fmi_call()
+    def fmi2SetupExperiment(
+        self, tolerance_defined: int, tolerance: float, start: float, stop_defined: int, stop: float
+    ) -> None:
+        """Times and tolerance of the experiment."""
+        self.slave.setup(start, stop if stop_defined else None, tolerance if tolerance_defined else None)
+
+    @fmi_call()
+    def fmi2EnterInitializationMode(self) -> None:
+        """Enter initialization mode."""
+        self.slave.enter_initialization()
+
+    @fmi_call()
+    def fmi2ExitInitializationMode(self) -> None:
+        """Leave initialization mode for step mode."""
+        self.slave.exit_initialization()
+
+    @fmi_call()
+    def fmi2Terminate(self) -> None:
+        """End the run."""
+        self.slave.terminate()
+
+    @fmi_call()
+    def fmi2Reset(self) -> None:
+        """Back to a new instance; stored states stay."""
+        self.slave.reset()
+
+    @fmi_call()
+    def fmi2DoStep(self, t: float, h: float) -> None:
+        """One communication step."""
+        self.slave.do_step(t, h)
+
+    @fmi_call()
+    def fmi2CancelStep(self) -> None:
+        """Refused: steps never run in the background."""
+        raise UnavailableError("steps are never asynchronous (canRunAsynchronuously = false): nothing to cancel")
+
+    # values
+
+    def _get(self, kind: Kind, vr: Any, value: Any, dtype: Any) -> None:
+        numbers_in(value, dtype)[:] = self.slave.get(kind, references_in(vr))
+
+    @fmi_call()
+    def fmi2GetReal(self, vr: Any, value: Any) -> None:
+        """Real values into the buffer `value`."""
+        self._get("real", vr, value, np.float64)
+
+    @fmi_call()
+    def fmi2GetInteger(self, vr: Any, value: Any) -> None:
+        """Integer values into the buffer `value`."""
+        self._get("integer", vr, value, np.int32)
+
+    @fmi_call()
+    def fmi2GetBoolean(self, vr: Any, value: Any) -> None:
+        """Boolean values, as int, into the buffer `value`."""
+        self._get("boolean", vr, value, np.int32)
+
+    @fmi_call(on_error=None)
+    def fmi2GetString(self, vr: Any) -> list[bytes]:
+        """Answers with the strings, or None after an error."""
+        return [text.encode() for text in self.slave.get("string", references_in(vr))]
+
+    @fmi_call()
+    def fmi2SetReal(self, vr: Any, value: Any) -> None:
+        """Set Real variables."""
+        self.slave.set("real", references_in(vr), numbers_in(value, np.float64).tolist())
+
+    @fmi_call()
+    def fmi2SetInteger(self, vr: Any, value: Any) -> None:
+        """Set Integer variables."""
+        self.slave.set("integer", references_in(vr), numbers_in(value, np.int32).tolist())
+
+    @fmi_call()
+    def fmi2SetBoolean(self, vr: Any, value: Any) -> None:
+        """Set Boolean variables, given as int."""
+        self.slave.set("boolean", references_in(vr), (numbers_in(value, np.int32) != 0).tolist())
+
+    @fmi_call()
+    def fmi2SetString(self, vr: Any, value: Sequence[bytes | None]) -> None:
+        """Set String variables."""
+        self.slave.set("string", references_in(vr), [text_of(v, "a string value") for v in value])
+
+    # state
+
+    @fmi_call(on_error=0)
+    def fmi2GetFMUstate(self, handle: int) -> int:
+        """Answers with the handle of the stored state, or 0 after an error."""
+        return self.keep(self.slave.snapshot(), handle)
+
+    @fmi_call()
+    def fmi2SetFMUstate(self, handle: int) -> None:
+        """Take over a stored state."""
+        self.slave.restore(self.kept(handle))
+
+    @fmi_call()
+    def fmi2FreeFMUstate(self, handle: int) -> None:
+        """Forget a stored state; 0 is allowed."""
+        self.drop(handle)
+
+    @fmi_call(on_error=-1)
+    def fmi2SerializedFMUstateSize(self, handle: int) -> int:
+        """Answers with the number of bytes, or -1 after an error."""
+        return len(self.kept(handle).data)
+
+    @fmi_call()
+    def fmi2SerializeFMUstate(self, handle: int, buffer: Any) -> None:
+        """Write a stored state's bytes into `buffer`."""
+        data = self.kept(handle).data
+        if len(buffer) < len(data):
+            raise SnapshotError(f"the buffer holds {len(buffer)} bytes, the stored state needs {len(data)}")
+        numbers_in(buffer, np.uint8)[: len(data)] = np.frombuffer(data, dtype=np.uint8)
+
+    @fmi_call(on_error=0)
+    def fmi2DeSerializeFMUstate(self, buffer: Any, handle: int) -> int:
+        """Answers with the handle of the stored state made from bytes, or 0 after an error."""
+        return self.keep(self.slave.snapshot_from_bytes(bytes(buffer)), handle)
+
+    # what this slave does not do
+
+    @fmi_call()
+    def fmi2GetDirectionalDerivative(self) -> None:
+        """Refused."""
+        raise UnavailableError("directional derivatives are not provided (providesDirectionalDerivative = false)")
+
+    @fmi_call()
+    def fmi2SetRealInputDerivatives(self) -> None:
+        """Refused."""
+        raise UnavailableError("inputs are held over a step (canInterpolateInputs = false): set no derivatives")
+
+    @fmi_call()
+    def fmi2GetRealOutputDerivatives(self) -> None:
+        """Refused."""
+        raise UnavailableError("output derivatives are not provided (maxOutputDerivativeOrder = 0)")
+
+    # status
+
+    def _no_status(self, kind: int) -> DiscardError:
+        return DiscardError(f"status kind {kind} is not available: steps are never asynchronous")
+
+    @fmi_call()
+    def fmi2GetStatus(self, kind: int, value: Any) -> None:
+        """Discard: there is no asynchronous step."""
+        raise self._no_status(kind)
+
+    @fmi_call()
+    def fmi2GetRealStatus(self, kind: int, value: Any) -> None:
+        """The last successful time, s."""
+        if kind != LAST_SUCCESSFUL_TIME:
+            raise self._no_status(kind)
+        numbers_in(value, np.float64)[0] = self.slave.time
+
+    @fmi_call()
+    def fmi2GetIntegerStatus(self, kind: int, value: Any) -> None:
+        """Discard: FMI 2.0 defines no integer status."""
+        raise self._no_status(kind)
+
+    @fmi_call()
+    def fmi2GetBooleanStatus(self, kind: int, value: Any) -> None:
+        """Whether the slave wants to end the run: never."""
+        if kind != TERMINATED:
+            raise self._no_status(kind)
+        numbers_in(value, np.int32)[0] = 0
+
+    @fmi_call()
+    def fmi2GetStringStatus(self, kind: int) -> None:
+        """Discard: there is no asynchronous step."""
+        raise self._no_status(kind)

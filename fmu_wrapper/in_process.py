@@ -1,0 +1,154 @@
+"""A slave as an FMU instance of fmpy, without a binary: for masters written with fmpy, and for debugging.
+
+    unzipped = fmpy.extract("ball.fmu")
+    result = fmpy.simulate_fmu(unzipped, fmu_instance=InProcess.of(unzipped), fmi_type="CoSimulation")
+
+`fmi_type` must be given: fmpy finds out the type by comparing classes, and this is a subclass.
+"""
+
+from collections.abc import Sequence
+from ctypes import c_double, c_int
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave
+
+from .calls import numbers_in
+from .embedded import read_slave
+from .errors import Status
+from .fmi2_calls import Fmi2Calls
+from .slave import Slave
+
+WARNING = int(Status.WARNING)
+
+
+class InProcess(FMU2Slave):  # type: ignore[misc]
+    """An FMI 2.0 instance of fmpy whose calls go straight to a slave.
+
+    fmpy's higher methods (getReal, doStep ...) work as they are: this class replaces the calls into the binary.
+    Errors raise fmpy's FMICallException with the slave's message as a note.
+    """
+
+    def __init__(self, slave: Slave) -> None:
+        # not super().__init__(), which loads a binary
+        self.instanceName = slave.name
+        self.modelIdentifier = slave.model.name
+        self.component = None
+        self.slave = slave
+        self._fmi = Fmi2Calls(slave)
+        self._strings: list[bytes] = []
+
+    @classmethod
+    def of(cls, unzipped: str | Path, **arguments: Any) -> "InProcess":
+        """The instance of an unzipped FMU; `arguments` (name, on_log, logging_on ...) go to `Slave`."""
+        return cls(read_slave(Path(unzipped) / "resources", **arguments))
+
+    def instantiate(self, visible: bool = False, callbacks: Any = None, loggingOn: bool = False) -> None:
+        """Nothing to do: the instance exists."""
+
+    def freeInstance(self) -> None:
+        """Drop the slave's data."""
+        self._fmi.free()
+
+    def _call(self, fname: str, *arguments: Any) -> int:
+        """Make the call `fname`, as fmpy does into a binary; `arguments` start with the component."""
+        adapt = getattr(self, f"_{fname}", None)
+        call = getattr(self._fmi, fname, None)
+        status = adapt(*arguments[1:]) if adapt else call(*arguments[1:]) if call else int(Status.ERROR)
+        if status > WARNING:
+            error = FMICallException(function=fname, status=status)
+            error.add_note(self.slave.log.last_problem)
+            raise error
+        return int(status)
+
+    # where a call into C differs from `Fmi2Calls`: counts, pointers, strings
+
+    def _fmi2SetDebugLogging(self, on: int, count: int, categories: Sequence[bytes]) -> int:
+        return self._fmi.fmi2SetDebugLogging(on, list(categories)[:count])
+
+    def _fmi2DoStep(self, t: float, h: float, no_set_state: int) -> int:
+        return self._fmi.fmi2DoStep(t, h)
+
+    def _fmi2GetReal(self, vr: Any, count: int, value: Any) -> int:
+        return self._fmi.fmi2GetReal(vr, value)
+
+    def _fmi2GetInteger(self, vr: Any, count: int, value: Any) -> int:
+        return self._fmi.fmi2GetInteger(vr, value)
+
+    def _fmi2GetBoolean(self, vr: Any, count: int, value: Any) -> int:
+        return self._fmi.fmi2GetBoolean(vr, value)
+
+    def _fmi2SetReal(self, vr: Any, count: int, value: Any) -> int:
+        return self._fmi.fmi2SetReal(vr, value)
+
+    def _fmi2SetInteger(self, vr: Any, count: int, value: Any) -> int:
+        return self._fmi.fmi2SetInteger(vr, value)
+
+    def _fmi2SetBoolean(self, vr: Any, count: int, value: Any) -> int:
+        return self._fmi.fmi2SetBoolean(vr, value)
+
+    def _fmi2GetString(self, vr: Any, count: int, value: Any) -> int:
+        strings = self._fmi.fmi2GetString(vr)
+        if strings is None:
+            return int(Status.ERROR)
+        value[:] = self._strings = strings
+        return int(Status.OK)
+
+    def _fmi2SetString(self, vr: Any, count: int, value: Any) -> int:
+        return self._fmi.fmi2SetString(vr, list(value))
+
+    def _fmi2GetFMUstate(self, state: Any) -> int:
+        return self._new_handle(state, self._fmi.fmi2GetFMUstate(state._obj.value or 0))
+
+    def _fmi2SetFMUstate(self, state: Any) -> int:
+        return self._fmi.fmi2SetFMUstate(state.value or 0)
+
+    def _fmi2FreeFMUstate(self, state: Any) -> int:
+        status = self._fmi.fmi2FreeFMUstate(state._obj.value or 0)
+        state._obj.value = None
+        return status
+
+    def _fmi2SerializedFMUstateSize(self, state: Any, size: Any) -> int:
+        count = self._fmi.fmi2SerializedFMUstateSize(state.value or 0)
+        size._obj.value = max(count, 0)
+        return int(Status.OK if count >= 0 else Status.ERROR)
+
+    def _fmi2SerializeFMUstate(self, state: Any, buffer: Any, size: Any) -> int:
+        return self._fmi.fmi2SerializeFMUstate(state.value or 0, buffer)
+
+    def _fmi2DeSerializeFMUstate(self, buffer: Any, size: int, state: Any) -> int:
+        return self._new_handle(state, self._fmi.fmi2DeSerializeFMUstate(buffer, state._obj.value or 0))
+
+    @staticmethod
+    def _new_handle(state: Any, handle: int) -> int:
+        if not handle:
+            return int(Status.ERROR)
+        state._obj.value = handle
+        return int(Status.OK)
+
+    def _fmi2GetRealStatus(self, kind: int, value: Any) -> int:
+        return self._status(self._fmi.fmi2GetRealStatus, kind, value, c_double)
+
+    def _fmi2GetBooleanStatus(self, kind: int, value: Any) -> int:
+        return self._status(self._fmi.fmi2GetBooleanStatus, kind, value, c_int)
+
+    @staticmethod
+    def _status(call: Any, kind: int, value: Any, ctype: Any) -> int:
+        buffer = (ctype * 1)()
+        status = int(call(kind, buffer))
+        value._obj.value = numbers_in(buffer, np.dtype(ctype))[0].item()
+        return status
+
+    def _fmi2GetStringStatus(self, kind: int, value: Any) -> int:
+        return self._fmi.fmi2GetStringStatus(kind)
+
+    def _fmi2GetDirectionalDerivative(self, *arguments: Any) -> int:
+        return self._fmi.fmi2GetDirectionalDerivative()
+
+    def _fmi2SetRealInputDerivatives(self, *arguments: Any) -> int:
+        return self._fmi.fmi2SetRealInputDerivatives()
+
+    def _fmi2GetRealOutputDerivatives(self, *arguments: Any) -> int:
+        return self._fmi.fmi2GetRealOutputDerivatives()

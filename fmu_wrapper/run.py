@@ -1,0 +1,152 @@
+"""The simulation under a slave: built from variable values, told its inputs, read into variable values."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..core.description import Model
+from .errors import FmuError
+from .settings import Settings
+from .values import Values
+from .variables import KINDS, VariableTable
+
+SimulationFactory = Callable[..., Any]
+
+
+def real_simulation(*args: Any, **kwargs: Any) -> Any:
+    """`tlismni.core.Simulation`, imported when the first slave needs it."""
+    from ..core import Simulation
+
+    return Simulation(*args, **kwargs)
+
+
+def build_simulation(factory: SimulationFactory | None, model: Model, settings: Settings, t0: float = 0.0) -> Any:
+    """A simulation of `model` with `settings` that starts at `t0`, s."""
+    return (factory or real_simulation)(
+        model,
+        method=settings.method,
+        rtol=settings.rtol,
+        atol=settings.atol,
+        step=settings.step or None,
+        t0=t0,
+        **settings.options,
+    )
+
+
+def effective(model: Model, settings: Settings, values: Values) -> tuple[Model, Settings]:
+    """Model and settings with the parameter values in `values` in place of the exported ones.
+
+    The options belong to the exported method: another method runs with its own defaults.
+
+    Raises
+    ------
+    ModelError : for a value that the model refuses.
+    """
+    table = values.table
+    parameters = {v.name: values[v] for v in table.block("parameter")}
+    changed = {name: value for name, value in parameters.items() if value != model.parameter_value(name)}
+    given = {v.name.removeprefix("solver."): values[v] for v in table.block("solver")}
+    own = {name: given.pop(name) for name in ("method", "rtol", "atol", "step")}
+    options = {**settings.options, **given} if own["method"] == settings.method else {}
+    return (model.with_parameters(changed) if changed else model), replace(settings, options=options, **own)
+
+
+class Run:
+    """A simulation built for the parameter values in `values`.
+
+    Raises
+    ------
+    ModelError, ConsistencyError : if it cannot be built.
+    FmuError : if it lacks a channel of the variable table.
+    """
+
+    def __init__(
+        self, factory: SimulationFactory | None, model: Model, settings: Settings, values: Values, t0: float
+    ) -> None:
+        self.key = self.key_of(values, t0)
+        self._inputs = values.table.block("input")
+        self._applied = tuple(v.start for v in self._inputs)
+        changed_model, changed_settings = effective(model, settings, values)
+        self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
+        self._set_columns(values.table)
+
+    @staticmethod
+    def key_of(values: Values, t0: float) -> tuple[Any, ...]:
+        """What a simulation is built from: equal keys can share a simulation."""
+        table = values.table
+        return (t0, *(values[v] for v in (*table.block("solver"), *table.block("parameter"))))
+
+    def _set_columns(self, table: VariableTable) -> None:
+        column = {channel.name: i for i, channel in enumerate(self._simulation.channels)}
+        wanted = table.block("channel")
+        missing = [v.name for v in wanted if v.name not in column]
+        if missing:
+            raise FmuError(
+                f"the simulation has no channels {missing}, which this FMU was exported with: the installed version "
+                "of tlismni names them differently; export the FMU anew"
+            )
+        self._names = [channel.name for channel in self._simulation.channels]
+        self._columns = {
+            kind: (
+                np.array([table.position[v.reference] for v in wanted if v.kind == kind], dtype=np.intp),
+                np.array([column[v.name] for v in wanted if v.kind == kind], dtype=np.intp),
+            )
+            for kind in KINDS
+        }
+
+    @property
+    def applied(self) -> tuple[Any, ...]:
+        """The input values that the simulation has been told."""
+        return self._applied
+
+    @property
+    def events(self) -> Sequence[Any]:
+        """Events so far."""
+        return self._simulation.events
+
+    def apply_inputs(self, values: Values) -> None:
+        """Tell the simulation the inputs that changed (an input told anew could restart a multistep formula)."""
+        wanted = tuple(values[v] for v in self._inputs)
+        changed = {
+            v.name: value
+            for v, value, old in zip(self._inputs, wanted, self._applied, strict=True)
+            if value != old
+        }
+        if changed:
+            self._simulation.set_inputs(changed)
+            self._applied = wanted
+
+    def advance(self, t: float) -> None:
+        """Integrate to `t`, s."""
+        self._simulation.advance(t)
+
+    def read(self, values: Values) -> None:
+        """Put the channels into `values`.
+
+        Raises
+        ------
+        FmuError : if one is not finite.
+        """
+        found = np.asarray(self._simulation.values(), dtype=np.float64)
+        if not np.isfinite(found).all():
+            bad = [f"{name} = {x}" for name, x in zip(self._names, found, strict=True) if not np.isfinite(x)]
+            raise FmuError(
+                f"at t = {self._simulation.t!r} s these values are not finite: {', '.join(bad)}; "
+                "the model runs away or a parameter is wrong: check parameters and inputs, use smaller steps"
+            )
+        for kind, (positions, columns) in self._columns.items():
+            values.vectors[kind][positions] = np.rint(found[columns]) if kind == "integer" else found[columns]
+
+    def state(self) -> Any:
+        """The solver's state."""
+        return self._simulation.state()
+
+    def restore(self, state: Any, applied: tuple[Any, ...]) -> None:
+        """Take over a solver state (or its bytes) and the inputs that it has been told."""
+        if isinstance(state, bytes):
+            state = type(self._simulation.state()).from_bytes(state)
+        self._simulation.restore(state)
+        self._applied = applied
+

@@ -1,0 +1,293 @@
+/* The functions of FMI 2.0 for co-simulation. Each hands its arguments to the method of the same name of
+ * `Fmi2Calls` (fmi2_calls.py); what a status means is decided there. */
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "instance.h"
+
+typedef Instance *fmi2Component;
+typedef void *fmi2ComponentEnvironment;
+typedef void *fmi2FMUstate;
+typedef unsigned int fmi2ValueReference;
+typedef double fmi2Real;
+typedef int fmi2Integer;
+typedef int fmi2Boolean;
+typedef const char *fmi2String;
+typedef char fmi2Byte;
+typedef int fmi2Status;
+typedef int fmi2Type;
+typedef int fmi2StatusKind;
+
+typedef void (*fmi2CallbackLogger)(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String, ...);
+
+typedef struct {
+    fmi2CallbackLogger logger;
+    void *(*allocateMemory)(size_t, size_t);
+    void (*freeMemory)(void *);
+    void (*stepFinished)(fmi2ComponentEnvironment, fmi2Status);
+    fmi2ComponentEnvironment componentEnvironment;
+} fmi2CallbackFunctions;
+
+enum { CO_SIMULATION = 1 };
+
+/* The message is a format for the host: its percent signs are doubled. */
+static void log_to_host(const Instance *self, int status, const char *category, const char *message) {
+    if (!self->logger) {
+        return;
+    }
+    char *format = malloc(2 * strlen(message) + 1);
+    if (!format) {
+        return;
+    }
+    char *to = format;
+    for (const char *from = message; *from; from++) {
+        *to++ = *from;
+        if (*from == '%') {
+            *to++ = '%';
+        }
+    }
+    *to = '\0';
+    ((fmi2CallbackLogger)self->logger)(self->environment, self->name ? self->name : "", status, category, format);
+    free(format);
+}
+
+/* Return the status of a method; its arguments are made with Python's lock. */
+#define FORWARD(c, method, ...)                                   \
+    do {                                                          \
+        int gil;                                                  \
+        if (!instance_enter(c, &gil)) {                           \
+            return STATUS_ERROR;                                  \
+        }                                                         \
+        int status = instance_status(c, method, __VA_ARGS__);     \
+        python_leave(gil);                                        \
+        return status;                                            \
+    } while (0)
+
+#define IN(array, count) view_of(array, (count) * sizeof *(array))
+#define OUT(array, count) writable_view_of(array, (count) * sizeof *(array))
+#define HANDLE(state) ((unsigned long long)(uintptr_t)(state))
+
+/* version and logging */
+
+EXPORT const char *fmi2GetTypesPlatform(void) {
+    return "default";
+}
+
+EXPORT const char *fmi2GetVersion(void) {
+    return "2.0";
+}
+
+EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
+    FORWARD(c, "fmi2SetDebugLogging", "(iN)", on, list_of_strings(categories, count));
+}
+
+/* life */
+
+EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                                     const fmi2CallbackFunctions *functions, fmi2Boolean visible,
+                                     fmi2Boolean logging_on) {
+    (void)visible; /* there is nothing to show */
+    Instance model = {0};
+    model.log = log_to_host;
+    if (functions) {
+        model.logger = (void (*)(void))functions->logger;
+        model.environment = functions->componentEnvironment;
+    }
+    if (type != CO_SIMULATION) {
+        instance_report(&model, "fmi2Instantiate: this FMU does co-simulation only, type %d was asked", type);
+        return NULL;
+    }
+    return instance_new(&model, 2, "fmi2Instantiate", name, guid, resources, logging_on);
+}
+
+EXPORT void fmi2FreeInstance(fmi2Component c) {
+    instance_free(c);
+}
+
+EXPORT fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance,
+                                      fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
+    FORWARD(c, "fmi2SetupExperiment", "(iddid)", tolerance_defined, tolerance, start, stop_defined, stop);
+}
+
+EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+    FORWARD(c, "fmi2EnterInitializationMode", "()");
+}
+
+EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+    FORWARD(c, "fmi2ExitInitializationMode", "()");
+}
+
+EXPORT fmi2Status fmi2Terminate(fmi2Component c) {
+    FORWARD(c, "fmi2Terminate", "()");
+}
+
+EXPORT fmi2Status fmi2Reset(fmi2Component c) {
+    FORWARD(c, "fmi2Reset", "()");
+}
+
+/* values */
+
+EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
+    FORWARD(c, "fmi2GetReal", "(NN)", IN(vr, n), OUT(value, n));
+}
+
+EXPORT fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Integer value[]) {
+    FORWARD(c, "fmi2GetInteger", "(NN)", IN(vr, n), OUT(value, n));
+}
+
+EXPORT fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Boolean value[]) {
+    FORWARD(c, "fmi2GetBoolean", "(NN)", IN(vr, n), OUT(value, n));
+}
+
+EXPORT fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
+    FORWARD(c, "fmi2SetReal", "(NN)", IN(vr, n), IN(value, n));
+}
+
+EXPORT fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                 const fmi2Integer value[]) {
+    FORWARD(c, "fmi2SetInteger", "(NN)", IN(vr, n), IN(value, n));
+}
+
+EXPORT fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                 const fmi2Boolean value[]) {
+    FORWARD(c, "fmi2SetBoolean", "(NN)", IN(vr, n), IN(value, n));
+}
+
+EXPORT fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2String value[]) {
+    FORWARD(c, "fmi2SetString", "(NN)", IN(vr, n), list_of_strings(value, n));
+}
+
+/* The pointers stay valid until the next call of this function: the instance keeps the bytes objects. */
+EXPORT fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2String value[]) {
+    int gil, status = STATUS_ERROR;
+    if (!instance_enter(c, &gil)) {
+        return STATUS_ERROR;
+    }
+    PyObject *strings = instance_call(c, "fmi2GetString", "(N)", IN(vr, n));
+    if (strings && py.PyList_Size(strings) == (Py_ssize_t)n) {
+        for (size_t i = 0; i < n; i++) {
+            value[i] = py.PyBytes_AsString(py.PyList_GetItem(strings, (Py_ssize_t)i));
+        }
+        status = STATUS_OK;
+    }
+    py.PyErr_Clear(); /* PyList_Size complains about the None of an error that was logged */
+    py.Py_DecRef(c->strings);
+    c->strings = strings;
+    python_leave(gil);
+    return status;
+}
+
+/* state: the pointer that the host holds is a number, not an address */
+
+/* Store the handle that a call answered with. */
+static fmi2Status store_handle(PyObject *answer, fmi2FMUstate *state) {
+    long long handle = instance_number(answer, 0);
+    if (handle) {
+        *state = (fmi2FMUstate)(uintptr_t)handle;
+    }
+    return handle ? STATUS_OK : STATUS_ERROR;
+}
+
+EXPORT fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
+    int gil;
+    if (!instance_enter(c, &gil)) {
+        return STATUS_ERROR;
+    }
+    fmi2Status status = store_handle(instance_call(c, "fmi2GetFMUstate", "(K)", HANDLE(*state)), state);
+    python_leave(gil);
+    return status;
+}
+
+EXPORT fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
+    FORWARD(c, "fmi2SetFMUstate", "(K)", HANDLE(state));
+}
+
+EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
+    fmi2FMUstate handle = state ? *state : NULL;
+    if (!handle) {
+        return STATUS_OK;
+    }
+    *state = NULL;
+    FORWARD(c, "fmi2FreeFMUstate", "(K)", HANDLE(handle));
+}
+
+EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
+    int gil;
+    if (!instance_enter(c, &gil)) {
+        return STATUS_ERROR;
+    }
+    long long bytes = instance_number(instance_call(c, "fmi2SerializedFMUstateSize", "(K)", HANDLE(state)), -1);
+    python_leave(gil);
+    *size = bytes < 0 ? 0 : (size_t)bytes;
+    return bytes < 0 ? STATUS_ERROR : STATUS_OK;
+}
+
+EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
+    FORWARD(c, "fmi2SerializeFMUstate", "(KN)", HANDLE(state), OUT(bytes, size));
+}
+
+EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
+                                          fmi2FMUstate *state) {
+    int gil;
+    if (!instance_enter(c, &gil)) {
+        return STATUS_ERROR;
+    }
+    PyObject *answer = instance_call(c, "fmi2DeSerializeFMUstate", "(NK)", IN(bytes, size), HANDLE(*state));
+    fmi2Status status = store_handle(answer, state);
+    python_leave(gil);
+    return status;
+}
+
+/* steps */
+
+EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state) {
+    (void)no_set_state; /* a stored state lives until it is freed */
+    FORWARD(c, "fmi2DoStep", "(dd)", time, step);
+}
+
+EXPORT fmi2Status fmi2CancelStep(fmi2Component c) {
+    FORWARD(c, "fmi2CancelStep", "()");
+}
+
+EXPORT fmi2Status fmi2GetStatus(fmi2Component c, fmi2StatusKind kind, fmi2Status *value) {
+    FORWARD(c, "fmi2GetStatus", "(iN)", kind, OUT(value, 1));
+}
+
+EXPORT fmi2Status fmi2GetRealStatus(fmi2Component c, fmi2StatusKind kind, fmi2Real *value) {
+    FORWARD(c, "fmi2GetRealStatus", "(iN)", kind, OUT(value, 1));
+}
+
+EXPORT fmi2Status fmi2GetIntegerStatus(fmi2Component c, fmi2StatusKind kind, fmi2Integer *value) {
+    FORWARD(c, "fmi2GetIntegerStatus", "(iN)", kind, OUT(value, 1));
+}
+
+EXPORT fmi2Status fmi2GetBooleanStatus(fmi2Component c, fmi2StatusKind kind, fmi2Boolean *value) {
+    FORWARD(c, "fmi2GetBooleanStatus", "(iN)", kind, OUT(value, 1));
+}
+
+EXPORT fmi2Status fmi2GetStringStatus(fmi2Component c, fmi2StatusKind kind, fmi2String *value) {
+    *value = "";
+    FORWARD(c, "fmi2GetStringStatus", "(i)", kind);
+}
+
+/* what this FMU does not do, as its capability flags say: refused, with a line in the log */
+
+EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
+                                               const fmi2ValueReference known[], size_t knowns,
+                                               const fmi2Real seed[], fmi2Real sensitivity[]) {
+    (void)unknown, (void)unknowns, (void)known, (void)knowns, (void)seed, (void)sensitivity;
+    FORWARD(c, "fmi2GetDirectionalDerivative", "()");
+}
+
+EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                              const fmi2Integer order[], const fmi2Real value[]) {
+    (void)vr, (void)n, (void)order, (void)value;
+    FORWARD(c, "fmi2SetRealInputDerivatives", "()");
+}
+
+EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
+                                               const fmi2Integer order[], fmi2Real value[]) {
+    (void)vr, (void)n, (void)order, (void)value;
+    FORWARD(c, "fmi2GetRealOutputDerivatives", "()");
+}

@@ -1,0 +1,280 @@
+#include "instance.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define MAGIC 0x71150001u
+#define MESSAGE 4096
+#define CAPSULE "tlismni.instance"
+
+static char *copy_of(const char *text) {
+    size_t size = strlen(text) + 1;
+    char *copy = malloc(size);
+    if (copy) {
+        memcpy(copy, text, size);
+    }
+    return copy;
+}
+
+void instance_report(const Instance *self, const char *format, ...) {
+    char message[MESSAGE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    self->log(self, STATUS_ERROR, "logStatusError", message);
+}
+
+/* Report the pending Python exception. With Python's lock, which the host's logger must not find taken. */
+static void report_exception(const Instance *self, const char *function) {
+    char error[MESSAGE];
+    python_error(error, sizeof error);
+    void *thread = py.PyEval_SaveThread();
+    instance_report(self, "%s: %s", function, error);
+    py.PyEval_RestoreThread(thread);
+}
+
+/* log(status, category, message), called from Python. */
+static PyObject *log_from_python(PyObject *capsule, PyObject *arguments) {
+    int status;
+    const char *category, *message;
+    const Instance *self = py.PyCapsule_GetPointer(capsule, CAPSULE);
+    if (!self || !py.PyArg_ParseTuple(arguments, "iss", &status, &category, &message)) {
+        return NULL;
+    }
+    void *thread = py.PyEval_SaveThread();
+    self->log(self, status, category, message);
+    py.PyEval_RestoreThread(thread);
+    return py.Py_BuildValue("");
+}
+
+static PyMethodDef log_method = {"log", log_from_python, METH_VARARGS, "Hand a message to the host's logger."};
+
+static int hex_digit(char c) {
+    if (c >= '0' && c <= '9') {
+        return c - '0';
+    }
+    c |= 0x20;
+    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+/* The path in a file URI, or the text itself if it is none (FMI 3.0 passes paths). */
+static char *path_of(const char *location) {
+    char *path = copy_of(location);
+    if (!path || strncmp(location, "file:", 5) != 0) {
+        return path;
+    }
+    const char *from = location + 5;
+    if (from[0] == '/' && from[1] == '/') {
+        from += 2;
+        from += strcspn(from, "/"); /* the host, empty or localhost */
+    }
+#ifdef _WIN32
+    if (from[0] == '/' && from[1] && from[2] == ':') {
+        from++;
+    }
+#endif
+    char *to = path;
+    for (; *from; from++) {
+        int high = *from == '%' ? hex_digit(from[1]) : -1;
+        int low = high >= 0 ? hex_digit(from[2]) : -1;
+        *to++ = low >= 0 ? (char)(16 * high + low) : *from;
+        from += low >= 0 ? 2 : 0;
+    }
+    while (to > path + 1 && to[-1] == '/') {
+        to--;
+    }
+    *to = '\0';
+    return path;
+}
+
+static char *read_file(const char *path) {
+    FILE *file = platform_open(path);
+    char *text = NULL;
+    if (file && fseek(file, 0, SEEK_END) == 0) {
+        long size = ftell(file);
+        rewind(file);
+        text = size >= 0 ? malloc((size_t)size + 1) : NULL;
+        if (text && fread(text, 1, (size_t)size, file) != (size_t)size) {
+            free(text);
+            text = NULL;
+        }
+        if (text) {
+            text[size] = '\0';
+        }
+    }
+    if (file) {
+        fclose(file);
+    }
+    return text;
+}
+
+/* Run resources/boot.py in a namespace of its own and call its `create`. */
+static PyObject *boot(Instance *self, const char *function, const char *source, const char *path,
+                      PyObject *arguments) {
+    PyObject *result = NULL;
+    PyObject *space = py.PyDict_New();
+    PyObject *name = py.Py_BuildValue("s", "tlismni_fmu_boot");
+    PyObject *code = py.Py_CompileString(source, path, Py_file_input);
+    if (space && name && code && arguments) {
+        py.PyDict_SetItemString(space, "__builtins__", py.PyEval_GetBuiltins());
+        py.PyDict_SetItemString(space, "__name__", name);
+        PyObject *ran = py.PyEval_EvalCode(code, space, space);
+        PyObject *create = ran ? py.PyDict_GetItemString(space, "create") : NULL;
+        result = create ? py.PyObject_CallObject(create, arguments) : NULL;
+        py.Py_DecRef(ran);
+    }
+    if (!result) {
+        report_exception(self, function);
+    }
+    py.Py_DecRef(code);
+    py.Py_DecRef(name);
+    py.Py_DecRef(space); /* otherwise every instance would leave its namespace behind */
+    return result;
+}
+
+/* Make the Python side of `self`. */
+static bool populate(Instance *self, int interface, const char *function, const char *token,
+                     const char *resources, bool logging_on) {
+    char message[MESSAGE], path[MESSAGE];
+    int gil;
+    snprintf(path, sizeof path, "%s/boot.py", resources);
+    char *source = read_file(path);
+    if (!source) {
+        instance_report(self, "%s: cannot read '%s': the FMU's resources are missing; unzip the FMU completely and "
+                        "pass the URI of its resources folder", function, path);
+        return false;
+    }
+    if (!python_start(resources, message, sizeof message)) {
+        instance_report(self, "%s: %s", function, message);
+    } else if (!python_enter(&gil)) {
+        instance_report(self, "%s: Python is shutting down in this process", function);
+    } else {
+        PyObject *capsule = py.PyCapsule_New(self, CAPSULE, NULL);
+        PyObject *log = capsule ? py.PyCFunction_NewEx(&log_method, capsule, NULL) : NULL;
+        PyObject *arguments = log ? py.Py_BuildValue("(isssiN)", interface, self->name, token, resources,
+                                                     (int)logging_on, log) : NULL;
+        self->calls = boot(self, function, source, path, arguments);
+        py.Py_DecRef(arguments);
+        py.Py_DecRef(capsule);
+        python_leave(gil);
+    }
+    free(source);
+    return self->calls != NULL;
+}
+
+Instance *instance_new(const Instance *model, int interface, const char *function, const char *name,
+                       const char *token, const char *resource_location, bool logging_on) {
+    Instance *self = malloc(sizeof *self);
+    if (!self) {
+        return NULL;
+    }
+    *self = *model;
+    self->magic = MAGIC;
+    self->calls = self->strings = NULL;
+    self->name = copy_of(name && *name ? name : "instance");
+    char *resources = resource_location ? path_of(resource_location) : NULL;
+    bool made = false;
+    if (!resources) {
+        instance_report(self, "%s: the resource location is NULL: the URI of the FMU's resources folder is needed",
+                        function);
+    } else if (self->name) {
+        made = populate(self, interface, function, token ? token : "", resources, logging_on);
+    }
+    free(resources);
+    if (!made) {
+        instance_free(self);
+        return NULL;
+    }
+    return self;
+}
+
+void instance_free(Instance *self) {
+    int gil;
+    if (!self || self->magic != MAGIC) {
+        return;
+    }
+    if (self->calls && instance_enter(self, &gil)) {
+        py.Py_DecRef(instance_call(self, "free", "()"));
+        py.Py_DecRef(self->strings);
+        py.Py_DecRef(self->calls);
+        python_leave(gil);
+    }
+    self->magic = 0;
+    free(self->name);
+    free(self);
+}
+
+bool instance_enter(Instance *self, int *gil) {
+    return self && self->magic == MAGIC && python_enter(gil);
+}
+
+static PyObject *call(Instance *self, const char *method, const char *format, va_list values) {
+    PyObject *arguments = py.Py_VaBuildValue(format, values);
+    PyObject *function = arguments ? py.PyObject_GetAttrString(self->calls, method) : NULL;
+    PyObject *answer = function ? py.PyObject_CallObject(function, arguments) : NULL;
+    py.Py_DecRef(function);
+    py.Py_DecRef(arguments);
+    if (!answer) {
+        report_exception(self, method);
+    }
+    return answer;
+}
+
+PyObject *instance_call(Instance *self, const char *method, const char *format, ...) {
+    va_list values;
+    va_start(values, format);
+    PyObject *answer = call(self, method, format, values);
+    va_end(values);
+    return answer;
+}
+
+int instance_status(Instance *self, const char *method, const char *format, ...) {
+    va_list values;
+    va_start(values, format);
+    PyObject *answer = call(self, method, format, values);
+    va_end(values);
+    return (int)instance_number(answer, STATUS_ERROR);
+}
+
+long long instance_number(PyObject *answer, long long otherwise) {
+    if (!answer) {
+        return otherwise;
+    }
+    long long number = py.PyLong_AsLongLong(answer);
+    if (number == -1 && py.PyErr_Occurred()) {
+        py.PyErr_Clear();
+        number = otherwise;
+    }
+    py.Py_DecRef(answer);
+    return number;
+}
+
+static PyObject *view(void *data, size_t bytes, int access) {
+    static char nothing;
+    return py.PyMemoryView_FromMemory(data ? data : &nothing, data ? (Py_ssize_t)bytes : 0, access);
+}
+
+PyObject *view_of(const void *data, size_t bytes) {
+    union {
+        const void *given;
+        void *taken;
+    } pointer = {data}; /* Python's function takes no const; PyBUF_READ keeps the promise */
+    return view(pointer.taken, bytes, PyBUF_READ);
+}
+
+PyObject *writable_view_of(void *data, size_t bytes) {
+    return view(data, bytes, PyBUF_WRITE);
+}
+
+PyObject *list_of_strings(const char *const strings[], size_t count) {
+    PyObject *list = py.PyList_New((Py_ssize_t)count);
+    for (size_t i = 0; list && i < count; i++) {
+        PyObject *item = strings[i] ? py.PyBytes_FromString(strings[i]) : py.Py_BuildValue("");
+        if (!item || py.PyList_SetItem(list, (Py_ssize_t)i, item) != 0) {
+            py.Py_DecRef(list);
+            return NULL;
+        }
+    }
+    return list;
+}

@@ -1,0 +1,55 @@
+/* An FMU instance: the Python object that answers its calls, and the host's logger. */
+#ifndef TLISMNI_INSTANCE_H
+#define TLISMNI_INSTANCE_H
+
+#include "python_api.h"
+
+/* Status numbers of FMI 2.0 and 3.0. */
+typedef enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR, STATUS_FATAL } Status;
+
+typedef struct Instance Instance;
+
+/* Hands one message to the host, in the manner of the instance's FMI version. */
+typedef void (*HostLogger)(const Instance *, int status, const char *category, const char *message);
+
+struct Instance {
+    unsigned magic;
+    PyObject *calls;    /* Fmi2Calls */
+    PyObject *strings;  /* list of bytes that the last "get string" gave: the host holds pointers into them */
+    HostLogger log;
+    void (*logger)(void); /* the host's callback, of the type that `log` knows; NULL for none */
+    void *environment;
+    char *name;
+};
+
+/* A new instance, or NULL with a line in the host's log. Takes over nothing; `model` is filled in by the caller
+ * with `log`, `logger`, `environment` and is copied. */
+Instance *instance_new(const Instance *model, int interface, const char *function, const char *name,
+                       const char *token, const char *resource_location, bool logging_on);
+
+/* Free an instance; NULL is allowed. */
+void instance_free(Instance *self);
+
+/* Take Python's lock for a call on `self`. False, with nothing taken, if `self` is no instance or Python is gone. */
+bool instance_enter(Instance *self, int *gil);
+
+/* Log an error of the shim itself. Without Python's lock. */
+void instance_report(const Instance *self, const char *format, ...) PRINTF_LIKE(2, 3);
+
+/* Call a method; `format` builds its arguments as in Py_BuildValue. NULL after an exception, which was logged. */
+PyObject *instance_call(Instance *self, const char *method, const char *format, ...);
+
+/* The same for a method that answers with a status. */
+int instance_status(Instance *self, const char *method, const char *format, ...);
+
+/* A number that a method answered with; `otherwise` if it is none. Takes over the reference. */
+long long instance_number(PyObject *answer, long long otherwise);
+
+/* Memory views on arrays, for the time of a call. */
+PyObject *view_of(const void *data, size_t bytes);
+PyObject *writable_view_of(void *data, size_t bytes);
+
+/* A list of bytes objects (None for NULL). */
+PyObject *list_of_strings(const char *const strings[], size_t count);
+
+#endif

@@ -1,0 +1,43 @@
+/* What differs between Windows, macOS and Linux. */
+#ifndef TLISMNI_PLATFORM_H
+#define TLISMNI_PLATFORM_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#ifdef _WIN32
+#define EXPORT __declspec(dllexport)
+#define THREAD_LOCAL __declspec(thread)
+#define PRINTF_LIKE(text, first)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#define THREAD_LOCAL _Thread_local
+#define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
+#endif
+
+/* The library with this file name or path, made visible to libraries loaded later and never unloaded; or NULL. */
+void *platform_load(const char *path);
+
+/* Find the library of this process that has Python in it already (its handle may be NULL: the whole process). */
+bool platform_loaded_python(void **library);
+
+/* Address of a function of `library`, or NULL. */
+void *platform_symbol(void *library, const char *name);
+
+/* Why the last platform_load failed. */
+const char *platform_load_error(void);
+
+/* Keep this library in the process for good: Python holds pointers into it. */
+void platform_pin(void);
+
+/* Open a file for reading; the path is UTF-8. */
+FILE *platform_open(const char *path);
+
+/* Set an environment variable, or unset it with NULL. */
+void platform_setenv(const char *name, const char *value);
+
+/* One lock for the whole library. */
+void platform_lock(void);
+void platform_unlock(void);
+
+#endif

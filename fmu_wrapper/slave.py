@@ -1,0 +1,331 @@
+"""The slave: one simulation behind a step interface as FMI co-simulation wants it, for FMI 2.0 and 3.0 alike.
+
+Phases: instantiated -> initialization -> step -> terminated; a failed step leads to `failed`, from where a stored
+state or a reset leads back. The methods raise; `calls.py` turns what they raise into FMI statuses.
+"""
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.description import Model
+from . import log as logs
+from .errors import CallOrderError, FmuValueError, SnapshotError, Status
+from .log import Log, LogCallback
+from .run import Run, SimulationFactory, build_simulation
+from .settings import Settings
+from .snapshot import Phase, Snapshot
+from .values import Values, check_values
+from .variables import EVENTS, TIME, Kind, Variable, VariableTable, build_table
+
+_WAYS = {
+    Phase.INSTANTIATED: "enter and exit initialization mode first",
+    Phase.INITIALIZATION: "exit initialization mode first",
+    Phase.STEP: "reset first",
+    Phase.FAILED: "the last step failed: set a stored state, or reset",
+    Phase.TERMINATED: "the run is terminated: reset, or set a stored state",
+}
+_RUNNING = (Phase.INITIALIZATION, Phase.STEP, Phase.FAILED, Phase.TERMINATED)
+
+
+class Slave:
+    """A model with its solver as a co-simulation slave.
+
+    Parameters
+    ----------
+    source : Model, or Scenario with `.model` and its solver settings.
+    name : name of the instance, for the log.
+    variables : the variable table that an FMU was exported with; None builds it, which needs a simulation.
+    on_log : called with status, category and message; None passes messages to `logging`.
+    logging_on : True passes on all categories, False errors only.
+    simulation_factory : makes the simulation; None is `tlismni.core.Simulation`.
+    solver : `method`, `rtol`, `atol`, `step` and options of the method; they win over the scenario's.
+
+    Examples
+    --------
+    >>> slave = Slave(scenario, rtol=1e-8)           # doctest: +SKIP
+    >>> slave.enter_initialization(); slave.exit_initialization()   # doctest: +SKIP
+    >>> slave.do_step(0.0, 0.01); slave["ball.y"]    # doctest: +SKIP
+    """
+
+    def __init__(
+        self,
+        source: Any,
+        *,
+        name: str = "slave",
+        variables: VariableTable | None = None,
+        on_log: LogCallback | None = None,
+        logging_on: bool = False,
+        simulation_factory: SimulationFactory | None = None,
+        **solver: Any,
+    ) -> None:
+        self.model, self.settings = Settings.of(source, **solver)
+        self.name = name
+        self.log = Log(on_log, logging_on)
+        self._factory = simulation_factory
+        if variables is None:
+            channels = build_simulation(simulation_factory, self.model, self.settings).channels
+            variables = build_table(self.model, self.settings, channels)
+        self.variables = variables
+        self.identity = identity(self.model, self.settings, variables)
+        self._run: Run | None = None
+        self.reset()
+
+    # life
+
+    @property
+    def phase(self) -> Phase:
+        """Where the slave is in its life."""
+        return self._phase
+
+    @property
+    def time(self) -> float:
+        """The slave's own time, s."""
+        return self._time
+
+    def reset(self) -> None:
+        """Back to the state of a new slave: start values, no experiment, phase `instantiated`."""
+        self._phase = Phase.INSTANTIATED
+        self._values = Values(self.variables)
+        self._start_time, self._stop_time = 0.0, None
+        self._time = 0.0
+        self._rtol_given = False
+        self._run = None
+        self._stale = True
+
+    def setup(self, start_time: float = 0.0, stop_time: float | None = None, tolerance: float | None = None) -> None:
+        """Fix the experiment: times in s; `tolerance` is taken as rtol unless `solver.rtol` is set by name.
+
+        Raises
+        ------
+        CallOrderError : after initialization mode was entered.
+        FmuValueError : for figures that are not finite, or a stop that is not after the start.
+        """
+        self._need("setup", Phase.INSTANTIATED)
+        for name, value in (("start time", start_time), ("stop time", stop_time), ("tolerance", tolerance)):
+            if value is not None and not math.isfinite(value):
+                raise FmuValueError(f"the {name} is {value!r}: a finite number is needed")
+        if stop_time is not None and stop_time < start_time:
+            raise FmuValueError(f"the stop time {stop_time!r} s is before the start time {start_time!r} s")
+        if tolerance is not None and tolerance <= 0.0:
+            raise FmuValueError(f"the tolerance is {tolerance!r}: a number greater than 0 is needed")
+        self._start_time, self._stop_time = float(start_time), stop_time
+        self._set_time(self._start_time)
+        if tolerance is not None and not self._rtol_given:
+            self._values[self.variables.by_name["solver.rtol"]] = float(tolerance)
+
+    def enter_initialization(self) -> None:
+        """Go to initialization mode. Raises CallOrderError unless the slave is freshly instantiated or reset."""
+        self._need("enter initialization mode", Phase.INSTANTIATED)
+        self._phase = Phase.INITIALIZATION
+
+    def exit_initialization(self) -> None:
+        """Build the simulation at its start and go to step mode. On an error the slave stays in this mode.
+
+        Raises
+        ------
+        CallOrderError, ModelError, ConsistencyError, FmuError
+        """
+        self._need("exit initialization mode", Phase.INITIALIZATION)
+        self._refresh()
+        self._phase = Phase.STEP
+
+    def terminate(self) -> None:
+        """End the run; values can still be read."""
+        self._need("terminate", Phase.STEP, Phase.FAILED)
+        self._phase = Phase.TERMINATED
+
+    def do_step(self, t: float, h: float) -> None:
+        """Advance from `t` by `h`, s, impacts included.
+
+        `t` must be the slave's own time within rounding. The step ends at `t + h` in the master's rounding, so
+        that a master that counts its steps does not drift away from the slave.
+
+        Raises
+        ------
+        CallOrderError : outside step mode.
+        FmuValueError : for a wrong `t`, an `h` that is not positive, a step past the stop time. Nothing happened.
+        SimulationError, FmuError : the solver failed; the slave is in phase `failed`.
+        """
+        self._need("do step", Phase.STEP)
+        target = self._target(t, h)
+        run = self._engine()
+        seen = len(run.events)
+        try:
+            run.apply_inputs(self._values)
+            run.advance(target)
+            run.read(self._values)
+        except BaseException:  # an interrupt from the keyboard leaves half a step too
+            self._phase = Phase.FAILED
+            raise
+        self._set_time(target)
+        self._stale = False
+        self._note_events(run.events[seen:])
+
+    def _note_events(self, events: Sequence[Any]) -> None:
+        if events:
+            count = self.variables.by_name[EVENTS]
+            self._values[count] += len(events)
+        if self.log.wants(logs.EVENTS):
+            for event in events:
+                self.log.write(Status.OK, logs.EVENTS, str(event))
+
+    def _target(self, t: float, h: float) -> float:
+        if not (math.isfinite(t) and math.isfinite(h)):
+            raise FmuValueError(f"communication point {t!r} s and step {h!r} s must be finite")
+        if h <= 0.0:
+            raise FmuValueError(f"the communication step is {h!r} s: a step greater than 0 is needed")
+        own = self._time
+        scale = max(abs(own), abs(t), h)
+        # rounding of the master, but never so much that a step done twice passes
+        slack = max(8.0 * math.ulp(scale), min(1e-9 * scale, 0.01 * h))
+        if abs(t - own) > slack:
+            raise FmuValueError(
+                f"the communication point is {t!r} s, but this slave is at {own!r} s: step from there, "
+                "or set a stored state first"
+            )
+        target = t + h
+        if target <= own:
+            raise FmuValueError(f"the communication step {h!r} s is lost in rounding at {own!r} s: make it larger")
+        if self._stop_time is not None and target > self._stop_time + slack:
+            raise FmuValueError(
+                f"the step from {t!r} s by {h!r} s ends after the stop time {self._stop_time!r} s of the experiment: "
+                "make it shorter, or set up the experiment without a stop time"
+            )
+        return target
+
+    # values
+
+    def get(self, kind: Kind, references: npt.NDArray[np.uint32]) -> Any:
+        """Values of the variables of `kind` behind `references`, as an array; not before initialization mode.
+
+        Raises
+        ------
+        CallOrderError, FmuValueError : and what the solver raises when start values must be computed.
+        """
+        self._need(f"get {kind} values", *_RUNNING)
+        variables, positions = self.variables.plan(kind, references)
+        if self._stale and self._phase != Phase.FAILED and any(v.role == "output" for v in variables):
+            self._refresh()
+        return self._values.vectors[kind][positions]
+
+    def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Sequence[Any]) -> None:
+        """Set the variables of `kind` behind `references`: all of them or, on an error, none.
+
+        Inputs can be set in step mode too, parameters only before it.
+
+        Raises
+        ------
+        CallOrderError, FmuValueError
+        """
+        variables, positions = self.variables.plan(kind, references)
+        self._need(f"set {kind} values", Phase.INSTANTIATED, Phase.INITIALIZATION, Phase.STEP)
+        for variable in variables:
+            if variable.role == "input" or (variable.role == "parameter" and self._phase != Phase.STEP):
+                continue
+            if variable.role == "parameter":
+                raise CallOrderError(
+                    f"parameter '{variable.name}' is fixed after initialization: reset, then set it before"
+                )
+            raise FmuValueError(f"'{variable.name}' is of role {variable.role} and cannot be set")
+        self._values.vectors[kind][positions] = check_values(variables, values)
+        self._stale = True
+        self._rtol_given |= any(v.name == "solver.rtol" for v in variables)
+        if any(v.role == "parameter" for v in variables):
+            self._run = None
+
+    def set_by_name(self, values: Mapping[str, Any]) -> None:
+        """`set` for Python users: values by variable name."""
+        for name, value in values.items():
+            variable = self._named(name)
+            self.set(variable.kind, np.array([variable.reference], dtype=np.uint32), [value])
+
+    def __getitem__(self, name: str) -> Any:
+        """Value of the variable `name`."""
+        variable = self._named(name)
+        value = self.get(variable.kind, np.array([variable.reference], dtype=np.uint32))[0]
+        return value if variable.kind == "string" else value.item()
+
+    def _named(self, name: str) -> Variable:
+        try:
+            return self.variables.by_name[name]
+        except KeyError:
+            raise FmuValueError(f"no variable '{name}'; there are {sorted(self.variables.by_name)}") from None
+
+    # state
+
+    def snapshot(self) -> Snapshot:
+        """The whole state. Raises CallOrderError after a failed step, whose state is worthless."""
+        self._need("get the state", *(p for p in Phase if p != Phase.FAILED))
+        return Snapshot(
+            phase=self._phase,
+            start_time=self._start_time,
+            stop_time=self._stop_time,
+            time=self._time,
+            rtol_given=self._rtol_given,
+            values=self._values.copy(),
+            applied=() if self._run is None else self._run.applied,
+            simulation=None if self._run is None else self._run.state(),
+            identity=self.identity,
+        )
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Take over a state that `snapshot` gave, here or in another slave of the same model and settings.
+
+        Raises
+        ------
+        SnapshotError : if it belongs to another model or other settings.
+        """
+        if snapshot.identity != self.identity:
+            raise SnapshotError("the stored state belongs to another model or other settings")
+        values = snapshot.values.copy()
+        run = None
+        if snapshot.simulation is not None:
+            run = self._run
+            if run is None or run.key != Run.key_of(values, snapshot.start_time):
+                run = self._build(values, snapshot.start_time)
+            run.restore(snapshot.simulation, snapshot.applied)
+        self._run, self._values = run, values
+        self._phase, self._rtol_given = snapshot.phase, snapshot.rtol_given
+        self._start_time, self._stop_time, self._time = snapshot.start_time, snapshot.stop_time, snapshot.time
+        self._stale = run is None or snapshot.applied != tuple(values[v] for v in self.variables.block("input"))
+
+    def snapshot_from_bytes(self, data: bytes) -> Snapshot:
+        """The snapshot whose `.data` is `data`. Raises SnapshotError if it is none, or not of this slave's kind."""
+        return Snapshot.from_data(data, self.variables, self.identity)
+
+    # inside
+
+    def _need(self, what: str, *phases: Phase) -> None:
+        if self._phase not in phases:
+            raise CallOrderError(f"cannot {what} in phase '{self._phase}': {_WAYS[self._phase]}")
+
+    def _build(self, values: Values, start_time: float) -> Run:
+        return Run(self._factory, self.model, self.settings, values, start_time)
+
+    def _engine(self) -> Run:
+        if self._run is None:
+            self._run = self._build(self._values, self._start_time)
+        return self._run
+
+    def _refresh(self) -> None:
+        """Make the outputs fit the parameters and inputs."""
+        run = self._engine()
+        run.apply_inputs(self._values)
+        run.read(self._values)
+        self._stale = False
+
+    def _set_time(self, t: float) -> None:
+        self._time = t
+        self._values[self.variables.by_reference[TIME]] = t
+
+
+def identity(model: Model, settings: Settings, variables: VariableTable) -> str:
+    """Hash of everything that makes an FMU what it is."""
+    content = [model.model_dump(mode="json"), settings.as_arguments(), variables.to_data()]
+    return hashlib.sha256(json.dumps(content, sort_keys=True, default=repr).encode()).hexdigest()

@@ -1,0 +1,116 @@
+"""A slave's whole state as one value: for rollback inside a process and, as bytes, across processes."""
+
+import json
+import zlib
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import Any
+
+from .errors import SnapshotError
+from .values import Values
+from .variables import VariableTable
+
+FORMAT = 1
+MAGIC = b"tlismni-slave-state\n"
+LENGTHS = 4 * 8  # lengths of head, values and simulation state, then the checksum; 8 bytes each, little endian
+
+
+class Phase(StrEnum):
+    """Where a slave is in its life."""
+
+    INSTANTIATED = "instantiated"
+    INITIALIZATION = "initialization"
+    STEP = "step"
+    FAILED = "failed"
+    TERMINATED = "terminated"
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Everything that decides a slave's future.
+
+    Attributes
+    ----------
+    phase : phase of the slave.
+    start_time, stop_time : experiment, s; no stop time is None.
+    time : the slave's own time, s.
+    rtol_given : whether `solver.rtol` was set by name, so that the experiment's tolerance does not replace it.
+    values : values of all variables.
+    applied : input values that the simulation has been told.
+    simulation : the solver's state (its bytes if the snapshot came from bytes), or None before it exists.
+    identity : hash of model, settings and variables; a snapshot fits only a slave with the same.
+    """
+
+    phase: Phase
+    start_time: float
+    stop_time: float | None
+    time: float
+    rtol_given: bool
+    values: Values
+    applied: tuple[float, ...]
+    simulation: Any
+    identity: str
+
+    @cached_property
+    def data(self) -> bytes:
+        """The snapshot as bytes, with format version, identity and checksum."""
+        head = json.dumps(
+            {
+                "format": FORMAT,
+                "identity": self.identity,
+                "phase": self.phase.value,
+                "start_time": self.start_time,
+                "stop_time": self.stop_time,
+                "time": self.time,
+                "rtol_given": self.rtol_given,
+                "applied": self.applied,
+            }
+        ).encode()
+        state = self.simulation
+        if not isinstance(state, bytes):
+            state = b"" if state is None else bytes(state.to_bytes())
+        parts = (head, self.values.to_bytes(), state)
+        body = b"".join(parts)
+        numbers = [*(len(part) for part in parts), zlib.crc32(body)]
+        return MAGIC + b"".join(n.to_bytes(8, "little") for n in numbers) + body
+
+    @classmethod
+    def from_data(cls, data: bytes, table: VariableTable, identity: str) -> "Snapshot":
+        """The snapshot in `data`, for a slave with `table` and `identity`.
+
+        Raises
+        ------
+        SnapshotError : if the bytes are no snapshot, damaged, or of another version or model.
+        """
+        if not data.startswith(MAGIC):
+            raise SnapshotError(f"these {len(data)} bytes are no stored state of a tlismni slave")
+        start = len(MAGIC) + LENGTHS
+        numbers = [int.from_bytes(data[i : i + 8], "little") for i in range(len(MAGIC), start, 8)]
+        *lengths, checksum = numbers
+        body = data[start : start + sum(lengths)]
+        if len(body) != sum(lengths) or zlib.crc32(body) != checksum:
+            raise SnapshotError(f"the stored state is damaged or cut off ({len(data)} bytes): store it again")
+        a, b = lengths[0], lengths[0] + lengths[1]
+        head = json.loads(body[:a])
+        if head["format"] != FORMAT:
+            raise SnapshotError(
+                f"the stored state has format {head['format']}, this version reads format {FORMAT}: "
+                "restore it with the version of tlismni that stored it"
+            )
+        if head["identity"] != identity:
+            raise SnapshotError(
+                f"the stored state belongs to another model or other settings (identity {head['identity'][:12]}, "
+                f"this slave has {identity[:12]}): use the FMU that stored it"
+            )
+        return cls(
+            phase=Phase(head["phase"]),
+            start_time=head["start_time"],
+            stop_time=head["stop_time"],
+            time=head["time"],
+            rtol_given=head["rtol_given"],
+            values=Values.from_bytes(table, body[a:b]),
+            applied=tuple(head["applied"]),
+            simulation=body[b:] or None,
+            identity=identity,
+        )

@@ -1,0 +1,104 @@
+"""The values of all variables of a slave: one vector for each kind."""
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import FmuValueError
+from .settings import check_solver_value
+from .variables import KINDS, Kind, Variable, VariableTable
+
+DTYPES: dict[Kind, str] = {"real": "<f8", "integer": "<i4", "boolean": "|b1", "string": "object"}
+NUMERIC: tuple[Kind, ...] = ("real", "integer", "boolean")
+INT32 = range(-(2**31), 2**31)
+
+
+class Values:
+    """Values of the variables of `table`, at their start values; outputs start as 0."""
+
+    def __init__(self, table: VariableTable) -> None:
+        self.table = table
+        self.vectors: dict[Kind, npt.NDArray[Any]] = {}
+        for kind in KINDS:
+            variables = table.of_kind[kind]
+            vector = np.zeros(len(variables), dtype=DTYPES[kind])
+            for i, variable in enumerate(variables):
+                vector[i] = ("" if kind == "string" else 0) if variable.start is None else variable.start
+            self.vectors[kind] = vector
+
+    def __getitem__(self, variable: Variable) -> Any:
+        value = self.vectors[variable.kind][self.table.position[variable.reference]]
+        return value if variable.kind == "string" else value.item()
+
+    def __setitem__(self, variable: Variable, value: Any) -> None:
+        self.vectors[variable.kind][self.table.position[variable.reference]] = value
+
+    def copy(self) -> "Values":
+        """An independent copy."""
+        twin = object.__new__(Values)
+        twin.table = self.table
+        twin.vectors = {kind: vector.copy() for kind, vector in self.vectors.items()}
+        return twin
+
+    def to_bytes(self) -> bytes:
+        """The values bit for bit: reals, integers, booleans, then the strings as JSON."""
+        numbers = b"".join(self.vectors[kind].tobytes() for kind in NUMERIC)
+        return numbers + json.dumps(list(self.vectors["string"])).encode()
+
+    @classmethod
+    def from_bytes(cls, table: VariableTable, data: bytes) -> "Values":
+        """The values in bytes made by `to_bytes` for the same table."""
+        values = cls(table)
+        offset = 0
+        for kind in NUMERIC:
+            count = len(table.of_kind[kind])
+            values.vectors[kind] = np.frombuffer(data, DTYPES[kind], count, offset).copy()
+            offset += values.vectors[kind].nbytes
+        values.vectors["string"][:] = json.loads(data[offset:])
+        return values
+
+
+def check_value(variable: Variable, value: Any) -> Any:
+    """`value` as the variable's Python type.
+
+    Raises
+    ------
+    FmuValueError : for a wrong type, NaN, infinity, or a value outside the variable's range.
+    """
+    name = f"'{variable.name}' (value reference {variable.reference})"
+    if variable.kind == "string":
+        if not isinstance(value, str):
+            raise FmuValueError(f"{name} needs a string, not {value!r}")
+        return value
+    if variable.kind == "boolean":
+        if not isinstance(value, bool | np.bool_):
+            raise FmuValueError(f"{name} needs True or False, not {value!r}")
+        return bool(value)
+    if isinstance(value, bool | np.bool_ | str) or not isinstance(value, int | float | np.number):
+        raise FmuValueError(f"{name} needs a number, not {value!r}")
+    if variable.kind == "integer":
+        if int(value) != value or int(value) not in INT32:
+            raise FmuValueError(f"{name} needs a whole number of 32 bits, not {value!r}")
+        return int(value)
+    number = float(value)
+    if not math.isfinite(number):
+        raise FmuValueError(f"{name} was set to {number!r}, which is not finite: check what feeds it")
+    low, high = variable.minimum, variable.maximum
+    if (low is not None and number < low) or (high is not None and number > high):
+        limits = f"[{'-inf' if low is None else low}, {'inf' if high is None else high}]"
+        raise FmuValueError(f"{name} was set to {number!r}, which is outside its range {limits}")
+    if variable.block == "solver" and variable.name in ("solver.rtol", "solver.atol", "solver.step"):
+        check_solver_value(variable.name.removeprefix("solver."), number)
+    return number
+
+
+def check_values(variables: Sequence[Variable], values: Iterable[Any]) -> list[Any]:
+    """All values checked by `check_value`. Raises FmuValueError if the lengths differ."""
+    given = list(values)
+    if len(given) != len(variables):
+        raise FmuValueError(f"{len(given)} values were given for {len(variables)} value references")
+    return [check_value(variable, value) for variable, value in zip(variables, given, strict=True)]

@@ -1,0 +1,198 @@
+"""The variable table of a slave: names, kinds, roles, units and value references.
+
+Value references are one numbering over all kinds (FMI 3.0 wants that, FMI 2.0 allows it), in blocks, so that a
+further input does not renumber the outputs:
+
+    0                   time
+    1 method  2 rtol  3 atol  4 step        solver settings (`solver.*`), parameters
+    10 ...              the method's further options, by name
+    100 ...             figures of the solver, outputs: 100 `solver.events`
+    1000 ...            the model's parameters, in the order of the model
+    1000000 ...         the model's inputs, in the order of the model
+    2000000 ...         the channels, in the order of `Simulation.channels`
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.description import Model
+from ..core.model.channels import Channel
+from .errors import FmuValueError
+from .settings import Settings
+
+Kind = Literal["real", "integer", "boolean", "string"]
+Role = Literal["independent", "parameter", "input", "output"]
+Block = Literal["time", "solver", "figure", "parameter", "input", "channel"]
+
+KINDS: tuple[Kind, ...] = ("real", "integer", "boolean", "string")
+EVENTS = "solver.events"
+TIME, METHOD, FIRST_OPTION, FIRST_FIGURE = 0, 1, 10, 100
+FIRST_PARAMETER, FIRST_INPUT, FIRST_CHANNEL = 1000, 1_000_000, 2_000_000
+PLANS_KEPT = 256  # a master asks for the same few lists of references over and over
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable of the slave. `block` says where its value lives, `start` is None for outputs and time."""
+
+    reference: int
+    name: str
+    kind: Kind
+    role: Role
+    block: Block
+    unit: str | None = None
+    description: str = ""
+    start: float | int | bool | str | None = None
+    minimum: float | None = None
+    maximum: float | None = None
+
+
+class VariableTable:
+    """All variables of a slave, found by reference and by name.
+
+    Raises
+    ------
+    FmuValueError : if two variables have one name.
+    """
+
+    def __init__(self, variables: Iterable[Variable]) -> None:
+        self.variables = tuple(variables)
+        self.by_reference = {v.reference: v for v in self.variables}
+        self.by_name = {v.name: v for v in self.variables}
+        if len(self.by_name) != len(self.variables):
+            names = [v.name for v in self.variables]
+            twice = sorted({n for n in names if names.count(n) > 1})
+            raise FmuValueError(
+                f"the variables {twice} would exist twice in the FMU (model parameters, inputs and channels share "
+                "one list of names): rename them in the model"
+            )
+        self.of_kind: dict[Kind, tuple[Variable, ...]] = {
+            kind: tuple(v for v in self.variables if v.kind == kind) for kind in KINDS
+        }
+        self.position = {v.reference: i for kind in KINDS for i, v in enumerate(self.of_kind[kind])}
+        self._plans: dict[tuple[Kind, bytes], tuple[Sequence[Variable], npt.NDArray[np.intp]]] = {}
+
+    def block(self, block: Block) -> list[Variable]:
+        """The variables of one block, in the order of their references."""
+        return [v for v in self.variables if v.block == block]
+
+    def plan(self, kind: Kind, references: npt.NDArray[np.uint32]) -> tuple[Sequence[Variable], npt.NDArray[np.intp]]:
+        """The variables behind `references` and their positions among the variables of their kind.
+
+        Raises
+        ------
+        FmuValueError : for a reference that no variable of this kind has.
+        """
+        key = (kind, references.tobytes())
+        found = self._plans.get(key)
+        if found is None:
+            variables = tuple(self._find(kind, int(r)) for r in references)
+            found = variables, np.array([self.position[v.reference] for v in variables], dtype=np.intp)
+            if len(self._plans) >= PLANS_KEPT:
+                self._plans.clear()
+            self._plans[key] = found
+        return found
+
+    def _find(self, kind: Kind, reference: int) -> Variable:
+        variable = self.by_reference.get(reference)
+        if variable is None:
+            raise FmuValueError(
+                f"value reference {reference} is unknown: this FMU has {len(self.of_kind[kind])} {kind} variables, "
+                "their references stand in modelDescription.xml"
+            )
+        if variable.kind != kind:
+            raise FmuValueError(
+                f"value reference {reference} is '{variable.name}', which is of kind {variable.kind}, not {kind}: "
+                f"use the get and set functions for {variable.kind}"
+            )
+        return variable
+
+    def to_data(self) -> list[dict[str, Any]]:
+        """The table as JSON data."""
+        return [asdict(v) for v in self.variables]
+
+    @classmethod
+    def from_data(cls, data: Iterable[Mapping[str, Any]]) -> "VariableTable":
+        """The table in JSON data made by `to_data`."""
+        return cls(Variable(**record) for record in data)
+
+
+def kind_of(value: object) -> Kind | None:
+    """The kind of variable that holds `value`, or None if there is none."""
+    if isinstance(value, bool | np.bool_):
+        return "boolean"
+    if isinstance(value, int | np.integer):
+        return "integer"
+    if isinstance(value, float | np.floating):
+        return "real"
+    return "string" if isinstance(value, str) else None
+
+
+def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -> VariableTable:
+    """The variables of a slave for `model` with `settings`, whose simulation has `channels`."""
+    return VariableTable(
+        [
+            Variable(TIME, "time", "real", "independent", "time", "s", "simulation time"),
+            *_solver(settings),
+            Variable(FIRST_FIGURE, EVENTS, "integer", "output", "figure", None, "number of contact events so far"),
+            *(
+                Variable(
+                    FIRST_PARAMETER + i,
+                    p.name,
+                    "real",
+                    "parameter",
+                    "parameter",
+                    p.unit,
+                    p.description,
+                    model.parameter_value(p.name),
+                    p.minimum,
+                    p.maximum,
+                )
+                for i, p in enumerate(model.parameters)
+            ),
+            *(
+                Variable(FIRST_INPUT + i, n.name, "real", "input", "input", n.unit, n.description, n.start)
+                for i, n in enumerate(model.inputs)
+            ),
+            *(
+                Variable(
+                    FIRST_CHANNEL + i,
+                    c.name,
+                    c.kind,
+                    "output",
+                    "channel",
+                    c.unit if c.kind == "real" else None,
+                    c.description,
+                )
+                for i, c in enumerate(channels)
+            ),
+        ]
+    )
+
+
+def _solver(settings: Settings) -> list[Variable]:
+    texts: list[tuple[str, Kind, Any, str | None, str, float | None]] = [
+        ("method", "string", settings.method, None, "integration method", None),
+        ("rtol", "real", settings.rtol, "1", "relative tolerance of the error control", 0.0),
+        ("atol", "real", settings.atol, "1", "absolute tolerance of the error control", 0.0),
+        ("step", "real", settings.step, "s", "fixed internal step; 0 for error control", 0.0),
+    ]
+    variables = [
+        Variable(METHOD + i, f"solver.{name}", kind, "parameter", "solver", unit, text, start, low)
+        for i, (name, kind, start, unit, text, low) in enumerate(texts)
+    ]
+    for name in sorted(settings.options):
+        value = settings.options[name]
+        kind = kind_of(value)
+        if kind is not None:  # a list or the like stays as exported
+            reference = FIRST_OPTION + len(variables) - len(texts)
+            unit = "1" if kind == "real" else None
+            text = f"option of method {settings.method}: {name}"
+            variables.append(
+                Variable(reference, f"solver.{name}", kind, "parameter", "solver", unit, text, value)
+            )
+    return variables

@@ -1,0 +1,11 @@
+"""The scenario catalogue: ready models by name, with parameters in plain words.
+
+A new scenario is one file with its parameter table and its builder, and its import here.
+"""
+
+from . import bouncing_ball, chain, pendulum_stop  # noqa: F401  (importing a scenario's file puts it in the catalogue)
+from .parameters import ScenarioError, ScenarioParameter
+from .registry import Entry, catalogue, load, names
+from .scenario import Scenario
+
+__all__ = ["Entry", "Scenario", "ScenarioError", "ScenarioParameter", "catalogue", "load", "names"]

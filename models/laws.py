@@ -1,0 +1,137 @@
+"""Contact laws by their plain names, with the parameters that scenarios share."""
+
+import math
+
+from scipy.optimize import brentq
+
+from ..core.contact.laws import (
+    ContactLaw,
+    Flores,
+    Gonthier,
+    Hertz,
+    HuntCrossley,
+    KelvinVoigt,
+    LankaraniNikravesh,
+    NewtonImpact,
+)
+from ..core.model.channels import Parameter
+from .parameters import ScenarioError, ScenarioParameter
+
+HUNT_CROSSLEY_FAMILY = {
+    "hunt_crossley": HuntCrossley,
+    "lankarani_nikravesh": LankaraniNikravesh,
+    "flores": Flores,
+    "gonthier": Gonthier,
+}
+LAW_NAMES = ("newton", "hertz", "kelvin_voigt", *HUNT_CROSSLEY_FAMILY)
+
+
+def law_parameters(restitution: float, stiffness: float = 1e7) -> tuple[ScenarioParameter, ...]:
+    """The parameters that choose and set a contact law."""
+    return (
+        ScenarioParameter(
+            "law", "newton", "-", "newton is a constraint, the others are forces", choices=LAW_NAMES
+        ),
+        ScenarioParameter(
+            "restitution", restitution, "-", "coefficient of restitution (not used by hertz)", 0.0, 1.0
+        ),
+        ScenarioParameter(
+            "stiffness",
+            stiffness,
+            "N/m^n",
+            "stiffness of the force laws (kelvin_voigt: N/m)",
+            0.0,
+            exclusive=True,
+        ),
+        ScenarioParameter("exponent", 1.5, "-", "n of the force laws (kelvin_voigt has 1)", 1.0),
+        ScenarioParameter(
+            "damping",
+            None,
+            "N.s/m",
+            "of kelvin_voigt; none: so that the restitution comes out",
+            0.0,
+            optional=True,
+        ),
+    )
+
+
+def contact_law(
+    law: str, *, restitution: float, stiffness: float, exponent: float, damping: float | None, mass: float
+) -> ContactLaw:
+    """The contact law named `law`.
+
+    `mass` (kg) is the effective mass at the contact, from which Kelvin-Voigt's damping follows if not given.
+
+    Raises
+    ------
+    ScenarioError : for a restitution that the law cannot have, or damping given to a law without any.
+    """
+    if damping is not None and law != "kelvin_voigt":
+        raise ScenarioError(
+            f"law '{law}' takes no damping (given: {damping:g}); its loss is set by restitution"
+        )
+    if law == "newton":
+        return NewtonImpact(restitution=restitution)
+    if law == "hertz":
+        return Hertz(stiffness=stiffness, exponent=exponent)
+    if law == "kelvin_voigt":
+        if damping is None:
+            damping = 2.0 * kelvin_voigt_damping_ratio(restitution) * math.sqrt(stiffness * mass)
+        return KelvinVoigt(stiffness=stiffness, damping=damping)
+    if law in {"flores", "gonthier"} and restitution == 0.0:
+        raise ScenarioError(f"law '{law}' cannot have restitution 0: its damping would be infinite")
+    return HUNT_CROSSLEY_FAMILY[law](stiffness=stiffness, restitution=restitution, exponent=exponent)
+
+
+def kelvin_voigt_damping_ratio(restitution: float) -> float:
+    """Damping ratio with which Kelvin-Voigt, released at zero force, gives `restitution` (without gravity).
+
+    Raises
+    ------
+    ScenarioError : for restitution 0, which needs infinite damping.
+    """
+    if restitution == 1.0:
+        return 0.0
+    if restitution < 0.01:
+        raise ScenarioError(
+            f"law 'kelvin_voigt' reaches restitution {restitution:g} only with extreme damping: "
+            "give restitution >= 0.01, or damping"
+        )
+    return float(brentq(lambda zeta: kelvin_voigt_restitution(zeta) - restitution, 0.0, 60.0, xtol=1e-15))
+
+
+def kelvin_voigt_restitution(damping_ratio: float) -> float:
+    """Restitution of Kelvin-Voigt released at zero force, without gravity.
+
+    The force k d + c d' is zero where tan(wd t) = -2 z s/(1 - 2 z^2), s = sqrt(1 - z^2); there the rebound
+    speed is v0 exp(-z w t). Above critical damping s becomes imaginary and the tangent hyperbolic.
+    """
+    z = damping_ratio
+    if z < 1.0:
+        s = math.sqrt(1.0 - z * z)
+        return math.exp(-z * math.atan2(2.0 * z * s, 2.0 * z * z - 1.0) / s) if s > 0.0 else math.exp(-2.0)
+    if z == 1.0:
+        return math.exp(-2.0)
+    s = math.sqrt(z * z - 1.0)
+    return math.exp(-z * math.atanh(2.0 * z * s / (2.0 * z * z - 1.0)) / s)
+
+
+def law_model_parameters(contact: str, law: ContactLaw) -> tuple[Parameter, ...]:
+    """The model parameters that stand as plain fields in the law of `contact`."""
+    rows = (
+        ("restitution", "1", 0.0, 1.0, "coefficient of restitution"),
+        ("stiffness", "N/m^n", 0.0, None, "contact stiffness"),
+        ("damping", "N.s/m", 0.0, None, "contact damping"),
+    )
+    return tuple(
+        Parameter(
+            name=name,
+            unit=unit,
+            minimum=low,
+            maximum=high,
+            description=text,
+            targets=(f"{contact}.law.{name}",),
+        )
+        for name, unit, low, high, text in rows
+        if name in type(law).model_fields
+    )

@@ -1,0 +1,137 @@
+"""The catalogue: names, parameters, errors, and models that start consistently."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from tlismni.core.contact.laws import KelvinVoigt
+from tlismni.core.description import Model
+from tlismni.models import ScenarioError, catalogue, load, names
+from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio, kelvin_voigt_restitution
+from tlismni.validation.translation.kinematics import BodyStates, States, gap_motion
+
+WITH_CONTACT = ("bouncing_ball", "pendulum_stop")
+
+
+def start_states(model: Model) -> States:
+    """The motion of all bodies at the start, as arrays of length 1."""
+    bodies = {}
+    for b in model.bodies:
+        q, v = b.initial_state()
+        values = (*(*q, 0.0)[:3], *(*v, 0.0)[:3])
+        bodies[b.name] = BodyStates(*(np.array([x]) for x in values))
+    return States(1, bodies)
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_scenario_survives_json(name: str) -> None:
+    model = load(name).model
+    assert Model.from_json(model.to_json()) == model
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_scenario_starts_with_closed_joints_at_rest_or_consistent_speed(name: str) -> None:
+    model = load(name).model
+    states = start_states(model)
+    for joint in model.joints:
+        (ax, ay), (avx, avy) = states.point(joint.a)
+        (bx, by), (bvx, bvy) = states.point(joint.b)
+        assert np.allclose([ax, ay, avx, avy], [bx, by, bvx, bvy], atol=1e-14)
+
+
+@pytest.mark.parametrize("name", WITH_CONTACT)
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_every_law_starts_with_an_open_gap(name: str, law: str) -> None:
+    model = load(name, law=law).model
+    (contact,) = model.contacts
+    shapes = (contact.plane, contact.disk)
+    assert gap_motion(shapes, start_states(model)).gap[0] > 0.1
+
+
+def test_all_parameters_stand_in_the_scenario_with_their_values() -> None:
+    for entry in catalogue():
+        scenario = load(entry.name)
+        assert set(scenario.parameters) == {p.name for p in entry.parameters}
+        assert all(p.unit and p.description for p in entry.parameters)
+    changed = load("pendulum_stop", restitution=0.4, length=2.0)
+    assert changed.parameters["restitution"] == 0.4
+    assert changed.model.contacts[0].law.restitution == 0.4
+
+
+def test_model_parameters_reach_the_law() -> None:
+    model = load("pendulum_stop", law="flores").model
+    assert model.with_parameters({"stiffness": 5e6}).contacts[0].law.stiffness == 5e6
+    assert model.with_parameters({"restitution": 0.3}).contacts[0].law.restitution == 0.3
+
+
+@pytest.mark.parametrize(
+    "start, stop", [(0.0, -math.pi / 2), (-math.pi, -math.pi / 2), (0.5, -1.0), (-2.5, -1.2)]
+)
+def test_the_stop_faces_the_pendulum_from_either_side(start: float, stop: float) -> None:
+    model = load("pendulum_stop", start_angle=start, stop_angle=stop, length=0.7).model
+    (contact,) = model.contacts
+    motion = gap_motion((contact.plane, contact.disk), start_states(model))
+    assert motion.gap[0] == pytest.approx(0.7 * abs(math.sin(start - stop)))
+
+
+@pytest.mark.parametrize(
+    "call, text",
+    [
+        (lambda: load("pendulum_stp"), "did you mean 'pendulum_stop'"),
+        (lambda: load("chain", link=3), "did you mean 'links'"),
+        (lambda: load("chain", links=2.5), "whole number"),
+        (lambda: load("chain", links=0), "outside"),
+        (lambda: load("bouncing_ball", restitution=1.2), "outside"),
+        (lambda: load("bouncing_ball", height=float("nan")), "finite"),
+        (lambda: load("bouncing_ball", height="high"), "finite number"),
+        (lambda: load("pendulum_stop", law="flors"), "did you mean 'flores'"),
+        (lambda: load("pendulum_stop", stop_angle=0.0), "must differ"),
+        (lambda: load("pendulum_stop", law="gonthier", restitution=0.0), "infinite"),
+        (lambda: load("pendulum_stop", law="hertz", damping=3.0), "takes no damping"),
+        (lambda: load("pendulum_stop", driven=1), "true or false"),
+    ],
+)
+def test_wrong_names_and_values_are_refused_with_a_way_out(call, text: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(ScenarioError, match=text):
+        call()
+
+
+def test_text_from_a_command_line_is_understood() -> None:
+    table = {p.name: p for p in next(e for e in catalogue() if e.name == "pendulum_stop").parameters}
+    assert table["restitution"].parse("0.25") == 0.25
+    assert table["driven"].parse("no") is False
+    assert table["damping"].parse("none") is None
+    assert table["law"].parse("hertz") == "hertz"
+    with pytest.raises(ScenarioError, match="not a number"):
+        table["length"].parse("long")
+
+
+@pytest.mark.parametrize("e", [0.05, 0.2, 0.5, 0.8, 0.99])
+def test_kelvin_voigt_damping_gives_the_restitution_when_it_is_integrated(e: float) -> None:
+    """A free mass on a Kelvin-Voigt floor, integrated until the force is zero."""
+    zeta = kelvin_voigt_damping_ratio(e)
+    assert kelvin_voigt_restitution(zeta) == pytest.approx(e, rel=1e-10)
+
+    def release(t: float, y: np.ndarray) -> float:
+        return float(y[0] + 2.0 * zeta * y[1]) if t > 0.0 else 1.0
+
+    release.terminal = True  # type: ignore[attr-defined]
+
+    def motion(t: float, y: np.ndarray) -> list[float]:
+        return [y[1], -y[0] - 2.0 * zeta * y[1]]
+
+    run = solve_ivp(motion, (0.0, 100.0), [0.0, 1.0], "DOP853", events=release, rtol=1e-10, atol=1e-13)
+    assert -run.y[1, -1] == pytest.approx(e, rel=1e-7)
+
+
+def test_kelvin_voigt_scenario_takes_given_damping() -> None:
+    law = load("bouncing_ball", law="kelvin_voigt", damping=12.0).model.contacts[0].law
+    assert isinstance(law, KelvinVoigt)
+    assert law.damping == 12.0
+
+
+def test_a_scenario_cannot_be_changed_through_a_dict() -> None:
+    scenario = load("chain", links=2)
+    with pytest.raises(TypeError):
+        scenario.parameters["links"] = 3  # type: ignore[index]

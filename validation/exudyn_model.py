@@ -1,0 +1,50 @@
+"""Any model as an exudyn MainSystem, built from primitives, with sensors that give the model's channels."""
+
+from typing import Any
+
+from ..core.description import Model
+from .errors import NotTranslatable
+from .exudyn_import import import_exudyn
+from .translation import Build, translate
+
+
+def build_exudyn_model(model: Model, *, sensors: bool = True) -> Build:
+    """`model` in exudyn, assembled and ready to run. Build it anew for every run: exudyn keeps state in it.
+
+    `sensors=False` leaves out recording (for timing).
+
+    Raises
+    ------
+    ExudynUnavailable : if exudyn cannot be used.
+    NotTranslatable : for anything that exudyn has no equal of.
+    """
+    if not isinstance(model, Model):
+        raise NotTranslatable(
+            f"only a Model of elements can be rerun in exudyn, not {type(model).__name__} (which is code)"
+        )
+    exudyn = import_exudyn()
+    container = exudyn.core.SystemContainer()
+    mbs = container.AddSystem()
+    ground = mbs.AddObject(exudyn.items.ObjectGround())
+    ground_node = mbs.AddNode(exudyn.items.NodePointGround())
+    build = Build(exudyn, mbs, model, sensors, ground, ground_node)
+    for element in model.elements():
+        translate(element, build)
+    if model.inputs:
+        names = ", ".join(f"{i.name} = {i.start:g} {i.unit}" for i in model.inputs)
+        build.notes.append(f"input channels keep their start values: {names}")
+    if build.before_step:
+        mbs.SetPreStepUserFunction(_all_of(build))
+    mbs.Assemble()
+    # the system lives in the container: keep both together
+    mbs.variables["container"] = container
+    return build
+
+
+def _all_of(build: Build) -> Any:
+    def before_step(mbs: Any, t: float) -> bool:
+        for function in build.before_step:
+            function(mbs, t)
+        return True
+
+    return before_step

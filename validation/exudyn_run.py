@@ -1,0 +1,165 @@
+"""Run a model in exudyn and return its channels."""
+
+import logging
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from ..core.description import Model
+from .errors import ExudynFailed
+from .exudyn_model import build_exudyn_model
+from .translation import Build
+from .translation.kinematics import BodyStates, States, gap_motion
+
+log = logging.getLogger(__name__)
+
+Integrator = Literal["generalized_alpha", "trapezoidal"]
+MOTION = ("x", "y", "angle", "vx", "vy", "angular_velocity")
+
+
+@dataclass(frozen=True)
+class ExudynSettings:
+    """How exudyn runs. The defaults are those that its own pitfalls make advisable.
+
+    Attributes
+    ----------
+    integrator : "generalized_alpha" (index 3) or "trapezoidal" (index 2, for smooth motion only: at contact
+        its multipliers ring undamped).
+    spectral_radius : 0.9; with 0.99 exudyn gains energy at contact.
+    relative_tolerance, absolute_tolerance : of Newton's residual; the absolute one, N, should fit the forces.
+    contact_tolerance : accepted force-like error of the contact's active set, N.
+    linear_solver : "EXUdense", "EigenDense" or "EigenSparse".
+    """
+
+    integrator: Integrator = "generalized_alpha"
+    spectral_radius: float = 0.9
+    modified_newton: bool = False
+    relative_tolerance: float = 1e-8
+    absolute_tolerance: float = 1e-10
+    contact_tolerance: float = 1e-3
+    linear_solver: str = "EXUdense"
+
+
+@dataclass(frozen=True)
+class ExudynResult:
+    """Channels of a run in exudyn, named as the model's own.
+
+    Attributes
+    ----------
+    t : times of the records, s: the start and every step.
+    channels : arrays over `t`; a contact has gap, gap_rate, normal_force, impulse (integral of the force).
+    step : step size, s.
+    wall_time : seconds in exudyn's solver.
+    notes : what a reader of a comparison should know about the translation.
+    """
+
+    t: np.ndarray
+    channels: Mapping[str, np.ndarray]
+    step: float
+    wall_time: float
+    newton_iterations: int
+    version: str
+    notes: tuple[str, ...] = field(default=())
+
+    def __getitem__(self, channel: str) -> np.ndarray:
+        return self.channels[channel]
+
+
+def run_exudyn(
+    model: Model, t_end: float, step: float, settings: ExudynSettings | None = None
+) -> ExudynResult:
+    """Run `model` in exudyn with fixed steps of about `step` (s), a whole number of them, to `t_end` (s).
+
+    Raises
+    ------
+    ExudynUnavailable, NotTranslatable : see `build_exudyn_model`.
+    ExudynFailed : if it stops before the end.
+    ValueError : for a step or an end time that is not positive.
+    """
+    if not (step > 0.0 and t_end > 0.0):
+        raise ValueError(f"step = {step} s and t_end = {t_end} s must be positive")
+    build = build_exudyn_model(model)
+    wall_time, steps = solve(build, t_end, step, settings or ExudynSettings())
+    if not build.columns:
+        raise ExudynFailed(f"model '{model.name}' has no bodies: there is nothing to record")
+    data = {c.sensor: build.mbs.GetSensorStoredData(c.sensor) for c in (*build.columns, *build.contacts)}
+    t = data[build.columns[0].sensor][:, 0]
+    channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}
+    channels |= _contact_channels(build, channels, data, t)
+    return ExudynResult(
+        t,
+        channels,
+        t_end / steps,
+        wall_time,
+        int(build.mbs.sys["dynamicSolver"].it.newtonStepsCount),
+        build.exudyn.version,
+        tuple(build.notes),
+    )
+
+
+def solve(build: Build, t_end: float, step: float, settings: ExudynSettings) -> tuple[float, int]:
+    """Solve a built system; returns (wall time in s, number of steps). Raises ExudynFailed."""
+    exu, mbs = build.exudyn.core, build.mbs
+    steps = max(1, round(t_end / step))
+    s = exu.SimulationSettings()
+    ti = s.timeIntegration
+    ti.endTime, ti.numberOfSteps, ti.verboseMode = t_end, steps, 0
+    ti.generalizedAlpha.spectralRadius = settings.spectral_radius
+    ti.generalizedAlpha.computeInitialAccelerations = True
+    ti.newton.useModifiedNewton = settings.modified_newton
+    ti.newton.relativeTolerance = settings.relative_tolerance
+    ti.newton.absoluteTolerance = settings.absolute_tolerance
+    ti.discontinuous.iterationTolerance = settings.contact_tolerance
+    # a step cut at a contact switch stops the solver for exponents other than 1
+    ti.discontinuous.useRecommendedStepSize = False
+    s.solution.file.write = False
+    s.solution.sensors.writePeriod = 1e-14
+    s.linearSolver.solverType = getattr(exu.LinearSolverType, settings.linear_solver)
+    kinds = exu.DynamicSolverType
+    kind = kinds.GeneralizedAlpha if settings.integrator == "generalized_alpha" else kinds.TrapezoidalIndex2
+    start = time.perf_counter()
+    try:
+        success = mbs.SolveDynamic(s, solverType=kind, storeSolver=True)
+    except RuntimeError as error:
+        # exudyn's own error types derive from RuntimeError or ValueError, and its text carries the cause
+        raise ExudynFailed(_failure(build, t_end, step, str(error))) from error
+    wall_time = time.perf_counter() - start
+    if success is False:
+        raise ExudynFailed(_failure(build, t_end, step, "SolveDynamic reports failure"))
+    log.debug("exudyn: %s, %d steps in %.3g s", build.model.name, steps, wall_time)
+    return wall_time, steps
+
+
+def _failure(build: Build, t_end: float, step: float, cause: str) -> str:
+    reached = build.mbs.systemData.GetTime()
+    return (
+        f"exudyn stopped at t = {reached:.6g} s of {t_end:g} s with step {step:g} s: {cause.strip()[:300]}. "
+        "A smaller step usually helps"
+    )
+
+
+def _contact_channels(
+    build: Build, channels: Mapping[str, np.ndarray], data: Mapping[int, np.ndarray], t: np.ndarray
+) -> dict[str, np.ndarray]:
+    zero = np.zeros(len(t))
+    states = States(
+        len(t),
+        {n: BodyStates(*(channels.get(f"{n}.{m}", zero) for m in MOTION)) for n in build.bodies},
+    )
+    found: dict[str, Any] = {}
+    for contact in build.contacts:
+        motion = gap_motion(contact.shapes, states)
+        nx, ny = motion.normal
+        vector = data[contact.sensor]
+        force = contact.sign * (nx * vector[:, 1] + ny * vector[:, 2])
+        impulse = np.concatenate(([0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(t))))
+        found |= {
+            f"{contact.name}.gap": motion.gap,
+            f"{contact.name}.gap_rate": motion.rate,
+            f"{contact.name}.normal_force": force,
+            f"{contact.name}.impulse": impulse,
+        }
+    return found

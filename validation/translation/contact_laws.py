@@ -1,0 +1,77 @@
+"""Contact force laws as parameters of exudyn's contact objects.
+
+exudyn (1.13): F = k d^n (1 + chi d'/v0) + c d', with chi = 0 (model 0), chi = 3 (1 - e)/2 (model 1), or
+chi = 3 (1 - e)(11 - e)/(2 (1 + 9 e)) for e > 1/3 and (1 - e^2)/e below (model 2). Ours is the same form with
+D for chi. Hunt-Crossley is exudyn's model 1 with the same e; the other laws of the family become model 2 with
+the e whose chi is their D: model 2 reaches every D >= 0, so the law is exact, not approximated.
+"""
+
+import math
+from dataclasses import dataclass
+
+from ...core.contact.laws import Hertz, HuntCrossley, KelvinVoigt, NewtonImpact
+from ...core.contact.laws.hunt_crossley import HuntCrossleyFamily
+from ..errors import NotTranslatable
+
+_LARGEST_CHI_OF_FIRST_BRANCH = 8.0 / 3.0  # both branches of model 2 give this at e = 1/3
+_NEARLY_ELASTIC = 1.0 - 1e-15
+
+
+@dataclass(frozen=True)
+class ContactParameters:
+    """Fields of exudyn's contact objects."""
+
+    fields: dict[str, float | int]
+    released_at_zero_force: bool = False
+    """exudyn holds on until the gap opens; the law lets go when its force would become tensile."""
+
+
+def contact_parameters(law: object, contact: str) -> ContactParameters:
+    """exudyn's parameters of `law`.
+
+    Raises
+    ------
+    NotTranslatable : for constraint contact and for laws that are not of exudyn's form.
+    """
+    if isinstance(law, NewtonImpact):
+        raise NotTranslatable(
+            f"contact '{contact}' is a constraint (NewtonImpact), and exudyn has contact by force only. "
+            "`crosscheck` compares it with the limit of three force laws of growing stiffness instead"
+        )
+    if isinstance(law, KelvinVoigt):
+        fields = _fields(law.stiffness, 1.0, 0, 1.0, law.minimum_approach_speed)
+        return ContactParameters({**fields, "contactDamping": law.damping}, released_at_zero_force=True)
+    if isinstance(law, Hertz):
+        return ContactParameters(_fields(law.stiffness, law.exponent, 0, 1.0, law.minimum_approach_speed))
+    if isinstance(law, HuntCrossley) and law.restitution > 0.0:
+        model, e = 1, law.restitution
+    elif isinstance(law, HuntCrossleyFamily):
+        model, e = 2, restitution_for(law.damping_factor())
+    else:
+        raise NotTranslatable(
+            f"contact '{contact}' has law {type(law).__name__}, which exudyn has no form of"
+        )
+    return ContactParameters(_fields(law.stiffness, law.exponent, model, e, law.minimum_approach_speed))
+
+
+def restitution_for(damping_factor: float) -> float:
+    """The e with which exudyn's model 2 has chi = damping_factor >= 0."""
+    d = damping_factor
+    if d > _LARGEST_CHI_OF_FIRST_BRANCH:
+        return 0.5 * (math.sqrt(d * d + 4.0) - d)
+    b = 18.0 + 9.0 * d
+    # smaller root of 3 e^2 / 2 - b e + 33/2 - d = 0, written without cancellation
+    c = 16.5 - d
+    return min(2.0 * c / (b + math.sqrt(b * b - 6.0 * c)), _NEARLY_ELASTIC)
+
+
+def _fields(
+    stiffness: float, exponent: float, model: int, e: float, minimum: float
+) -> dict[str, float | int]:
+    return {
+        "contactStiffness": stiffness,
+        "contactStiffnessExponent": exponent,
+        "impactModel": model,
+        "restitutionCoefficient": e,
+        "minimumImpactVelocity": minimum,
+    }

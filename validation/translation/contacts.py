@@ -1,0 +1,120 @@
+"""Contacts: disk on half-plane as a sphere on a large triangle, disk on disk as sphere on sphere.
+
+The sphere's centre and force line are the disk's. exudyn's LinearSpringDamper with a user function would be
+simpler, but applies its reaction at its first marker instead of on the line of the force, so that a
+half-plane on a moving body gains angular momentum out of nothing (tried); the sphere on a triangle does not.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ...core.contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from ...core.contact.laws import KelvinVoigt
+from ...core.model.markers import GROUND, Marker2D
+from .contact_laws import ContactParameters, contact_parameters
+from .kinematics import BodyStates, States, gap_motion
+from .registry import Build, ContactColumns, translates
+
+
+@translates(DiskOnHalfPlane2D)
+def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
+    """ObjectContactSphereTriangle.
+
+    exudyn needs a sphere with a radius, and one deeper than its diameter passes through: so the sphere gets
+    a large radius, and the triangle is drawn back as much, which leaves gap and force line unchanged.
+    """
+    law = contact_parameters(record.law, record.name)
+    plane, disk = record.plane, record.disk
+    size = _size(build)
+    radius = disk.radius + size
+    angle = plane.marker.angle
+    axis, normal = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
+    back = Marker2D(
+        body=plane.marker.body,
+        point=(plane.marker.point[0] - size * normal[0], plane.marker.point[1] - size * normal[1]),
+    )
+    reach = 1e3 * size
+    ax, ay = reach * axis[0], reach * axis[1]
+    corners = [[-ax, -ay, reach], [ax, ay, reach], [0.0, 0.0, -2.0 * reach]]
+    item = build.add(
+        "ObjectContactSphereTriangle",
+        markerNumbers=[build.point(disk.marker), build.frame(back, record.name)],
+        nodeNumber=_data_node(build, (plane, disk)),
+        sphereRadius=radius,
+        trianglePoints=build.exudyn.core.Vector3DList(corners),
+        includeEdges=0,
+        **law.fields,
+    )
+    _finish(build, record.name, item, law, record.law, (plane, disk), sign=1.0)
+
+
+@translates(DiskOnDisk2D)
+def disk_on_disk(record: DiskOnDisk2D, build: Build) -> None:
+    """ObjectContactSphereSphere."""
+    law = contact_parameters(record.law, record.name)
+    item = build.add(
+        "ObjectContactSphereSphere",
+        markerNumbers=[build.point(record.a.marker), build.point(record.b.marker)],
+        nodeNumber=_data_node(build, (record.a, record.b)),
+        spheresRadii=[record.a.radius, record.b.radius],
+        **law.fields,
+    )
+    _finish(build, record.name, item, law, record.law, (record.a, record.b), sign=-1.0)
+
+
+def _finish(
+    build: Build, name: str, item: Any, law: ContactParameters, record: Any, shapes: Any, sign: float
+) -> None:
+    if build.sensors:
+        build.contacts.append(ContactColumns(name, shapes, build.sensor(item, "Force"), sign))
+    if law.released_at_zero_force:
+        build.before_step.append(_release(build, item, record, shapes))
+        build.notes.append(
+            f"{name}: switched off at the start of the step where its force would become tensile"
+        )
+
+
+def _release(build: Build, item: Any, law: KelvinVoigt, shapes: Any) -> Any:
+    """Switch the contact off when the force has come to zero, and on again when the gap has opened."""
+    names = {marker.body for marker in (shapes[0].marker, shapes[1].marker)} - {GROUND}
+    starts = {b.name: b.initial_state()[0] for b in build.model.bodies if b.name in names}
+    core, active = build.exudyn.core, [True]
+
+    def before_step(mbs: Any, t: float) -> None:
+        bodies = {}
+        for name in names:
+            node = build.bodies[name].node
+            q = mbs.GetNodeOutput(node, core.OutputVariableType.Coordinates) + np.asarray(starts[name])
+            v = mbs.GetNodeOutput(node, core.OutputVariableType.Coordinates_t)
+            q, v = (*q, 0.0)[:3], (*v, 0.0)[:3]
+            bodies[name] = BodyStates(*(np.atleast_1d(x) for x in (*q, *v)))
+        motion = gap_motion(shapes, States(1, bodies))
+        gap, rate = float(motion.gap[0]), float(motion.rate[0])
+        wanted = gap > 0.0 or law.stiffness * gap + law.damping * rate < 0.0
+        if wanted != active[0] and (gap > 0.0 or active[0]):
+            active[0] = wanted
+            mbs.SetObjectParameter(item, "activeConnector", wanted)
+
+    return before_step
+
+
+def _data_node(build: Build, shapes: Any) -> Any:
+    """Node of the contact's memory, with the gap at the start: exudyn's active set begins with it."""
+    bodies = {}
+    for b in build.model.bodies:
+        q, v = b.initial_state()
+        bodies[b.name] = BodyStates(*(np.atleast_1d(x) for x in (*(*q, 0.0)[:3], *(*v, 0.0)[:3])))
+    gap = float(gap_motion(shapes, States(1, bodies)).gap[0])
+    return build.add("NodeGenericData", numberOfDataCoordinates=4, initialCoordinates=[gap, 0.0, 0.0, 0.0])
+
+
+def _size(build: Build) -> float:
+    """A length of the model's order of magnitude or above, m."""
+    lengths = [1.0]
+    for element in build.model.elements():
+        lengths += [abs(x) for marker in element.markers() for x in marker.point]
+    for body in build.model.bodies:
+        lengths += [abs(x) for x in body.position]
+    return max(lengths)

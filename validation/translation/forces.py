@@ -1,0 +1,57 @@
+"""Springs and applied loads."""
+
+from typing import Any
+
+from ...core.elements import AppliedForce2D, AppliedTorque2D, SpringDamper2D
+from ...core.model.markers import GROUND, Marker2D
+from .registry import Build, translates
+from .signals import TimeFunction, time_function
+
+
+@translates(SpringDamper2D)
+def spring_damper(record: SpringDamper2D, build: Build) -> None:
+    """ObjectConnectorSpringDamper."""
+    build.add(
+        "ObjectConnectorSpringDamper",
+        markerNumbers=[build.point(record.a), build.point(record.b)],
+        referenceLength=record.natural_length,
+        stiffness=record.stiffness,
+        damping=record.damping,
+    )
+
+
+@translates(AppliedForce2D)
+def applied_force(record: AppliedForce2D, build: Build) -> None:
+    """LoadForceVector, over time as a user function."""
+    fx, fy = (time_function(s, build.model) for s in (record.force_x, record.force_y))
+    if record.marker.body == GROUND:
+        return  # a force on the ground moves nothing
+    _load(build, "LoadForceVector", build.point(record.marker), (fx, fy, None), bodyFixed=record.follower)
+
+
+@translates(AppliedTorque2D)
+def applied_torque(record: AppliedTorque2D, build: Build) -> None:
+    """LoadTorqueVector about z, over time as a user function."""
+    if record.body == GROUND:
+        return
+    marker = build.frame(Marker2D(body=record.body), record.name)
+    _load(build, "LoadTorqueVector", marker, (None, None, time_function(record.torque, build.model)))
+
+
+def _load(
+    build: Build, item: str, marker: Any, components: tuple[TimeFunction | None, ...], **fields: Any
+) -> None:
+    """A load vector of three components, None for zero."""
+    if all(c is None or c.constant is not None for c in components):
+        vector = [0.0 if c is None else c.value(0.0) for c in components]
+        if any(vector):
+            build.add(item, markerNumber=marker, loadVector=vector, **fields)
+        return
+
+    def vector_at(mbs: Any, t: float, load: Any) -> list[float]:
+        return [0.0 if c is None else c.value(t) for c in components]
+
+    # the vector given with a user function is only a stand-in, but must not be zero
+    build.add(
+        item, markerNumber=marker, loadVector=[1.0, 1.0, 1.0], loadVectorUserFunction=vector_at, **fields
+    )

@@ -1,0 +1,66 @@
+"""Time functions as plain Python callables, for exudyn's user functions."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from scipy.interpolate import CubicSpline
+
+from ...core.description import Model
+from ...core.model.signals import Constant, InputSignal, Polynomial, Ramp, Signal, Sine, Step, Table
+from ..errors import NotTranslatable
+
+
+@dataclass(frozen=True)
+class TimeFunction:
+    """f(t) and f'(t); `constant` is the value if it never changes."""
+
+    value: Callable[[float], float]
+    rate: Callable[[float], float]
+    constant: float | None = None
+
+
+def time_function(signal: Signal, model: Model) -> TimeFunction:
+    """The time function that `signal` means. An input channel keeps its start value.
+
+    Raises
+    ------
+    NotTranslatable : for a kind of signal that is not known here.
+    """
+    if isinstance(signal, InputSignal):
+        start = next(i.start for i in model.inputs if i.name == signal.channel)
+        return _constant(start)
+    if isinstance(signal, Constant):
+        return _constant(signal.value)
+    if isinstance(signal, Sine):
+        a, w, p, c = signal.amplitude, signal.angular_frequency, signal.phase, signal.offset
+        return TimeFunction(lambda t: c + a * math.sin(w * t + p), lambda t: a * w * math.cos(w * t + p))
+    if isinstance(signal, Polynomial):
+        c = signal.coefficients
+        return TimeFunction(
+            lambda t: sum(ck * t**k for k, ck in enumerate(c)),
+            lambda t: sum(k * ck * t ** (k - 1) for k, ck in enumerate(c) if k),
+        )
+    if isinstance(signal, Step):
+        return TimeFunction(lambda t: signal.after if t >= signal.time else signal.before, lambda t: 0.0)
+    if isinstance(signal, Ramp):
+        return _ramp(signal)
+    if isinstance(signal, Table):
+        spline = CubicSpline(signal.times, signal.values)
+        slope = spline.derivative()
+        return TimeFunction(lambda t: float(spline(t)), lambda t: float(slope(t)))
+    raise NotTranslatable(f"time function {type(signal).__name__} has no translation to exudyn")
+
+
+def _constant(value: float) -> TimeFunction:
+    return TimeFunction(lambda t: value, lambda t: 0.0, value)
+
+
+def _ramp(signal: Ramp) -> TimeFunction:
+    slope = (signal.after - signal.before) / signal.duration
+    end = signal.start + signal.duration
+
+    def value(t: float) -> float:
+        return signal.before + slope * (min(max(t, signal.start), end) - signal.start)
+
+    return TimeFunction(value, lambda t: slope if signal.start <= t < end else 0.0)
