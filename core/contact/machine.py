@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from ..errors import SimulationError
 from ..events import Event
 from ..system.assembly import ContactInfo
-from .impact import apply_impact
+from .impact import Impact, apply_impact
 from .laws import ForceLaw, NewtonImpact
 from .modes import (
     ACTIVE,
@@ -86,9 +86,13 @@ def _impact(sim: "Simulation", k: int, contact: ContactInfo, law: NewtonImpact) 
         sim.use_modes()
 
 
-def _strike(sim: "Simulation", k: int, contact: ContactInfo, restitution: float):  # type: ignore[no-untyped-def]
-    sim.use_modes(closing=k)
+def _strike(sim: "Simulation", k: int, contact: ContactInfo, restitution: float) -> Impact:
+    """The velocity jump, computed in the structure in which the contact is closed; the mode is left as it was."""
+    mode = sim.memory[k, MODE]
+    sim.memory[k, MODE] = CLOSED
+    sim.use_modes(accelerations=False)
     impact = apply_impact(sim.workspace, contact.row, restitution)
+    sim.memory[k, MODE] = mode
     if impact is None:
         raise SimulationError(
             f"impact at contact '{contact.name}', t = {sim.t_internal:.9g} s: the matrix of the velocity increment "

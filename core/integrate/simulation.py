@@ -114,7 +114,7 @@ class Simulation:
             "times": np.zeros(HISTORY_ROWS),
             "ring": np.zeros(2, dtype=np.int64),
             "parameters": parameters,
-            "weights": np.zeros((24, 12)),
+            "weights": np.zeros((8, 12)),
             "error": np.zeros(2),
         }
         self._method = ArrayRecord(METHOD, self.method_arrays, {"capacity": HISTORY_ROWS, "order": formula.order})
@@ -229,17 +229,16 @@ class Simulation:
         logger.debug("%s", event)
         self.events.append(event)
 
-    def use_modes(self, closing: int | None = None) -> None:
-        """Take the structure of the present modes (and with `closing` as a constraint too), and solve for (a, lam)."""
+    def use_modes(self, accelerations: bool = True) -> None:
+        """Take the structure of the present modes; solve for (a, lam) unless told not to."""
         modes = self.memory[: len(self.assembly.contacts), MODE]
         closed = frozenset(int(k) for k in np.flatnonzero(modes == CLOSED))
-        if closing is not None:
-            closed |= {closing}
         engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
         if self.workspace.key != (closed, engaged):
             self.workspace.engage(closed, frozenset(engaged))
         prepare(self.workspace)
-        self._solve_accelerations()
+        if accelerations:
+            self._solve_accelerations()
 
     def _solve_accelerations(self) -> None:
         arrays = self.workspace.arrays

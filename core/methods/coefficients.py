@@ -35,33 +35,28 @@ def extrapolation_weights(s: Any, k: int, out: Any) -> None:
 
 
 @compiled
-def ebdf_coefficients(s: Any, k: int, out: Any, matrix: Any) -> None:
+def ebdf_coefficients(s: Any, k: int, out: Any) -> None:
     """y(0) = sum_j out_j y_j + h out_k y'(0) + h out_{k+1} y'(1), exact for degree k + 1 (Cash 1980).
 
-    Exactness for 1, s, ..., s^(k+1) on the actual nodes; `matrix` is ((k+2), (k+3)) scratch.
+    Exactness for w = prod (s - s_j) and s w gives the two derivative weights, exactness for the Lagrange
+    polynomials of the nodes the others: closed forms, no ill-conditioned Vandermonde matrix.
     """
-    size = k + 2
-    for p in range(size):
-        for j in range(k):
-            matrix[p, j] = s[j] ** p
-        matrix[p, k] = 1.0 if p == 1 else 0.0
-        matrix[p, k + 1] = float(p)
-        matrix[p, size] = 1.0 if p == 0 else 0.0
-    for c in range(size):
-        pivot = c
-        for i in range(c + 1, size):
-            if abs(matrix[i, c]) > abs(matrix[pivot, c]):
-                pivot = i
-        if pivot != c:
-            for j in range(c, size + 1):
-                matrix[c, j], matrix[pivot, j] = matrix[pivot, j], matrix[c, j]
-        for i in range(c + 1, size):
-            factor = matrix[i, c] / matrix[c, c]
-            if factor != 0.0:
-                for j in range(c, size + 1):
-                    matrix[i, j] -= factor * matrix[c, j]
-    for c in range(size - 1, -1, -1):
-        total = matrix[c, size]
-        for j in range(c + 1, size):
-            total -= matrix[c, j] * out[j]
-        out[c] = total / matrix[c, c]
+    w0, w1, sum0, sum1 = 1.0, 1.0, 0.0, 0.0
+    for j in range(k):
+        w0 *= -s[j]
+        w1 *= 1.0 - s[j]
+        sum0 -= 1.0 / s[j]
+        sum1 += 1.0 / (1.0 - s[j])
+    # w(0) = B w'(0) + B1 w'(1),  0 = B w(0) + B1 (w(1) + w'(1)),  w' = w sum
+    ahead = 1.0 / (sum1 * w1 / w0 - (1.0 + sum1) * sum0 * w1 / w0)
+    own = -ahead * (1.0 + sum1) * w1 / w0
+    out[k], out[k + 1] = own, ahead
+    for j in range(k):
+        at0, at1, slope0, slope1 = 1.0, 1.0, 0.0, 0.0
+        for l in range(k):
+            if l != j:
+                at0 *= -s[l] / (s[j] - s[l])
+                at1 *= (1.0 - s[l]) / (s[j] - s[l])
+                slope0 -= 1.0 / s[l]
+                slope1 += 1.0 / (1.0 - s[l])
+        out[j] = at0 - own * at0 * slope0 - ahead * at1 * slope1

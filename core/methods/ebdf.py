@@ -15,7 +15,7 @@ from .coefficients import bdf_coefficients, ebdf_coefficients, extrapolation_wei
 from .history import history_time
 from .multistep import bdf_stage, combine_stars, finish_stage, nodes, predict, weight_rows
 
-NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED, SCRATCH = range(8)
+NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED = range(7)
 
 
 @compiled
@@ -32,7 +32,7 @@ def _coefficients(ms: Any, h: float, k: int, table: Any) -> None:
         advanced[j + 1] = s[j] - 1.0
     bdf_coefficients(advanced, k, table[ADVANCED])
     extrapolation_weights(advanced, k + 1, table[ADVANCED_EXTRAPOLATION])
-    ebdf_coefficients(s, k, table[EXTENDED], table[SCRATCH:])
+    ebdf_coefficients(s, k, table[EXTENDED])
 
 
 @compiled

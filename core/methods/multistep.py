@@ -117,7 +117,7 @@ def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
 @inlined
 def weight_rows(ms: Any) -> Any:
     """Table of the coefficients."""
-    return mat(ms.weights, 24, MAX_NODES)
+    return mat(ms.weights, 8, MAX_NODES)
 
 
 @inlined

@@ -19,7 +19,7 @@ METHOD = np.dtype(
             "times",      # (capacity,) float64
             "ring",       # (2,) int64: position of the newest row, number of rows
             "parameters", # (8,) float64: alpha, beta, gamma ...
-            "weights",    # (24, MAX_NODES) float64: nodes and the coefficients that belong to them
+            "weights",    # (8, MAX_NODES) float64: nodes and the coefficients that belong to them
             "error",      # (2,) float64: error norm of the last step, order of its estimate
         )
     ]

@@ -48,6 +48,9 @@ from .inner import inner_loop
 # Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
 MOST_OUTER = 3
 MOST_INNER = 3
+# A rate that was measured at an earlier stage is trusted less at each stage that does not measure it anew.
+LEAST_RATE = 0.02
+RATE_GROWTH = 1.5
 
 
 @compiled
@@ -179,10 +182,12 @@ def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
                 rate[FAILED_NORM] = contraction
                 return OUTER_DIVERGED
         previous = norm
-        known = min(rate[OUTER_RATE], 0.99)
+        known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance:
             status = OK
             rate[LAST_OUTER] = k + 1
+            if k == 0:
+                rate[OUTER_RATE] = known * RATE_GROWTH
             break
         status = OUTER_SLOW
     if status != OK:

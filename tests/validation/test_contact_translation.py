@@ -151,7 +151,7 @@ def test_contact_between_moving_bodies_conserves_both_momenta(law: Any, shape: s
         plane = HalfPlane2D(marker=Marker2D(body="a", point=(0.0, 0.1), angle=0.1))
         contact: Any = DiskOnHalfPlane2D(name="c", plane=plane, disk=disk, law=law)
     else:
-        other = Disk2D(marker=Marker2D(body="a", point=(0.6, 0.1)), radius=0.15)
+        other = Disk2D(marker=Marker2D(body="a", point=(0.65, 0.1)), radius=0.2)
         contact = DiskOnDisk2D(name="c", a=other, b=disk, law=law)
     model = Model(gravity=(0.0, 0.0), bodies=MOVING, contacts=(contact,))
     r = run_exudyn(model, 0.16, 2e-5)

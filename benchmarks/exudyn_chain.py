@@ -1,0 +1,53 @@
+"""exudyn's side of the benchmarks: the `chain` scenario with a choice of settings, timed without recording."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from tlismni.models import load
+from tlismni.validation.exudyn_model import build_exudyn_model
+from tlismni.validation.exudyn_run import ExudynSettings, solve
+
+SOLVERS = ("EXUdense", "EigenDense", "EigenSparse")
+LARGEST_DENSE = 20
+"""Links beyond which a dense factorisation is out of the question (23 ms a step at 100 links)."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One way to run exudyn."""
+
+    name: str
+    settings: ExudynSettings
+
+
+def settings_for(links: int, *integrators: str, rtol: float = 1e-8, atol: float = 1e-10) -> list[Setting]:
+    """The settings worth trying: linear solvers that are feasible, modified and full Newton."""
+    found = []
+    for integrator in integrators or ("generalized_alpha",):
+        for solver in SOLVERS if links <= LARGEST_DENSE else ("EigenSparse",):
+            for modified in (True, False):
+                settings = ExudynSettings(
+                    integrator=integrator,  # type: ignore[arg-type]
+                    modified_newton=modified,
+                    linear_solver=solver,
+                    relative_tolerance=rtol,
+                    absolute_tolerance=atol,
+                )
+                newton = "modified" if modified else "full"
+                found.append(Setting(f"{integrator}, {solver}, {newton} Newton", settings))
+    return found
+
+
+def run(links: int, t_end: float, step: float, settings: ExudynSettings) -> tuple[float, tuple[float, float]]:
+    """(wall time of exudyn's solver in s, position of the free end in m)."""
+    build = build_exudyn_model(load("chain", links=links).model, sensors=False)
+    wall_time, _ = solve(build, t_end, step, settings)
+    return wall_time, _tip(build, links)
+
+
+def _tip(build: Any, links: int) -> tuple[float, float]:
+    q = build.mbs.systemData.GetODE2Coordinates()
+    x, y, angle = (float(value) for value in q[-3:])
+    x += links - 0.5  # exudyn's coordinates are displacements from the start
+    return x + 0.5 * math.cos(angle), y + 0.5 * math.sin(angle)
