@@ -49,12 +49,16 @@ def tip_error(tip: tuple[float, float], reference: Sequence[float]) -> float:
 
 
 def interpolated(points: list[Point], target: float) -> tuple[float, str]:
-    """Time at which the error is `target`, between the runs on either side (log-log), else the fastest that has it."""
-    good = [p for p in points if p.error <= target]
-    if not good:
+    """Time at which the error is `target`: between the last run that misses it and the next (log-log)."""
+    missed = [k for k, p in enumerate(points) if p.error > target]
+    if not missed:
+        return points[0].seconds, f"the first run has it: {points[0].setting}, error {points[0].error:.1e}"
+    if missed[-1] == len(points) - 1:
         return math.inf, "not reached"
-    best = min(good, key=lambda p: p.seconds)
-    return best.seconds, f"fastest run that has it: {best.setting}, error {best.error:.1e}"
+    a, b = points[missed[-1]], points[missed[-1] + 1]
+    share = math.log(a.error / target) / math.log(a.error / b.error)
+    seconds = a.seconds * (b.seconds / a.seconds) ** share
+    return seconds, f"between {a.setting}, error {a.error:.1e}, and {b.setting}, error {b.error:.1e}"
 
 
 def our_reach(method: str, reference: Sequence[float]) -> Reach:

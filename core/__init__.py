@@ -14,6 +14,8 @@ from .elements import (
     RigidBody2D,
     SpringDamper2D,
 )
+from .equations.errors import EquationError
+from .equations.system import EquationSystem, GapContact
 from .errors import ConsistencyError, ModelError, SimulationError, TlismniError
 from .events import Event
 from .integrate.simulation import Simulation
@@ -37,8 +39,11 @@ __all__ = [
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
     "Distance2D",
+    "EquationError",
+    "EquationSystem",
     "Event",
     "Flores",
+    "GapContact",
     "Gonthier",
     "HalfPlane2D",
     "Hertz",

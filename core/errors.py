@@ -30,3 +30,7 @@ class SimulationError(TlismniError):
         self.t = t
         self.loop = loop
         self.partial = partial
+
+
+class CallbackError(Exception):
+    """Raised by compiled code when a user's function failed; replaced by the user's own exception."""

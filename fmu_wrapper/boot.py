@@ -1,7 +1,7 @@
-"""First Python code of an FMU: the C shim runs this file, from the FMU's resources, in a namespace of its own.
+"""First Python code of an FMU: the C shim runs this file, from the FMU's resources, in a private namespace.
 
-Only the standard library may be imported here before `tlismni` is found. Nothing is put into `sys.modules`, and
-`sys.path` grows only in a process whose Python does not know `tlismni`, by the folders recorded at export, once.
+Only the standard library may be imported here before `tlismni` is found. `sys.path` grows only in a process
+whose Python does not know `tlismni`, by the folders recorded at export, once.
 """
 
 import importlib
@@ -12,7 +12,7 @@ import sys
 
 
 def create(interface, name, token, resources, logging_on, log):  # type: ignore[no-untyped-def]
-    """The calls object of a new instance. Raises with cause and remedy; the shim puts that into the host's log."""
+    """The calls object of a new instance. Raises with cause and remedy, which the shim logs."""
     with open(os.path.join(resources, "python.json"), encoding="utf-8") as file:
         record = json.load(file)
     return _embedded(record).create(interface, name, token, resources, bool(logging_on), log)
@@ -25,9 +25,9 @@ def _embedded(record):  # type: ignore[no-untyped-def]
     except ImportError:
         if wanted != here:
             raise ImportError(
-                f"the host process runs Python {here} ({sys.prefix}) without tlismni, and the FMU was exported for "
-                f"Python {wanted} ({record['prefix']}): install tlismni=={record['tlismni']} into the host's "
-                "Python, or export the FMU with it"
+                f"the host process runs Python {here} ({sys.prefix}) without tlismni, and the FMU was exported "
+                f"for Python {wanted} ({record['prefix']}): install tlismni=={record['tlismni']} into the "
+                "host's Python, or export the FMU with it"
             ) from None
     for folder in record["folders"]:
         if folder not in sys.path:
@@ -38,6 +38,6 @@ def _embedded(record):  # type: ignore[no-untyped-def]
     except ImportError as error:
         raise ImportError(
             f"{error}; this FMU needs tlismni=={record['tlismni']} and was exported with the Python in "
-            f"{record['prefix']} (folders {record['folders']}): install tlismni into Python {here} ({sys.prefix}), "
-            "or export the FMU anew on this machine"
+            f"{record['prefix']} (folders {record['folders']}): install tlismni into Python {here} "
+            f"({sys.prefix}), or export the FMU anew on this machine"
         ) from error

@@ -21,8 +21,8 @@ CATEGORY_OF = {Status.WARNING: logs.WARNING, Status.DISCARD: logs.DISCARD}
 def fmi_call(on_error: Any = THE_STATUS) -> Callable[[Function], Function]:
     """Make a method an FMI call: no exception leaves it; each becomes a status and one line in the log.
 
-    A method that returns None answers Status.OK. `on_error` is the answer after an error, for a call that does
-    not answer with a status.
+    A method that returns None answers Status.OK. `on_error` is the answer after an error, for a call that
+    does not answer with a status.
     """
 
     def decorate(method: Function) -> Function:
@@ -41,7 +41,7 @@ def fmi_call(on_error: Any = THE_STATUS) -> Callable[[Function], Function]:
 
 
 class Calls:
-    """The FMI calls of one instance. Buffers come as objects of the buffer protocol and live only for the call."""
+    """The FMI calls of one instance. Buffers come by the buffer protocol and live only for the call."""
 
     def __init__(self, slave: Slave) -> None:
         self.slave = slave
@@ -73,8 +73,8 @@ class Calls:
             return self._states[handle]
         except KeyError:
             raise SnapshotError(
-                f"FMU state {handle:#x} is unknown to instance '{self.slave.name}': it was freed, or belongs to "
-                "another instance (serialise it to carry it over)"
+                f"FMU state {handle:#x} is unknown to instance '{self.slave.name}': it was freed, or belongs "
+                "to another instance (serialise it to carry it over)"
             ) from None
 
     def drop(self, handle: int) -> None:

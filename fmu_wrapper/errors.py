@@ -16,7 +16,7 @@ class Status(IntEnum):
 
 
 class FmuError(TlismniError):
-    """Base of the FMU wrapper's own errors. At the FMI boundary it becomes `status`; the instance lives on."""
+    """Base of the FMU wrapper's own errors. It becomes `status` at the FMI boundary; the instance lives on."""
 
     status = Status.ERROR
 

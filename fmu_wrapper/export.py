@@ -36,8 +36,8 @@ def export_fmu(
 ) -> Path:
     """Write `source` as a co-simulation FMU.
 
-    The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it; that Python must be
-    on the machine where the FMU runs. The same source and settings give the same file on one machine.
+    The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it; that Python must
+    be on the machine where the FMU runs. The same source and settings give the same file on one machine.
 
     Parameters
     ----------
@@ -45,10 +45,10 @@ def export_fmu(
     path : the file to write, "x.fmu".
     fmi_version : "2.0".
     t_end : stop time of the default experiment, s.
-    communication_step : preferred communication step, s; without it a round number of a hundredth to a thousandth
-        of `t_end`.
-    solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them become
-        parameters of the FMU, `solver.<name>`.
+    communication_step : preferred communication step, s; without it a round number of a hundredth to a
+        thousandth of `t_end`.
+    solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
+        become parameters of the FMU, `solver.<name>`.
 
     Returns
     -------
@@ -60,8 +60,9 @@ def export_fmu(
     ModelError, FmuValueError : for a wrong model or setting.
     """
     if fmi_version != "2.0":
-        more = "3.0 is not written yet" if str(fmi_version).startswith("3") else "there is no such version here"
-        raise ExportError(f"fmi_version '{fmi_version}': {more}; use fmi_version=\"2.0\"")
+        known = str(fmi_version).startswith("3")
+        why = "FMI 3.0 is not written yet" if known else "there is no such FMI version"
+        raise ExportError(f"fmi_version '{fmi_version}': {why}; use fmi_version=\"2.0\"")
     shim = shim_path()
     given = {"t_end": t_end, "communication_step": communication_step, **solver}
     slave = Slave(source, **{k: v for k, v in given.items() if v is not None})
@@ -71,7 +72,7 @@ def export_fmu(
         slave = Slave(slave.model, variables=slave.variables, **solver_data)
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
-    about = slave.model.description or getattr(source, "description", "") or f"tlismni model {slave.model.name}"
+    about = slave.model.description or getattr(source, "description", "") or slave.model.name
     description = fmi2_description(
         slave.variables,
         slave.settings,
@@ -110,8 +111,8 @@ def shim_path() -> Path:
     path = HERE / SHIM
     if not path.is_file():
         raise ExportError(
-            f"the FMU shim '{path}' is missing: it is compiled when tlismni is installed; install again with a C "
-            "compiler (or ziglang) at hand, or run `python setup.py build_ext --inplace` in a source tree"
+            f"the FMU shim '{path}' is missing: it is compiled when tlismni is installed; install again with a "
+            "C compiler (or ziglang) at hand, or run `python setup.py build_ext --inplace` in a source tree"
         )
     return path
 
@@ -139,7 +140,7 @@ def _json(data: Any) -> bytes:
     try:
         return json.dumps(data, indent=1, allow_nan=False).encode()
     except (TypeError, ValueError) as error:
-        raise ExportError(f"the solver settings cannot be written into an FMU: {error}; use plain data") from None
+        raise ExportError(f"the solver settings are no JSON data: {error}; use numbers and strings") from None
 
 
 def _write(path: Path, files: dict[str, bytes]) -> Path:

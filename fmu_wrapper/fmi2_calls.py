@@ -1,6 +1,6 @@
 """The calls of FMI 2.0 co-simulation, named as in the standard, for the C shim and for fmpy in process.
 
-Arrays come as buffers and counts are left out: `fmi2GetReal(c, vr, nvr, value)` is `fmi2GetReal(vr, value)` here.
+Arrays come as buffers and counts are left out: `fmi2GetReal(c, vr, nvr, value)` is `fmi2GetReal(vr, value)`.
 """
 
 from collections.abc import Sequence
@@ -58,7 +58,7 @@ class Fmi2Calls(Calls):
     @fmi_call()
     def fmi2CancelStep(self) -> None:
         """Refused: steps never run in the background."""
-        raise UnavailableError("steps are never asynchronous (canRunAsynchronuously = false): nothing to cancel")
+        raise UnavailableError("steps never run in the background (canRunAsynchronuously = false)")
 
     # values
 
@@ -145,17 +145,17 @@ class Fmi2Calls(Calls):
     @fmi_call()
     def fmi2GetDirectionalDerivative(self) -> None:
         """Refused."""
-        raise UnavailableError("directional derivatives are not provided (providesDirectionalDerivative = false)")
+        raise UnavailableError("no directional derivatives (providesDirectionalDerivative = false)")
 
     @fmi_call()
     def fmi2SetRealInputDerivatives(self) -> None:
         """Refused."""
-        raise UnavailableError("inputs are held over a step (canInterpolateInputs = false): set no derivatives")
+        raise UnavailableError("inputs are held over a step (canInterpolateInputs = false)")
 
     @fmi_call()
     def fmi2GetRealOutputDerivatives(self) -> None:
         """Refused."""
-        raise UnavailableError("output derivatives are not provided (maxOutputDerivativeOrder = 0)")
+        raise UnavailableError("no output derivatives (maxOutputDerivativeOrder = 0)")
 
     # status
 

@@ -27,7 +27,7 @@ WARNING = int(Status.WARNING)
 class InProcess(FMU2Slave):  # type: ignore[misc]
     """An FMI 2.0 instance of fmpy whose calls go straight to a slave.
 
-    fmpy's higher methods (getReal, doStep ...) work as they are: this class replaces the calls into the binary.
+    fmpy's higher methods (getReal, doStep ...) work as they are: this class replaces the calls into a binary.
     Errors raise fmpy's FMICallException with the slave's message as a note.
     """
 

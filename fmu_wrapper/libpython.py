@@ -1,4 +1,4 @@
-"""What an FMU records of the Python that exports it, so that a host without Python finds and starts the same."""
+"""What an FMU records of the Python that exports it, so that a host without Python can start the same."""
 
 import os
 import sys
@@ -14,7 +14,7 @@ NEEDED = ("numpy", "scipy", "numba", "llvmlite", "pydantic")
 
 
 def shared_library() -> Path | None:
-    """The shared library of this Python, or None: some builds have none, and then only Python hosts can load FMUs."""
+    """The shared library of this Python, or None: some builds have none; then only Python hosts load FMUs."""
     for path in _candidates():
         if path.suffix != ".a" and path.is_file():
             return path.resolve()
@@ -36,13 +36,13 @@ def _candidates() -> Iterator[Path]:
 
 
 def library_record() -> str:
-    """`libpython.txt`, for the shim: shared library (or an empty line), home, a file of the standard library."""
+    """`libpython.txt`, for the shim: shared library (or empty line), home, a file of the standard library."""
     library = shared_library()
     return f"{library or ''}\n{sys.base_prefix}\n{os.__file__}\n"
 
 
 def python_record() -> dict[str, Any]:
-    """`python.json`, for `boot.py`: version, prefix, and the folders where `tlismni` and what it needs are found."""
+    """`python.json`, for `boot.py`: version, prefix, and the folders of `tlismni` and what it needs."""
     folders = [sysconfig.get_path("purelib"), sysconfig.get_path("platlib")]
     for name in NEEDED:
         spec = find_spec(name)

@@ -33,7 +33,7 @@ class Log:
     """Passes messages on to `callback`: errors always, others if logging is on for their category."""
 
     def __init__(self, callback: LogCallback | None = None, on: bool = False) -> None:
-        self._callback = callback or to_python_logging
+        self._callback = to_python_logging if callback is None else callback
         self._heard = frozenset(CATEGORIES) if on else frozenset()
         self.last_problem = ""
         """Text of the last warning or error."""

@@ -73,8 +73,8 @@ def fmi2_description(
     variables = add(root, "ModelVariables")
     for variable in table.variables:
         element = add(variables, "ScalarVariable", **_attributes(variable))
-        kind = {"start": variable.start, "unit": variable.unit, "min": variable.minimum, "max": variable.maximum}
-        add(element, _TYPES[variable.kind], **kind)
+        limits = {"min": variable.minimum, "max": variable.maximum}
+        add(element, _TYPES[variable.kind], start=variable.start, unit=variable.unit, **limits)
     structure = add(root, "ModelStructure")
     for part in ("Outputs", "InitialUnknowns"):
         element = add(structure, part)

@@ -10,7 +10,7 @@ from ..core.description import Model
 from .errors import FmuError
 from .settings import Settings
 from .values import Values
-from .variables import KINDS, VariableTable
+from .variables import EVENTS, KINDS, VariableTable
 
 SimulationFactory = Callable[..., Any]
 
@@ -84,8 +84,8 @@ class Run:
         missing = [v.name for v in wanted if v.name not in column]
         if missing:
             raise FmuError(
-                f"the simulation has no channels {missing}, which this FMU was exported with: the installed version "
-                "of tlismni names them differently; export the FMU anew"
+                f"the simulation has no channels {missing}, which this FMU was exported with: the installed "
+                "version of tlismni names them differently; export the FMU anew"
             )
         self._names = [channel.name for channel in self._simulation.channels]
         self._columns = {
@@ -107,12 +107,10 @@ class Run:
         return self._simulation.events
 
     def apply_inputs(self, values: Values) -> None:
-        """Tell the simulation the inputs that changed (an input told anew could restart a multistep formula)."""
+        """Tell the simulation the inputs that changed."""
         wanted = tuple(values[v] for v in self._inputs)
         changed = {
-            v.name: value
-            for v, value, old in zip(self._inputs, wanted, self._applied, strict=True)
-            if value != old
+            v.name: value for v, value, old in zip(self._inputs, wanted, self._applied, strict=True) if value != old
         }
         if changed:
             self._simulation.set_inputs(changed)
@@ -123,7 +121,7 @@ class Run:
         self._simulation.advance(t)
 
     def read(self, values: Values) -> None:
-        """Put the channels into `values`.
+        """Put the channels and the number of events into `values`.
 
         Raises
         ------
@@ -138,6 +136,7 @@ class Run:
             )
         for kind, (positions, columns) in self._columns.items():
             values.vectors[kind][positions] = np.rint(found[columns]) if kind == "integer" else found[columns]
+        values[values.table.by_name[EVENTS]] = len(self.events)
 
     def state(self) -> Any:
         """The solver's state."""
@@ -149,4 +148,3 @@ class Run:
             state = type(self._simulation.state()).from_bytes(state)
         self._simulation.restore(state)
         self._applied = applied
-

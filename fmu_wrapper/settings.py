@@ -76,6 +76,6 @@ def check_solver_value(name: str, value: float) -> None:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise FmuValueError(f"'{name}' = {value!r} is not a finite number")
     if name == "step" and value < 0.0:
-        raise FmuValueError(f"'step' = {value!r} s is negative: give a fixed step > 0, or 0 for error control")
+        raise FmuValueError(f"'step' = {value!r} s is negative: give a fixed step, or 0 for error control")
     if name != "step" and value <= 0.0:
         raise FmuValueError(f"'{name}' = {value!r} must be greater than 0")

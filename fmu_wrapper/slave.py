@@ -21,7 +21,7 @@ from .run import Run, SimulationFactory, build_simulation
 from .settings import Settings
 from .snapshot import Phase, Snapshot
 from .values import Values, check_values
-from .variables import EVENTS, TIME, Kind, Variable, VariableTable, build_table
+from .variables import TIME, Kind, Variable, VariableTable, build_table
 
 _WAYS = {
     Phase.INSTANTIATED: "enter and exit initialization mode first",
@@ -165,15 +165,10 @@ class Slave:
             raise
         self._set_time(target)
         self._stale = False
-        self._note_events(run.events[seen:])
-
-    def _note_events(self, events: Sequence[Any]) -> None:
-        if events:
-            count = self.variables.by_name[EVENTS]
-            self._values[count] += len(events)
         if self.log.wants(logs.EVENTS):
-            for event in events:
-                self.log.write(Status.OK, logs.EVENTS, str(event))
+            for event in run.events[seen:]:
+                text = f"{event.kind} of contact '{event.contact}' at t = {event.t!r} s"
+                self.log.write(Status.OK, logs.EVENTS, f"{text}, impulse {event.impulse:.6g} N s")
 
     def _target(self, t: float, h: float) -> float:
         if not (math.isfinite(t) and math.isfinite(h)):
@@ -289,7 +284,11 @@ class Slave:
             run = self._run
             if run is None or run.key != Run.key_of(values, snapshot.start_time):
                 run = self._build(values, snapshot.start_time)
-            run.restore(snapshot.simulation, snapshot.applied)
+            try:
+                run.restore(snapshot.simulation, snapshot.applied)
+            except BaseException:  # what is left may be half of each
+                self._phase = Phase.FAILED
+                raise
         self._run, self._values = run, values
         self._phase, self._rtol_given = snapshot.phase, snapshot.rtol_given
         self._start_time, self._stop_time, self._time = snapshot.start_time, snapshot.stop_time, snapshot.time

@@ -13,7 +13,8 @@ from .variables import VariableTable
 
 FORMAT = 1
 MAGIC = b"tlismni-slave-state\n"
-LENGTHS = 4 * 8  # lengths of head, values and simulation state, then the checksum; 8 bytes each, little endian
+LENGTHS = 4 * 8
+"""Bytes of the lengths of head, values and simulation state and of the checksum: 8 each, little endian."""
 
 
 class Phase(StrEnum):
@@ -35,7 +36,7 @@ class Snapshot:
     phase : phase of the slave.
     start_time, stop_time : experiment, s; no stop time is None.
     time : the slave's own time, s.
-    rtol_given : whether `solver.rtol` was set by name, so that the experiment's tolerance does not replace it.
+    rtol_given : whether `solver.rtol` was set, so that the experiment's tolerance does not replace it.
     values : values of all variables.
     applied : input values that the simulation has been told.
     simulation : the solver's state (its bytes if the snapshot came from bytes), or None before it exists.
@@ -100,8 +101,8 @@ class Snapshot:
             )
         if head["identity"] != identity:
             raise SnapshotError(
-                f"the stored state belongs to another model or other settings (identity {head['identity'][:12]}, "
-                f"this slave has {identity[:12]}): use the FMU that stored it"
+                "the stored state belongs to another model or other settings (identity "
+                f"{head['identity'][:12]}, this slave has {identity[:12]}): use the FMU that stored it"
             )
         return cls(
             phase=Phase(head["phase"]),

@@ -34,8 +34,8 @@ class BaseUnit:
 def parse_unit(text: str) -> BaseUnit | None:
     """The base unit of a unit such as "N.m", "m/s^2", "kg.m2", "N/(m.s)"; None if it is not of that form.
 
-    A factor after "/" counts as denominator, up to the next "." or "/" ("J/kg/K" is J kg^-1 K^-1); powers that are
-    not whole (Hertz' N/m^1.5) have no base unit in FMI.
+    A factor after "/" counts as denominator, up to the next "." or "/" ("J/kg/K" is J kg^-1 K^-1); powers that
+    are not whole (Hertz' N/m^1.5) have no base unit in FMI.
     """
     outside, _, inside = text.replace("*", ".").replace(" ", ".").partition("/(")
     parts = [(sign, factor) for sign, factor in _factors(outside)]

@@ -1,7 +1,7 @@
 """The variable table of a slave: names, kinds, roles, units and value references.
 
-Value references are one numbering over all kinds (FMI 3.0 wants that, FMI 2.0 allows it), in blocks, so that a
-further input does not renumber the outputs:
+Value references are one numbering over all kinds (FMI 3.0 wants that, FMI 2.0 allows it), in blocks, so that
+a further input does not renumber the outputs:
 
     0                   time
     1 method  2 rtol  3 atol  4 step        solver settings (`solver.*`), parameters
@@ -67,8 +67,8 @@ class VariableTable:
             names = [v.name for v in self.variables]
             twice = sorted({n for n in names if names.count(n) > 1})
             raise FmuValueError(
-                f"the variables {twice} would exist twice in the FMU (model parameters, inputs and channels share "
-                "one list of names): rename them in the model"
+                f"the variables {twice} would exist twice in the FMU (model parameters, inputs and channels "
+                "share one list of names): rename them in the model"
             )
         self.of_kind: dict[Kind, tuple[Variable, ...]] = {
             kind: tuple(v for v in self.variables if v.kind == kind) for kind in KINDS
@@ -101,13 +101,13 @@ class VariableTable:
         variable = self.by_reference.get(reference)
         if variable is None:
             raise FmuValueError(
-                f"value reference {reference} is unknown: this FMU has {len(self.of_kind[kind])} {kind} variables, "
-                "their references stand in modelDescription.xml"
+                f"value reference {reference} is unknown: this FMU has {len(self.of_kind[kind])} {kind} "
+                "variables, their references stand in modelDescription.xml"
             )
         if variable.kind != kind:
             raise FmuValueError(
-                f"value reference {reference} is '{variable.name}', which is of kind {variable.kind}, not {kind}: "
-                f"use the get and set functions for {variable.kind}"
+                f"value reference {reference} is '{variable.name}', which is of kind {variable.kind}, not "
+                f"{kind}: use the get and set functions for {variable.kind}"
             )
         return variable
 
@@ -138,7 +138,7 @@ def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -
         [
             Variable(TIME, "time", "real", "independent", "time", "s", "simulation time"),
             *_solver(settings),
-            Variable(FIRST_FIGURE, EVENTS, "integer", "output", "figure", None, "number of contact events so far"),
+            Variable(FIRST_FIGURE, EVENTS, "integer", "output", "figure", None, "contact events so far"),
             *(
                 Variable(
                     FIRST_PARAMETER + i,
@@ -192,7 +192,5 @@ def _solver(settings: Settings) -> list[Variable]:
             reference = FIRST_OPTION + len(variables) - len(texts)
             unit = "1" if kind == "real" else None
             text = f"option of method {settings.method}: {name}"
-            variables.append(
-                Variable(reference, f"solver.{name}", kind, "parameter", "solver", unit, text, value)
-            )
+            variables.append(Variable(reference, f"solver.{name}", kind, "parameter", "solver", unit, text, value))
     return variables

@@ -38,9 +38,7 @@ def chain(*, links: int, length: float, mass: float, gravity: float) -> Scenario
             )
             for k in range(1, links + 1)
         ),
-        joints=tuple(
-            Revolute2D(name=f"joint{k}", a=end(k - 1, 1.0), b=end(k, -1.0)) for k in range(1, links + 1)
-        ),
+        joints=tuple(Revolute2D(name=f"joint{k}", a=end(k - 1, 1.0), b=end(k, -1.0)) for k in range(1, links + 1)),
     )
     last = f"link{links}"
     return Scenario(

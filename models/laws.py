@@ -29,12 +29,8 @@ LAW_NAMES = ("newton", "hertz", "kelvin_voigt", *HUNT_CROSSLEY_FAMILY)
 def law_parameters(restitution: float, stiffness: float = 1e7) -> tuple[ScenarioParameter, ...]:
     """The parameters that choose and set a contact law."""
     return (
-        ScenarioParameter(
-            "law", "newton", "-", "newton is a constraint, the others are forces", choices=LAW_NAMES
-        ),
-        ScenarioParameter(
-            "restitution", restitution, "-", "coefficient of restitution (not used by hertz)", 0.0, 1.0
-        ),
+        ScenarioParameter("law", "newton", "-", "newton is a constraint, the others are forces", choices=LAW_NAMES),
+        ScenarioParameter("restitution", restitution, "-", "coefficient of restitution (not used by hertz)", 0.0, 1.0),
         ScenarioParameter(
             "stiffness",
             stiffness,
@@ -67,9 +63,7 @@ def contact_law(
     ScenarioError : for a restitution that the law cannot have, or damping given to a law without any.
     """
     if damping is not None and law != "kelvin_voigt":
-        raise ScenarioError(
-            f"law '{law}' takes no damping (given: {damping:g}); its loss is set by restitution"
-        )
+        raise ScenarioError(f"law '{law}' takes no damping (given: {damping:g}); its loss is set by restitution")
     if law == "newton":
         return NewtonImpact(restitution=restitution)
     if law == "hertz":

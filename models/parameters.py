@@ -68,14 +68,10 @@ class ScenarioParameter:
         except (TypeError, ValueError):
             number = math.nan
         if isinstance(value, bool | str) or not math.isfinite(number):
-            raise ScenarioError(
-                f"parameter '{self.name}' = {value!r} must be a finite number, unit {self.unit}"
-            )
+            raise ScenarioError(f"parameter '{self.name}' = {value!r} must be a finite number, unit {self.unit}")
         if self.kind == "integer" and number != int(number):
             raise ScenarioError(f"parameter '{self.name}' = {value!r} must be a whole number")
-        too_low = self.minimum is not None and (
-            number < self.minimum or (self.exclusive and number == self.minimum)
-        )
+        too_low = self.minimum is not None and (number < self.minimum or (self.exclusive and number == self.minimum))
         if too_low or (self.maximum is not None and number > self.maximum):
             raise ScenarioError(f"parameter '{self.name}' = {number:g} is outside {self.range_text()}")
         return int(number) if self.kind == "integer" else number

@@ -68,9 +68,7 @@ class ExudynResult:
         return self.channels[channel]
 
 
-def run_exudyn(
-    model: Model, t_end: float, step: float, settings: ExudynSettings | None = None
-) -> ExudynResult:
+def run_exudyn(model: Model, t_end: float, step: float, settings: ExudynSettings | None = None) -> ExudynResult:
     """Run `model` in exudyn with fixed steps of about `step` (s), a whole number of them, to `t_end` (s).
 
     Raises
@@ -85,7 +83,8 @@ def run_exudyn(
     wall_time, steps = solve(build, t_end, step, settings or ExudynSettings())
     if not build.columns:
         raise ExudynFailed(f"model '{model.name}' has no bodies: there is nothing to record")
-    data = {c.sensor: build.mbs.GetSensorStoredData(c.sensor) for c in (*build.columns, *build.contacts)}
+    sensors = {c.sensor for c in build.columns} | {c.sensor for c in build.contacts}
+    data = {sensor: build.mbs.GetSensorStoredData(sensor) for sensor in sensors}
     t = data[build.columns[0].sensor][:, 0]
     channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}
     channels |= _contact_channels(build, channels, data, t)
@@ -121,11 +120,14 @@ def solve(build: Build, t_end: float, step: float, settings: ExudynSettings) -> 
     kinds = exu.DynamicSolverType
     kind = kinds.GeneralizedAlpha if settings.integrator == "generalized_alpha" else kinds.TrapezoidalIndex2
     start = time.perf_counter()
+    silent, exu.config.suppressWarnings = exu.config.suppressWarnings, True  # they go to stdout
     try:
         success = mbs.SolveDynamic(s, solverType=kind, storeSolver=True)
     except RuntimeError as error:
         # exudyn's own error types derive from RuntimeError or ValueError, and its text carries the cause
         raise ExudynFailed(_failure(build, t_end, step, str(error))) from error
+    finally:
+        exu.config.suppressWarnings = silent
     wall_time = time.perf_counter() - start
     if success is False:
         raise ExudynFailed(_failure(build, t_end, step, "SolveDynamic reports failure"))

@@ -39,9 +39,7 @@ def hermite(t: Array, y: Array, rate: Array, at: Array) -> Array:
     at = np.asarray(at, dtype=float)
     span = t[-1] - t[0]
     if at.size and (at.min() < t[0] - 1e-12 * span or at.max() > t[-1] + 1e-12 * span):
-        raise ValueError(
-            f"times {at.min():g} ... {at.max():g} s reach outside the samples {t[0]:g} ... {t[-1]:g} s"
-        )
+        raise ValueError(f"times {at.min():g} ... {at.max():g} s reach outside the samples {t[0]:g} ... {t[-1]:g} s")
     i = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
     # at the very end of a doubled last record the interval may have no length
     while np.any(t[i + 1] == t[i]):
@@ -86,6 +84,39 @@ def contact_intervals(t: Array, gap: Array, gap_rate: Array) -> list[ContactInte
         end = crossing(t, gap, gap_rate, ends[0]) if ends else None
         found.append(ContactInterval(start, end, i + 1, ends[0] if ends else len(t) - 1))
     return found
+
+
+def released(t: Array, force: Array, interval: ContactInterval) -> ContactInterval:
+    """The same contact, ended where its force comes to zero if that is before the gap opens (a damper lets go)."""
+    inside = force[interval.first : interval.last + 1]
+    top = int(np.argmax(inside))
+    gone = np.flatnonzero(inside[top:] <= 0.0)
+    if not gone.size or inside[top] <= 0.0:
+        return interval
+    k = interval.first + top + int(gone[0])
+    # the force falls steeply until it is switched off: follow the line of its last two samples to zero
+    slope = (force[k - 1] - force[k - 2]) / (t[k - 1] - t[k - 2]) if k - 2 >= interval.first else 0.0
+    end = t[k - 1] - force[k - 1] / slope if slope < 0.0 else t[k]
+    return ContactInterval(interval.start, float(min(end, t[k])), interval.first, k - 1)
+
+
+def speeds(t: Array, gap_rate: Array, interval: ContactInterval) -> tuple[float, float]:
+    """(approach speed at the start, separation speed at the end) of a contact, m/s.
+
+    Taken from the two samples outside on either side, on the line through them: inside the rate bends sharply.
+    """
+    before = _linear(t, gap_rate, interval.first - 1, interval.first - 2, interval.start)
+    end = float(t[interval.last]) if interval.end is None else interval.end
+    after = _linear(t, gap_rate, interval.last + 1, interval.last + 2, end)
+    return -before, after
+
+
+def _linear(t: Array, y: Array, near: int, far: int, at: float) -> float:
+    """y at `at` on the line through samples `near` and `far`; the value at `near` where there is no such line."""
+    near = min(max(near, 0), len(t) - 1)
+    if not 0 <= far < len(t) or t[far] == t[near]:
+        return float(y[near])
+    return float(y[near] + (y[far] - y[near]) / (t[far] - t[near]) * (at - t[near]))
 
 
 def peak(t: Array, y: Array) -> tuple[float, float]:

@@ -26,7 +26,7 @@ BATCH = np.dtype(
         (name, np.int64)
         for name in (
             # sizes
-            "count", "npar", "ncoord", "nrow",
+            "count", "npar", "ncoord", "nrow", "nextra",
             # tables of the batch
             "par",       # (count, npar)  float64
             "coord",     # (count, ncoord) int64: index into q, v, a, r
@@ -34,7 +34,7 @@ BATCH = np.dtype(
             "slot_s",    # (count, ncoord*ncoord) int64: where d r_i / d q_j goes in `values`
             "slot_j",    # (count, nrow*ncoord) int64: where Phi_q goes in `values`
             "slot_jt",   # (count, nrow*ncoord) int64: where its transpose goes
-            "extra",     # (count,) int64: element-specific index (contact number, first work entry ...)
+            "extra",     # (count, nextra) int64: element-specific indices (contact number, work accounts ...)
             # current arrays of the system (shared by all batches)
             "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor",
             "signals",   # float64 pool of the time functions' parameters

@@ -29,6 +29,7 @@ from .records import (
     FIXED_STEP,
     FULL,
     REACHED,
+    REPARTITION,
     STEP_SIZE,
     STEP_TOO_SMALL,
     STOP_TIME,
@@ -77,6 +78,8 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
                 restart_at_newest(sim)
         elif code == EVENT:
             _locate(sim)
+        elif code == REPARTITION:
+            _repair(sim)
         elif code in (REANALYZE, SINGULAR, INNER_DIVERGED) and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
             _repair(sim)

@@ -15,6 +15,8 @@ from ..system.records import (
     COUNTERS_SIZE,
     NOT_FINITE,
     OK,
+    PARTITION_AGE,
+    RATE_SIZE,
     REANALYZE,
     REJECTED,
     RTOL,
@@ -29,6 +31,7 @@ from .records import (
     FULL,
     MAX_STEP,
     REACHED,
+    REPARTITION,
     STEP_SIZE,
     STEP_TOO_SMALL,
     STOP_TIME,
@@ -41,6 +44,8 @@ from .watch import any_crossed, remember
 SAFETY = 0.9
 MIN_FACTOR = 0.2
 MAX_FACTOR = 2.0
+PARTITION_PATIENCE = 10.0  # steps between two looks at the partition
+STRAIN = 5.0  # how much faster than the independent ones the dependent coordinates may move (rms, scaled)
 DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more: equal steps are cheaper and safer
 
 
@@ -87,6 +92,28 @@ def accept(ws: Any, ms: Any, lc: Any) -> None:
         cursor = ivec(lc.cursor, 1)
         write_sample(ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
         cursor[0] += 1
+
+
+@compiled
+def partition_strained(ws: Any) -> bool:
+    """True if a dependent coordinate moves much faster than all independent ones: the partition is near a position
+    in which Phi_qd is singular. Looked at again only some steps after the last choice."""
+    if ws.m_act == 0 or ws.m_act == ws.n:
+        return False
+    rate = vec(ws.rate, RATE_SIZE)
+    rate[PARTITION_AGE] += 1.0
+    if rate[PARTITION_AGE] < PARTITION_PATIENCE:
+        return False
+    v, scale = vec(ws.v, ws.n_ext), vec(ws.scale, ws.n)
+    dependent = ivec(ws.dependent, ws.m_act)
+    # the sum over all coordinates less that over the dependent ones is that over the independent ones
+    everything, of_dependent = 0.0, 0.0
+    for i in range(ws.n):
+        everything += (v[i] / scale[i]) ** 2
+    for k in range(ws.m_act):
+        of_dependent += (v[dependent[k]] / scale[dependent[k]]) ** 2
+    independent = (everything - of_dependent) / (ws.n - ws.m_act)
+    return of_dependent / ws.m_act > STRAIN * STRAIN * max(independent, 0.0) and of_dependent > 0.0
 
 
 @compiled
@@ -147,7 +174,10 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             # the stop time itself, not t + h with its rounding
             vec(ws.t, 1)[0] = stop
         accept(ws, ms, lc)
+        strained = partition_strained(ws)
         if not fixed:
             proposed = h * _factor(error[0], error[1], multistep)
             clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed
+        if strained:
+            return REPARTITION
     return CHUNK

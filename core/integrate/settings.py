@@ -20,7 +20,7 @@ from ..system.records import (
 )
 
 OUTER_LOOPS = ("newton", "simple")
-CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-11)
+CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
 """At position, velocity and acceleration level: absolute below 1, relative to the largest entry above."""
 
 

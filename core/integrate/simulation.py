@@ -2,7 +2,8 @@
 
 import logging
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from ..compiled.records import ArrayRecord
 from ..contact import machine
 from ..contact.laws import ForceLaw
 from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE
-from ..errors import ConsistencyError, ModelError, SimulationError
+from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..methods.history import recall, restart
 from ..methods.records import METHOD, step_address
@@ -35,6 +36,19 @@ from .watch import remember
 logger = logging.getLogger(__name__)
 
 HISTORY_ROWS = 12
+
+
+@contextmanager
+def user_errors(assembly: Assembly) -> Iterator[None]:
+    """Raise a user function's own exception where compiled code could only say that there was one."""
+    try:
+        yield
+    except CallbackError:
+        error = assembly.user_error.pop()
+        assembly.user_error.clear()
+        raise error from None
+
+
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
     "residual_evaluations", "stages", "analyses",
@@ -101,7 +115,8 @@ class Simulation:
         self._build_loop(record)
         set_control(self.settings, self.workspace.arrays["control"])
         self.samples: list[NDArray[np.float64]] = []
-        self._start()
+        with user_errors(self.assembly):
+            self._start()
 
     # ---- set-up -------------------------------------------------------------------------------------------------
 
@@ -276,14 +291,18 @@ class Simulation:
         """
         if not math.isfinite(t) or t < self.t:
             raise ModelError(f"cannot advance from t = {self.t!r} to {t!r}: the time must be finite and not earlier")
-        advance.advance_to(self, float(t), stop=float(t) if self.assembly.input_names else math.inf)
+        self._advance_to(float(t), float(t) if self.assembly.input_names else math.inf)
         self.t = float(t)
 
     def run_to(self, t_end: float, until: float | None = None) -> None:
         """Integrate to `until` (or `t_end`); no step goes beyond `t_end`."""
         target = float(t_end if until is None else until)
-        advance.advance_to(self, target, stop=float(t_end))
+        self._advance_to(target, float(t_end))
         self.t = target
+
+    def _advance_to(self, target: float, stop: float) -> None:
+        with user_errors(self.assembly):
+            advance.advance_to(self, target, stop)
 
     def report_progress(self, t: float) -> None:
         """Tell whoever listens how far the run has come."""
@@ -342,7 +361,8 @@ class Simulation:
     def sample(self) -> NDArray[np.float64]:
         """All numbers at the present time `t`, as one row (see `sample.py`)."""
         ws = self.workspace.record
-        status = query(ws, self._method.record, self.t)
+        with user_errors(self.assembly):
+            status = query(ws, self._method.record, self.t)
         if status != OK:
             raise SimulationError(
                 f"the state at t = {self.t:.9g} s between two steps cannot be projected onto the constraints "
@@ -351,7 +371,8 @@ class Simulation:
                 loop="inner",
             )
         row = np.zeros(self.buffer.shape[1])
-        write_sample(ws, row)
+        with user_errors(self.assembly):
+            write_sample(ws, row)
         return row
 
     # ---- channels, inputs, state ------------------------------------------------------------------------------------

@@ -64,17 +64,26 @@ def inner_loop(ws: Any, lu_address: int, slack: float, accelerations: bool) -> i
     tol_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
     tol_v = slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
     tol_a = control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a) if accelerations else np.inf
-    previous = np.inf
+    last_p, last_v, last_a = np.inf, np.inf, np.inf
     for _ in range(int(control[MAX_INNER])):
         p = constraint_norm(ws, ws.phi)
         v = constraint_norm(ws, ws.phid)
         a = constraint_norm(ws, ws.phidd)
-        if p <= tol_p and v <= tol_v and a <= tol_a:
+        # a level is judged once those above it hold: correcting q moves the residuals of v and a
+        if p > tol_p:
+            if not p < 0.5 * last_p:
+                return INNER_DIVERGED
+            last_p, last_v, last_a = p, np.inf, np.inf
+        elif v > tol_v:
+            if not v < 0.5 * last_v:
+                return INNER_DIVERGED
+            last_v, last_a = v, np.inf
+        elif a > tol_a:
+            if not a < 0.5 * last_a:
+                return INNER_DIVERGED
+            last_a = a
+        else:
             return OK
-        worst = max(p / tol_p, v / tol_v, a / tol_a)
-        if not worst < 0.5 * previous:
-            return INNER_DIVERGED
-        previous = worst
         counters[INNER] += 1
         if p > tol_p:
             correct_dependent(ws, lu_address, ws.phi, ws.q)

@@ -1,6 +1,6 @@
 """Assembly: a model's elements as batches of flat tables, independent of which contacts are closed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -71,7 +71,10 @@ class Assembly:
     """(body, coordinate name, index)."""
     coordinate_scale: NDArray[np.float64]
     """Typical magnitude of each coordinate, so that units do not choose the partition."""
-    keep_alive: list[Any] = field(default_factory=list)
+    bind: Callable[[Any], None] | None = None
+    """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
+    user_error: list[BaseException] = field(default_factory=list)
+    """An exception that a user's function raised inside the compiled loop."""
 
     @property
     def ground(self) -> int:

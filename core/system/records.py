@@ -19,7 +19,7 @@ WORKSPACE = np.dtype(
             "active", "dependent", "kkt", "lu_d", "kkt_query", "lu_d_query",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
-            "control", "counters", "rate",
+            "control", "counters", "rate", "scale",
         )
     ]
 )  # fmt: skip
@@ -45,7 +45,8 @@ FACTOR_CV = 3
 LAST_OUTER = 4
 LAST_INNER = 5
 FAILED_NORM = 6
-RATE_SIZE = 7
+PARTITION_AGE = 7  # steps since the partition was chosen or confirmed
+RATE_SIZE = 8
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES = range(9)

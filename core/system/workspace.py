@@ -61,6 +61,7 @@ class Workspace:
             "stage_v": np.zeros(8 * n_ext),
             "stage_a": np.zeros(8 * n_ext + m_ext),
             "rhs": np.zeros(a.n + a.m),
+            "scale": a.coordinate_scale.copy(),
             "control": np.zeros(CONTROL_SIZE),
             "counters": np.zeros(COUNTERS_SIZE, dtype=np.int64),
             "rate": np.zeros(RATE_SIZE),
@@ -83,6 +84,8 @@ class Workspace:
         )  # fmt: skip
         self.structure: Structure
         self.engage(frozenset(), frozenset())
+        if assembly.bind is not None:
+            assembly.bind(self)
 
     @property
     def record(self) -> np.void:
@@ -110,6 +113,7 @@ class Workspace:
             },
             {
                 "count": count, "npar": batch.par.shape[1], "ncoord": width, "nrow": rows,
+                "nextra": batch.extra.shape[1],
                 "n_extended": len(a["q"]), "m_extended": len(a["lam"]), "n_values": len(a["values"]),
                 "n_inputs": len(a["inputs"]), "n_signals": len(a["signals"]),
                 "n_monitor": len(a["monitor"]), "n_memory": len(a["memory"]),

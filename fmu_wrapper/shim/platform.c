@@ -51,7 +51,7 @@ void *platform_symbol(void *library, const char *name) {
 }
 
 const char *platform_load_error(void) {
-    static THREAD_LOCAL char text[64];
+    static _Thread_local char text[64];
     snprintf(text, sizeof text, "Windows error %lu", (unsigned long)GetLastError());
     return text;
 }

@@ -7,11 +7,9 @@
 
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
-#define THREAD_LOCAL __declspec(thread)
 #define PRINTF_LIKE(text, first)
 #else
 #define EXPORT __attribute__((visibility("default")))
-#define THREAD_LOCAL _Thread_local
 #define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
 #endif
 

@@ -8,7 +8,7 @@
 PythonApi py;
 
 static bool ready;
-static THREAD_LOCAL bool thread_known;
+static _Thread_local bool thread_known;
 
 /* What the export recorded of its Python, a line each: shared library, home, a file of its standard library. */
 typedef struct {

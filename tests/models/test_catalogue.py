@@ -65,9 +65,7 @@ def test_model_parameters_reach_the_law() -> None:
     assert model.with_parameters({"restitution": 0.3}).contacts[0].law.restitution == 0.3
 
 
-@pytest.mark.parametrize(
-    "start, stop", [(0.0, -math.pi / 2), (-math.pi, -math.pi / 2), (0.5, -1.0), (-2.5, -1.2)]
-)
+@pytest.mark.parametrize("start, stop", [(0.0, -math.pi / 2), (-math.pi, -math.pi / 2), (0.5, -1.0), (-2.5, -1.2)])
 def test_the_stop_faces_the_pendulum_from_either_side(start: float, stop: float) -> None:
     model = load("pendulum_stop", start_angle=start, stop_angle=stop, length=0.7).model
     (contact,) = model.contacts

@@ -38,9 +38,7 @@ def rebound(damping_factor: float) -> float:
     d = damping_factor
     if d == 0.0:
         return 1.0
-    return float(
-        brentq(lambda e: math.log1p(d) - math.log1p(-d * e) - d * (1.0 + e), 1e-9, min(1.0, 1.0 / d) - 1e-12)
-    )
+    return float(brentq(lambda e: math.log1p(d) - math.log1p(-d * e) - d * (1.0 + e), 1e-9, min(1.0, 1.0 / d) - 1e-12))
 
 
 def drop(law: Any, *, radius: float = 0.0, angle: float = 0.0, mass: float = 2.0) -> Model:
@@ -49,11 +47,7 @@ def drop(law: Any, *, radius: float = 0.0, angle: float = 0.0, mass: float = 2.0
     start = radius + 1e-3
     return Model(
         gravity=(0.0, 0.0),
-        bodies=(
-            PointMass2D(
-                name="p", mass=mass, position=(start * nx, start * ny), velocity=(-V0 * nx, -V0 * ny)
-            ),
-        ),
+        bodies=(PointMass2D(name="p", mass=mass, position=(start * nx, start * ny), velocity=(-V0 * nx, -V0 * ny)),),
         contacts=(
             DiskOnHalfPlane2D(
                 name="floor",

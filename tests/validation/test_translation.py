@@ -43,9 +43,7 @@ def test_free_fall_of_a_point_mass_and_a_turning_body_is_exact() -> None:
         gravity=(0.3, -9.81),
         bodies=(
             PointMass2D(name="p", mass=3.0, position=(1.0, 2.0), velocity=(0.5, -0.2)),
-            RigidBody2D(
-                name="b", mass=0.1, inertia=2.0, velocity=(0.0, 4.0), angle=0.3, angular_velocity=-7.0
-            ),
+            RigidBody2D(name="b", mass=0.1, inertia=2.0, velocity=(0.0, 4.0), angle=0.3, angular_velocity=-7.0),
         ),
     )
     r = run_exudyn(model, 0.8, 1e-2)

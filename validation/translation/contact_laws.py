@@ -7,7 +7,6 @@ the e whose chi is their D: model 2 reaches every D >= 0, so the law is exact, n
 """
 
 import math
-from dataclasses import dataclass
 
 from ...core.contact.laws import Hertz, HuntCrossley, KelvinVoigt, NewtonImpact
 from ...core.contact.laws.hunt_crossley import HuntCrossleyFamily
@@ -17,17 +16,10 @@ _LARGEST_CHI_OF_FIRST_BRANCH = 8.0 / 3.0  # both branches of model 2 give this a
 _NEARLY_ELASTIC = 1.0 - 1e-15
 
 
-@dataclass(frozen=True)
-class ContactParameters:
-    """Fields of exudyn's contact objects."""
+def contact_parameters(law: object, contact: str) -> dict[str, float | int]:
+    """Fields of exudyn's contact objects that make up `law`.
 
-    fields: dict[str, float | int]
-    released_at_zero_force: bool = False
-    """exudyn holds on until the gap opens; the law lets go when its force would become tensile."""
-
-
-def contact_parameters(law: object, contact: str) -> ContactParameters:
-    """exudyn's parameters of `law`.
+    Of Kelvin-Voigt only the force: exudyn holds on until the gap opens, the law lets go at zero force.
 
     Raises
     ------
@@ -40,18 +32,16 @@ def contact_parameters(law: object, contact: str) -> ContactParameters:
         )
     if isinstance(law, KelvinVoigt):
         fields = _fields(law.stiffness, 1.0, 0, 1.0, law.minimum_approach_speed)
-        return ContactParameters({**fields, "contactDamping": law.damping}, released_at_zero_force=True)
+        return {**fields, "contactDamping": law.damping}
     if isinstance(law, Hertz):
-        return ContactParameters(_fields(law.stiffness, law.exponent, 0, 1.0, law.minimum_approach_speed))
+        return _fields(law.stiffness, law.exponent, 0, 1.0, law.minimum_approach_speed)
     if isinstance(law, HuntCrossley) and law.restitution > 0.0:
         model, e = 1, law.restitution
     elif isinstance(law, HuntCrossleyFamily):
         model, e = 2, restitution_for(law.damping_factor())
     else:
-        raise NotTranslatable(
-            f"contact '{contact}' has law {type(law).__name__}, which exudyn has no form of"
-        )
-    return ContactParameters(_fields(law.stiffness, law.exponent, model, e, law.minimum_approach_speed))
+        raise NotTranslatable(f"contact '{contact}' has law {type(law).__name__}, which exudyn has no form of")
+    return _fields(law.stiffness, law.exponent, model, e, law.minimum_approach_speed)
 
 
 def restitution_for(damping_factor: float) -> float:
@@ -65,9 +55,7 @@ def restitution_for(damping_factor: float) -> float:
     return min(2.0 * c / (b + math.sqrt(b * b - 6.0 * c)), _NEARLY_ELASTIC)
 
 
-def _fields(
-    stiffness: float, exponent: float, model: int, e: float, minimum: float
-) -> dict[str, float | int]:
+def _fields(stiffness: float, exponent: float, model: int, e: float, minimum: float) -> dict[str, float | int]:
     return {
         "contactStiffness": stiffness,
         "contactStiffnessExponent": exponent,

@@ -6,16 +6,20 @@ half-plane on a moving body gains angular momentum out of nothing (tried); the s
 """
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from ...core.contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from ...core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from ...core.contact.laws import KelvinVoigt
 from ...core.model.markers import GROUND, Marker2D
-from .contact_laws import ContactParameters, contact_parameters
+from .contact_laws import contact_parameters
 from .kinematics import BodyStates, States, gap_motion
 from .registry import Build, ContactColumns, translates
+
+Shapes = tuple[HalfPlane2D, Disk2D] | tuple[Disk2D, Disk2D]
+BeforeStep = Callable[[Any, float], None]
 
 
 @translates(DiskOnHalfPlane2D)
@@ -25,10 +29,8 @@ def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
     exudyn needs a sphere with a radius, and one deeper than its diameter passes through: so the sphere gets
     a large radius, and the triangle is drawn back as much, which leaves gap and force line unchanged.
     """
-    law = contact_parameters(record.law, record.name)
     plane, disk = record.plane, record.disk
     size = _size(build)
-    radius = disk.radius + size
     angle = plane.marker.angle
     axis, normal = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
     back = Marker2D(
@@ -38,51 +40,62 @@ def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
     reach = 1e3 * size
     ax, ay = reach * axis[0], reach * axis[1]
     corners = [[-ax, -ay, reach], [ax, ay, reach], [0.0, 0.0, -2.0 * reach]]
-    item = build.add(
+    _add(
+        build,
+        record,
+        (plane, disk),
+        1.0,
         "ObjectContactSphereTriangle",
         markerNumbers=[build.point(disk.marker), build.frame(back, record.name)],
-        nodeNumber=_data_node(build, (plane, disk)),
-        sphereRadius=radius,
+        sphereRadius=disk.radius + size,
         trianglePoints=build.exudyn.core.Vector3DList(corners),
         includeEdges=0,
-        **law.fields,
     )
-    _finish(build, record.name, item, law, record.law, (plane, disk), sign=1.0)
 
 
 @translates(DiskOnDisk2D)
 def disk_on_disk(record: DiskOnDisk2D, build: Build) -> None:
     """ObjectContactSphereSphere."""
-    law = contact_parameters(record.law, record.name)
-    item = build.add(
+    _add(
+        build,
+        record,
+        (record.a, record.b),
+        -1.0,
         "ObjectContactSphereSphere",
         markerNumbers=[build.point(record.a.marker), build.point(record.b.marker)],
-        nodeNumber=_data_node(build, (record.a, record.b)),
         spheresRadii=[record.a.radius, record.b.radius],
-        **law.fields,
     )
-    _finish(build, record.name, item, law, record.law, (record.a, record.b), sign=-1.0)
 
 
-def _finish(
-    build: Build, name: str, item: Any, law: ContactParameters, record: Any, shapes: Any, sign: float
+def _add(
+    build: Build,
+    record: DiskOnHalfPlane2D | DiskOnDisk2D,
+    shapes: Shapes,
+    sign: float,
+    item_name: str,
+    **fields: Any,
 ) -> None:
+    """The contact object with its law and memory; `sign` is +1 if its Force acts on the second shape's body."""
+    law = contact_parameters(record.law, record.name)
+    memory = _data_node(build, shapes)
+    item = build.add(item_name, nodeNumber=memory, **fields, **law)
     if build.sensors:
-        build.contacts.append(ContactColumns(name, shapes, build.sensor(item, "Force"), sign))
-    if law.released_at_zero_force:
-        build.before_step.append(_release(build, item, record, shapes))
-        build.notes.append(
-            f"{name}: switched off at the start of the step where its force would become tensile"
-        )
+        build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
+    if isinstance(record.law, KelvinVoigt):
+        build.before_step.append(_release(build, item, memory, record.law, shapes))
+        build.notes.append(f"{record.name}: switched off at the start of the step where its force would be tensile")
 
 
-def _release(build: Build, item: Any, law: KelvinVoigt, shapes: Any) -> Any:
+def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Shapes) -> BeforeStep:
     """Switch the contact off when the force has come to zero, and on again when the gap has opened."""
     names = {marker.body for marker in (shapes[0].marker, shapes[1].marker)} - {GROUND}
     starts = {b.name: b.initial_state()[0] for b in build.model.bodies if b.name in names}
     core, active = build.exudyn.core, [True]
 
     def before_step(mbs: Any, t: float) -> None:
+        # while the contact is on, exudyn keeps its gap in the data node: nearly all steps are done with here
+        if active[0] and mbs.GetNodeOutput(memory, core.OutputVariableType.Coordinates)[0] > 0.0:
+            return
         bodies = {}
         for name in names:
             node = build.bodies[name].node
@@ -100,7 +113,7 @@ def _release(build: Build, item: Any, law: KelvinVoigt, shapes: Any) -> Any:
     return before_step
 
 
-def _data_node(build: Build, shapes: Any) -> Any:
+def _data_node(build: Build, shapes: Shapes) -> Any:
     """Node of the contact's memory, with the gap at the start: exudyn's active set begins with it."""
     bodies = {}
     for b in build.model.bodies:

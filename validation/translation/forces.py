@@ -38,9 +38,7 @@ def applied_torque(record: AppliedTorque2D, build: Build) -> None:
     _load(build, "LoadTorqueVector", marker, (None, None, time_function(record.torque, build.model)))
 
 
-def _load(
-    build: Build, item: str, marker: Any, components: tuple[TimeFunction | None, ...], **fields: Any
-) -> None:
+def _load(build: Build, item: str, marker: Any, components: tuple[TimeFunction | None, ...], **fields: Any) -> None:
     """A load vector of three components, None for zero."""
     if all(c is None or c.constant is not None for c in components):
         vector = [0.0 if c is None else c.value(0.0) for c in components]
@@ -52,6 +50,4 @@ def _load(
         return [0.0 if c is None else c.value(t) for c in components]
 
     # the vector given with a user function is only a stand-in, but must not be zero
-    build.add(
-        item, markerNumber=marker, loadVector=[1.0, 1.0, 1.0], loadVectorUserFunction=vector_at, **fields
-    )
+    build.add(item, markerNumber=marker, loadVector=[1.0, 1.0, 1.0], loadVectorUserFunction=vector_at, **fields)

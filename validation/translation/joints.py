@@ -35,14 +35,13 @@ def prismatic(record: Prismatic2D, build: Build) -> None:
         relative = _start_angle(build, record.b.body) - _start_angle(build, record.a.body)
     axis = record.a.angle
     normal = axis + 0.5 * math.pi - relative
-    item = build.add(
+    build.add(
         "ObjectJointPrismatic2D",
         markerNumbers=[build.frame(record.a, record.name), build.frame(record.b, record.name)],
         axisMarker0=[math.cos(axis), math.sin(axis), 0.0],
         normalMarker1=[math.cos(normal), math.sin(normal), 0.0],
     )
-    build.notes.append(f"{record.name}: exudyn's joint forces are not compared (other multipliers)")
-    del item
+    build.notes.append(f"{record.name}: its forces are not read back from exudyn, which splits them otherwise")
 
 
 @translates(Distance2D)

@@ -101,9 +101,7 @@ class Build:
         """A position marker."""
         local = [*marker.point, 0.0]
         if marker.body != GROUND and not self.bodies[marker.body].rigid:
-            return self.add(
-                "MarkerBodyPosition", bodyNumber=self.bodies[marker.body].item, localPosition=local
-            )
+            return self.add("MarkerBodyPosition", bodyNumber=self.bodies[marker.body].item, localPosition=local)
         return self.add("MarkerBodyRigid", bodyNumber=self._item(marker.body), localPosition=local)
 
     def frame(self, marker: Marker2D, user: str) -> Any:
@@ -120,9 +118,7 @@ class Build:
         target = {"nodeNumber": item} if of_node else {"objectNumber": item}
         output_type = getattr(self.exudyn.core.OutputVariableType, output)
         make = getattr(self.exudyn.items, kind)
-        return self.mbs.AddSensor(
-            make(**target, outputVariableType=output_type, storeInternal=True, writeToFile=False)
-        )
+        return self.mbs.AddSensor(make(**target, outputVariableType=output_type, storeInternal=True, writeToFile=False))
 
     def _item(self, body: str) -> int:
         return self.ground if body == GROUND else self.bodies[body].item

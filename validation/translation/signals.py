@@ -36,10 +36,10 @@ def time_function(signal: Signal, model: Model) -> TimeFunction:
         a, w, p, c = signal.amplitude, signal.angular_frequency, signal.phase, signal.offset
         return TimeFunction(lambda t: c + a * math.sin(w * t + p), lambda t: a * w * math.cos(w * t + p))
     if isinstance(signal, Polynomial):
-        c = signal.coefficients
+        series = signal.coefficients
         return TimeFunction(
-            lambda t: sum(ck * t**k for k, ck in enumerate(c)),
-            lambda t: sum(k * ck * t ** (k - 1) for k, ck in enumerate(c) if k),
+            lambda t: sum(x * t**k for k, x in enumerate(series)),
+            lambda t: sum(k * x * t ** (k - 1) for k, x in enumerate(series) if k),
         )
     if isinstance(signal, Step):
         return TimeFunction(lambda t: signal.after if t >= signal.time else signal.before, lambda t: 0.0)

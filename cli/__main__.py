@@ -1,0 +1,5 @@
+"""`python -m tlismni.cli`."""
+
+from . import main
+
+main()

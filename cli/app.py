@@ -1,0 +1,47 @@
+"""The application: one command a file in `commands/`, registered here."""
+
+import typer
+
+from .commands import cosim, crosscheck, export, methods, run
+from .commands import list as list_command
+
+app = typer.Typer(
+    name="tlismni",
+    epilog=(
+        "Start with [bold]tlismni list[/bold], then [bold]tlismni run pendulum_stop[/bold]. "
+        "Figures go to stdout (as one JSON object with --json), everything else to stderr. "
+        "Exit code: 0 done, 1 failed or not in agreement, 2 wrong usage."
+    ),
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    # a failure is one line (`errors.py`); with --debug it is Python's own traceback
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def print_version(wanted: bool) -> None:
+    """Print the version and end."""
+    if wanted:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            typer.echo(version("tlismni"))
+        except PackageNotFoundError:
+            typer.echo("unknown (not installed)")
+        raise typer.Exit
+
+
+@app.callback()
+def tlismni(
+    version: bool = typer.Option(False, "--version", callback=print_version, is_eager=True, help="Print the version."),
+) -> None:
+    """Impact in flexible multibody systems with constraints: solve, export as an FMU, cross-check."""
+
+
+app.command("list", epilog=list_command.EXAMPLES)(list_command.list_scenarios)
+app.command("methods", epilog=methods.EXAMPLES)(methods.methods)
+app.command("run", epilog=run.EXAMPLES)(run.run)
+app.command("export", epilog=export.EXAMPLES)(export.export)
+app.command("cosim", epilog=cosim.EXAMPLES)(cosim.cosim)
+app.command("crosscheck", epilog=crosscheck.EXAMPLES)(crosscheck.crosscheck)

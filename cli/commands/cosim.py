@@ -1,0 +1,134 @@
+"""`tlismni cosim`: the FMU under fmpy against the same slave in process, bit for bit."""
+
+import tempfile
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..errors import Failure, one_line_errors
+from ..options import Atol, Debug, EndTime, Json, MethodName, MethodOption, Rtol, Set, Source, Step, positive
+from ..screen import compile_notice, number, print_json, print_table, say, status_line, stdout
+
+EXAMPLES = (
+    "Examples:\n\n  tlismni cosim pendulum_stop -o out/demo\n\n"
+    "  tlismni cosim pendulum_stop --irregular --communication-step 0.03 --json"
+)
+
+
+@one_line_errors
+def cosim(
+    source: Source,
+    communication_step: Annotated[
+        float, typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s.")
+    ] = 0.01,
+    irregular: Annotated[
+        bool, typer.Option("--irregular", help="Steps of 0.2 to 1.8 times that, the same in every run.")
+    ] = False,
+    folder: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="DIR", help="Leave FMU, CSV files and figure here.")
+    ] = None,
+    set: Set = None,
+    t_end: EndTime = None,
+    method: MethodName = None,
+    rtol: Rtol = None,
+    atol: Atol = None,
+    step: Step = None,
+    option: MethodOption = None,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Export the FMU, drive it with fmpy, and compare it with the same slave in process.
+
+    At every communication point all outputs must be the same bit for bit; if not, the exit code is 1. For
+    information, the run is compared with one that has no communication points too.
+    """
+    from ...fmu_wrapper import export_fmu
+    from ..cosimulation import communication_points, compare
+    from ..source import read_source
+
+    scenario = read_source(source, set, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    times = communication_points(scenario.t_end, communication_step, irregular)
+    with tempfile.TemporaryDirectory(prefix="tlismni_", ignore_cleanup_errors=True) as temporary:
+        place = Path(temporary) if folder is None else folder
+        place.mkdir(parents=True, exist_ok=True)
+        with compile_notice(), status_line("exporting the FMU") as tell:
+            fmu = export_fmu(scenario, place / f"{scenario.name}.fmu", communication_step=communication_step)
+            found = compare(scenario, fmu, Path(temporary) / "unzipped", times, tell)
+        files = [] if folder is None else [fmu, *_write(folder, scenario, found)]
+    figures = {**_figures(scenario, found, irregular), "files": [str(path) for path in files]}
+    if json:
+        print_json(figures)
+    else:
+        _print(figures)
+        for path in files:
+            say(f"wrote {path}")
+    if not found.identical:
+        t, name = found.first
+        raise Failure(
+            f"FMU and slave differ in {len(found.different)} of {len(found.fmu)} outputs, first in '{name}' "
+            f"at t = {number(t, 9)} s"
+        )
+
+
+def _figures(scenario: Any, found: Any, irregular: bool) -> dict[str, Any]:
+    import numpy as np
+
+    from ..source import solver_settings
+
+    steps = np.diff(found.times)
+    return {
+        "scenario": scenario.name,
+        "parameters": dict(scenario.parameters),
+        "t_end": scenario.t_end,
+        "solver": solver_settings(scenario),
+        "irregular": irregular,
+        "communication_steps": len(steps),
+        "shortest_step": float(steps.min()),
+        "longest_step": float(steps.max()),
+        "outputs": len(found.fmu),
+        "values": found.values,
+        "identical": found.identical,
+        "different": list(found.different),
+        "events": int(found.fmu["solver.events"][-1]),
+        "uninterrupted": {
+            name: {
+                "largest_difference": float(np.max(np.abs(found.fmu[name] - values))),
+                "largest_value": float(np.max(np.abs(values))),
+            }
+            for name, values in found.uninterrupted.items()
+        },
+    }
+
+
+def _print(figures: dict[str, Any]) -> None:
+    verdict = "identical bit for bit" if figures["identical"] else f"different: {', '.join(figures['different'])}"
+    kind = "irregular" if figures["irregular"] else "regular"
+    rows = [
+        ("communication steps", f"{figures['communication_steps']}, {kind}"),
+        ("their size", f"{number(figures['shortest_step'])} to {number(figures['longest_step'])} s"),
+        ("contact events", figures["events"]),
+        ("outputs", figures["outputs"]),
+        ("values compared", figures["values"]),
+        ("FMU and slave", verdict),
+    ]
+    stdout().print(
+        f"{figures['scenario']}: 0 to {number(figures['t_end'])} s with {figures['solver']['method']}", markup=False
+    )
+    print_table("", ("FMU under fmpy against the slave in process", ""), rows)
+    rows = [
+        (name, number(pair["largest_difference"], 3), number(pair["largest_value"]))
+        for name, pair in figures["uninterrupted"].items()
+    ]
+    print_table("co-simulation against one uninterrupted run", ("output", "largest difference", "largest value"), rows)
+
+
+def _write(folder: Path, scenario: Any, found: Any) -> list[Path]:
+    from ..plots import plot_cosimulation
+    from ..result_files import write_csv
+
+    return [
+        write_csv(folder / f"{scenario.name}_fmu.csv", {"time": found.times, **found.fmu}),
+        write_csv(folder / f"{scenario.name}_slave.csv", {"time": found.times, **found.slave}),
+        plot_cosimulation(scenario, found, folder / f"{scenario.name}_cosim.png"),
+    ]

@@ -1,0 +1,72 @@
+"""`tlismni export`: write an FMU."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..errors import one_line_errors
+from ..options import (
+    Atol,
+    CommunicationStep,
+    Debug,
+    EndTime,
+    Json,
+    MethodName,
+    MethodOption,
+    Rtol,
+    Set,
+    Source,
+    Step,
+    check_suffix,
+)
+from ..screen import compile_notice, print_json, say
+
+EXAMPLES = (
+    "Examples:\n\n  tlismni export pendulum_stop -o pendulum.fmu\n\n"
+    "  tlismni export my_model.json -o ball.fmu --t-end 2 --method ebdf --option k=3 --set restitution=0.5"
+)
+
+
+@one_line_errors
+def export(
+    source: Source,
+    output: Annotated[Path, typer.Option("--output", "-o", help="The FMU to write, .fmu.")],
+    fmi: Annotated[str, typer.Option("--fmi", help="Version of the FMI standard.")] = "2.0",
+    set: Set = None,
+    t_end: EndTime = None,
+    communication_step: CommunicationStep = None,
+    method: MethodName = None,
+    rtol: Rtol = None,
+    atol: Atol = None,
+    step: Step = None,
+    option: MethodOption = None,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Export a scenario or a model file as a co-simulation FMU."""
+    check_suffix(output, (".fmu",), "--output")
+
+    from ...fmu_wrapper import export_fmu
+    from ..source import read_source, solver_settings
+
+    scenario = read_source(source, set, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with compile_notice():
+        path = export_fmu(scenario, output, fmi, communication_step=communication_step)
+    size = path.stat().st_size
+    if json:
+        print_json(
+            {
+                "file": str(path),
+                "bytes": size,
+                "fmi": fmi,
+                "scenario": scenario.name,
+                "parameters": dict(scenario.parameters),
+                "t_end": scenario.t_end,
+                "solver": solver_settings(scenario),
+                "inputs": [channel.name for channel in scenario.model.inputs],
+            }
+        )
+    else:
+        say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB)")

@@ -1,0 +1,86 @@
+"""`tlismni run`: integrate, and say what happened."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..errors import one_line_errors
+from ..options import (
+    Atol,
+    Debug,
+    EndTime,
+    Json,
+    MethodName,
+    MethodOption,
+    Rtol,
+    Set,
+    Source,
+    Step,
+    check_suffix,
+)
+from ..screen import compile_notice, print_json, progress_bar, say
+
+EXAMPLES = (
+    "Examples:\n\n  tlismni run pendulum_stop --set restitution=0.5 --plot swing.png\n\n"
+    "  tlismni run chain --set links=20 --method hht --option alpha=-0.1 --step 1e-3\n\n"
+    "  tlismni run my_model.json --t-end 2 --output result.csv --json"
+)
+
+
+@one_line_errors
+def run(
+    source: Source,
+    set: Set = None,
+    t_end: EndTime = None,
+    method: MethodName = None,
+    rtol: Rtol = None,
+    atol: Atol = None,
+    step: Step = None,
+    option: MethodOption = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Write all channels: .csv, .json or .npz.", rich_help_panel="Output"),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option("--plot", help="Draw the main channels: .png, .pdf or .svg.", rich_help_panel="Output"),
+    ] = None,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Run a scenario or a model file, and print events, constraint residuals, energy balance and statistics."""
+    check_suffix(output, (".csv", ".json", ".npz"), "--output")
+    check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
+
+    from ...core import simulate
+    from ..source import read_source
+    from ..summary import print_summary, summarise
+
+    scenario = read_source(source, set, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    with compile_notice(), progress_bar(scenario.name, scenario.t_end) as progress:
+        result = simulate(
+            scenario.model,
+            scenario.t_end,
+            scenario.method,
+            scenario.rtol,
+            scenario.atol,
+            progress=progress,
+            **scenario.options,
+        )
+    files = []
+    if output is not None:
+        from ..result_files import write_result
+
+        files.append(write_result(result, output))
+    if plot is not None:
+        from ..plots import plot_result
+
+        files.append(plot_result(result, scenario, plot))
+    figures = {**summarise(scenario, result), "files": [str(path) for path in files]}
+    if json:
+        print_json(figures)
+    else:
+        print_summary(figures)
+        for path in files:
+            say(f"wrote {path}")

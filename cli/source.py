@@ -1,0 +1,108 @@
+"""What a command works on: a scenario of the catalogue or a model file, with the settings of the command line."""
+
+import os
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+import typer
+
+from ..core import METHODS, Model, ModelError
+from ..models import Scenario, catalogue, load
+from .options import pairs, value_of
+
+RUN_OPTIONS = ("first_step", "max_step", "newton_tolerance", "outer", "start_tolerance")
+"""Options that every method takes."""
+
+
+def read_source(
+    source: str,
+    sets: Iterable[str] | None = None,
+    *,
+    t_end: float | None = None,
+    method: str | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
+    step: float | None = None,
+    options: Iterable[str] | None = None,
+) -> Scenario:
+    """The scenario to run: `source` with everything that was given in place of its own settings.
+
+    Raises
+    ------
+    ModelError : for an unknown scenario, parameter, method or option, or a bad value.
+    BadParameter : for a model file without an end time, or a malformed name=value.
+    """
+    changes = pairs(sets or (), "--set")
+    found = _model_file(source, changes, t_end) if is_file(source) else _scenario(source, changes)
+    given = pairs(options or (), "--option")
+    chosen = method or found.method
+    own = dict(found.options)
+    if chosen != found.method:
+        # options of the scenario's own method mean nothing to another
+        own = {name: value for name, value in own.items() if name in RUN_OPTIONS}
+    if step is not None:
+        own["step"] = step
+    own |= _options(chosen, given)
+    settings: dict[str, Any] = {"t_end": t_end, "rtol": rtol, "atol": atol}
+    return replace(
+        found, method=chosen, options=own, **{name: value for name, value in settings.items() if value is not None}
+    )
+
+
+def is_file(source: str) -> bool:
+    """True if `source` means a model file, not a scenario's name."""
+    return source.lower().endswith(".json") or "/" in source or os.sep in source
+
+
+def _scenario(name: str, changes: dict[str, str]) -> Scenario:
+    tables = {entry.name: {p.name: p for p in entry.parameters} for entry in catalogue()}
+    table = tables.get(name, {})
+    # `load` refuses unknown names, and says what there is
+    return load(name, **{key: table[key].parse(text) if key in table else text for key, text in changes.items()})
+
+
+def _model_file(path: str, changes: dict[str, str], t_end: float | None) -> Scenario:
+    model = Model.load(path)
+    if t_end is None:
+        raise typer.BadParameter("a model file says nothing about how long to run: give --t-end", param_hint="--t-end")
+    values = {name: _number(name, text) for name, text in changes.items()}
+    model = model.with_parameters(values) if values else model
+    parameters = {p.name: model.parameter_value(p.name) for p in model.parameters}
+    return Scenario(
+        model.name, model.description, model, t_end, parameters=parameters, compare=_interesting_channels(model)
+    )
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ModelError(f"parameter '{name}': '{text}' is not a number") from None
+
+
+def _interesting_channels(model: Model) -> tuple[str, ...]:
+    """What to plot of a model that does not say: the last body's coordinates, then gaps and forces."""
+    bodies = [f"{body.name}.{coordinate}" for body in model.bodies[-1:] for coordinate in body.coordinate_names]
+    return (*bodies, *(f"{c.name}.{what}" for c in model.contacts[:2] for what in ("gap", "normal_force")))
+
+
+def _options(method: str, given: dict[str, str]) -> dict[str, Any]:
+    if method in METHODS:  # the core names the methods that there are
+        known = {*METHODS[method].options, *RUN_OPTIONS}
+        unknown = sorted(set(given) - known)
+        if unknown:
+            raise ModelError(f"method '{method}' has no option {unknown}; there are {sorted(known)}")
+    return {name: value_of(text) for name, text in given.items()}
+
+
+def solver_settings(scenario: Scenario) -> dict[str, Any]:
+    """The settings of a run as plain data."""
+    options = dict(scenario.options)
+    return {
+        "method": scenario.method,
+        "rtol": scenario.rtol,
+        "atol": scenario.atol,
+        "step": options.pop("step", None),
+        "options": options,
+    }

@@ -1,0 +1,300 @@
+"""EquationSystem: equations of motion from a user's functions instead of elements."""
+
+import ctypes
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, kernel_address
+from ..contact.laws import ContactLaw, ForceLaw
+from ..contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
+from ..model.channels import Channel
+from ..system.assembly import GROUND_SLOTS, Assembly, Batch, ContactInfo
+from .constraints import ConstraintFunctions
+from .errors import EquationError
+from .functions import EquationFunctions
+from .kernel import CALLBACK, equations_kernel
+
+
+@dataclass(frozen=True)
+class GapContact:
+    """A contact of user-written equations: a gap function and a law.
+
+    gap : g(t, q), m; >= 0 outside contact.
+    law : NewtonImpact (constraint) or a continuous force law.
+    """
+
+    name: str
+    gap: Callable[..., Any]
+    law: ContactLaw
+
+
+class EquationSystem:
+    """M(t,q) a + Phi_q^T lambda = Q(t,q,v) with Phi(t,q) = 0, from functions.
+
+    Parameters
+    ----------
+    mass : M(t, q) -> (n, n), or a constant array.
+    force : Q(t, q, v) -> (n,), or a constant array.
+    constraint : Phi(t, q) -> (m,), or None.
+    q0, v0 : start, (n,) each; moved onto the constraints within `start_tolerance` of the simulation.
+    constraint_jacobian, gamma, constraint_rate : Phi_q(t, q), gamma(t, q, v), Phi_t(t, q); what is not given is formed
+        by automatic differentiation, exact to rounding.
+    contacts : `GapContact`s.
+    potential : V(t, q) for the energy channels; left out, the potential energy counts as zero.
+    coordinates : names of the coordinates (default q0, q1, ...).
+    scale : typical magnitudes of the coordinates (n,), so that units do not choose the partition (default 1).
+    t0 : time at which the functions are checked.
+
+    Raises
+    ------
+    EquationError : if the functions do not fit together; says what was given, what was needed and how to mend it.
+
+    Examples
+    --------
+    A point on a circle whose radius breathes:
+
+    >>> import numpy as np
+    >>> from tlismni.core import EquationSystem
+    >>> system = EquationSystem(
+    ...     mass=np.eye(2),
+    ...     force=lambda t, q, v: np.array([0.0, -9.81]),
+    ...     constraint=lambda t, q: q[0] ** 2 + q[1] ** 2 - (1.0 + 0.1 * np.sin(t)) ** 2,
+    ...     q0=[1.0, 0.0],
+    ...     v0=[0.1, 0.0],
+    ... )
+    """
+
+    def __init__(
+        self,
+        mass: Any,
+        force: Any,
+        constraint: Callable[..., Any] | None = None,
+        *,
+        q0: ArrayLike,
+        v0: ArrayLike,
+        constraint_jacobian: Any = None,
+        gamma: Any = None,
+        constraint_rate: Any = None,
+        contacts: Sequence[GapContact] = (),
+        potential: Callable[..., Any] | None = None,
+        coordinates: Sequence[str] | None = None,
+        scale: ArrayLike | None = None,
+        t0: float = 0.0,
+    ) -> None:
+        self.q0 = _vector("q0", q0, None)
+        n = len(self.q0)
+        self.v0 = _vector("v0", v0, n)
+        self.scale = np.ones(n) if scale is None else _vector("scale", scale, n)
+        if np.any(self.scale <= 0.0):
+            raise EquationError(f"scale must be positive, it is {self.scale}")
+        self.coordinates = tuple(f"q{k}" for k in range(n)) if coordinates is None else tuple(coordinates)
+        if len(self.coordinates) != n or len(set(self.coordinates)) != n:
+            raise EquationError(f"coordinates must be {n} different names, they are {self.coordinates}")
+        self.functions = EquationFunctions(
+            mass, force, constraint, constraint_jacobian, gamma, n=n, constraint_rate=constraint_rate
+        )
+        self.functions.check(t0, self.q0, self.v0)
+        self.contacts = tuple(contacts)
+        self.gaps = [ConstraintFunctions(c.gap, None, None, None, n) for c in self.contacts]
+        for contact, gap in zip(self.contacts, self.gaps, strict=True):
+            value = gap.value(t0, self.q0)
+            if value.shape != (1,):
+                raise EquationError(f"gap of contact '{contact.name}' must be one number, it has shape {value.shape}")
+        self.potential = potential
+        self._given = (mass, force, constraint, constraint_jacobian, gamma, constraint_rate)
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.q0)
+
+    @property
+    def m(self) -> int:
+        """Number of constraints, contacts not counted."""
+        return self.functions.m
+
+    inputs: tuple[Any, ...] = ()
+
+    def identity(self) -> str:
+        """Hash of the functions' source (or byte code) and the start: a state fits only the same equations."""
+        parts = [self.q0.tobytes().hex(), self.v0.tobytes().hex()]
+        for given in (*self._given, *(c.gap for c in self.contacts)):
+            function = getattr(given, "py_func", given)
+            code = getattr(function, "__code__", None)
+            parts.append(repr(given) if code is None else code.co_code.hex() + repr(code.co_consts))
+        parts += [c.name + repr(c.law) for c in self.contacts]
+        return hashlib.sha256("|".join(parts).encode()).hexdigest()
+
+    def assemble(self) -> Assembly:
+        """One batch whose kernel calls the functions."""
+        n, m, contacts = self.n, self.m, len(self.contacts)
+        rows = m + contacts
+        full = tuple((i, j) for i in range(n) for j in range(n))
+        work_names = [f"{c.name}.{what}" for c in self.contacts for what in ("impulse", "dissipation")]
+        first = n + GROUND_SLOTS
+        binding = _Binding(self)
+        assembly = Assembly(
+            n=n,
+            m=rows,
+            m_joints=m,
+            batches=[
+                Batch(
+                    kernel_address(equations_kernel),
+                    np.zeros((1, 1)),
+                    np.arange(n, dtype=np.int64)[None, :],
+                    np.arange(rows, dtype=np.int64)[None, :],
+                    np.array([[binding.address]], dtype=np.int64),
+                    full,
+                    tuple((k, j) for k in range(rows) for j in range(n)),
+                    np.full(1, -1, dtype=np.int64),
+                )
+            ],
+            q0=self.q0.copy(),
+            v0=self.v0.copy(),
+            row_names=[f"constraint[{k}]" for k in range(m)] + [c.name for c in self.contacts],
+            coordinate_names=list(self.coordinates),
+            contacts=[
+                ContactInfo(c.name, m + k, c.law, first + 2 * k, first + 2 * k + 1) for k, c in enumerate(self.contacts)
+            ],
+            work_names=work_names,
+            signals=np.zeros(1),
+            input_names=[],
+            input_start=np.zeros(0),
+            breakpoints=[],
+            multiplier_channels=[Channel(f"lambda{k}", "1", f"multiplier of constraint {k}") for k in range(m)],
+            body_columns=[],
+            coordinate_scale=self.scale,
+            bind=binding.bind,
+        )
+        binding.errors = assembly.user_error
+        return assembly
+
+    def coordinate_channels(self, assembly: Assembly, layout: Any) -> Any:
+        """Channels of the coordinates, their rates and second rates."""
+        columns = []
+        for part, prefix, what in (
+            (layout.q, "", "coordinate"),
+            (layout.v, "d_", "rate"),
+            (layout.a, "dd_", "second rate"),
+        ):
+            for k, name in enumerate(self.coordinates):
+                at = part.start + k
+                columns.append((Channel(prefix + name, "1", f"{what} {name}"), lambda s, at=at: s[:, at]))
+        return columns
+
+
+class _Binding:
+    """Connects the kernel's callback with one workspace."""
+
+    def __init__(self, system: EquationSystem) -> None:
+        self.system = system
+        self.errors: list[BaseException] = []
+        self.workspace: Any = None
+        self._callback = CALLBACK(self._call)
+        self.address = int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
+
+    def bind(self, workspace: Any) -> None:
+        self.workspace = workspace
+
+    def _call(self, job: int, t: float) -> int:
+        try:
+            self._act(job, t)
+        except BaseException as error:  # it must not cross the compiled frames: it is raised when they have returned
+            self.errors.append(error)
+            return 1
+        return 0
+
+    def _act(self, job: int, t: float) -> None:
+        system, arrays = self.system, self.workspace.arrays
+        n, m, functions = system.n, system.m, self.system.functions
+        q, v, a = arrays["q"][:n].copy(), arrays["v"][:n].copy(), arrays["a"][:n].copy()
+        lam = arrays["lam"][:m].copy()
+        if job == RESIDUAL:
+            r, phi, phid, phidd = functions.residuals(t, q, v, a, lam)
+            arrays["r"][:n] += r
+            arrays["phi"][:m], arrays["phid"][:m], arrays["phidd"][:m] = phi, phid, phidd
+            self._gap_residuals(t, q, v, a)
+        elif job == TANGENT:
+            self._tangent(t, q, v, a, lam)
+        elif job == ENERGY:
+            arrays["energy"][0] += 0.5 * float(v @ functions.mass(t, q) @ v)
+            if system.potential is not None:
+                arrays["energy"][1] += float(np.asarray(system.potential(t, q)).reshape(()))
+        elif job == POWER:
+            self._power(t, q, v, a)
+
+    def _force(self, k: int, gap: float, rate: float) -> tuple[float, ...]:
+        law = self.system.contacts[k].law
+        approach = float(self.workspace.arrays["memory"][k, APPROACH_SPEED])
+        if not isinstance(law, ForceLaw):
+            raise EquationError(f"contact '{self.system.contacts[k].name}' has no force law")
+        return law.evaluate(max(-gap, 0.0), -rate, approach)
+
+    def _gap_residuals(self, t: float, q: NDArray, v: NDArray, a: NDArray) -> None:
+        arrays, m = self.workspace.arrays, self.system.m
+        for k, gap in enumerate(self.system.gaps):
+            gradient, g, gd, gdd = (np.asarray(x).reshape(-1) for x in gap.levels(t, q, v, a))
+            row = m + k
+            arrays["phi"][row], arrays["phid"][row], arrays["phidd"][row] = g[0], gd[0], gdd[0]
+            mode = arrays["memory"][k, MODE]
+            if isinstance(self.system.contacts[k].law, ForceLaw):
+                force = self._force(k, g[0], gd[0])[0]
+                arrays["monitor"][k] = force
+                if mode == ACTIVE:
+                    arrays["r"][: len(q)] -= force * gradient
+            elif mode == CLOSED:
+                arrays["monitor"][k] = -arrays["lam"][row]
+                arrays["r"][: len(q)] += arrays["lam"][row] * gradient
+            else:
+                arrays["monitor"][k] = 0.0
+
+    def _tangent(self, t: float, q: NDArray, v: NDArray, a: NDArray, lam: NDArray) -> None:
+        arrays, m, n = self.workspace.arrays, self.system.m, self.system.n
+        c_q, c_v = arrays["coef"]
+        stiffness, jacobian = self.system.functions.tangent(t, q, v, a, lam, c_q, c_v)
+        rows = np.zeros((m + len(self.system.gaps), n))
+        rows[:m] = jacobian
+        for k, gap in enumerate(self.system.gaps):
+            gradient = np.asarray(gap.jacobian(t, q)).reshape(-1)
+            mode = arrays["memory"][k, MODE]
+            if mode == CLOSED:
+                rows[m + k] = gradient
+            elif mode == ACTIVE:
+                _, g, gd, _ = (np.asarray(x).reshape(-1) for x in gap.levels(t, q, v, a))
+                _, f_d, f_dd, _, _ = self._force(k, g[0], gd[0])
+                # the curvature of the gap is left out: it changes the rate of convergence, not the solution
+                stiffness = stiffness + (c_q * f_d + c_v * f_dd) * np.outer(gradient, gradient)
+        structure, values = self.workspace.structure, arrays["values"]
+        values[structure.slot_s[0][0]] += stiffness.ravel()
+        if rows.size:
+            values[structure.slot_j[0][0]] += rows.ravel()
+            values[structure.slot_jt[0][0]] += rows.ravel()
+
+    def _power(self, t: float, q: NDArray, v: NDArray, a: NDArray) -> None:
+        arrays, m = self.workspace.arrays, self.system.m
+        for k, contact in enumerate(self.workspace.assembly.contacts):
+            mode = arrays["memory"][k, MODE]
+            if mode == CLOSED:
+                arrays["a"][contact.impulse_account] -= arrays["lam"][m + k]
+            elif mode == ACTIVE:
+                _, g, gd, _ = (np.asarray(x).reshape(-1) for x in self.system.gaps[k].levels(t, q, v, a))
+                force, _, _, elastic, _ = self._force(k, g[0], gd[0])
+                arrays["a"][contact.impulse_account] += force
+                arrays["a"][contact.dissipation_account] += (elastic - force) * gd[0]
+
+
+def _vector(name: str, given: ArrayLike, n: int | None) -> NDArray[np.float64]:
+    try:
+        x = np.array(given, dtype=float, ndmin=1)
+    except (TypeError, ValueError) as error:
+        raise EquationError(f"{name} must be a list of numbers, not {given!r}") from error
+    if x.ndim != 1 or (n is not None and len(x) != n) or len(x) == 0:
+        raise EquationError(f"{name} must have shape ({'n' if n is None else n},), it has {x.shape}")
+    if not np.all(np.isfinite(x)):
+        raise EquationError(f"{name} must be finite, it is {x}")
+    return x

@@ -1,0 +1,85 @@
+"""Models and hosts for the tests of the FMU wrapper."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tlismni.core
+from fake_simulation import FakeSimulation
+from tlismni.core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.contact.laws import NewtonImpact
+from tlismni.core.description import Model
+from tlismni.core.elements import AppliedForce2D, PointMass2D
+from tlismni.core.model.channels import Input, Parameter
+from tlismni.core.model.markers import Marker2D
+from tlismni.core.model.signals import InputSignal
+from tlismni.fmu_wrapper import Slave, export_fmu
+
+
+def ball_model(name: str = "driven_ball", height: float = 1.0) -> Model:
+    """A ball over a floor, with a vertical force as input."""
+    marker = Marker2D(body="ball")
+    return Model(
+        name=name,
+        bodies=[PointMass2D(name="ball", mass=2.0, position=(0.0, height))],
+        forces=[AppliedForce2D(name="drive", marker=marker, force_y=InputSignal(channel="push"))],
+        contacts=[
+            DiskOnHalfPlane2D(
+                name="floor", plane=HalfPlane2D(), disk=Disk2D(marker=marker, radius=0.0),
+                law=NewtonImpact(restitution=0.7),
+            )
+        ],
+        inputs=[Input(name="push", unit="N", start=1.0, description="force on the ball, upwards")],
+        parameters=[
+            Parameter(name="restitution", minimum=0.0, maximum=1.0, targets=["floor.law.restitution"]),
+            Parameter(name="mass", unit="kg", minimum=0.0, targets=["ball.mass"]),
+        ],
+    )  # fmt: skip
+
+
+class Messages(list[tuple[int, str, str]]):
+    """A log that can be asked."""
+
+    def __call__(self, status: int, category: str, message: str) -> None:
+        self.append((status, category, message))
+
+    @property
+    def errors(self) -> list[str]:
+        return [message for _, category, message in self if category == "logStatusError"]
+
+
+@pytest.fixture
+def model() -> Model:
+    return ball_model()
+
+
+@pytest.fixture
+def messages() -> Messages:
+    return Messages()
+
+
+@pytest.fixture
+def fake_slave(model: Model, messages: Messages) -> Callable[..., Slave]:
+    """Makes slaves on the fake simulation."""
+
+    def make(**arguments: Any) -> Slave:
+        return Slave(model, simulation_factory=FakeSimulation, on_log=messages, **arguments)
+
+    return make
+
+
+@pytest.fixture
+def fake_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Everything in this process, FMUs too, runs on the fake simulation."""
+    monkeypatch.setattr(tlismni.core, "Simulation", FakeSimulation, raising=False)
+
+
+@pytest.fixture
+def fake_fmu(fake_core: None, model: Model, tmp_path: Path) -> Callable[..., Path]:
+    """Exports FMUs that run on the fake simulation in this process."""
+
+    def make(name: str = "ball.fmu", source: Any = model, **arguments: Any) -> Path:
+        return export_fmu(source, tmp_path / name, **{"t_end": 2.0, **arguments})
+
+    return make

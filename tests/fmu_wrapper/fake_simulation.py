@@ -1,0 +1,108 @@
+"""A stand-in for `tlismni.core.Simulation`: the bouncing ball in closed form, with failures on demand.
+
+For the tests of everything around the solver: it needs no compilation, and it fails when told to.
+"""
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from tlismni.core.errors import ModelError, SimulationError
+from tlismni.core.events import Event
+from tlismni.core.model.channels import Channel
+
+CHANNELS = (
+    Channel("ball.y", "m", "height"),
+    Channel("ball.vy", "m/s", "velocity"),
+    Channel("ball.ay", "m/s2", "acceleration"),
+    Channel("floor.in_contact", "1", "never, in this model", "boolean"),
+    Channel("floor.mode", "1", "bounces so far", "integer"),
+)
+
+
+@dataclass(frozen=True)
+class FakeState:
+    t: float
+    y: float
+    v: float
+    push: float
+    bounces: int
+
+    def to_bytes(self) -> bytes:
+        return repr(list(asdict(self).values())).encode()
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> "FakeState":
+        t, y, v, push, bounces = (float.fromhex(float(x).hex()) for x in data.decode().strip("[]").split(","))
+        return cls(t, y, v, push, int(bounces))
+
+
+class FakeSimulation:
+    """Ball of the model's mass under gravity and the input force `push`; bounces on y = 0."""
+
+    channels = CHANNELS
+
+    def __init__(
+        self,
+        model: Any,
+        method: str = "ebdf",
+        rtol: float = 1e-6,
+        atol: float = 1e-9,
+        step: float | None = None,
+        t0: float = 0.0,
+        order: int = 3,
+        variant: str = "plain",
+        light: bool = False,
+        fail_at: float = 1e9,
+        nan_at: float = 1e9,
+        **unknown: Any,
+    ) -> None:
+        if method not in ("ebdf", "bdf") or unknown:
+            raise ModelError(f"unknown method '{method}' or options {sorted(unknown)}; known are ['bdf', 'ebdf']")
+        ball = model.bodies[0]
+        self.mass, self.gravity = ball.mass * (0.5 if light else 1.0), -model.gravity[1]
+        self.restitution = model.contacts[0].law.restitution
+        self.fail_at, self.nan_at, self.order, self.variant = fail_at, nan_at, order, variant
+        self.rtol, self.atol, self.step = rtol, atol, step
+        self.events: list[Event] = []
+        self._state = FakeState(t0, ball.position[1], ball.velocity[1], model.inputs[0].start, 0)
+
+    @property
+    def t(self) -> float:
+        return self._state.t
+
+    def set_inputs(self, values: dict[str, float]) -> None:
+        self._state = replace(self._state, push=values["push"])
+
+    def _acceleration(self) -> float:
+        return self._state.push / self.mass - self.gravity
+
+    def advance(self, t: float) -> None:
+        if t >= self.fail_at:
+            raise SimulationError("the outer loop diverged at t = 0.5 s: use smaller steps", t=0.5, loop="outer")
+        while True:
+            s, a = self._state, self._acceleration()
+            fall = (-s.v - math.sqrt(max(s.v * s.v - 2.0 * a * s.y, 0.0))) / a if a < 0.0 else math.inf
+            if s.t + fall > t:
+                break
+            speed = self.restitution * -(s.v + a * fall)
+            if speed < 1e-6:
+                self._state = replace(s, t=t, y=0.0, v=0.0)
+                return
+            self.events.append(Event(s.t + fall, "impact", "floor", impulse=2.0 * self.mass * speed))
+            self._state = FakeState(s.t + fall, 0.0, speed, s.push, s.bounces + 1)
+        h = t - s.t
+        self._state = replace(s, t=t, y=s.y + s.v * h + 0.5 * a * h * h, v=s.v + a * h)
+
+    def values(self) -> np.ndarray:
+        s = self._state
+        y = math.nan if s.t >= self.nan_at else s.y
+        return np.array([y, s.v, self._acceleration(), 0.0, s.bounces])
+
+    def state(self) -> FakeState:
+        return self._state
+
+    def restore(self, state: FakeState) -> None:
+        self._state = state
+        self.events = self.events[: state.bounces] or [Event(0.0, "impact", "floor")] * state.bounces

@@ -1,0 +1,129 @@
+"""What an exported FMU holds: its description, its resources, its checks (on the fake simulation)."""
+
+import json
+import re
+import zipfile
+from types import SimpleNamespace
+
+import fmpy
+import numpy as np
+import pytest
+import tlismni.fmu_wrapper.export as export_module
+from conftest import ball_model
+from fmpy.validation import validate_fmu
+from lxml import etree
+from tlismni.core.description import Model
+from tlismni.core.errors import ModelError
+from tlismni.fmu_wrapper import ExportError, FmuValueError, export_fmu
+from tlismni.fmu_wrapper.export import c_identifier
+
+
+def test_fmpy_finds_nothing_to_complain_about(fake_fmu):
+    assert validate_fmu(str(fake_fmu(order=4, variant="b", light=True))) == []
+    assert validate_fmu(str(fake_fmu(t_end=None))) == []
+
+
+def test_variables_and_value_references(fake_fmu):
+    description = fmpy.read_model_description(fake_fmu(order=4, variant="b", light=True))
+    found = {
+        v.name: (v.valueReference, v.type, v.causality, v.variability, v.unit, v.start)
+        for v in description.modelVariables
+    }
+    assert found == {
+        "time": (0, "Real", "independent", "continuous", "s", None),
+        "solver.method": (1, "String", "parameter", "fixed", None, "ebdf"),
+        "solver.rtol": (2, "Real", "parameter", "fixed", "1", "1e-06"),
+        "solver.atol": (3, "Real", "parameter", "fixed", "1", "1e-09"),
+        "solver.step": (4, "Real", "parameter", "fixed", "s", "0.0"),
+        "solver.light": (10, "Boolean", "parameter", "fixed", None, "true"),
+        "solver.order": (11, "Integer", "parameter", "fixed", None, "4"),
+        "solver.variant": (12, "String", "parameter", "fixed", None, "b"),
+        "solver.events": (100, "Integer", "output", "discrete", None, None),
+        "restitution": (1000, "Real", "parameter", "fixed", "1", "0.7"),
+        "mass": (1001, "Real", "parameter", "fixed", "kg", "2.0"),
+        "push": (1_000_000, "Real", "input", "continuous", "N", "1.0"),
+        "ball.y": (2_000_000, "Real", "output", "continuous", "m", None),
+        "ball.vy": (2_000_001, "Real", "output", "continuous", "m/s", None),
+        "ball.ay": (2_000_002, "Real", "output", "continuous", "m/s2", None),
+        "floor.in_contact": (2_000_003, "Boolean", "output", "discrete", None, None),
+        "floor.mode": (2_000_004, "Integer", "output", "discrete", None, None),
+    }
+    outputs = {name for name, row in found.items() if row[2] == "output"}
+    assert {u.variable.name for u in description.outputs} == outputs
+    assert {u.variable.name for u in description.initialUnknowns} == outputs
+
+
+def test_units_have_base_units(fake_fmu):
+    with zipfile.ZipFile(fake_fmu()) as archive:
+        root = etree.fromstring(archive.read("modelDescription.xml"))
+    base = {u.get("name"): dict(u.find("BaseUnit").attrib) for u in root.iter("Unit")}
+    assert base["N"] == {"kg": "1", "m": "1", "s": "-2"}
+    assert base["m/s2"] == {"m": "1", "s": "-2"}
+    assert base["1"] == {}
+
+
+def test_default_experiment_and_capabilities(fake_fmu):
+    description = fmpy.read_model_description(fake_fmu(t_end=2.5, rtol=1e-7))
+    experiment = description.defaultExperiment
+    given = [float(x) for x in (experiment.startTime, experiment.stopTime, experiment.tolerance, experiment.stepSize)]
+    assert given == [0.0, 2.5, 1e-7, 0.01]
+    flags = description.coSimulation
+    assert flags.canHandleVariableCommunicationStepSize and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
+    assert not flags.canInterpolateInputs and not flags.providesDirectionalDerivative and not flags.needsExecutionTool
+
+
+def test_a_scenario_gives_its_settings(fake_fmu, model):
+    scenario = SimpleNamespace(
+        name="s", model=model, t_end=0.5, method="bdf", rtol=1e-3, atol=1e-4, options={"order": 2}, description="text"
+    )
+    description = fmpy.read_model_description(fake_fmu(source=scenario, t_end=None, rtol=1e-5))
+    start = {v.name: v.start for v in description.modelVariables}
+    assert (start["solver.method"], start["solver.order"], start["solver.atol"]) == ("bdf", "2", "0.0001")
+    assert start["solver.rtol"] == "1e-05"  # given beats the scenario's
+    assert float(description.defaultExperiment.stopTime) == 0.5
+    assert description.description == "text"
+
+
+def test_the_model_travels_as_data(fake_fmu, model):
+    with zipfile.ZipFile(fake_fmu()) as archive:
+        assert Model.from_json(archive.read("resources/model.json")) == model
+        python = json.loads(archive.read("resources/python.json"))
+        assert re.fullmatch(r"3\.\d+", python["version"])
+        assert "driven_ball.so" in " ".join(archive.namelist()) or len(archive.namelist()) == 7
+
+
+def test_equal_models_give_equal_files_and_others_another_guid(fake_fmu, model):
+    def guid(path):
+        return fmpy.read_model_description(path).guid
+
+    first = fake_fmu("a.fmu")
+    assert first.read_bytes() == fake_fmu("b.fmu").read_bytes()
+    assert guid(first) != guid(fake_fmu("c.fmu", source=ball_model(height=1.5)))
+    assert guid(first) != guid(fake_fmu("d.fmu", rtol=1e-5))
+
+
+def test_versions_that_are_not_written_are_refused(model, tmp_path):
+    with pytest.raises(ExportError, match=r"FMI 3.0 is not written yet; use fmi_version=\"2.0\""):
+        export_fmu(model, tmp_path / "x.fmu", fmi_version="3.0")
+    with pytest.raises(ExportError, match="there is no such FMI version"):
+        export_fmu(model, tmp_path / "x.fmu", fmi_version="1.0")
+
+
+def test_bad_settings_leave_no_file(fake_fmu, tmp_path, monkeypatch):
+    with pytest.raises(ModelError, match="unknown method 'euler'"):
+        fake_fmu(method="euler")
+    with pytest.raises(FmuValueError, match=r"'rtol' = -1.0 must be greater than 0"):
+        fake_fmu(rtol=-1.0)
+    with pytest.raises(ExportError, match="no JSON data"):
+        fake_fmu(variant=np.ones(3))
+    monkeypatch.setattr(export_module, "SHIM", "absent.so")
+    with pytest.raises(ExportError, match=r"absent.so' is missing: it is compiled when tlismni is installed"):
+        fake_fmu()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "identifier"), [("ball", "ball"), ("2 balls", "_2_balls"), ("Stoß", "Sto_"), ("", "model")]
+)
+def test_identifiers(name, identifier):
+    assert c_identifier(name) == identifier

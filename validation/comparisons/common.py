@@ -1,0 +1,191 @@
+"""What all comparisons share: rows with verdicts, our run on a time grid, exudyn's step size."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from ...core import Event, Result, simulate
+from ...core.description import Model
+from ...models.scenario import Scenario
+from ..metrics import hermite
+
+RTOL, ATOL = 1e-9, 1e-11
+"""Our tolerances in a cross-check: our error must not matter beside exudyn's."""
+RATES = {"x": "vx", "y": "vy", "angle": "angular_velocity", "gap": "gap_rate"}
+RATES |= {"vx": "ax", "vy": "ay", "angular_velocity": "angular_acceleration"}
+
+Verdict = Literal["agree", "undecided", "differ"]
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One compared quantity.
+
+    verdict : "agree" within `tolerance`; "undecided" if the difference is larger, but not larger than what
+    exudyn itself changes by when its step is halved (`uncertainty`); "differ" otherwise.
+    """
+
+    quantity: str
+    unit: str
+    ours: float
+    exudyn: float
+    tolerance: float
+    tolerance_kind: Literal["absolute", "relative"]
+    uncertainty: float = 0.0
+    """Absolute, from exudyn's own convergence."""
+    scale: float | None = None
+    """What relative values refer to; left out: |exudyn|."""
+    required: bool = True
+    """False for rows that inform but do not decide."""
+
+    @property
+    def difference(self) -> float:
+        return abs(self.ours - self.exudyn)
+
+    @property
+    def relative(self) -> float:
+        scale = abs(self.exudyn) if self.scale is None else self.scale
+        return self.difference / scale if scale > 0.0 else math.inf if self.difference > 0.0 else 0.0
+
+    @property
+    def verdict(self) -> Verdict:
+        measured = self.difference if self.tolerance_kind == "absolute" else self.relative
+        # a NaN is never an agreement
+        if measured <= self.tolerance:
+            return "agree"
+        return "undecided" if self.difference <= self.uncertainty else "differ"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, verdict and differences included."""
+        derived = {"difference": self.difference, "relative": self.relative, "verdict": self.verdict}
+        return {**asdict(self), **derived}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a figure."""
+
+    label: str
+    t: np.ndarray
+    y: np.ndarray
+    ours: bool
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One axes of a figure: what is drawn over time."""
+
+    title: str
+    unit: str
+    curves: tuple[Curve, ...]
+    window: tuple[float, float] | None = None
+    logarithmic: bool = False
+    """Zeros are not drawn then."""
+    origin: float | None = None
+    """The first touch, s, from which a window's time is counted."""
+    points: bool = False
+    """True if samples are drawn as points: values without a course in time between them."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What a comparison found."""
+
+    kind: str
+    rows: tuple[Row, ...]
+    panels: tuple[Panel, ...]
+    notes: tuple[str, ...]
+    steps: tuple[float, ...]
+    """exudyn's step sizes, s."""
+    version: str
+    our_seconds: float
+    exudyn_seconds: float
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be compared: our scenario, and the model that exudyn gets (the same, but in tests of faults)."""
+
+    scenario: Scenario
+    exudyn_model: Model
+    step: float | None = None
+    progress: Progress = field(default=lambda text: None)
+
+
+def our_run(scenario: Scenario, times: Sequence[float] | np.ndarray | None = None) -> Result:
+    """Our run with tight tolerances; at every step, or at `times` (s)."""
+    rtol, atol = min(RTOL, scenario.rtol), min(ATOL, scenario.atol)
+    grid = None if times is None else np.unique(np.clip(np.asarray(times), 0.0, scenario.t_end))
+    return simulate(scenario.model, scenario.t_end, scenario.method, rtol, atol, t_eval=grid, **dict(scenario.options))
+
+
+@dataclass(frozen=True)
+class Touch:
+    """One contact in our run, from first touch to release; times in s, speeds in m/s, impulse in N s."""
+
+    contact: str
+    start: float
+    end: float
+    approach_speed: float
+    separation_speed: float
+    impulse: float
+
+
+def touches(events: Sequence[Event]) -> list[Touch]:
+    """Contacts of a run: impacts have no duration; force contacts go from "close" to "open"."""
+    found, opened = [], {}
+    for event in events:
+        if event.kind == "impact":
+            found.append(
+                Touch(event.contact, event.t, event.t, event.approach_speed, event.separation_speed, event.impulse)
+            )
+        elif event.kind == "close":
+            opened[event.contact] = event
+        elif event.kind == "open" and event.contact in opened:
+            first = opened.pop(event.contact)
+            found.append(
+                Touch(event.contact, first.t, event.t, first.approach_speed, event.separation_speed, event.impulse)
+            )
+    return sorted(found, key=lambda touch: touch.start)
+
+
+def nice_step(limit: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above `limit`."""
+    power = 10.0 ** math.floor(math.log10(limit))
+    return max(k * power for k in (1.0, 2.0, 5.0) if k * power <= limit * (1.0 + 1e-12))
+
+
+def at_times(t: np.ndarray, channels: Mapping[str, np.ndarray], channel: str, times: np.ndarray) -> np.ndarray:
+    """A channel at other times: by Hermite interpolation where its rate is known, else linearly."""
+    body, _, name = channel.rpartition(".")
+    rate = f"{body}.{RATES.get(name, '')}"
+    if rate in channels:
+        return hermite(t, channels[channel], channels[rate], times)
+    return np.interp(times, t, channels[channel])
+
+
+def unit_of(result: Result, channel: str) -> str:
+    """Unit of one of our channels."""
+    return next((c.unit for c in result.channel_records if c.name == channel), "")
+
+
+def residual_panel(result: Result) -> Panel:
+    """Our constraint residuals at the three levels, logarithmically."""
+    levels = (("position", "m"), ("velocity", "m/s"), ("acceleration", "m/s²"))
+    curves = tuple(Curve(f"{level} ({unit})", result.t, result[f"residual.{level}"], True) for level, unit in levels)
+    return Panel("our constraint residuals", "largest residual", curves, None, True, points=True)
+
+
+def energy_panel(result: Result) -> Panel:
+    """How far our energy ledger is from closing."""
+    curve = Curve("|energy - start - input work + losses|", result.t, np.abs(result["energy.balance"]), True)
+    return Panel("our energy balance", "J", (curve,), None, True, points=True)
+
+
+def is_contact_channel(task: Task, channel: str) -> bool:
+    """True if the channel belongs to a contact, not to a body or joint."""
+    return channel.split(".")[0] in {c.name for c in task.scenario.model.contacts}

@@ -1,0 +1,151 @@
+"""Cross-check: a scenario rerun in exudyn, quantity by quantity, with a verdict for each."""
+
+import json
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ..core import NewtonImpact
+from ..core.description import Model
+from ..models import Scenario, load
+from .comparisons.common import Comparison, Progress, Row, Task
+from .comparisons.constraint_contact import compare_constraints
+from .comparisons.force_contact import compare_forces
+from .comparisons.smooth_motion import compare_motion
+from .exudyn_import import import_exudyn
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """What a cross-check found.
+
+    Attributes
+    ----------
+    scenario : name; `parameters` its parameters.
+    comparison : how it was compared, rows with verdicts, notes, and what the figures show.
+    figures : files written into the report folder; empty without one.
+    """
+
+    scenario: str
+    description: str
+    parameters: Mapping[str, Any]
+    comparison: Comparison
+    figures: tuple[Path, ...] = ()
+    report: Path | None = None
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        return self.comparison.rows
+
+    @property
+    def ok(self) -> bool:
+        """True if no required quantity differs. What exudyn's own error leaves undecided is no difference."""
+        return not any(row.verdict == "differ" for row in self.rows if row.required)
+
+    @property
+    def undecided(self) -> tuple[Row, ...]:
+        """Rows in which exudyn's own step error is larger than the tolerance."""
+        return tuple(row for row in self.rows if row.verdict == "undecided")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data: verdict, rows, notes, settings, files."""
+        c = self.comparison
+        return {
+            "scenario": self.scenario,
+            "description": self.description,
+            "parameters": dict(self.parameters),
+            "ok": self.ok,
+            "kind": c.kind,
+            "rows": [row.to_dict() for row in c.rows],
+            "notes": list(c.notes),
+            "exudyn": {"version": c.version, "steps": list(c.steps), "seconds": c.exudyn_seconds},
+            "seconds": c.our_seconds,
+            "figures": [str(path) for path in self.figures],
+            "report": None if self.report is None else str(self.report),
+        }
+
+
+def crosscheck(
+    scenario: str | Scenario | Model,
+    report_dir: str | Path | None = None,
+    progress: Progress | None = None,
+    *,
+    t_end: float | None = None,
+    step: float | None = None,
+    exudyn_model: Model | None = None,
+    **parameters: Any,
+) -> CrossCheck:
+    """Run a scenario here and in exudyn, and compare.
+
+    Parameters
+    ----------
+    scenario : name in the catalogue (with `parameters`), a Scenario, or a Model (with `t_end`).
+    report_dir : folder for the report (HTML), the figures and the numbers (JSON); left out: none is written.
+    progress : called with a line of text before each run.
+    t_end : end time in s, if not the scenario's.
+    step : exudyn's step in s; left out: from the duration of the contacts, or of the run.
+    exudyn_model : the model that exudyn gets, if not the same one (to see that a fault is found).
+
+    Returns
+    -------
+    CrossCheck. Contact by force is compared like for like; contact as a constraint with the penalty limit;
+    motion without contact with exudyn's trajectories extrapolated to step zero.
+
+    Raises
+    ------
+    ExudynUnavailable : if exudyn cannot be used. NotTranslatable : if the model has no equal in exudyn.
+    ScenarioError : for unknown scenarios and parameters. ValueError : for a Model without t_end.
+    """
+    chosen = _scenario(scenario, t_end, parameters)
+    import_exudyn()  # before our own run: say at once if it is missing
+    task = Task(chosen, exudyn_model or chosen.model, step, progress or log.info)
+    if not chosen.model.contacts:
+        comparison = compare_motion(task)
+    elif any(isinstance(c.law, NewtonImpact) for c in chosen.model.contacts):
+        comparison = compare_constraints(task)
+    else:
+        comparison = compare_forces(task)
+    found = CrossCheck(chosen.name, chosen.description, chosen.parameters, comparison)
+    return found if report_dir is None else _reported(found, Path(report_dir))
+
+
+def _scenario(scenario: str | Scenario | Model, t_end: float | None, parameters: Mapping[str, Any]) -> Scenario:
+    if isinstance(scenario, str):
+        chosen = load(scenario, **parameters)
+    elif parameters:
+        raise ValueError(f"parameters {sorted(parameters)} are for scenarios given by name; change the model instead")
+    elif isinstance(scenario, Model):
+        if t_end is None:
+            raise ValueError(f"model '{scenario.name}' needs t_end, the time to which it shall be compared (s)")
+        chosen = Scenario(scenario.name, scenario.description, scenario, t_end, compare=_channels(scenario))
+    else:
+        chosen = scenario
+    return chosen if t_end is None else replace(chosen, t_end=float(t_end))
+
+
+def _channels(model: Model) -> tuple[str, ...]:
+    """What to compare of a model that does not say: the coordinates of its last body, forces and gaps."""
+    names: list[str] = []
+    for body in model.bodies[-1:]:
+        rates = {"x": "vx", "y": "vy", "angle": "angular_velocity"}
+        names += [f"{body.name}.{k}" for c in body.coordinate_names for k in (c, rates[c])]
+    for contact in model.contacts:
+        names += [f"{contact.name}.normal_force", f"{contact.name}.gap"]
+    return tuple(names)
+
+
+def _reported(found: CrossCheck, folder: Path) -> CrossCheck:
+    from .plots import save_figures
+    from .report import write_report
+
+    folder.mkdir(parents=True, exist_ok=True)
+    figures = save_figures(found, folder)
+    written = replace(found, figures=figures, report=folder / f"{found.scenario}_crosscheck.html")
+    write_report(written)
+    numbers = folder / f"{found.scenario}_crosscheck.json"
+    numbers.write_text(json.dumps(written.to_dict(), indent=2), encoding="utf-8")
+    return written
