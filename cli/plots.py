@@ -15,6 +15,13 @@ from .summary import LEVELS
 FLOOR = 1e-18
 """Smallest residual that is drawn: zero has no logarithm."""
 
+RATES = {
+    "x": "vx", "y": "vy", "angle": "angular_velocity", "gap": "gap_rate",
+    "vx": "ax", "vy": "ay", "angular_velocity": "angular_acceleration",
+}  # fmt: skip
+POINTS = 12
+"""Points drawn in a step: a high-order method's steps are long, straight lines between their ends mislead."""
+
 
 def units_of(result: Result) -> dict[str, str]:
     """Units of the channels."""
@@ -27,10 +34,10 @@ def plot_result(result: Result, scenario: Scenario, path: Path) -> Path:
     names = [name for name in scenario.compare if name in units] or list(result.channels[:4])
     figure, axes = panels(len(names) + 2)
     for axis, name in zip(axes, names, strict=False):
-        axis.plot(result.t, result[name], lw=1.0)
+        axis.plot(*curve(result, name), lw=1.0)
         axis.set_ylabel(f"{name}\n{units[name]}")
     for name in ("kinetic", "potential", "strain", "impact_loss", "dissipation"):
-        axes[-2].plot(result.t, result[f"energy.{name}"], lw=1.0, label=name.replace("_", " "))
+        axes[-2].plot(result.t, result[f"energy.{name}"], ".-", ms=2.5, lw=0.6, label=name.replace("_", " "))
     axes[-2].set_ylabel("energy\nJ")
     axes[-2].legend(fontsize=7, ncols=5)
     for level, unit in LEVELS:
@@ -41,6 +48,21 @@ def plot_result(result: Result, scenario: Scenario, path: Path) -> Path:
         mark_events(axis, [event.t for event in result.events])
     figure.suptitle(f"{scenario.name}, {scenario.method}", fontsize=10)
     return save(figure, path)
+
+
+def curve(result: Result, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times and values of a channel, cubic between samples where its rate is recorded too."""
+    owner, _, quantity = name.rpartition(".")
+    t, y = result.t, result[name]
+    rate = f"{owner}.{RATES.get(quantity, '')}"
+    if rate not in result.channels or len(t) < 2:
+        return t, y
+    s = np.linspace(0.0, 1.0, POINTS)
+    # impacts have two samples at one time: an interval of length zero draws the jump
+    h = np.diff(t)[:, None]
+    a, b, da, db = y[:-1, None], y[1:, None], h * result[rate][:-1, None], h * result[rate][1:, None]
+    values = (2 * s**3 - 3 * s**2 + 1) * a + (s**3 - 2 * s**2 + s) * da + (3 * s**2 - 2 * s**3) * b + (s**3 - s**2) * db
+    return (t[:-1, None] + h * s).ravel(), values.ravel()
 
 
 def panels(count: int) -> tuple[Any, Sequence[Any]]:

@@ -25,7 +25,9 @@ def build() -> EquationSystem:
         q0=[START, 0.0],
         v0=[0.0, SPEED * START],
         contacts=[
-            GapContact("stop", lambda t, q: LENGTH - np.sqrt(q[0] ** 2 + q[1] ** 2), NewtonImpact(restitution=RESTITUTION))
+            GapContact(
+                "stop", lambda t, q: LENGTH - np.sqrt(q[0] ** 2 + q[1] ** 2), NewtonImpact(restitution=RESTITUTION)
+            )
         ],
         coordinates=["x", "y"],
     )
@@ -33,7 +35,7 @@ def build() -> EquationSystem:
 
 def run() -> dict[str, Any]:
     """Figures of the run and of the closed form."""
-    result = simulate(build(), t_end=4.0, rtol=1e-8, atol=1e-10)
+    result = simulate(build(), t_end=4.0, rtol=1e-7, atol=1e-9, max_step=0.05)
     impacts = [event for event in result.events if event.kind == "impact"]
     before = result.t < impacts[0].t
     radius = np.hypot(result["x"], result["y"])
@@ -75,5 +77,7 @@ if __name__ == "__main__":
     file = Path(sys.argv[1] if len(sys.argv) > 1 else "own_equations.png")
     found = run()
     plot(found, file)
-    print(f"first impact at {found['impacts'][0].t:.9f} s (closed form {found['expected_first_impact']:.9f} s)", end=" ")
+    print(
+        f"first impact at {found['impacts'][0].t:.9f} s (closed form {found['expected_first_impact']:.9f} s)", end=" "
+    )
     print(f"held with {found['force_at_rest']:.9f} N ({found['expected_force_at_rest']:.9f} N); wrote {file}")

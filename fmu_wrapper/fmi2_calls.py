@@ -88,17 +88,17 @@ class Fmi2Calls(Calls):
     @fmi_call()
     def fmi2SetReal(self, vr: Any, value: Any) -> None:
         """Set Real variables."""
-        self.slave.set("real", references_in(vr), numbers_in(value, np.float64).tolist())
+        self.slave.set("real", references_in(vr), numbers_in(value, np.float64))
 
     @fmi_call()
     def fmi2SetInteger(self, vr: Any, value: Any) -> None:
         """Set Integer variables."""
-        self.slave.set("integer", references_in(vr), numbers_in(value, np.int32).tolist())
+        self.slave.set("integer", references_in(vr), numbers_in(value, np.int32))
 
     @fmi_call()
     def fmi2SetBoolean(self, vr: Any, value: Any) -> None:
         """Set Boolean variables, given as int."""
-        self.slave.set("boolean", references_in(vr), (numbers_in(value, np.int32) != 0).tolist())
+        self.slave.set("boolean", references_in(vr), numbers_in(value, np.int32) != 0)
 
     @fmi_call()
     def fmi2SetString(self, vr: Any, value: Sequence[bytes | None]) -> None:

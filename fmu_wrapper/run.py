@@ -10,7 +10,7 @@ from ..core.description import Model
 from .errors import FmuError
 from .settings import Settings
 from .values import Values
-from .variables import EVENTS, KINDS, VariableTable
+from .variables import EVENTS, VariableTable
 
 SimulationFactory = Callable[..., Any]
 
@@ -66,8 +66,11 @@ class Run:
         self, factory: SimulationFactory | None, model: Model, settings: Settings, values: Values, t0: float
     ) -> None:
         self.key = self.key_of(values, t0)
-        self._inputs = values.table.block("input")
-        self._applied = tuple(v.start for v in self._inputs)
+        inputs = values.table.block("input")
+        self._input_names = [v.name for v in inputs]
+        self._input_positions = np.array([values.table.position[v.reference] for v in inputs], dtype=np.intp)
+        self._applied = np.array([v.start for v in inputs], dtype=np.float64)
+        self._events = values.table.by_name[EVENTS]
         changed_model, changed_settings = effective(model, settings, values)
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
         self._set_columns(values.table)
@@ -93,13 +96,13 @@ class Run:
                 np.array([table.position[v.reference] for v in wanted if v.kind == kind], dtype=np.intp),
                 np.array([column[v.name] for v in wanted if v.kind == kind], dtype=np.intp),
             )
-            for kind in KINDS
+            for kind in {v.kind for v in wanted}
         }
 
     @property
-    def applied(self) -> tuple[Any, ...]:
+    def applied(self) -> tuple[float, ...]:
         """The input values that the simulation has been told."""
-        return self._applied
+        return tuple(self._applied.tolist())
 
     @property
     def events(self) -> Sequence[Any]:
@@ -108,12 +111,10 @@ class Run:
 
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""
-        wanted = tuple(values[v] for v in self._inputs)
-        changed = {
-            v.name: value for v, value, old in zip(self._inputs, wanted, self._applied, strict=True) if value != old
-        }
-        if changed:
-            self._simulation.set_inputs(changed)
+        wanted = values.vectors["real"][self._input_positions]
+        changed = np.flatnonzero(wanted != self._applied)
+        if changed.size:
+            self._simulation.set_inputs({self._input_names[i]: wanted[i].item() for i in changed})
             self._applied = wanted
 
     def advance(self, t: float) -> None:
@@ -136,15 +137,15 @@ class Run:
             )
         for kind, (positions, columns) in self._columns.items():
             values.vectors[kind][positions] = np.rint(found[columns]) if kind == "integer" else found[columns]
-        values[values.table.by_name[EVENTS]] = len(self.events)
+        values[self._events] = len(self.events)
 
     def state(self) -> Any:
         """The solver's state."""
         return self._simulation.state()
 
-    def restore(self, state: Any, applied: tuple[Any, ...]) -> None:
+    def restore(self, state: Any, applied: tuple[float, ...]) -> None:
         """Take over a solver state (or its bytes) and the inputs that it has been told."""
         if isinstance(state, bytes):
             state = type(self._simulation.state()).from_bytes(state)
         self._simulation.restore(state)
-        self._applied = applied
+        self._applied = np.array(applied, dtype=np.float64)

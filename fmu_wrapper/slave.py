@@ -30,6 +30,12 @@ _WAYS = {
     Phase.FAILED: "the last step failed: set a stored state, or reset",
     Phase.TERMINATED: "the run is terminated: reset, or set a stored state",
 }
+_SETTABLE = {
+    Phase.INSTANTIATED: frozenset(("parameter", "input")),
+    Phase.INITIALIZATION: frozenset(("parameter", "input")),
+    Phase.STEP: frozenset(("input",)),
+}
+_SETTING = tuple(_SETTABLE)
 _RUNNING = (Phase.INITIALIZATION, Phase.STEP, Phase.FAILED, Phase.TERMINATED)
 
 
@@ -203,11 +209,11 @@ class Slave:
         ------
         CallOrderError, FmuValueError : and what the solver raises when start values must be computed.
         """
-        self._need(f"get {kind} values", *_RUNNING)
-        variables, positions = self.variables.plan(kind, references)
-        if self._stale and self._phase != Phase.FAILED and any(v.role == "output" for v in variables):
+        self._need("get values", *_RUNNING)
+        plan = self.variables.plan(kind, references)
+        if self._stale and self._phase != Phase.FAILED and "output" in plan.roles:
             self._refresh()
-        return self._values.vectors[kind][positions]
+        return self._values.vectors[kind][plan.positions]
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Sequence[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.
@@ -218,21 +224,22 @@ class Slave:
         ------
         CallOrderError, FmuValueError
         """
-        variables, positions = self.variables.plan(kind, references)
-        self._need(f"set {kind} values", Phase.INSTANTIATED, Phase.INITIALIZATION, Phase.STEP)
-        for variable in variables:
-            if variable.role == "input" or (variable.role == "parameter" and self._phase != Phase.STEP):
-                continue
-            if variable.role == "parameter":
-                raise CallOrderError(
-                    f"parameter '{variable.name}' is fixed after initialization: reset, then set it before"
-                )
-            raise FmuValueError(f"'{variable.name}' is of role {variable.role} and cannot be set")
-        self._values.vectors[kind][positions] = check_values(variables, values)
+        plan = self.variables.plan(kind, references)
+        self._need("set values", *_SETTING)
+        if not plan.roles <= _SETTABLE[self._phase]:
+            self._refuse(plan.variables)
+        self._values.vectors[kind][plan.positions] = check_values(plan.variables, values)
         self._stale = True
-        self._rtol_given |= any(v.name == "solver.rtol" for v in variables)
-        if any(v.role == "parameter" for v in variables):
+        if "parameter" in plan.roles:
+            self._rtol_given |= any(v.name == "solver.rtol" for v in plan.variables)
             self._run = None
+
+    def _refuse(self, variables: Sequence[Variable]) -> None:
+        for v in variables:
+            if v.role not in ("input", "parameter"):
+                raise FmuValueError(f"'{v.name}' is of role {v.role} and cannot be set")
+            if v.role not in _SETTABLE[self._phase]:
+                raise CallOrderError(f"parameter '{v.name}' is fixed after initialization: reset, then set it before")
 
     def set_by_name(self, values: Mapping[str, Any]) -> None:
         """`set` for Python users: values by variable name."""

@@ -98,7 +98,7 @@ def check_value(variable: Variable, value: Any) -> Any:
 
 def check_values(variables: Sequence[Variable], values: Iterable[Any]) -> list[Any]:
     """All values checked by `check_value`. Raises FmuValueError if the lengths differ."""
-    given = list(values)
+    given = values.tolist() if isinstance(values, np.ndarray) else list(values)
     if len(given) != len(variables):
         raise FmuValueError(f"{len(given)} values were given for {len(variables)} value references")
     return [check_value(variable, value) for variable, value in zip(variables, given, strict=True)]

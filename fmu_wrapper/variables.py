@@ -12,7 +12,7 @@ a further input does not renumber the outputs:
     2000000 ...         the channels, in the order of `Simulation.channels`
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -51,6 +51,15 @@ class Variable:
     maximum: float | None = None
 
 
+@dataclass(frozen=True)
+class Plan:
+    """A list of value references, looked up: their variables, positions among their kind, and roles."""
+
+    variables: tuple[Variable, ...]
+    positions: npt.NDArray[np.intp]
+    roles: frozenset[Role]
+
+
 class VariableTable:
     """All variables of a slave, found by reference and by name.
 
@@ -74,28 +83,29 @@ class VariableTable:
             kind: tuple(v for v in self.variables if v.kind == kind) for kind in KINDS
         }
         self.position = {v.reference: i for kind in KINDS for i, v in enumerate(self.of_kind[kind])}
-        self._plans: dict[tuple[Kind, bytes], tuple[Sequence[Variable], npt.NDArray[np.intp]]] = {}
+        self._plans: dict[tuple[Kind, bytes], Plan] = {}
 
     def block(self, block: Block) -> list[Variable]:
         """The variables of one block, in the order of their references."""
         return [v for v in self.variables if v.block == block]
 
-    def plan(self, kind: Kind, references: npt.NDArray[np.uint32]) -> tuple[Sequence[Variable], npt.NDArray[np.intp]]:
-        """The variables behind `references` and their positions among the variables of their kind.
+    def plan(self, kind: Kind, references: npt.NDArray[np.uint32]) -> Plan:
+        """Where the variables of `kind` behind `references` are.
 
         Raises
         ------
         FmuValueError : for a reference that no variable of this kind has.
         """
         key = (kind, references.tobytes())
-        found = self._plans.get(key)
-        if found is None:
+        plan = self._plans.get(key)
+        if plan is None:
             variables = tuple(self._find(kind, int(r)) for r in references)
-            found = variables, np.array([self.position[v.reference] for v in variables], dtype=np.intp)
+            positions = np.array([self.position[v.reference] for v in variables], dtype=np.intp)
+            plan = Plan(variables, positions, frozenset(v.role for v in variables))
             if len(self._plans) >= PLANS_KEPT:
                 self._plans.clear()
-            self._plans[key] = found
-        return found
+            self._plans[key] = plan
+        return plan
 
     def _find(self, kind: Kind, reference: int) -> Variable:
         variable = self.by_reference.get(reference)

@@ -11,7 +11,7 @@ from .comparisons.common import Curve, Panel
 if TYPE_CHECKING:
     from .crosscheck import CrossCheck
 
-OURS = ("#0b3c5d", "#1d7874", "#7b2d8b")
+OURS = ("#0b3c5d", "#1d7874", "#7b2d8b", "#3f88c5", "#5a8f29", "#a35d6a")
 THEIRS = ("#d1495b", "#e58b3a", "#b8b042")
 RESOLUTION = 160
 STYLE = {

@@ -28,7 +28,7 @@ def cosim(
     folder: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="DIR", help="Leave FMU, CSV files and figure here.")
     ] = None,
-    set: Set = None,
+    sets: Set = None,
     t_end: EndTime = None,
     method: MethodName = None,
     rtol: Rtol = None,
@@ -47,7 +47,7 @@ def cosim(
     from ..cosimulation import communication_points, compare
     from ..source import read_source
 
-    scenario = read_source(source, set, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     times = communication_points(scenario.t_end, communication_step, irregular)
     with tempfile.TemporaryDirectory(prefix="tlismni_", ignore_cleanup_errors=True) as temporary:
         place = Path(temporary) if folder is None else folder

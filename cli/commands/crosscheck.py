@@ -25,7 +25,7 @@ def crosscheck(
         float | None,
         typer.Option("--exudyn-step", callback=positive, help="exudyn's step in s; chosen if left out."),
     ] = None,
-    set: Set = None,
+    sets: Set = None,
     t_end: EndTime = None,
     method: MethodName = None,
     rtol: Rtol = None,
@@ -38,7 +38,7 @@ def crosscheck(
     from ...validation import crosscheck as check
     from ..source import read_source
 
-    scenario = read_source(source, set, t_end=t_end, method=method, rtol=rtol, atol=atol, options=option)
+    scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, options=option)
     with compile_notice(), status_line(f"cross-checking {scenario.name}") as tell:
         found = check(scenario, report, tell, step=exudyn_step)
     figures = found.to_dict()

@@ -33,7 +33,7 @@ def export(
     source: Source,
     output: Annotated[Path, typer.Option("--output", "-o", help="The FMU to write, .fmu.")],
     fmi: Annotated[str, typer.Option("--fmi", help="Version of the FMI standard.")] = "2.0",
-    set: Set = None,
+    sets: Set = None,
     t_end: EndTime = None,
     communication_step: CommunicationStep = None,
     method: MethodName = None,
@@ -50,7 +50,7 @@ def export(
     from ...fmu_wrapper import export_fmu
     from ..source import read_source, solver_settings
 
-    scenario = read_source(source, set, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     output.parent.mkdir(parents=True, exist_ok=True)
     with compile_notice():
         path = export_fmu(scenario, output, fmi, communication_step=communication_step)

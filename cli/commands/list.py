@@ -1,6 +1,6 @@
 """`tlismni list`: the scenarios and their parameters."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -35,21 +35,20 @@ def list_scenarios(
         print_table("", ("parameter", "default", "unit", "range", "meaning"), rows, left=5)
 
 
-def _data(entry: object) -> dict[str, object]:
+def _data(entry: Any) -> dict[str, Any]:
     fields = ("name", "kind", "default", "unit", "minimum", "maximum", "choices", "description")
     return {
-        "name": entry.name,  # type: ignore[attr-defined]
-        "description": entry.description,  # type: ignore[attr-defined]
-        "parameters": [{f: getattr(p, f) for f in fields} for p in entry.parameters],  # type: ignore[attr-defined]
+        "name": entry.name,
+        "description": entry.description,
+        "parameters": [{field: getattr(p, field) for field in fields} for p in entry.parameters],
     }
 
 
-def _shown(value: object) -> str:
+def _shown(value: Any) -> str:
     if value is None:
         return "auto"
     return str(value).lower() if isinstance(value, bool) else number(value)
 
 
-def _range(parameter: object) -> str:
-    choices = parameter.choices  # type: ignore[attr-defined]
-    return ", ".join(choices) if choices else parameter.range_text()  # type: ignore[attr-defined,no-any-return]
+def _range(parameter: Any) -> str:
+    return ", ".join(parameter.choices) or str(parameter.range_text())

@@ -18,6 +18,7 @@ from ..options import (
     Source,
     Step,
     check_suffix,
+    positive,
 )
 from ..screen import compile_notice, print_json, progress_bar, say
 
@@ -31,13 +32,22 @@ EXAMPLES = (
 @one_line_errors
 def run(
     source: Source,
-    set: Set = None,
+    sets: Set = None,
     t_end: EndTime = None,
     method: MethodName = None,
     rtol: Rtol = None,
     atol: Atol = None,
     step: Step = None,
     option: MethodOption = None,
+    every: Annotated[
+        float | None,
+        typer.Option(
+            "--every",
+            callback=positive,
+            help="Record at intervals of this many s, not at every step.",
+            rich_help_panel="Output",
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Write all channels: .csv, .json or .npz.", rich_help_panel="Output"),
@@ -57,7 +67,8 @@ def run(
     from ..source import read_source
     from ..summary import print_summary, summarise
 
-    scenario = read_source(source, set, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    times = None if every is None else _times(scenario.t_end, every)
     with compile_notice(), progress_bar(scenario.name, scenario.t_end) as progress:
         result = simulate(
             scenario.model,
@@ -65,6 +76,7 @@ def run(
             scenario.method,
             scenario.rtol,
             scenario.atol,
+            t_eval=times,
             progress=progress,
             **scenario.options,
         )
@@ -84,3 +96,10 @@ def run(
         print_summary(figures)
         for path in files:
             say(f"wrote {path}")
+
+
+def _times(t_end: float, every: float) -> list[float]:
+    """0, every, 2 every ... and the end."""
+    count = int(t_end / every * (1.0 + 1e-12))
+    times = [min(k * every, t_end) for k in range(count + 1)]
+    return times if times[-1] >= t_end * (1.0 - 1e-12) else [*times, t_end]

@@ -1,14 +1,37 @@
 """The one way in which this library compiles: cached on disk, and with IEEE division (a zero divisor gives inf or
 NaN, which the step control sees, instead of an exception in the middle of a step)."""
 
+from collections.abc import Callable
 from typing import Any
 
 from numba import njit, types
-from numba.core import cgutils
+from numba.core import cgutils, config
 from numba.extending import intrinsic
 
-compiled = njit(cache=True, error_model="numpy")
-"""Decorator of all compiled functions, kernels, laws and steps too; those are compiled when first used."""
+from .cache import cache_folder
+
+
+def compiled(function: Callable[..., Any]) -> Any:
+    """Decorator of compiled functions that Python calls; they are compiled when first used."""
+    return _cached(njit(error_model="numpy")(function))
+
+
+def internal(function: Callable[..., Any]) -> Any:
+    """Decorator of functions that only compiled code calls (kernels and steps too): no wrapper for Python, which
+    saves a third of the compile time of a small function."""
+    return _cached(njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(function))
+
+
+def _cached(dispatcher: Any) -> Any:
+    # numba reads the folder when caching is enabled; the setting is put back so that other packages keep theirs
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(cache_folder())
+    try:
+        dispatcher.enable_caching()
+    finally:
+        config.CACHE_DIR = before
+    return dispatcher
+
 
 inlined = njit(inline="always", error_model="numpy")
 """Decorator of tiny helpers."""

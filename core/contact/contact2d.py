@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..elements.base import Element, Numbering, Row
@@ -30,7 +30,7 @@ from .laws import ContactLaw, ForceLaw, call_law
 from .modes import ACTIVE, APPROACH_SPEED, CLOSED, MEMORY_SIZE, MODE
 
 
-@compiled
+@internal
 def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessian: Any) -> None:
     """The force law of element e, contact k: what it adds for `job`."""
     coord = imat(b.coord, b.count, 6)[e]
@@ -71,7 +71,7 @@ def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessia
         a[extra[e, 3]] += (elastic - f) * rate
 
 
-@compiled
+@internal
 def _act(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any) -> None:
     """What element e of a batch of contacts adds for `job`, given its gap."""
     row = imat(b.row, b.count, 1)[e, 0]
@@ -96,7 +96,7 @@ def _act(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any) -> Non
         vec(b.a, b.n_extended)[imat(b.extra, b.count, 5)[e, 2]] -= lam[row]
 
 
-@compiled
+@internal
 def disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, 11)
     coord = imat(b.coord, b.count, 6)
@@ -107,7 +107,7 @@ def disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
         _act(b, job, e, g - par[e, 5], gradient, hessian)
 
 
-@compiled
+@internal
 def disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, 11)
     coord = imat(b.coord, b.count, 6)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Name
@@ -13,7 +13,7 @@ from ..model.signals import Constant, Signal, evaluate_signal
 from .base import Element, Numbering, Row
 
 
-@compiled
+@internal
 def applied_load2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT and job != POWER:
         return

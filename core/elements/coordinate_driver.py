@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, vec
 from ..model.base import Name
@@ -13,7 +13,7 @@ from ..model.signals import Signal, evaluate_signal
 from .base import Element, Numbering, Row
 
 
-@compiled
+@internal
 def coordinate_driver_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT and job != POWER:
         return

@@ -6,7 +6,7 @@ Phi = (d . d - L^2) / (2 L): polynomial, regular for L > 0, and with |Phi_q| = 1
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive
@@ -16,7 +16,7 @@ from .base import Element, Numbering, Row
 from .geometry2d import FULL_PATTERN, ROW_PATTERN, constrain, half_square_distance
 
 
-@compiled
+@internal
 def distance2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT:
         return

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import imat, vec
 
@@ -121,7 +121,7 @@ def curvature(hessian: Any, v: Any, coord: Any) -> float:
     return total
 
 
-@compiled
+@internal
 def add_hessian(values: Any, slot: Any, hessian: Any, factor: float) -> None:
     """values[slot(i, j)] += factor H_ij for all 36 pairs."""
     for k in range(21):
@@ -131,7 +131,7 @@ def add_hessian(values: Any, slot: Any, hessian: Any, factor: float) -> None:
             values[slot[6 * j + i]] += factor * hessian[k]
 
 
-@compiled
+@internal
 def constrain(
     b: Any, job: int, e: int, row: int, local_row: int, factor: float, g: float, gradient: Any, hessian: Any
 ) -> None:

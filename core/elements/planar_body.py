@@ -6,14 +6,14 @@ r += M a - m g with M = diag(m, m, J), J about the centre of mass.
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive, Vector2
 from .base import Element, Numbering, Row
 
 
-@compiled
+@internal
 def planar_body_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, 5)
     coord = imat(b.coord, b.count, 3)

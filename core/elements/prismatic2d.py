@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
@@ -16,7 +16,7 @@ from .base import Element, Numbering, Row
 from .geometry2d import FULL_PATTERN, constrain, height_over_line
 
 
-@compiled
+@internal
 def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT:
         return

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
@@ -15,7 +15,7 @@ from ..model.markers import Marker2D
 from .base import Element, Numbering, Row
 
 
-@compiled
+@internal
 def revolute2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT:
         return

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import NonNegative, Positive
@@ -12,7 +12,7 @@ from .base import Element, Numbering, Row
 from .geometry2d import FULL_PATTERN, HESSIAN_PAIRS, add_hessian, along, distance
 
 
-@compiled
+@internal
 def spring_damper2d_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, 7)
     coord = imat(b.coord, b.count, 6)

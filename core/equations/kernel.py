@@ -10,7 +10,7 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.views import imat
 from ..errors import CallbackError
 
@@ -32,7 +32,7 @@ def _call_back(typing_context: Any, address: Any, job: Any, t: Any) -> Any:
     return signature, codegen
 
 
-@compiled
+@internal
 def equations_kernel(job: int, t: float, b: Any) -> None:
     if _call_back(imat(b.extra, b.count, b.nextra)[0, 0], job, t) != 0:
         raise CallbackError("a user function raised an exception")

@@ -9,18 +9,27 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at
+from ..linalg import factor, lu_at, solve
 from ..methods.history import history_row, history_time, recall
 from ..methods.multistep import rows_available
-from ..stage.inner import inner_loop
+from ..stage.inner import rounding_level
 from ..stage.solver import solve_increment, weighted_norm
-from ..system.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
-from ..system.records import OK, OUTER_SLOW, SINGULAR
+from ..system.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.records import (
+    CONTROL_SIZE,
+    INNER_DIVERGED,
+    OK,
+    OUTER_SLOW,
+    POSITION_TOLERANCE,
+    REANALYZE,
+    SINGULAR,
+    VELOCITY_TOLERANCE,
+)
 
 
-@compiled
+@internal
 def _divided_differences(z: Any, table: Any, count: int) -> None:
     """Newton coefficients in place; table[j] holds f, and seeds for confluent nodes stand in `table[:, 1:3]`."""
     # z has each node `repeat` times in a row; table[:, 0] = f, table[:, 1] = f', table[:, 2] = f''/2
@@ -34,7 +43,7 @@ def _divided_differences(z: Any, table: Any, count: int) -> None:
                 table[j, 0] = table[j, 2]
 
 
-@compiled
+@internal
 def _newton_value(z: Any, table: Any, count: int, s: float) -> Any:
     """Value and derivative of the Newton form at s."""
     f, df = table[count - 1, 0], 0.0
@@ -94,7 +103,7 @@ def solve_accelerations(ws: Any) -> int:
     increment = vec(ws.rhs, n + ws.m_act)
     evaluate_tangent(ws, 0.0, 0.0)
     if factor(lu_at(ws.kkt_query), ws.values) != 0:
-        return SINGULAR
+        return REANALYZE
     previous = np.inf
     weight = np.ones(n)
     for _ in range(10):
@@ -113,22 +122,50 @@ def solve_accelerations(ws: Any) -> int:
     return OUTER_SLOW
 
 
-@compiled
+@internal
+def _project_level(ws: Any, residual_address: int, x_address: int, tolerance: float) -> int:
+    """Bring one level of the constraints to rounding by corrections of least M-norm, with the factors of `kkt_query`.
+
+    All coordinates take part, so that no partition is needed: one that is strained at this point does no harm.
+    """
+    rhs = vec(ws.rhs, ws.n + ws.m_act)
+    residual, x = vec(residual_address, ws.m_ext), vec(x_address, ws.n_ext)
+    active = ivec(ws.active, ws.m_act)
+    previous = np.inf
+    for _ in range(12):
+        norm = constraint_norm(ws, residual_address)
+        if norm <= tolerance * rounding_level(ws, x_address):
+            return OK
+        if not norm < 0.5 * previous:
+            return INNER_DIVERGED
+        previous = norm
+        for i in range(ws.n):
+            rhs[i] = 0.0
+        for i in range(ws.m_act):
+            rhs[ws.n + i] = -residual[active[i]]
+        solve(lu_at(ws.kkt_query), ws.rhs)
+        for i in range(ws.n):
+            x[i] += rhs[i]
+        evaluate_residuals(ws)
+    return INNER_DIVERGED
+
+
+@internal
 def project(ws: Any) -> int:
-    """Dependent coordinates and velocities of the current point, then accelerations and multipliers."""
+    """Coordinates and velocities of the current point onto the constraints, then accelerations and multipliers."""
+    control = vec(ws.control, CONTROL_SIZE)
     evaluate_residuals(ws)
-    evaluate_tangent(ws, 0.0, 0.0)
     if ws.m_act > 0:
-        if factor(lu_at(ws.lu_d_query), ws.values) != 0:
-            return SINGULAR
-        status = inner_loop(ws, ws.lu_d_query, 0.1, False)
+        evaluate_tangent(ws, 0.0, 0.0)
+        if factor(lu_at(ws.kkt_query), ws.values) != 0:
+            return REANALYZE
+        status = _project_level(ws, ws.phi, ws.q, 0.1 * control[POSITION_TOLERANCE])
+        if status != OK:
+            return status
+        status = _project_level(ws, ws.phid, ws.v, 0.1 * control[VELOCITY_TOLERANCE])
         if status != OK:
             return status
     status = solve_accelerations(ws)
-    if status != OK:
-        return status
-    if ws.m_act > 0:
-        status = inner_loop(ws, ws.lu_d_query, 1.0, True)
     evaluate_power(ws)
     return status
 

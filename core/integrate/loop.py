@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
@@ -49,7 +49,7 @@ STRAIN = 5.0  # how much faster than the independent ones the dependent coordina
 DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more: equal steps are cheaper and safer
 
 
-@compiled
+@internal
 def set_weights(ws: Any, ms: Any) -> None:
     """Error weights atol + rtol |y| at the newest row (with fixed steps: of the outer loop's convergence test)."""
     control = vec(ws.control, CONTROL_SIZE)
@@ -60,7 +60,7 @@ def set_weights(ws: Any, ms: Any) -> None:
         weight_v[i] = control[ATOL] + control[RTOL] * abs(row[ws.n_ext + i])
 
 
-@compiled
+@internal
 def all_finite(ws: Any) -> bool:
     """No NaN or infinity in q, v, a, lam."""
     for address, count in ((ws.q, ws.n), (ws.v, ws.n_ext), (ws.a, ws.n_ext), (ws.lam, ws.m_ext - 1)):
@@ -94,7 +94,7 @@ def accept(ws: Any, ms: Any, lc: Any) -> None:
         cursor[0] += 1
 
 
-@compiled
+@internal
 def partition_strained(ws: Any) -> bool:
     """True if a dependent coordinate moves much faster than all independent ones: the partition is near a position
     in which Phi_qd is singular. Looked at again only some steps after the last choice."""
@@ -116,7 +116,7 @@ def partition_strained(ws: Any) -> bool:
     return of_dependent / ws.m_act > STRAIN * STRAIN * max(independent, 0.0) and of_dependent > 0.0
 
 
-@compiled
+@internal
 def _factor(error: float, order: float, multistep: bool) -> float:
     """By how much the step may change."""
     if error <= 0.0:

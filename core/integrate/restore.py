@@ -30,10 +30,10 @@ def get_state(sim: "Simulation") -> State:
     arrays = {name: workspace.arrays[name].copy() for name in _WORKSPACE}
     arrays |= {f"method_{name}": x.copy() for name, x in sim.method_arrays.items()}
     arrays["clock"], arrays["watch"] = sim.clock.copy(), sim.watch.copy()
-    if structure.dependent is None or structure.lu_d is None or structure.lu_d_query is None:
+    if structure.dependent is None or structure.lu_d is None:
         raise RuntimeError("a simulation always has a partition once it is built")
     arrays["dependent"] = structure.dependent.copy()
-    for name in ("kkt", "lu_d", "kkt_query", "lu_d_query"):
+    for name in ("kkt", "lu_d", "kkt_query"):
         factorization = getattr(structure, name)
         perm_r, perm_c = factorization.analysis()
         arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"] = perm_r.copy(), perm_c.copy()
@@ -64,7 +64,7 @@ def set_state(sim: "Simulation", state: State) -> None:
     workspace.engage(frozenset(facts["closed"]), frozenset(facts["engaged"]))
     workspace.set_partition(arrays["dependent"])
     structure = workspace.structure
-    for name in ("kkt", "lu_d", "kkt_query", "lu_d_query"):
+    for name in ("kkt", "lu_d", "kkt_query"):
         factorization = getattr(structure, name)
         factorization.analyze_with(arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"])
         factorization.lu_values[:] = arrays[f"{name}_values"]

@@ -15,6 +15,7 @@ from ..contact.laws import ForceLaw
 from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
 from ..events import Event
+from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
 from ..methods.records import METHOD, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
@@ -23,7 +24,7 @@ from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
-from ..system.records import COUNTERS_SIZE, OK
+from ..system.records import COUNTERS_SIZE, OK, REANALYZE, SINGULAR
 from ..system.workspace import Workspace
 from . import advance, restore
 from .dense_output import query, solve_accelerations
@@ -363,6 +364,8 @@ class Simulation:
         ws = self.workspace.record
         with user_errors(self.assembly):
             status = query(ws, self._method.record, self.t)
+            if status == REANALYZE:
+                status = self._query_with_other_pivots()
         if status != OK:
             raise SimulationError(
                 f"the state at t = {self.t:.9g} s between two steps cannot be projected onto the constraints "
@@ -374,6 +377,18 @@ class Simulation:
         with user_errors(self.assembly):
             write_sample(ws, row)
         return row
+
+    def _query_with_other_pivots(self) -> int:
+        """The query with pivots for this very point; the usual ones are put back, so that asking leaves no trace."""
+        kkt, values = self.workspace.structure.kkt_query, self.workspace.arrays["values"]
+        permutations = kkt.analysis()
+        try:
+            kkt.analyze(values)
+            return int(query(self.workspace.record, self._method.record, self.t))
+        except SingularMatrixError:
+            return SINGULAR
+        finally:
+            kkt.analyze_with(*permutations)
 
     # ---- channels, inputs, state ------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, OPEN, RELEASED
 
@@ -65,7 +65,7 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
     return False
 
 
-@compiled
+@internal
 def any_crossed(ws: Any, lc: Any, h: float) -> bool:
     """True if any contact has an event within the step."""
     for k in range(ws.n_contacts):

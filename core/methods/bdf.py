@@ -5,7 +5,7 @@ Error estimate: (y - extrapolation of degree k) h/(t_{n+1} - t_{n-k}), the next 
 
 from typing import Any
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..system.records import OK
 from .coefficients import bdf_coefficients, extrapolation_weights
@@ -13,7 +13,7 @@ from .history import history_time
 from .multistep import bdf_stage, nodes, predictor_error, weight_rows
 
 
-@compiled
+@internal
 def bdf_step(ws: Any, ms: Any, h: float) -> int:
     k = ms.order
     table = weight_rows(ms)

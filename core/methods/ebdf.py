@@ -7,7 +7,7 @@ Error estimate: ||y_{n+1} - ybar_{n+1}||, the difference of orders k + 1 and k: 
 
 from typing import Any
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..stage.solver import weighted_norm
 from ..system.records import OK
@@ -18,7 +18,7 @@ from .multistep import bdf_stage, combine_stars, finish_stage, nodes, predict, w
 NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED = range(7)
 
 
-@compiled
+@internal
 def _coefficients(ms: Any, h: float, k: int, table: Any) -> None:
     """All coefficients of the step, renewed when the grid has changed."""
     if not nodes(ms, h, k + 1, table[NODES]):
@@ -35,7 +35,7 @@ def _coefficients(ms: Any, h: float, k: int, table: Any) -> None:
     ebdf_coefficients(s, k, table[EXTENDED])
 
 
-@compiled
+@internal
 def ebdf_step(ws: Any, ms: Any, h: float) -> int:
     k, n = ms.order, ws.n_ext
     table = weight_rows(ms)

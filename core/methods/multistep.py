@@ -6,7 +6,7 @@ c_v = h b, c_q = (h b)^2, q* = P_q + h b P_v, v* = P_v.
 
 from typing import Any
 
-from ..compiled.jit import compiled, inlined
+from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..stage.solver import solve_stage, weighted_norm
 from ..system.evaluate import evaluate_power
@@ -14,7 +14,7 @@ from .history import history_row, history_time
 from .records import MAX_NODES
 
 
-@compiled
+@internal
 def nodes(ms: Any, h: float, count: int, out: Any) -> bool:
     """s_j = (t_j - t_new)/h of the newest `count` rows into `out`; True if they differ from what stood there."""
     t_new = history_time(ms, 0) + h
@@ -28,7 +28,7 @@ def nodes(ms: Any, h: float, count: int, out: Any) -> bool:
     return changed
 
 
-@compiled
+@internal
 def combine_stars(ws: Any, ms: Any, weights: Any, first: int, count: int, c_v: float) -> None:
     """q*, v* from rows first ... first + count - 1 of the history with `weights`, added to what stands there.
 
@@ -46,7 +46,7 @@ def combine_stars(ws: Any, ms: Any, weights: Any, first: int, count: int, c_v: f
         q_star[i] += c_v * v_star[i]
 
 
-@compiled
+@internal
 def predict(ws: Any, ms: Any, weights: Any, first: int, count: int) -> None:
     """Extrapolate a and lambda through rows of the history, on top of what stands in a and lam."""
     n = ws.n_ext
@@ -60,7 +60,7 @@ def predict(ws: Any, ms: Any, weights: Any, first: int, count: int) -> None:
             lam[i] += w * row[4 * n + i]
 
 
-@compiled
+@internal
 def clear(address: int, n: int) -> None:
     """Zero a vector."""
     x = vec(address, n)
@@ -68,7 +68,7 @@ def clear(address: int, n: int) -> None:
         x[i] = 0.0
 
 
-@compiled
+@internal
 def finish_stage(ws: Any, t: float, c_v: float) -> int:
     """Solve the stage; then power and work accounts."""
     status = solve_stage(ws, t, c_v * c_v, c_v)
@@ -82,7 +82,7 @@ def finish_stage(ws: Any, t: float, c_v: float) -> int:
     return status
 
 
-@compiled
+@internal
 def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolation: Any) -> int:
     """y_{n+1} = sum_j coefficients_j y_{n-j} + coefficients_k h y'_{n+1}."""
     n = ws.n_ext
@@ -96,7 +96,7 @@ def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolati
     return finish_stage(ws, history_time(ms, 0) + h, c_v)
 
 
-@compiled
+@internal
 def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
     """Norm of (q, v) less its extrapolation through `count` rows: the next backward difference."""
     n = ws.n_ext

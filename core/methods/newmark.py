@@ -7,7 +7,7 @@ Error estimate: (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n)  (Negrut et al. 2
 
 from typing import Any
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.solver import solve_stage, weighted_norm
 from ..system.evaluate import evaluate_power
@@ -17,7 +17,7 @@ from .history import history_row, history_time
 ALPHA, BETA, GAMMA = 0, 1, 2
 
 
-@compiled
+@internal
 def newmark_step(ws: Any, ms: Any, h: float) -> int:
     parameters = vec(ms.parameters, 8)
     alpha, beta, gamma = parameters[ALPHA], parameters[BETA], parameters[GAMMA]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..stage.solver import solve_stage, weighted_norm
 from ..system.evaluate import evaluate_power
@@ -29,7 +29,7 @@ C = np.array([1 / 4, 3 / 4, 11 / 20, 1 / 2, 1])
 STAGES = 5
 
 
-@compiled
+@internal
 def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
     """One step from (base_q, base_v, base_a) at t. Returns (status, error norm); the result is in the workspace."""
     n = ws.n_ext
@@ -71,7 +71,7 @@ def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
     return OK, max(norm, weighted_norm(error, vec(ws.weight_v, n), ws.n))
 
 
-@compiled
+@internal
 def base_from_row(ws: Any, ms: Any) -> None:
     """Start from the newest row of history."""
     n = ws.n_ext
@@ -86,7 +86,7 @@ def base_from_row(ws: Any, ms: Any) -> None:
         lam[i] = row[4 * n + i]
 
 
-@compiled
+@internal
 def sdirk_step(ws: Any, ms: Any, h: float) -> int:
     """One step, with the error estimate of the embedded formula."""
     base_from_row(ws, ms)
@@ -96,7 +96,7 @@ def sdirk_step(ws: Any, ms: Any, h: float) -> int:
     return status
 
 
-@compiled
+@internal
 def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
     """One grid step in as many equal parts as keep the embedded error of each below one: starting values that
     do not spoil the order of a fixed-step multistep method."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
 from ..system.evaluate import constraint_norm, evaluate_residuals
@@ -24,7 +24,7 @@ from ..system.records import (
 )
 
 
-@compiled
+@internal
 def correct_dependent(ws: Any, lu_address: int, residual_address: int, x_address: int) -> None:
     """x_d -= Phi_qd^-1 residual."""
     active = ivec(ws.active, ws.m_act)
@@ -39,7 +39,7 @@ def correct_dependent(ws: Any, lu_address: int, residual_address: int, x_address
         x[dependent[i]] -= rhs[i]
 
 
-@compiled
+@internal
 def rounding_level(ws: Any, x_address: int) -> float:
     """What rounding leaves in a constraint whose terms are as large as the entries of x."""
     x = vec(x_address, ws.n)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..system.evaluate import evaluate_residuals, evaluate_tangent
@@ -87,7 +87,7 @@ def solve_increment(ws: Any, lu_address: int) -> None:
     solve(lu_at(lu_address), ws.rhs)
 
 
-@compiled
+@internal
 def weighted_norm(x: Any, weight: Any, n: int) -> float:
     """Root mean square of x_i / weight_i."""
     total = 0.0
@@ -138,7 +138,7 @@ def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     return _iterate(ws, c_q, c_v, simple)
 
 
-@compiled
+@internal
 def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
     """The outer loop."""
     control = vec(ws.control, CONTROL_SIZE)

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, batch_at, call_kernel
 from ..compiled.views import ivec, vec
 from .records import COUNTERS_SIZE, EVALUATIONS
 
 
-@compiled
+@internal
 def _all_kernels(ws: Any, job: int) -> None:
     kernels = ivec(ws.kernels, ws.n_kernels)
     batches = ivec(ws.batches, ws.n_kernels)

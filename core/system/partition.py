@@ -66,7 +66,7 @@ def prepare(workspace: Workspace) -> None:
     counters = workspace.arrays["counters"]
     counters[PARTITIONS] += 1
     counters[ANALYSES] += 1
-    for factorization in (structure.kkt, structure.kkt_query, structure.lu_d, structure.lu_d_query):
+    for factorization in (structure.kkt, structure.kkt_query, structure.lu_d):
         if factorization is None or factorization.n == 0:
             continue
         try:

@@ -16,7 +16,7 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "contact_rows", "contact_release",
             # structure (changes with the set of engaged contacts)
-            "active", "dependent", "kkt", "lu_d", "kkt_query", "lu_d_query",
+            "active", "dependent", "kkt", "lu_d", "kkt_query",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
             "control", "counters", "rate", "scale",

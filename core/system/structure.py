@@ -30,7 +30,6 @@ class Structure:
     kkt: Factorization
     kkt_query: Factorization
     lu_d: Factorization | None = None
-    lu_d_query: Factorization | None = None
     dependent: NDArray[np.int64] | None = None
 
     @property
@@ -47,9 +46,7 @@ class Structure:
         slots = slots[position[self.cols[slots]] >= 0]
         rows, cols = self.rows[slots] - n, position[self.cols[slots]]
         self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
-        self.lu_d, self.lu_d_query = (
-            Factorization(len(self.active), rows, cols, slots, source_size=self.nnz + 1) for _ in range(2)
-        )
+        self.lu_d = Factorization(len(self.active), rows, cols, slots, source_size=self.nnz + 1)
 
 
 def build_structure(assembly: Assembly, closed: frozenset[int], engaged: frozenset[int]) -> Structure:

@@ -79,7 +79,7 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_kernels": len(a.batches),
                 "n_values": 1, "n_contacts": contacts, "n_work": len(a.work_names), "row_length": row_length,
-                "n_state": 0, "kkt": 0, "lu_d": 0, "kkt_query": 0, "lu_d_query": 0,
+                "n_state": 0, "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
         )  # fmt: skip
         self.structure: Structure
@@ -153,11 +153,10 @@ class Workspace:
 
     def _use_partition(self) -> None:
         structure = self.structure
-        if structure.lu_d is None or structure.lu_d_query is None or structure.dependent is None:
+        if structure.lu_d is None or structure.dependent is None:
             raise RuntimeError("the structure has no partition yet: call set_partition first")
         self._set("dependent", structure.dependent)
         self._record.table["lu_d"] = structure.lu_d.address
-        self._record.table["lu_d_query"] = structure.lu_d_query.address
 
     def _set(self, name: str, array: NDArray[Any], **sizes: int) -> None:
         self.arrays[name] = array

@@ -96,7 +96,7 @@ def test_outputs_can_be_read_in_initialization_mode(fake_slave):
     [
         (["do_step"], "cannot do step in phase 'instantiated': enter and exit initialization mode first"),
         (["exit"], "cannot exit initialization mode in phase 'instantiated'"),
-        (["get"], "cannot get real values in phase 'instantiated'"),
+        (["get"], "cannot get values in phase 'instantiated'"),
         (["terminate"], "cannot terminate in phase 'instantiated'"),
         (["enter", "enter"], "cannot enter initialization mode in phase 'initialization'"),
         (["enter", "setup"], "cannot setup in phase 'initialization'"),
@@ -104,7 +104,7 @@ def test_outputs_can_be_read_in_initialization_mode(fake_slave):
         (["enter", "exit", "setup"], "phase 'step': reset first"),
         (["enter", "exit", "set parameter"], "parameter 'mass' is fixed after initialization: reset"),
         (["enter", "exit", "terminate", "do_step"], "phase 'terminated': the run is terminated: reset"),
-        (["enter", "exit", "terminate", "set parameter"], "cannot set real values in phase 'terminated'"),
+        (["enter", "exit", "terminate", "set parameter"], "cannot set values in phase 'terminated'"),
     ],
 )
 def test_calls_out_of_order_are_refused(fake_slave, calls, match):

@@ -180,6 +180,7 @@ def _flight_rows(task: Task, found: list[Touch], ours: Result, runs: list[Penalt
         return []
     inside = (ours.t > released) & (ours.t < until)
     flight = ours.t[inside]
+    ending = "before the second impact" if len(found) > 1 else "at the end"
     rows = []
     if len(found) > 1 and all(len(r.contacts) > 1 for r in runs):
         start, moved = _limit(runs, [np.array([r.contacts[1][1].start]) for r in runs])
@@ -197,7 +198,7 @@ def _flight_rows(task: Task, found: list[Touch], ours: Result, runs: list[Penalt
         mine = ours[channel][inside]
         scale = 0.5 * float(np.ptp(limit)) or None
         worst = int(np.argmax(np.abs(mine - limit)))
-        for k, name in ((len(flight) - 1, "before the second impact"), (worst, "where it differs most in flight")):
+        for k, name in ((len(flight) - 1, ending), (worst, "where it differs most in flight")):
             title = f"{channel} {name} (t = {flight[k]:.5f} s)"
             rows.append(Row(title, unit, float(mine[k]), float(limit[k]), STATE, "relative", float(moved[k]), scale))
     return rows

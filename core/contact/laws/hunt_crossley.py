@@ -83,7 +83,7 @@ def exact_damping_factor(e: float) -> float:
     def equation(d: float) -> float:
         return math.log1p(d) - math.log1p(-d * e) - d * (1.0 + e)
 
-    return float(brentq(equation, 1e-3 * (1.0 - e), (1.0 - 1e-14) / e, xtol=1e-15, rtol=4e-16))
+    return float(brentq(equation, 1e-3 * (1.0 - e), (1.0 - 1e-14) / e, xtol=1e-15, rtol=1e-15))
 
 
 class Gonthier(HuntCrossleyFamily):

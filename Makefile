@@ -1,0 +1,56 @@
+# make demo, make test: each sets itself up in .venv; needs Python 3.11 or newer and pip.
+# Another Python: make demo PYTHON=python3.12 (an existing .venv stays as it is; `make clean` removes it).
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+OUT := out/demo
+# what an installation depends on: the FMU shim is compiled by it
+SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/shim/*)
+
+.PHONY: demo test lint bench clean help
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make demo   co-simulation of an exported FMU, and a cross-check with exudyn; results in $(OUT)"
+	@echo "make test   the tests"
+	@echo "make lint   ruff"
+	@echo "make bench  speed and work-precision against exudyn (minutes)"
+	@echo "make clean  remove .venv, build products and caches"
+
+demo: $(VENV)/.installed-all
+	$(BIN)/tlismni cosim pendulum_stop -o $(OUT)
+	$(BIN)/tlismni crosscheck pendulum_stop --set law=hunt_crossley --report $(OUT)
+	@echo
+	@echo "The demo left in $(OUT):"
+	@ls $(OUT) | sed 's/^/  /'
+
+test: $(VENV)/.installed-dev
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+bench: $(VENV)/.installed-dev
+	cd benchmarks && ../$(BIN)/python chain_speed.py
+	cd benchmarks && ../$(BIN)/python work_precision.py
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Python 3.11 or newer is needed; $(PYTHON) is older or missing. Try: make PYTHON=python3.12"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed-all: $(BIN)/python $(SOURCES)
+	$(BIN)/pip install --disable-pip-version-check --quiet -e ".[all]"
+	@touch $@
+
+# the extra dev holds all
+$(VENV)/.installed-dev: $(BIN)/python $(SOURCES)
+	$(BIN)/pip install --disable-pip-version-check --quiet -e ".[dev]"
+	@touch $(VENV)/.installed-all $@
+
+clean:
+	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+	rm -f fmu_wrapper/*.so fmu_wrapper/*.dll fmu_wrapper/*.dylib
