@@ -83,7 +83,5 @@ if __name__ == "__main__":
     file = Path(sys.argv[1] if len(sys.argv) > 1 else "bouncing_ball.png")
     found = run()
     plot(found, file)
-    print(
-        f"{len(found['impacts'])} impacts, then rest at {found['rest']:.9f} s (closed form to infinitely many:", end=" "
-    )
-    print(f"{found['expected_rest']:.9f} s); wrote {file}")
+    print(f"{len(found['impacts'])} impacts, then rest at {found['rest']:.9f} s")
+    print(f"closed form, after infinitely many: {found['expected_rest']:.9f} s; wrote {file}")

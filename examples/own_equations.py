@@ -26,7 +26,9 @@ def build() -> EquationSystem:
         v0=[0.0, SPEED * START],
         contacts=[
             GapContact(
-                "stop", lambda t, q: LENGTH - np.sqrt(q[0] ** 2 + q[1] ** 2), NewtonImpact(restitution=RESTITUTION)
+                name="stop",
+                gap=lambda t, q: LENGTH - np.sqrt(q[0] ** 2 + q[1] ** 2),
+                law=NewtonImpact(restitution=RESTITUTION),
             )
         ],
         coordinates=["x", "y"],
@@ -77,7 +79,5 @@ if __name__ == "__main__":
     file = Path(sys.argv[1] if len(sys.argv) > 1 else "own_equations.png")
     found = run()
     plot(found, file)
-    print(
-        f"first impact at {found['impacts'][0].t:.9f} s (closed form {found['expected_first_impact']:.9f} s)", end=" "
-    )
-    print(f"held with {found['force_at_rest']:.9f} N ({found['expected_force_at_rest']:.9f} N); wrote {file}")
+    print(f"first impact at {found['impacts'][0].t:.9f} s; held with {found['force_at_rest']:.9f} N")
+    print(f"closed form: {found['expected_first_impact']:.9f} s, {found['expected_force_at_rest']:.9f} N; wrote {file}")

@@ -74,5 +74,5 @@ if __name__ == "__main__":
     file = Path(sys.argv[1] if len(sys.argv) > 1 else "pendulum_stop.png")
     found = run()
     plot(found, file)
-    print(f"{len(found['impacts'])} impacts; at rest the stop carries {found['force_at_rest']:.9f} N", end=" ")
-    print(f"(statics: {found['expected_force_at_rest']:.9f} N); wrote {file}")
+    print(f"{len(found['impacts'])} impacts; at rest the stop carries {found['force_at_rest']:.9f} N")
+    print(f"statics: {found['expected_force_at_rest']:.9f} N; wrote {file}")

@@ -46,7 +46,7 @@ def address_of(function: Any, signature: Any) -> int:
     """
     if not hasattr(function, "get_compile_result"):
         raise TypeError(f"{function!r} must be a numba function: decorate it with @compiled")
-    function.compile(signature.args)
+    function.compile(signature)
     (matching,) = [s for s in function.nopython_signatures if s.args == signature.args]
     if matching.return_type != signature.return_type:
         raise TypeError(f"{function!r} returns {matching.return_type}, it must return {signature.return_type}")

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
 from ..contact import machine
 from ..contact.laws import ForceLaw
@@ -19,12 +20,13 @@ from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
 from ..methods.records import METHOD, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
+from ..stage.solver import solve_stage
 from ..state import State
 from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
-from ..system.records import COUNTERS_SIZE, OK, REANALYZE, SINGULAR
+from ..system.records import COUNTERS_SIZE, OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.workspace import Workspace
 from . import advance, restore
 from .dense_output import query, solve_accelerations
@@ -122,6 +124,7 @@ class Simulation:
     # ---- set-up -------------------------------------------------------------------------------------------------
 
     def _build_method(self) -> None:
+        self.workspace.use_stage(address_of(solve_stage, STAGE_SIGNATURE))
         formula, length = self.formula, self.workspace.row_length
         parameters = np.zeros(8)
         parameters[: len(formula.parameters)] = formula.parameters

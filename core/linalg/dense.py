@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from ..compiled.views import ivec, uvec, vec
 from .record import NO_PIVOT, OK, PIVOT_NOISE
 
 _LARGEST = np.finfo(np.float64).max
 
 
-@compiled
+@internal
 def dense_factor(lu: Any, values_address: int) -> int:
     """Factor the (n, n) matrix whose entries are in the source array at `values_address`.
 
@@ -69,7 +69,7 @@ def dense_factor(lu: Any, values_address: int) -> int:
     return OK
 
 
-@compiled
+@internal
 def dense_solve(lu: Any, b_address: int) -> None:
     """Overwrite the (n,) vector at `b_address` with the solution."""
     n = lu.n

@@ -5,8 +5,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import SingularMatrixError
 from .ordering import choose_pivots, singular_place
-from .record import COLUMNS, DENSE, GROWTH, LU, OK, PROGRAM, UNREADY
-from .solve import factor, solve
+from .record import GROWTH, LU, OK
+from .solve import factor, functions_of, solve
 from .symbolic import Operations, count_operations, fill_pattern, operation_list
 
 Floats = NDArray[np.float64]
@@ -66,13 +66,13 @@ class Factorization:
         self._set(
             n=self.n,
             nnz=len(self.rows),
-            kind=UNREADY,
+            **self._functions("unready"),
             entry_from=self.slots.astype(np.uint32),
             work=np.zeros(self.n),
         )
         if self.dense:
             self._set(
-                kind=DENSE,
+                **self._functions("dense"),
                 entry_to=(self.rows * self.n + self.cols).astype(np.uint32),
                 values=np.zeros(self.n * (self.n + 1)),
                 pivots=np.arange(self.n),
@@ -154,9 +154,9 @@ class Factorization:
         if nl + nu + 2 * n > _LARGEST_INDEX:
             raise ValueError(f"{nl + nu + 2 * n} stored values are more than 32-bit indices can reach")
         if count_operations(l, u) <= PROGRAM_LIMIT * (nl + nu + n):
-            kind, operations = PROGRAM, operation_list(n, l, u)
+            kind, operations = "program", operation_list(n, l, u)
         else:
-            kind, operations = COLUMNS, Operations(*(np.zeros((k, 0), np.uint32) for k in (1, 3, 1, 2)))
+            kind, operations = "columns", Operations(*(np.zeros((k, 0), np.uint32) for k in (1, 3, 1, 2)))
         entry_to = nl + nu + row
         below, above = row > col, row < col
         entry_to[below] = l.find(n, row[below], col[below])
@@ -174,7 +174,7 @@ class Factorization:
             **{f"{name}_{field}": value for name, t in (("l", l), ("u", u)) for field, value in t._asdict().items()},
         }
         self._set(
-            kind=kind,
+            **self._functions(kind),
             nl=nl,
             nu=nu,
             n_steps=operations.steps.shape[1],
@@ -184,6 +184,11 @@ class Factorization:
         )
         self._growth_limits()[:] = np.inf
         self._permutations = (perm_r, perm_c)
+
+    def _functions(self, kind: str) -> dict[str, int]:
+        self.kind = kind
+        factor_function, solve_function = functions_of(kind)
+        return {"factor_function": factor_function, "solve_function": solve_function}
 
     def factor(self, values: Floats) -> int:
         """`factor` on the source array, from Python."""

@@ -2,14 +2,9 @@
 
 import numba as nb
 import numpy as np
+from numba import types
 
 from ..compiled.jit import record_view
-
-# Values of LU.kind.
-UNREADY = 0  # sparse, not analysed yet: factor returns REANALYSE
-DENSE = 1  # rows with partial pivoting
-PROGRAM = 2  # sparse, the refactorisation is a flat list of multiply-subtracts
-COLUMNS = 3  # sparse, left-looking by columns (more than a few operations for each entry)
 
 # Returned by `factor`.
 OK = 0
@@ -25,7 +20,8 @@ LU = np.dtype(
     [
         (name, np.int64)
         for name in (
-            "n", "kind", "nnz",
+            "n", "nnz",
+            "factor_function", "solve_function",  # machine addresses: dense, program or columns
             "entry_to",    # (nnz,) uint32: position of each matrix entry in `values`
             "entry_from",  # (nnz,) uint32: its position in the source array
             "values",      # dense: (n, n) rows, then (n,) 1/pivot
@@ -46,6 +42,9 @@ LU = np.dtype(
 )  # fmt: skip
 
 LU_TYPE = nb.from_dtype(LU)
+
+FACTOR_SIGNATURE = types.int64(LU_TYPE, types.int64)
+SOLVE_SIGNATURE = types.void(LU_TYPE, types.int64)
 
 lu_at = record_view(LU_TYPE)
 """lu_at(address): the LU record at `Factorization.address`, for records that store the address of another."""

@@ -2,10 +2,16 @@
 
 from typing import Any
 
-from ..compiled.jit import compiled
+import numpy as np
+
+from ..compiled.jit import address_of, caller, compiled, internal
+from ..compiled.views import vec
 from .dense import dense_factor, dense_solve
-from .record import COLUMNS, DENSE, OK, PROGRAM, REANALYSE
+from .record import FACTOR_SIGNATURE, OK, REANALYSE, SOLVE_SIGNATURE
 from .sparse import columns_factor, program_factor, sparse_solve
+
+_call_factor = caller(FACTOR_SIGNATURE)
+_call_solve = caller(SOLVE_SIGNATURE)
 
 
 @compiled
@@ -26,19 +32,36 @@ def factor(lu: Any, values_address: int) -> int:
     """
     if lu.n == 0:
         return OK
-    if lu.kind == DENSE:
-        return dense_factor(lu, values_address)
-    if lu.kind == PROGRAM:
-        return program_factor(lu, values_address)
-    if lu.kind == COLUMNS:
-        return columns_factor(lu, values_address)
-    return REANALYSE
+    return _call_factor(lu.factor_function, lu, values_address)
 
 
 @compiled
 def solve(lu: Any, b_address: int) -> None:
     """Solve A x = b in place on the (n,) float64 vector at `b_address`, after a `factor` that returned 0."""
-    if lu.kind == DENSE:
-        dense_solve(lu, b_address)
-    elif lu.kind == PROGRAM or lu.kind == COLUMNS:
-        sparse_solve(lu, b_address)
+    if lu.n > 0:
+        _call_solve(lu.solve_function, lu, b_address)
+
+
+@internal
+def _not_analysed(lu: Any, values_address: int) -> int:
+    return REANALYSE
+
+
+@internal
+def _no_solution(lu: Any, b_address: int) -> None:
+    vec(b_address, 1)[0] = np.nan
+
+
+def functions_of(kind: str) -> tuple[int, int]:
+    """Addresses of factor and solve of a kind: "unready" (not analysed yet), "dense", "program" or "columns".
+
+    They are called by address, so that only the kinds that are used are compiled, and none of them again inside each
+    of their callers.
+    """
+    factor_function, solve_function = {
+        "unready": (_not_analysed, _no_solution),
+        "dense": (dense_factor, dense_solve),
+        "program": (program_factor, sparse_solve),
+        "columns": (columns_factor, sparse_solve),
+    }[kind]
+    return address_of(factor_function, FACTOR_SIGNATURE), address_of(solve_function, SOLVE_SIGNATURE)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, inlined
+from ..compiled.jit import inlined, internal
 from ..compiled.views import uvec, vec
 from .record import NO_PIVOT, OK, PIVOT_NOISE, REANALYSE
 
@@ -22,7 +22,7 @@ _SMALLEST = float(1.0 / np.finfo(np.float64).max)
 _LARGEST = float(np.finfo(np.float64).max)
 
 
-@compiled
+@internal
 def load_entries(lu: Any, values_address: int) -> bool:
     """Write the matrix entries where their factors will be, zero elsewhere; False if one is not finite."""
     size = lu.nl + lu.nu + lu.n
@@ -47,7 +47,7 @@ def usable(pivot: float, top: float) -> bool:
     return size > PIVOT_NOISE * top and size > _SMALLEST and size <= _LARGEST
 
 
-@compiled
+@internal
 def finish(lu: Any) -> int:
     """Divide the columns of U by their pivots and compare L with its limits."""
     nl = lu.nl
@@ -65,7 +65,7 @@ def finish(lu: Any) -> int:
     return OK if bounded else REANALYSE
 
 
-@compiled
+@internal
 def program_factor(lu: Any, values_address: int) -> int:
     """Refactor from the list of positions; OK, NO_PIVOT or REANALYSE."""
     if not load_entries(lu, values_address):
@@ -98,7 +98,7 @@ def program_factor(lu: Any, values_address: int) -> int:
     return finish(lu)
 
 
-@compiled
+@internal
 def columns_factor(lu: Any, values_address: int) -> int:
     """Refactor column by column with a dense accumulator; OK, NO_PIVOT or REANALYSE."""
     if not load_entries(lu, values_address):
@@ -137,7 +137,7 @@ def columns_factor(lu: Any, values_address: int) -> int:
     return finish(lu)
 
 
-@compiled
+@internal
 def sparse_solve(lu: Any, b_address: int) -> None:
     """Overwrite the (n,) vector at `b_address` with the solution."""
     n = lu.n

@@ -8,8 +8,9 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
-from ..stage.solver import solve_stage, weighted_norm
+from ..stage.solver import weighted_norm
 from ..system.evaluate import evaluate_power
+from ..system.records import call_stage
 from .history import history_row, history_time
 from .records import MAX_NODES
 
@@ -71,7 +72,7 @@ def clear(address: int, n: int) -> None:
 @internal
 def finish_stage(ws: Any, t: float, c_v: float) -> int:
     """Solve the stage; then power and work accounts."""
-    status = solve_stage(ws, t, c_v * c_v, c_v)
+    status = call_stage(ws.stage_function, ws, t, c_v * c_v, c_v)
     if status != 0:
         return status
     evaluate_power(ws)

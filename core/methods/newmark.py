@@ -9,9 +9,9 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..stage.solver import solve_stage, weighted_norm
+from ..stage.solver import weighted_norm
 from ..system.evaluate import evaluate_power
-from ..system.records import OK
+from ..system.records import OK, call_stage
 from .history import history_row, history_time
 
 ALPHA, BETA, GAMMA = 0, 1, 2
@@ -38,7 +38,7 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
         a[i] = row[2 * n + i] + extrapolation * (row[2 * n + i] - older[2 * n + i])
     for i in range(ws.m_ext):
         lam[i] = row[4 * n + i] + extrapolation * (row[4 * n + i] - older[4 * n + i])
-    status = solve_stage(ws, history_time(ms, 0) + h, c_q, c_v)
+    status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
     if status != OK:
         return status
     evaluate_power(ws)

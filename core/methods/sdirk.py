@@ -10,9 +10,9 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
-from ..stage.solver import solve_stage, weighted_norm
+from ..stage.solver import weighted_norm
 from ..system.evaluate import evaluate_power
-from ..system.records import OK
+from ..system.records import OK, call_stage
 from .history import history_row, history_time
 
 A = np.array(
@@ -47,7 +47,7 @@ def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
                 p_v += h * A[s, j] * stage_a[j, i]
             q_star[i] = p_q + c_v * p_v
             v_star[i] = p_v
-        status = solve_stage(ws, t + C[s] * h, c_v * c_v, c_v)
+        status = call_stage(ws.stage_function, ws, t + C[s] * h, c_v * c_v, c_v)
         if status != OK:
             return status, 0.0
         evaluate_power(ws)

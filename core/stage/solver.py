@@ -107,7 +107,7 @@ def set_from_accelerations(ws: Any, c_q: float, c_v: float) -> None:
         v[i] = v_star[i] + c_v * a[i]
 
 
-@compiled
+@internal
 def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage from the predicted a, lambda in the workspace. Returns OK or what went wrong.
 

@@ -7,11 +7,12 @@ import numpy as np
 from ..compiled.jit import compiled, internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, batch_at, call_kernel
 from ..compiled.views import ivec, vec
-from .records import COUNTERS_SIZE, EVALUATIONS
+from .records import COUNTERS_SIZE, EVALUATIONS, call_evaluate
 
 
 @internal
-def _all_kernels(ws: Any, job: int) -> None:
+def all_kernels(ws: Any, job: int) -> None:
+    """Ask every kernel for `job` at the current point."""
     kernels = ivec(ws.kernels, ws.n_kernels)
     batches = ivec(ws.batches, ws.n_kernels)
     t = vec(ws.t, 1)[0]
@@ -25,7 +26,7 @@ def evaluate_residuals(ws: Any) -> None:
     r = vec(ws.r, ws.n_ext)
     for i in range(ws.n_ext):
         r[i] = 0.0
-    _all_kernels(ws, RESIDUAL)
+    call_evaluate(ws.evaluate_function, ws, RESIDUAL)
     ivec(ws.counters, COUNTERS_SIZE)[EVALUATIONS] += 1
 
 
@@ -37,7 +38,7 @@ def evaluate_tangent(ws: Any, c_q: float, c_v: float) -> None:
     values = vec(ws.values, ws.n_values)
     for i in range(ws.n_values):
         values[i] = 0.0
-    _all_kernels(ws, TANGENT)
+    call_evaluate(ws.evaluate_function, ws, TANGENT)
 
 
 @compiled
@@ -48,7 +49,7 @@ def evaluate_power(ws: Any) -> None:
     a = vec(ws.a, ws.n_ext)
     for i in range(ws.n_ext - ws.n_work, ws.n_ext):
         a[i] = 0.0
-    _all_kernels(ws, POWER)
+    call_evaluate(ws.evaluate_function, ws, POWER)
 
 
 @compiled
@@ -56,7 +57,7 @@ def evaluate_energy(ws: Any) -> None:
     """Kinetic, potential and strain energy, J."""
     energy = vec(ws.energy, 3)
     energy[:] = 0.0
-    _all_kernels(ws, ENERGY)
+    call_evaluate(ws.evaluate_function, ws, ENERGY)
 
 
 @compiled

@@ -2,6 +2,9 @@
 
 import numba as nb
 import numpy as np
+from numba import types
+
+from ..compiled.jit import caller
 
 WORKSPACE = np.dtype(
     [
@@ -14,7 +17,7 @@ WORKSPACE = np.dtype(
             "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
             "values", "coef", "energy", "monitor", "memory", "inputs",
             # model
-            "kernels", "batches", "contact_rows", "contact_release",
+            "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
             # structure (changes with the set of engaged contacts)
             "active", "dependent", "kkt", "lu_d", "kkt_query",
             # stage solver
@@ -24,6 +27,12 @@ WORKSPACE = np.dtype(
     ]
 )  # fmt: skip
 WORKSPACE_TYPE = nb.from_dtype(WORKSPACE)
+
+# Called by address, so that their code is compiled once and not again inside each caller.
+EVALUATE_SIGNATURE = types.void(WORKSPACE_TYPE, types.int64)
+STAGE_SIGNATURE = types.int64(WORKSPACE_TYPE, types.float64, types.float64, types.float64)
+call_evaluate = caller(EVALUATE_SIGNATURE)
+call_stage = caller(STAGE_SIGNATURE)
 
 # columns of `control` (float64)
 NEWTON_TOLERANCE = 0

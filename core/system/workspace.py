@@ -5,14 +5,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord
 from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
 from .assembly import Assembly
+from .evaluate import all_kernels
 from .records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
+    EVALUATE_SIGNATURE,
     FACTOR_AGE,
     RATE_SIZE,
     WORKSPACE,
@@ -79,7 +82,8 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_kernels": len(a.batches),
                 "n_values": 1, "n_contacts": contacts, "n_work": len(a.work_names), "row_length": row_length,
-                "n_state": 0, "kkt": 0, "lu_d": 0, "kkt_query": 0,
+                "n_state": 0, "stage_function": 0,
+                "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
         )  # fmt: skip
         self.structure: Structure
@@ -91,6 +95,10 @@ class Workspace:
     def record(self) -> np.void:
         """The workspace record."""
         return self._record.record
+
+    def use_stage(self, address: int) -> None:
+        """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE)."""
+        self._record.table["stage_function"] = address
 
     @property
     def row_length(self) -> int:

@@ -19,7 +19,6 @@ from tlismni.core.linalg import (
     pivot_rows,
     solve,
 )
-from tlismni.core.linalg.record import COLUMNS, PROGRAM
 from tlismni.core.linalg.symbolic import fill_pattern
 
 seeds = st.integers(0, 2**32 - 1)
@@ -65,7 +64,7 @@ def backward_error(a, x, b):
 def sparse_kind(request, monkeypatch):
     """Both ways of the sparse refactorisation, whatever the operation count."""
     monkeypatch.setattr(factorization, "PROGRAM_LIMIT", np.inf if request.param == "program" else 0)
-    return PROGRAM if request.param == "program" else COLUMNS
+    return request.param
 
 
 @settings(deadline=None, max_examples=60)
@@ -116,8 +115,8 @@ def test_dense_program_and_columns_agree(links, monkeypatch):
         lu = Factorization(n, rows, cols, np.arange(len(rows)), dense=dense)
         lu.analyze(values)
         solutions.append(lu.solve(b))
-        kinds.append(int(lu.record["kind"]))
-    assert kinds[:2] == [PROGRAM, COLUMNS]
+        kinds.append(lu.kind)
+    assert kinds[:2] == ["program", "columns"]
     assert np.array_equal(solutions[0], solutions[1])
     assert np.allclose(solutions[0], solutions[-1], rtol=1e-8, atol=1e-9)
 
@@ -128,7 +127,7 @@ def test_entries_zero_by_chance_at_analysis_keep_their_place(sparse_kind):
     rows, cols, straight = chain(links, np.zeros(links))  # every sine is zero
     lu = Factorization(n, rows, cols, np.arange(len(rows)), dense=False)
     lu.analyze(straight)
-    assert int(lu.record["kind"]) == sparse_kind
+    assert lu.kind == sparse_kind
     values = chain(links, rng.uniform(-np.pi, np.pi, links))[2]
     assert lu.factor(values) == OK
     b = rng.normal(size=n)

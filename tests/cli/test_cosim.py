@@ -1,0 +1,91 @@
+"""`tlismni export` and `tlismni cosim`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("fmpy")
+
+from tlismni.cli import cosimulation
+from tlismni.cli.cosimulation import Columns, communication_points
+from tlismni.fmu_wrapper.export import HERE, SHIM
+from tlismni.models import load
+
+pytestmark = pytest.mark.skipif(not (HERE / SHIM).is_file(), reason="the FMU shim is not built")
+
+
+@pytest.mark.parametrize("irregular", [False, True])
+def test_communication_points_cover_the_run(irregular: bool) -> None:
+    times = communication_points(1.0, 0.03, irregular)
+    steps = np.diff(times)
+    assert times[0] == 0.0 and times[-1] == 1.0
+    assert np.all(steps > 0.0) and np.all(steps < 0.03 * 1.8 + 1e-9)
+    assert np.array_equal(times, communication_points(1.0, 0.03, irregular))
+    assert (np.ptp(steps[:-1]) > 1e-3) == irregular
+
+
+def test_regular_points_that_divide_the_run_evenly() -> None:
+    assert len(communication_points(2.5, 0.01, False)) == 251
+    assert len(communication_points(0.3, 0.1, False)) == 4
+    assert list(communication_points(0.005, 0.01, False)) == [0.0, 0.005]
+
+
+def test_export(tlismni, tmp_path: Path) -> None:
+    import fmpy
+
+    path = tmp_path / "new" / "pendulum.fmu"
+    done = tlismni("export", "pendulum_stop", "-o", path, "--set", "restitution=0.25", "--method", "irk", "--json")
+    assert done.code == 0
+    assert done.json["file"] == str(path) and done.json["bytes"] == path.stat().st_size
+    assert done.json["inputs"] == ["torque"]
+    starts = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
+    assert float(starts["restitution"]) == 0.25
+    assert starts["solver.method"] == "irk"
+
+
+def test_export_refuses_other_suffixes_and_versions(tlismni, tmp_path: Path) -> None:
+    assert tlismni("export", "chain", "-o", tmp_path / "chain.zip").code == 2
+    done = tlismni("export", "chain", "-o", tmp_path / "chain.fmu", "--fmi", "4.0")
+    assert done.code == 1 and "4.0" in done.cause
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_fmu_and_slave_are_the_same_through_an_impact(tlismni, tmp_path: Path) -> None:
+    done = tlismni("cosim", "pendulum_stop", "--t-end", 0.6, "-c", 0.02, "--irregular", "-o", tmp_path, "--json")
+    assert done.code == 0
+    figures = done.json
+    assert figures["identical"] is True and figures["different"] == []
+    assert figures["events"] == 1
+    assert figures["values"] == (figures["communication_steps"] + 1) * figures["outputs"]
+    for pair in figures["uninterrupted"].values():
+        assert pair["largest_difference"] <= 1e-4 * max(pair["largest_value"], 1.0)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "pendulum_stop.fmu", "pendulum_stop_cosim.png", "pendulum_stop_fmu.csv", "pendulum_stop_slave.csv",
+    ]  # fmt: skip
+    assert (tmp_path / "pendulum_stop_fmu.csv").read_bytes() == (tmp_path / "pendulum_stop_slave.csv").read_bytes()
+
+
+def test_one_bit_is_a_difference(tlismni, monkeypatch: pytest.MonkeyPatch) -> None:
+    true_drive = cosimulation.drive_slave
+
+    def with_a_wrong_bit(*arguments: object) -> Columns:
+        columns = true_drive(*arguments)  # type: ignore[arg-type]
+        columns["pendulum.angle"][3] = np.nextafter(columns["pendulum.angle"][3], 1.0)
+        return columns
+
+    monkeypatch.setattr(cosimulation, "drive_slave", with_a_wrong_bit)
+    done = tlismni("cosim", "pendulum_stop", "--t-end", 0.1, "-c", 0.02, "--json")
+    assert done.code == 1
+    assert done.json["identical"] is False and done.json["different"] == ["pendulum.angle"]
+    last = done.err.splitlines()[-1]
+    assert last.startswith("tlismni: FMU and slave differ in 1 of") and "'pendulum.angle' at t = 0.06 s" in last
+
+
+def test_a_failing_fmu_says_why(tmp_path: Path) -> None:
+    from tlismni.cli.errors import Failure
+    from tlismni.fmu_wrapper import export_fmu
+
+    fmu = export_fmu(load("pendulum_stop"), tmp_path / "p.fmu", step=0.5)
+    with pytest.raises(Failure, match=r"p\.fmu.*stopped at t"):
+        cosimulation.drive_fmu(fmu, tmp_path / "unzipped", np.array([0.0, 2.0]))

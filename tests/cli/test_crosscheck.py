@@ -1,0 +1,41 @@
+"""`tlismni crosscheck`."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from tlismni.validation import exudyn_available
+
+needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot be imported")
+
+
+@needs_exudyn
+def test_agreement_is_exit_code_0(tlismni, tmp_path: Path) -> None:
+    done = tlismni(
+        "crosscheck", "bouncing_ball", "--set", "law=hertz", "--t-end", 0.6, "--report", tmp_path / "report", "--json"
+    )
+    assert done.code == 0
+    figures = done.json
+    assert figures["ok"] is True and figures["parameters"]["law"] == "hertz"
+    assert {row["verdict"] for row in figures["rows"]} == {"agree"}
+    assert Path(figures["report"]).is_file()
+
+
+def _found(ok: bool) -> Any:
+    row = SimpleNamespace(quantity="ball.y", required=True, verdict="agree" if ok else "differ")
+    numbers = {"unit": "m", "ours": 1.0, "exudyn": 1.5, "difference": 0.5, "relative": 0.33, "tolerance": 0.1}
+    data = {
+        "scenario": "bouncing_ball", "kind": "made up", "exudyn": {"version": "1.13"}, "ok": ok, "notes": ["a note"],
+        "rows": [{"quantity": row.quantity, "verdict": row.verdict, "tolerance_kind": "absolute", **numbers}],
+    }  # fmt: skip
+    return SimpleNamespace(ok=ok, rows=(row,), report=None, figures=(), to_dict=lambda: data)
+
+
+@pytest.mark.parametrize("ok", [True, False])
+def test_the_verdict_decides_the_exit_code(tlismni, monkeypatch: pytest.MonkeyPatch, ok: bool) -> None:
+    monkeypatch.setattr("tlismni.validation.crosscheck", lambda *args, **kwargs: _found(ok))
+    done = tlismni("crosscheck", "bouncing_ball")
+    assert done.code == (0 if ok else 1)
+    assert "ball.y" in done.out and "a note" in done.out
+    assert ok or done.err.splitlines()[-1] == "tlismni: 1 of 1 quantities differ: ball.y"

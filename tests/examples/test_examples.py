@@ -1,0 +1,82 @@
+"""Every example runs, meets its closed form, and draws its figure."""
+
+import importlib.util
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
+
+
+@cache
+def example(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(f"example_{name}", EXAMPLES / f"{name}.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@cache
+def figures(name: str) -> dict[str, Any]:
+    """Each example is run once."""
+    found: dict[str, Any] = example(name).run()
+    return found
+
+
+def test_bouncing_ball_strikes_when_the_closed_form_says() -> None:
+    f = figures("bouncing_ball")
+    assert len(f["impacts"]) > 40
+    assert np.max(np.abs(f["impacts"] - f["expected_impacts"])) < 1e-9
+
+
+def test_bouncing_ball_comes_to_rest_on_its_weight() -> None:
+    f = figures("bouncing_ball")
+    # the rest rule ends the sequence where the rebound is a millionth of the first approach speed
+    assert 0.0 < f["expected_rest"] - f["rest"] < 1e-5
+    assert f["force_at_rest"] == pytest.approx(2.0 * 9.81, rel=1e-12)
+    assert f["largest_energy_balance"] < 1e-8 * 2.0 * 9.81
+
+
+def test_pendulum_strikes_at_the_time_of_the_quadrature_and_rests_in_static_equilibrium() -> None:
+    f = figures("pendulum_stop")
+    assert f["impacts"][0].t == pytest.approx(f["expected_first_impact"], abs=1e-6)
+    assert f["force_at_rest"] == pytest.approx(f["expected_force_at_rest"], rel=1e-9)
+    assert f["result"].events[-1].kind == "rest"
+
+
+def test_pendulum_meets_its_constraints_at_all_levels() -> None:
+    f = figures("pendulum_stop")
+    assert max(f["residuals"].values()) < 1e-9
+    assert f["velocity_increment_residual"] < 1e-13
+
+
+def test_pendulum_keeps_its_energy_ledger() -> None:
+    f = figures("pendulum_stop")
+    lost = sum(event.energy_loss for event in f["impacts"])
+    # all the energy from the start angle to the stop is lost: m g L/2 sin(1)
+    assert lost == pytest.approx(0.5 * 9.81 * np.sin(1.0), rel=1e-5)
+    assert f["largest_energy_balance"] < 1e-5
+
+
+def test_bead_on_the_turning_rod_follows_the_closed_form() -> None:
+    f = figures("own_equations")
+    first, second = f["impacts"][:2]
+    assert f["largest_radius_error"] < 1e-6
+    assert first.t == pytest.approx(f["expected_first_impact"], abs=1e-6)
+    assert first.approach_speed == pytest.approx(f["expected_approach_speed"], rel=1e-6)
+    assert second.t == pytest.approx(f["expected_second_impact"], abs=1e-5)
+    assert f["force_at_rest"] == pytest.approx(f["expected_force_at_rest"], rel=1e-6)
+    assert max(f["residuals"].values()) < 1e-9
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_example_draws_its_figure(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "figure.png"
+    example(name).plot(figures(name), path)
+    assert path.read_bytes().startswith(b"\x89PNG")
