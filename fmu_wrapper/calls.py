@@ -3,7 +3,7 @@
 import functools
 import traceback
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ from .errors import FmuError, FmuValueError, SnapshotError, Status
 from .slave import Slave
 from .snapshot import Snapshot
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+Function = Callable[..., Any]
 THE_STATUS = object()
 CATEGORY_OF = {Status.WARNING: logs.WARNING, Status.DISCARD: logs.DISCARD}
 
@@ -35,7 +35,7 @@ def fmi_call(on_error: Any = THE_STATUS) -> Callable[[Function], Function]:
                 return int(status) if on_error is THE_STATUS else on_error
             return int(Status.OK) if result is None else result
 
-        return call  # type: ignore[return-value]
+        return call
 
     return decorate
 

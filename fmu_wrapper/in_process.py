@@ -24,7 +24,7 @@ from .slave import Slave
 WARNING = int(Status.WARNING)
 
 
-class InProcess(FMU2Slave):  # type: ignore[misc]
+class InProcess(FMU2Slave):
     """An FMI 2.0 instance of fmpy whose calls go straight to a slave.
 
     fmpy's higher methods (getReal, doStep ...) work as they are: this class replaces the calls into a binary.

@@ -7,7 +7,7 @@ state or a reset leads back. The methods raise; `calls.py` turns what they raise
 import hashlib
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -98,8 +98,8 @@ class Slave:
         """Back to the state of a new slave: start values, no experiment, phase `instantiated`."""
         self._phase = Phase.INSTANTIATED
         self._values = Values(self.variables)
-        self._start_time, self._stop_time = 0.0, None
-        self._time = 0.0
+        self._start_time = self._time = 0.0
+        self._stop_time: float | None = None
         self._rtol_given = False
         self._run = None
         self._stale = True
@@ -215,7 +215,7 @@ class Slave:
             self._refresh()
         return self._values.vectors[kind][plan.positions]
 
-    def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Sequence[Any]) -> None:
+    def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.
 
         Inputs can be set in step mode too, parameters only before it.

@@ -52,6 +52,9 @@ _REASONS = {
     STEP_TOO_SMALL: ("step size", "the error control asked for a step below what the time can resolve"),
 }
 
+_REPAIRABLE = (REANALYZE, SINGULAR, INNER_DIVERGED, OUTER_SLOW, OUTER_DIVERGED)
+"""Failures that a new partition and new orderings may cure."""
+
 
 def advance_to(sim: "Simulation", t: float, stop: float) -> None:
     """Step until the newest row is at or beyond `t`; no step goes beyond `stop`."""
@@ -80,7 +83,7 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             _locate(sim)
         elif code == REPARTITION:
             _repair(sim)
-        elif code in (REANALYZE, SINGULAR, INNER_DIVERGED) and repaired_at != sim.t_internal:
+        elif code in _REPAIRABLE and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
             _repair(sim)
         elif code in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):

@@ -9,10 +9,13 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import call_step
+from ..stage.solver import MOST_INNER, MOST_OUTER
 from ..system.records import (
     ATOL,
     CONTROL_SIZE,
     COUNTERS_SIZE,
+    LAST_INNER,
+    LAST_OUTER,
     NOT_FINITE,
     OK,
     PARTITION_AGE,
@@ -102,7 +105,8 @@ def partition_strained(ws: Any) -> bool:
         return False
     rate = vec(ws.rate, RATE_SIZE)
     rate[PARTITION_AGE] += 1.0
-    if rate[PARTITION_AGE] < PARTITION_PATIENCE:
+    laborious = rate[LAST_OUTER] > MOST_OUTER or rate[LAST_INNER] > MOST_INNER
+    if rate[PARTITION_AGE] < (2.0 if laborious else PARTITION_PATIENCE):
         return False
     v, scale = vec(ws.v, ws.n_ext), vec(ws.scale, ws.n)
     dependent = ivec(ws.dependent, ws.m_act)

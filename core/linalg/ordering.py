@@ -10,8 +10,6 @@ most pivots on the diagonal for any mass.
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from .errors import SingularMatrixError
 
@@ -51,6 +49,10 @@ def choose_pivots(n: int, rows: Ints, cols: Ints, values: Floats) -> tuple[Ints,
     ------
     SingularMatrixError : if SuperLU meets a column without a pivot.
     """
+    # importing scipy.sparse takes as long as a short run: small systems never come here
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import splu
+
     row_scale, col_scale = balancing_scales(n, rows, cols, values)
     scaled = csc_array((values * row_scale[rows] * col_scale[cols], (rows, cols)), shape=(n, n))
     try:

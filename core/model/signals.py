@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
-from scipy.interpolate import CubicSpline
 
 from ..compiled.jit import compiled
 from .base import Name, Positive, Record
@@ -106,6 +105,9 @@ class Table(Record):
         return self
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
+        # importing scipy costs more than most runs: only who needs a spline pays
+        from scipy.interpolate import CubicSpline
+
         spline = CubicSpline(self.times, self.values)
         return [TABLE, len(self.times), *self.times, *np.asarray(spline.c).T.ravel()]
 

@@ -51,6 +51,8 @@ MOST_INNER = 3
 # A rate that was measured at an earlier stage is trusted less at each stage that does not measure it anew.
 LEAST_RATE = 0.02
 RATE_GROWTH = 1.5
+# A contraction above this costs more iterations than a factorisation.
+SLOW = 0.2
 
 
 @compiled
@@ -153,6 +155,7 @@ def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
     tolerance = control[NEWTON_TOLERANCE]
     start_inner = counters[INNER]
     previous = np.inf
+    renewed = 0
     slack = 1e4
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
@@ -178,9 +181,15 @@ def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
         if k > 0:
             contraction = norm / previous
             rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
-            if contraction > 0.9 and norm > tolerance:
+            if contraction > 0.9 and norm > tolerance and (renewed > 0 or simple or contraction > 2.0):
                 rate[FAILED_NORM] = contraction
                 return OUTER_DIVERGED
+            if contraction > SLOW and norm > tolerance and not simple and renewed < 2:
+                # the matrix of the predicted point is not good enough: that of the present one is
+                renewed += 1
+                status = refactor(ws, c_q, c_v)
+                if status != OK:
+                    return status
         previous = norm
         known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance:

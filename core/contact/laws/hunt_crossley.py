@@ -8,7 +8,6 @@ import math
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
-from scipy.optimize import brentq
 
 from ...compiled.jit import compiled
 from ...model.base import Positive, Restitution
@@ -79,6 +78,8 @@ def exact_damping_factor(e: float) -> float:
     """D for which the rebound speed is e v0: root of (1 + D)/(1 - D e) = exp(D (1 + e)), 0 < e <= 1."""
     if e == 1.0:
         return 0.0
+    # importing scipy costs more than most runs: only who needs a root pays
+    from scipy.optimize import brentq
 
     def equation(d: float) -> float:
         return math.log1p(d) - math.log1p(-d * e) - d * (1.0 + e)

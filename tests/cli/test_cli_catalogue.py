@@ -1,5 +1,8 @@
 """`tlismni`, `list`, `methods`: help, figures, and the command as a process."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 import tlismni.cli as cli
 from tlismni.cli.screen import COMPILING, compile_notice, number, plain, shortened
@@ -8,28 +11,30 @@ from tlismni.models import catalogue, names
 
 COMMANDS = ("list", "methods", "run", "export", "cosim", "crosscheck")
 
+Command = Callable[..., Any]
 
-def test_help_names_every_command(tlismni) -> None:
+
+def test_help_names_every_command(tlismni: Command) -> None:
     done = tlismni("--help")
     assert done.code == 0
     assert all(command in done.out for command in COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_help_of_every_command_has_examples(tlismni, command: str) -> None:
+def test_help_of_every_command_has_examples(tlismni: Command, command: str) -> None:
     done = tlismni(command, "--help")
     assert done.code == 0
     assert "Examples:" in done.out and "--json" in done.out
     assert "SETS" not in done.out
 
 
-def test_list_shows_all_scenarios(tlismni) -> None:
+def test_list_shows_all_scenarios(tlismni: Command) -> None:
     done = tlismni("list")
     assert done.code == 0
     assert all(name in done.out for name in names())
 
 
-def test_list_json_is_the_catalogue(tlismni) -> None:
+def test_list_json_is_the_catalogue(tlismni: Command) -> None:
     scenarios = {s["name"]: s for s in tlismni("list", "--json").json["scenarios"]}
     assert set(scenarios) == set(names())
     for entry in catalogue():
@@ -39,12 +44,12 @@ def test_list_json_is_the_catalogue(tlismni) -> None:
         assert all(p["unit"] for p in shown)
 
 
-def test_list_of_one_scenario(tlismni) -> None:
+def test_list_of_one_scenario(tlismni: Command) -> None:
     assert [s["name"] for s in tlismni("list", "chain", "--json").json["scenarios"]] == ["chain"]
     assert tlismni("list", "train").code == 1
 
 
-def test_methods(tlismni) -> None:
+def test_methods(tlismni: Command) -> None:
     done = tlismni("methods")
     assert all(name in done.out for name in METHODS)
     shown = {
@@ -63,7 +68,7 @@ def test_without_typer_one_line_says_what_to_install(
     assert capsys.readouterr().err == 'tlismni: the command needs typer and rich: pip install "tlismni[cli]"\n'
 
 
-def test_the_process(process) -> None:
+def test_the_process(process: Command) -> None:
     done = process("run", "no_such_scenario")
     assert (done.code, done.out) == (1, "")
     assert done.cause.startswith("tlismni: there is no scenario")

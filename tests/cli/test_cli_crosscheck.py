@@ -1,5 +1,6 @@
 """`tlismni crosscheck`."""
 
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,9 +10,11 @@ from tlismni.validation import exudyn_available
 
 needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot be imported")
 
+Command = Callable[..., Any]
+
 
 @needs_exudyn
-def test_agreement_is_exit_code_0(tlismni, tmp_path: Path) -> None:
+def test_agreement_is_exit_code_0(tlismni: Command, tmp_path: Path) -> None:
     done = tlismni(
         "crosscheck", "bouncing_ball", "--set", "law=hertz", "--t-end", 0.6, "--report", tmp_path / "report", "--json"
     )
@@ -33,7 +36,7 @@ def _found(ok: bool) -> Any:
 
 
 @pytest.mark.parametrize("ok", [True, False])
-def test_the_verdict_decides_the_exit_code(tlismni, monkeypatch: pytest.MonkeyPatch, ok: bool) -> None:
+def test_the_verdict_decides_the_exit_code(tlismni: Command, monkeypatch: pytest.MonkeyPatch, ok: bool) -> None:
     monkeypatch.setattr("tlismni.validation.crosscheck", lambda *args, **kwargs: _found(ok))
     done = tlismni("crosscheck", "bouncing_ball")
     assert done.code == (0 if ok else 1)

@@ -1,6 +1,8 @@
 """`tlismni export` and `tlismni cosim`."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,8 @@ from tlismni.fmu_wrapper.export import HERE, SHIM
 from tlismni.models import load
 
 pytestmark = pytest.mark.skipif(not (HERE / SHIM).is_file(), reason="the FMU shim is not built")
+
+Command = Callable[..., Any]
 
 
 @pytest.mark.parametrize("irregular", [False, True])
@@ -31,7 +35,7 @@ def test_regular_points_that_divide_the_run_evenly() -> None:
     assert list(communication_points(0.005, 0.01, False)) == [0.0, 0.005]
 
 
-def test_export(tlismni, tmp_path: Path) -> None:
+def test_export(tlismni: Command, tmp_path: Path) -> None:
     import fmpy
 
     path = tmp_path / "new" / "pendulum.fmu"
@@ -44,14 +48,14 @@ def test_export(tlismni, tmp_path: Path) -> None:
     assert starts["solver.method"] == "irk"
 
 
-def test_export_refuses_other_suffixes_and_versions(tlismni, tmp_path: Path) -> None:
+def test_export_refuses_other_suffixes_and_versions(tlismni: Command, tmp_path: Path) -> None:
     assert tlismni("export", "chain", "-o", tmp_path / "chain.zip").code == 2
     done = tlismni("export", "chain", "-o", tmp_path / "chain.fmu", "--fmi", "4.0")
     assert done.code == 1 and "4.0" in done.cause
     assert list(tmp_path.iterdir()) == []
 
 
-def test_fmu_and_slave_are_the_same_through_an_impact(tlismni, tmp_path: Path) -> None:
+def test_fmu_and_slave_are_the_same_through_an_impact(tlismni: Command, tmp_path: Path) -> None:
     done = tlismni("cosim", "pendulum_stop", "--t-end", 0.6, "-c", 0.02, "--irregular", "-o", tmp_path, "--json")
     assert done.code == 0
     figures = done.json
@@ -66,7 +70,7 @@ def test_fmu_and_slave_are_the_same_through_an_impact(tlismni, tmp_path: Path) -
     assert (tmp_path / "pendulum_stop_fmu.csv").read_bytes() == (tmp_path / "pendulum_stop_slave.csv").read_bytes()
 
 
-def test_one_bit_is_a_difference(tlismni, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_bit_is_a_difference(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     true_drive = cosimulation.drive_slave
 
     def with_a_wrong_bit(*arguments: object) -> Columns:
