@@ -111,8 +111,8 @@ def shim_path() -> Path:
     path = HERE / SHIM
     if not path.is_file():
         raise ExportError(
-            f"the FMU shim '{path}' is missing: it is compiled when tlismni is installed; install again with a "
-            "C compiler (or ziglang) at hand, or run `python setup.py build_ext --inplace` in a source tree"
+            f"the FMU shim '{path}' is missing: it is compiled when tlismni is installed; install again "
+            "(in a source tree: pip install -e .) with a C compiler or ziglang at hand"
         )
     return path
 

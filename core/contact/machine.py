@@ -21,7 +21,7 @@ from .modes import (
 )
 
 if TYPE_CHECKING:
-    from ..integrate.simulation import Simulation
+    from ..integrate.engine import Engine
 
 logger = logging.getLogger(__name__)
 
@@ -29,7 +29,7 @@ MOST_EVENTS_AT_ONCE = 50
 """Events without progress in time before a run is given up."""
 
 
-def handle(sim: "Simulation", k: int) -> None:
+def handle(sim: "Engine", k: int) -> None:
     """Contact k has an event at the workspace's current point (the newest row of the history)."""
     contact = sim.assembly.contacts[k]
     mode = sim.memory[k, MODE]
@@ -44,7 +44,7 @@ def handle(sim: "Simulation", k: int) -> None:
         _end_force(sim, k, contact, contact.law, mode)
 
 
-def _impact(sim: "Simulation", k: int, contact: ContactInfo, law: NewtonImpact) -> None:
+def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> None:
     memory = sim.memory[k]
     approach = -sim.gap_rate(k)
     if approach <= 0.0:
@@ -86,7 +86,7 @@ def _impact(sim: "Simulation", k: int, contact: ContactInfo, law: NewtonImpact) 
         sim.use_modes()
 
 
-def _strike(sim: "Simulation", k: int, contact: ContactInfo, restitution: float) -> Impact:
+def _strike(sim: "Engine", k: int, contact: ContactInfo, restitution: float) -> Impact:
     """The velocity jump, computed in the structure in which the contact is closed; the mode is left as it was."""
     mode = sim.memory[k, MODE]
     sim.memory[k, MODE] = CLOSED
@@ -103,19 +103,19 @@ def _strike(sim: "Simulation", k: int, contact: ContactInfo, restitution: float)
     return impact
 
 
-def _close(sim: "Simulation", k: int, kind: str, approach: float) -> None:
+def _close(sim: "Engine", k: int, kind: str, approach: float) -> None:
     sim.memory[k, MODE] = CLOSED
     sim.use_modes()
     sim.add_event(Event(sim.t_internal, kind, sim.assembly.contacts[k].name, approach_speed=max(approach, 0.0)))
 
 
-def _open(sim: "Simulation", k: int, contact: ContactInfo) -> None:
+def _open(sim: "Engine", k: int, contact: ContactInfo) -> None:
     sim.memory[k, MODE] = OPEN
     sim.use_modes()
     sim.add_event(Event(sim.t_internal, "open", contact.name, separation_speed=max(sim.gap_rate(k), 0.0)))
 
 
-def _begin_force(sim: "Simulation", k: int, contact: ContactInfo, law: ForceLaw) -> None:
+def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> None:
     memory = sim.memory[k]
     approach = -sim.gap_rate(k)
     memory[MODE] = ACTIVE
@@ -126,7 +126,7 @@ def _begin_force(sim: "Simulation", k: int, contact: ContactInfo, law: ForceLaw)
     sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
 
 
-def _end_force(sim: "Simulation", k: int, contact: ContactInfo, law: ForceLaw, mode: float) -> None:
+def _end_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw, mode: float) -> None:
     memory = sim.memory[k]
     if mode == RELEASED:
         if sim.gap(k) >= 0.0 or sim.gap_rate(k) > 0.0:

@@ -1,56 +1,20 @@
 """Simulation: one run that can be stepped, asked, driven, stored and restored."""
 
-import logging
 import math
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.jit import address_of
-from ..compiled.records import ArrayRecord
-from ..contact import machine
-from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE
-from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
-from ..events import Event
+from ..errors import ModelError, SimulationError
 from ..linalg import SingularMatrixError
-from ..methods.history import recall, restart
-from ..methods.records import METHOD, step_address
-from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
-from ..stage.solver import solve_stage
 from ..state import State
-from ..system.assembly import Assembly
-from ..system.consistent import START_TOLERANCE, make_consistent
-from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
-from ..system.partition import prepare
-from ..system.records import COUNTERS_SIZE, OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
-from ..system.workspace import Workspace
+from ..system.records import COUNTERS_SIZE, OK, REANALYZE, SINGULAR
 from . import advance, restore
-from .dense_output import query, solve_accelerations
-from .output import ChannelTable
-from .records import CLOCK_SIZE, FIXED_STEP, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
-from .sample import empty_buffer, sample_length, write_sample
-from .settings import Settings, set_control
-from .watch import remember
-
-logger = logging.getLogger(__name__)
-
-HISTORY_ROWS = 12
-
-
-@contextmanager
-def user_errors(assembly: Assembly) -> Iterator[None]:
-    """Raise a user function's own exception where compiled code could only say that there was one."""
-    try:
-        yield
-    except CallbackError:
-        error = assembly.user_error.pop()
-        assembly.user_error.clear()
-        raise error from None
-
+from .dense_output import query
+from .engine import Engine, user_errors
+from .sample import write_sample
 
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
@@ -58,7 +22,7 @@ _COUNTER_NAMES = (
 )  # fmt: skip
 
 
-class Simulation:
+class Simulation(Engine):
     """One run of a system.
 
     Parameters
@@ -80,208 +44,6 @@ class Simulation:
     ------
     ModelError, ConsistencyError : before anything is computed.
     """
-
-    def __init__(
-        self,
-        system: Any,
-        method: str = "ebdf",
-        rtol: float = 1e-6,
-        atol: float = 1e-9,
-        *,
-        step: float | None = None,
-        max_step: float | None = None,
-        first_step: float | None = None,
-        t0: float = 0.0,
-        outer: str = "newton",
-        newton_tolerance: float | None = None,
-        start_tolerance: float = START_TOLERANCE,
-        record: bool = False,
-        **method_options: Any,
-    ) -> None:
-        self.settings = Settings(
-            method=method, rtol=rtol, atol=atol, step=step, max_step=max_step, first_step=first_step, t0=t0,
-            outer=outer, newton_tolerance=newton_tolerance, start_tolerance=start_tolerance,
-            method_options=dict(method_options),
-        )  # fmt: skip
-        self.formula: Formula = get_formula(method, method_options)
-        self.system = system
-        self.assembly: Assembly = system.assemble()
-        self.workspace = Workspace(self.assembly)
-        self.table = ChannelTable(system, self.assembly)
-        self.events: list[Event] = []
-        self.progress: Callable[[float], None] | None = None
-        self.open_accounts: dict[int, tuple[float, float]] = {}
-        self.pending: list[int] = []
-        self.t = float(t0)
-        self._times_handled = (math.nan, 0)
-        self._build_method()
-        self._build_loop(record)
-        set_control(self.settings, self.workspace.arrays["control"])
-        self.samples: list[NDArray[np.float64]] = []
-        with user_errors(self.assembly):
-            self._start()
-
-    # ---- set-up -------------------------------------------------------------------------------------------------
-
-    def _build_method(self) -> None:
-        self.workspace.use_stage(address_of(solve_stage, STAGE_SIGNATURE))
-        formula, length = self.formula, self.workspace.row_length
-        parameters = np.zeros(8)
-        parameters[: len(formula.parameters)] = formula.parameters
-        self.method_arrays: dict[str, NDArray[Any]] = {
-            "history": np.zeros((HISTORY_ROWS, length)),
-            "times": np.zeros(HISTORY_ROWS),
-            "ring": np.zeros(2, dtype=np.int64),
-            "parameters": parameters,
-            "weights": np.zeros((8, 12)),
-            "error": np.zeros(2),
-        }
-        self._method = ArrayRecord(METHOD, self.method_arrays, {"capacity": HISTORY_ROWS, "order": formula.order})
-
-    def _build_loop(self, record: bool) -> None:
-        a = self.assembly
-        length = sample_length(a.n, a.m, len(a.contacts), len(a.work_names))
-        capacity = max(16, min(4096, 4_000_000 // length)) if record else 0
-        self.buffer = empty_buffer(max(capacity, 1), length)
-        self.clock = np.zeros(CLOCK_SIZE)
-        self.clock[FIXED_STEP] = self.settings.step or 0.0
-        self.clock[MAX_STEP] = self.settings.max_step or math.inf
-        self.clock[STOP_TIME] = math.inf
-        fixed = self.settings.step is not None
-        self.starter = step_address(FINE_STARTER if fixed else STARTER)
-        self.fine_starter = step_address(FINE_STARTER)
-        self.cursor = np.zeros(1, dtype=np.int64)
-        self.watch = np.zeros((max(len(a.contacts), 1), 3))
-        self._loop = ArrayRecord(
-            LOOP,
-            {"clock": self.clock, "watch": self.watch, "samples": self.buffer, "cursor": self.cursor},
-            {
-                "step": step_address(self.formula.step),
-                "starter": self.starter,
-                "rows": self.formula.rows,
-                "capacity": capacity,
-                "sample_length": length,
-                "grows_by_multistep": int(self.formula.rows > 1),
-            },
-        )
-
-    def _start(self) -> None:
-        arrays, a = self.workspace.arrays, self.assembly
-        arrays["q"][: a.n] = a.q0
-        arrays["v"][: a.n] = a.v0
-        arrays["t"][0] = self.settings.t0
-        make_consistent(self.workspace, self.settings.start_tolerance)
-        gap_tolerance = 1e-9 * float(np.max(a.coordinate_scale, initial=1.0))
-        touching = []
-        for k, contact in enumerate(a.contacts):
-            gap = self.gap(k)
-            if gap < -gap_tolerance and not isinstance(contact.law, ForceLaw):
-                raise ConsistencyError(
-                    f"contact '{contact.name}' starts with the shapes overlapping by {-gap:.3g} m; "
-                    "a constraint contact needs a gap >= 0 at the start"
-                )
-            if gap <= gap_tolerance and (gap < -gap_tolerance or self.gap_rate(k) < 0.0 or self.presses(k)):
-                touching.append(k)
-        self.use_modes()
-        self.clock[STEP_SIZE] = self.settings.first_step or self._first_step()
-        self._new_history()
-        self.table.initial_energy = self.table.total_energy(self.sample())
-        self._sample_now()
-        self.pending = touching
-        self._handle_pending()
-
-    def _first_step(self) -> float:
-        """Hairer's guess: a step over which the state changes by a hundredth."""
-        arrays, n, s = self.workspace.arrays, self.assembly.n, self.settings
-        weight_q = s.atol + s.rtol * np.abs(arrays["q"][:n])
-        weight_v = s.atol + s.rtol * np.abs(arrays["v"][:n])
-        level = max(float(np.max(np.abs(arrays["q"][:n]) / weight_q, initial=0.0)), 1.0)
-        rate = float(np.max(np.abs(arrays["v"][:n]) / weight_q, initial=0.0))
-        rate = max(rate, math.sqrt(float(np.max(np.abs(arrays["a"][:n]) / weight_v, initial=0.0)) * level))
-        guess = 0.01 * level / rate if rate > 0.0 else 1e-3
-        return min(guess, self.clock[MAX_STEP], 0.1)
-
-    # ---- what the contact state machine asks ---------------------------------------------------------------------
-
-    @property
-    def memory(self) -> NDArray[np.float64]:
-        """Contact memories, one row a contact."""
-        return self.workspace.arrays["memory"]
-
-    @property
-    def t_internal(self) -> float:
-        """Time of the newest accepted step, which may be beyond `t`."""
-        return float(self.method_arrays["times"][self.method_arrays["ring"][0]])
-
-    def gap(self, k: int) -> float:
-        """Gap of contact k at the workspace's point, m."""
-        return float(self.workspace.arrays["phi"][self.assembly.contacts[k].row])
-
-    def gap_rate(self, k: int) -> float:
-        """Its rate, m/s."""
-        return float(self.workspace.arrays["phid"][self.assembly.contacts[k].row])
-
-    def kinetic_energy(self) -> float:
-        """Kinetic energy at the workspace's point, J."""
-        evaluate_energy(self.workspace.record)
-        return float(self.workspace.arrays["energy"][0])
-
-    def add_input_work(self, work: float) -> None:
-        """Work that driven constraints did during an impact, to its account."""
-        if "input" in self.assembly.work_names:
-            self.workspace.arrays["v"][self.assembly.work_index("input")] += work
-
-    def contact_accounts(self, k: int) -> tuple[float, float]:
-        """Impulse (N s) and dissipation (J) of contact k so far."""
-        contact, v = self.assembly.contacts[k], self.workspace.arrays["v"]
-        return (
-            float(v[contact.impulse_account]),
-            float(v[contact.dissipation_account] + self.memory[k, LOSS_JUMP]),
-        )
-
-    def elastic_energy(self, k: int, contact: Any) -> float:
-        """Elastic energy that the force law of contact k holds, J."""
-        return float(contact.law.elastic_energy(max(-self.gap(k), 0.0)))
-
-    def add_event(self, event: Event) -> None:
-        """Record an event."""
-        logger.debug("%s", event)
-        self.events.append(event)
-
-    def use_modes(self, accelerations: bool = True) -> None:
-        """Take the structure of the present modes; solve for (a, lam) unless told not to."""
-        modes = self.memory[: len(self.assembly.contacts), MODE]
-        closed = frozenset(int(k) for k in np.flatnonzero(modes == CLOSED))
-        engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
-        if self.workspace.key != (closed, engaged):
-            self.workspace.engage(closed, frozenset(engaged))
-        prepare(self.workspace)
-        if accelerations:
-            self._solve_accelerations()
-
-    def _solve_accelerations(self) -> None:
-        arrays = self.workspace.arrays
-        if solve_accelerations(self.workspace.record) != OK:
-            raise ConsistencyError(
-                f"no accelerations and multipliers at t = {arrays['t'][0]:.9g} s: the augmented system "
-                "[M Phi_q^T; Phi_q 0] is singular or a force is not finite there"
-            )
-        arrays["aux"][:] = arrays["a"]
-        evaluate_power(self.workspace.record)
-
-    def presses(self, k: int) -> bool:
-        """True if contact k, held as a constraint now, would carry a compressive force."""
-        arrays, contact = self.workspace.arrays, self.assembly.contacts[k]
-        mode = self.memory[k, MODE]
-        if isinstance(contact.law, ForceLaw):
-            self._solve_accelerations()
-            return bool(arrays["phidd"][contact.row] < 0.0)
-        self.memory[k, MODE] = CLOSED
-        try:
-            self.use_modes()
-            return bool(arrays["lam"][contact.row] < 0.0)
-        finally:
-            self.memory[k, MODE] = mode
 
     # ---- running --------------------------------------------------------------------------------------------------
 
@@ -307,60 +69,6 @@ class Simulation:
     def _advance_to(self, target: float, stop: float) -> None:
         with user_errors(self.assembly):
             advance.advance_to(self, target, stop)
-
-    def report_progress(self, t: float) -> None:
-        """Tell whoever listens how far the run has come."""
-        if self.progress is not None:
-            self.progress(t)
-
-    def _handle_pending(self) -> None:
-        """Let the state machine act on the pending events at the newest row; then the history starts anew."""
-        if not self.pending:
-            self._new_history()
-            return
-        pending, self.pending = self.pending, []
-        t = self.t_internal if self.method_arrays["ring"][1] else self.settings.t0
-        last, count = self._times_handled
-        count = count + 1 if t == last else 1
-        self._times_handled = (t, count)
-        if count > machine.MOST_EVENTS_AT_ONCE:
-            names = [self.assembly.contacts[k].name for k in pending]
-            raise SimulationError(
-                f"{count} events of contacts {names} at t = {t:.9g} s without progress in time: the contact chatters. "
-                "Use a larger rest_ratio, a force law, or smaller tolerances.",
-                t=t,
-                loop="event",
-            )
-        if self.method_arrays["ring"][1]:
-            # samples may have been asked for since the step that ended here
-            recall(self.workspace.record, self._method.record, 0)
-        self._new_history()
-        for k in pending:
-            machine.handle(self, k)
-        self._new_history()
-        self._sample_now()
-
-    def _new_history(self) -> None:
-        evaluate_residuals(self.workspace.record)
-        restart(self.workspace.record, self._method.record)
-        remember(self.workspace.record, self._loop.record)
-
-    def _sample_now(self) -> None:
-        """Record the workspace's point."""
-        if self._loop.table["capacity"][0] == 0:
-            return
-        row = np.zeros(self.buffer.shape[1])
-        evaluate_residuals(self.workspace.record)
-        write_sample(self.workspace.record, row)
-        self.flush()
-        self.samples.append(row[None, :])
-
-    def flush(self) -> None:
-        """Move the recorded samples out of the compiled buffer."""
-        count = int(self.cursor[0])
-        if count:
-            self.samples.append(self.buffer[:count].copy())
-            self.cursor[0] = 0
 
     def sample(self) -> NDArray[np.float64]:
         """All numbers at the present time `t`, as one row (see `sample.py`)."""

@@ -166,7 +166,7 @@ def evaluate_signal(pool: Any, inputs: Any, offset: int, t: float) -> Any:
     # TABLE: knots, then the four coefficients of each interval, highest power first
     n = int(pool[offset + 1])
     knots = pool[offset + 2 : offset + 2 + n]
-    i = min(max(np.searchsorted(knots, t, side="right") - 1, 0), n - 2)
+    i = min(max(int(np.searchsorted(knots, t, side="right")) - 1, 0), n - 2)
     c = offset + 2 + n + 4 * i
     x = t - knots[i]
     f = ((pool[c] * x + pool[c + 1]) * x + pool[c + 2]) * x + pool[c + 3]
