@@ -65,8 +65,8 @@ def curve(result: Result, name: str) -> tuple[np.ndarray, np.ndarray]:
     return (t[:-1, None] + h * s).ravel(), values.ravel()
 
 
-def panels(count: int) -> tuple[Any, Sequence[Any]]:
-    """A figure with `count` panels over one time axis."""
+def panels(count: int) -> tuple[Any, Any]:
+    """A figure with `count` panels over one time axis, and the panels' axes."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8.0, 1.0 + 1.6 * count), layout="constrained")

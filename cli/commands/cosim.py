@@ -63,7 +63,7 @@ def cosim(
         _print(figures)
         for path in files:
             say(f"wrote {path}")
-    if not found.identical:
+    if found.first is not None:
         t, name = found.first
         raise Failure(
             f"FMU and slave differ in {len(found.different)} of {len(found.fmu)} outputs, first in '{name}' "
@@ -104,7 +104,7 @@ def _figures(scenario: Any, found: Any, irregular: bool) -> dict[str, Any]:
 def _print(figures: dict[str, Any]) -> None:
     verdict = "identical bit for bit" if figures["identical"] else f"different: {', '.join(figures['different'])}"
     kind = "irregular" if figures["irregular"] else "regular"
-    rows = [
+    rows: list[tuple[str, Any]] = [
         ("communication steps", f"{figures['communication_steps']}, {kind}"),
         ("their size", f"{number(figures['shortest_step'])} to {number(figures['longest_step'])} s"),
         ("contact events", figures["events"]),
@@ -116,11 +116,11 @@ def _print(figures: dict[str, Any]) -> None:
         f"{figures['scenario']}: 0 to {number(figures['t_end'])} s with {figures['solver']['method']}", markup=False
     )
     print_table("", ("FMU under fmpy against the slave in process", ""), rows)
-    rows = [
+    away = [
         (name, number(pair["largest_difference"], 3), number(pair["largest_value"]))
         for name, pair in figures["uninterrupted"].items()
     ]
-    print_table("co-simulation against one uninterrupted run", ("output", "largest difference", "largest value"), rows)
+    print_table("co-simulation against one uninterrupted run", ("output", "largest difference", "largest value"), away)
 
 
 def _write(folder: Path, scenario: Any, found: Any) -> list[Path]:

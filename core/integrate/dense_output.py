@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import compiled, internal
-from ..compiled.views import ivec, vec
+from ..compiled.views import ivec, mat, vec
 from ..linalg import factor, lu_at, solve
 from ..methods.history import history_row, history_time, recall
 from ..methods.multistep import rows_available
 from ..stage.inner import rounding_level
-from ..stage.solver import solve_increment, weighted_norm
+from ..stage.solver import solve_increment
 from ..system.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..system.records import (
     CONTROL_SIZE,
@@ -60,8 +60,7 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     rows = min(rows_available(ms), 3)
     h = history_time(ms, 0) - history_time(ms, 1)
     s = (t - history_time(ms, 0)) / h
-    z = np.empty(9)
-    table = np.empty((9, 3))
+    z, table = vec(ws.scratch, 9), mat(ws.scratch + 9 * 8, 9, 3)
     q, v = vec(ws.q, n), vec(ws.v, n)
     for i in range(ws.n):
         for j in range(rows):
@@ -94,6 +93,15 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     vec(ws.t, 1)[0] = t
 
 
+@internal
+def _largest(x: Any, n: int) -> float:
+    """Largest magnitude of the first n entries."""
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, abs(x[i]))
+    return largest
+
+
 @compiled
 def solve_accelerations(ws: Any) -> int:
     """(a, lambda) of the current (q, v) from the augmented system [M, Phi_q^T; Phi_q, 0], with matrices of its own."""
@@ -105,7 +113,6 @@ def solve_accelerations(ws: Any) -> int:
     if factor(lu_at(ws.kkt_query), ws.values) != 0:
         return REANALYZE
     previous = np.inf
-    weight = np.ones(n)
     for _ in range(10):
         evaluate_residuals(ws)
         solve_increment(ws, ws.kkt_query)
@@ -113,8 +120,7 @@ def solve_accelerations(ws: Any) -> int:
             a[i] += increment[i]
         for i in range(ws.m_act):
             lam[active[i]] += increment[n + i]
-        norm = weighted_norm(increment, weight, n)
-        size = weighted_norm(a, weight, n)
+        norm, size = _largest(increment, n), _largest(a, n)
         if norm <= 1e-14 * (1.0 + size) or norm >= previous:
             evaluate_residuals(ws)
             return OK if norm <= 1e-8 * (1.0 + size) else OUTER_SLOW

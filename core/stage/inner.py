@@ -51,8 +51,10 @@ def rounding_level(ws: Any, x_address: int) -> float:
 
 
 @compiled
-def inner_loop(ws: Any, lu_address: int, slack: float, accelerations: bool) -> int:
-    """Correct q_d, v_d (and a_d) until the constraints hold to the tolerances times `slack`.
+def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> int:
+    """Correct q_d, v_d, a_d until the constraints hold to the tolerances times `slack`.
+
+    `acceleration_slack` is that of a_d: infinite while the outer loop still moves the accelerations.
 
     Expects the residuals of the current point; leaves those of the corrected one. The tolerances are absolute
     for quantities up to 1 and relative to the largest entry of q, v, a beyond.
@@ -63,7 +65,7 @@ def inner_loop(ws: Any, lu_address: int, slack: float, accelerations: bool) -> i
     counters = ivec(ws.counters, COUNTERS_SIZE)
     tol_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
     tol_v = slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
-    tol_a = control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a) if accelerations else np.inf
+    tol_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a)
     last_p, last_v, last_a = np.inf, np.inf, np.inf
     for _ in range(int(control[MAX_INNER])):
         p = constraint_norm(ws, ws.phi)

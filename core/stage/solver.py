@@ -159,7 +159,7 @@ def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
     slack = 1e4
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
-        status = inner_loop(ws, ws.lu_d, slack, False)
+        status = inner_loop(ws, ws.lu_d, slack, np.inf)
         if status != OK:
             return status
         if simple and k > 0:
@@ -201,6 +201,6 @@ def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
         status = OUTER_SLOW
     if status != OK:
         return status
-    status = inner_loop(ws, ws.lu_d, 1.0, True)
+    status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
     rate[LAST_INNER] = counters[INNER] - start_inner
     return status

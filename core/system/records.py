@@ -22,7 +22,7 @@ WORKSPACE = np.dtype(
             "active", "dependent", "kkt", "lu_d", "kkt_query",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
-            "control", "counters", "rate", "scale",
+            "control", "counters", "rate", "scale", "scratch",
         )
     ]
 )  # fmt: skip

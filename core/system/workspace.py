@@ -65,6 +65,7 @@ class Workspace:
             "stage_a": np.zeros(8 * n_ext + m_ext),
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),
+            "scratch": np.zeros(64),
             "control": np.zeros(CONTROL_SIZE),
             "counters": np.zeros(COUNTERS_SIZE, dtype=np.int64),
             "rate": np.zeros(RATE_SIZE),

@@ -7,9 +7,12 @@ from typing import Any
 
 import pytest
 from tlismni.core import Model, simulate
+from tlismni.fmu_wrapper.export import HERE, SHIM
 from tlismni.models import load
 
 ROOT = Path(__file__).parents[2]
+COMMON = ("type", "description", "minimum_approach_speed")
+"""Fields that the page of the model file need not name."""
 PAGES = sorted([*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md")])
 
 
@@ -30,6 +33,8 @@ def test_the_quickstart_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_the_fmu_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("lxml")
+    if not (HERE / SHIM).is_file():
+        pytest.skip("the FMU shim is not built")
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {"scenario": load("pendulum_stop"), "model": load("bouncing_ball").model}
     export, slave = blocks("fmu.md", "python")
@@ -48,16 +53,12 @@ def test_the_model_file_is_one() -> None:
 
 def test_the_model_page_names_every_field() -> None:
     text = (ROOT / "docs" / "model-files.md").read_text()
-    # bases of the elements' schema stand in the JSON schema by name, with their fields
     for name, record in Model.model_json_schema()["$defs"].items():
-        if name in ("HalfPlane2D", "Disk2D", "Marker2D"):
+        if name in ("HalfPlane2D", "Disk2D", "Marker2D"):  # shown in the JSON block and in words
             continue
         assert f"`{record['properties'].get('type', {}).get('default', 'name')}`" in text, name
-        missing = [f for f in record["properties"] if f not in (*COMMON, "type") and f"`{f}`" not in text]
+        missing = [field for field in record["properties"] if field not in COMMON and f"`{field}`" not in text]
         assert not missing, f"{name}: {missing}"
-
-
-COMMON = ("description", "minimum_approach_speed", "a", "b", "marker", "radius")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -155,12 +155,19 @@ print(json.dumps([[x.hex() for x in row] for row in fmu.step(instance, 5, STEPS)
     assert json.loads(done.stdout) == [[x.hex() for x in row] for row in rows]
 
 
-def test_a_scenario_of_the_catalogue(tmp_path):
-    scenario = load("pendulum_stop")
-    fmu = Fmu(scenario, tmp_path)
-    assert validate_fmu(str(fmu.path)) == []
-    result = fmpy.simulate_fmu(str(fmu.path), stop_time=min(scenario.t_end, 1.0))
+@pytest.mark.parametrize("name", ["pendulum_stop", "bouncing_ball"])
+def test_scenarios_of_the_catalogue_by_the_command_of_fmpy(tmp_path, name):
+    scenario = load(name)
+    path, table = tmp_path / "x.fmu", tmp_path / "x.csv"
+    export_fmu(scenario, path)
+    assert validate_fmu(str(path)) == []
+    command = [sys.executable, "-m", "fmpy", "simulate", str(path), "--output-file", str(table)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout + done.stderr
+    result = np.genfromtxt(table, delimiter=",", names=True, deletechars="")
+    assert result["time"][-1] == pytest.approx(scenario.t_end)
     assert abs(result["energy.balance"]).max() < 1e-3
+    assert result["solver.events"][-1] > 0
 
 
 # a host that is no Python
