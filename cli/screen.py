@@ -84,7 +84,7 @@ def compile_notice() -> Iterator[None]:
     """Say once if numba compiles: a warm cache compiles nothing, so this is the first run (or a new method)."""
     from numba.core import event
 
-    class Notice(event.Listener):  # type: ignore[misc]
+    class Notice(event.Listener):
         said = False
 
         def on_start(self, event: Any) -> None:

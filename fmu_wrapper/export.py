@@ -56,14 +56,16 @@ def export_fmu(
 
     Raises
     ------
-    ExportError : for an FMI version that is not written, a missing shim, a setting that is not JSON data.
+    ExportError : for an FMI version that is not written, a missing shim or folder, a setting that is no JSON data.
     ModelError, FmuValueError : for a wrong model or setting.
     """
     if fmi_version != "2.0":
         known = str(fmi_version).startswith("3")
         why = "FMI 3.0 is not written yet" if known else "there is no such FMI version"
         raise ExportError(f"fmi_version '{fmi_version}': {why}; use fmi_version=\"2.0\"")
-    shim = shim_path()
+    shim, path = shim_path(), Path(path)
+    if not path.parent.is_dir():
+        raise ExportError(f"'{path}' cannot be written: there is no folder '{path.parent}'")
     given = {"t_end": t_end, "communication_step": communication_step, **solver}
     slave = Slave(source, **{k: v for k, v in given.items() if v is not None})
     solver_data = slave.settings.as_arguments()
@@ -103,7 +105,7 @@ def export_fmu(
             "set TLISMNI_LIBPYTHON in the host's environment, or export with a Python that has libpython",
             sys.prefix,
         )
-    return _write(Path(path), files)
+    return _write(path, files)
 
 
 def shim_path() -> Path:

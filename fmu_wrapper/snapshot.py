@@ -10,6 +10,7 @@ from typing import Any
 from .errors import SnapshotError
 from .values import Values
 from .variables import VariableTable
+from .version import package_version
 
 FORMAT = 1
 MAGIC = b"tlismni-slave-state\n"
@@ -59,6 +60,7 @@ class Snapshot:
         head = json.dumps(
             {
                 "format": FORMAT,
+                "tlismni": package_version(),
                 "identity": self.identity,
                 "phase": self.phase.value,
                 "start_time": self.start_time,
@@ -94,10 +96,12 @@ class Snapshot:
             raise SnapshotError(f"the stored state is damaged or cut off ({len(data)} bytes): store it again")
         a, b = lengths[0], lengths[0] + lengths[1]
         head = json.loads(body[:a])
-        if head["format"] != FORMAT:
+        # another version may solve the same in another way: its state would be taken for something it is not
+        stored, here = (head["format"], head["tlismni"]), (FORMAT, package_version())
+        if stored != here:
             raise SnapshotError(
-                f"the stored state has format {head['format']}, this version reads format {FORMAT}: "
-                "restore it with the version of tlismni that stored it"
+                f"the state was stored by tlismni {stored[1]} (format {stored[0]}), this is {here[1]} (format "
+                f"{here[0]}): restore it with the version that stored it"
             )
         if head["identity"] != identity:
             raise SnapshotError(

@@ -18,6 +18,7 @@ from ..system.records import (
     OK,
     OUTER_DIVERGED,
     OUTER_SLOW,
+    PARTITION_AGE,
     REANALYZE,
     SINGULAR,
 )
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
     from .simulation import Simulation
 
 CHUNK_STEPS = 20_000
+PAUSE = 100.0
+"""Steps before a partition that was just confirmed is looked at again."""
 _REASONS = {
     OUTER_DIVERGED: ("outer", "the outer loop diverged"),
     OUTER_SLOW: ("outer", "the outer loop did not converge"),
@@ -102,6 +105,7 @@ def _shrink(sim: "Simulation") -> bool:
 def _repair(sim: "Simulation") -> None:
     """New partition and orderings at the newest row."""
     recall(sim.workspace.record, sim._method.record, 0)
+    before = sim.workspace.arrays["dependent"].copy()
     try:
         prepare(sim.workspace)
     except (ConsistencyError, SingularMatrixError) as error:
@@ -110,6 +114,8 @@ def _repair(sim: "Simulation") -> None:
             t=sim.t_internal,
             loop="inner",
         ) from error
+    if np.array_equal(np.sort(before), np.sort(sim.workspace.arrays["dependent"])):
+        sim.workspace.arrays["rate"][PARTITION_AGE] = -PAUSE
 
 
 def _fail(sim: "Simulation", code: int) -> None:

@@ -9,13 +9,10 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import call_step
-from ..stage.solver import MOST_INNER, MOST_OUTER
 from ..system.records import (
     ATOL,
     CONTROL_SIZE,
     COUNTERS_SIZE,
-    LAST_INNER,
-    LAST_OUTER,
     NOT_FINITE,
     OK,
     PARTITION_AGE,
@@ -47,8 +44,7 @@ from .watch import any_crossed, remember
 SAFETY = 0.9
 MIN_FACTOR = 0.2
 MAX_FACTOR = 2.0
-PARTITION_PATIENCE = 10.0  # steps between two looks at the partition
-STRAIN = 5.0  # how much faster than the independent ones the dependent coordinates may move (rms, scaled)
+STRAIN = 2.0  # how much faster than the independent ones the dependent coordinates may move (rms, scaled)
 DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more: equal steps are cheaper and safer
 
 
@@ -100,13 +96,13 @@ def accept(ws: Any, ms: Any, lc: Any) -> None:
 @internal
 def partition_strained(ws: Any) -> bool:
     """True if a dependent coordinate moves much faster than all independent ones: the partition is near a position
-    in which Phi_qd is singular. Looked at again only some steps after the last choice."""
+    in which Phi_qd is singular. q_d(q_i) then has steep derivatives, which costs accuracy long before it fails.
+    A negative age, set when a new choice gave the same partition, is a pause."""
     if ws.m_act == 0 or ws.m_act == ws.n:
         return False
     rate = vec(ws.rate, RATE_SIZE)
     rate[PARTITION_AGE] += 1.0
-    laborious = rate[LAST_OUTER] > MOST_OUTER or rate[LAST_INNER] > MOST_INNER
-    if rate[PARTITION_AGE] < (2.0 if laborious else PARTITION_PATIENCE):
+    if rate[PARTITION_AGE] < 1.0:
         return False
     v, scale = vec(ws.v, ws.n_ext), vec(ws.scale, ws.n)
     dependent = ivec(ws.dependent, ws.m_act)

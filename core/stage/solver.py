@@ -38,8 +38,10 @@ from ..system.records import (
     OUTER_LOOP,
     OUTER_RATE,
     OUTER_SLOW,
+    POSITION_TOLERANCE,
     RATE_SIZE,
     REANALYZE,
+    RTOL,
     SINGULAR,
     STAGES,
 )
@@ -156,7 +158,8 @@ def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
     start_inner = counters[INNER]
     previous = np.inf
     renewed = 0
-    slack = 1e4
+    # before the outer loop has converged, the constraints need to hold only a hundred times better than it does
+    slack = max(1.0, min(1e4, 0.01 * tolerance * control[RTOL] / control[POSITION_TOLERANCE]))
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
         status = inner_loop(ws, ws.lu_d, slack, np.inf)

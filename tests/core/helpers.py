@@ -6,8 +6,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from tlismni.core import (
     Disk2D,
-    Distance2D,
     DiskOnHalfPlane2D,
+    Distance2D,
     EquationSystem,
     HalfPlane2D,
     Marker2D,

@@ -22,9 +22,7 @@ def global_errors(steps, method, model=None, t_end=T_END, angle=ANGLE, rate=RATE
     system = point_pendulum(angle, rate) if model is None else model
     errors = []
     for count in steps:
-        result = simulate(
-            system, t_end, method, step=t_end / count, newton_tolerance=1e-13, record=False, **options
-        )
+        result = simulate(system, t_end, method, step=t_end / count, newton_tolerance=1e-13, record=False, **options)
         assert result.stats["steps"] == count
         errors.append(np.abs(np.concatenate([result.q[-1], result.v[-1]]) - exact(t_end, angle, rate)).max())
     return errors
@@ -66,7 +64,7 @@ def test_order_with_user_written_equations():
 
 
 def test_elements_and_user_written_equations_give_the_same_numbers():
-    """Distance2D and x^2 + y^2 - 1 differ by a constant factor of Phi: the same motion, multipliers twice each other."""
+    """Distance2D and x^2 + y^2 - 1 differ by the factor 2 of Phi: the same motion, half the multipliers."""
     runs = [simulate(s, 0.5, step=0.01) for s in (point_pendulum(ANGLE, RATE), circle_pendulum(ANGLE, RATE))]
     assert np.abs(runs[0].q - runs[1].q).max() < 1e-11
     assert runs[0].multipliers[:, 0] == pytest.approx(2.0 * runs[1].multipliers[:, 0], rel=1e-8)

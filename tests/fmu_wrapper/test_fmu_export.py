@@ -9,8 +9,8 @@ import fmpy
 import numpy as np
 import pytest
 import tlismni.fmu_wrapper.export as export_module
-from conftest import ball_model
 from fmpy.validation import validate_fmu
+from fmu_helpers import ball_model
 from lxml import etree
 from tlismni.core.description import Model
 from tlismni.core.errors import ModelError
@@ -119,6 +119,9 @@ def test_bad_settings_leave_no_file(fake_fmu, tmp_path, monkeypatch):
     monkeypatch.setattr(export_module, "SHIM", "absent.so")
     with pytest.raises(ExportError, match=r"absent.so' is missing: it is compiled when tlismni is installed"):
         fake_fmu()
+    monkeypatch.undo()
+    with pytest.raises(ExportError, match=r"cannot be written: there is no folder '.*/missing'"):
+        export_fmu(ball_model(), tmp_path / "missing" / "x.fmu")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -10,7 +10,6 @@ from itertools import pairwise
 import fmpy
 import numpy as np
 import pytest
-from conftest import ball_model
 from fake_simulation import FakeSimulation
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
@@ -23,6 +22,7 @@ from fmpy.fmi2 import (
     fmi2LastSuccessfulTime,
     fmi2Terminated,
 )
+from fmu_helpers import ball_model
 from tlismni.fmu_wrapper.in_process import InProcess
 
 HOSTS = ("in process", "binary")

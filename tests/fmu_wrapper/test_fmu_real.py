@@ -11,9 +11,9 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from conftest import ball_model
 from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
+from fmu_helpers import ball_model
 from tlismni.core import Simulation
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.export import fmi2_platform, shim_path

@@ -5,8 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from conftest import ball_model
+import tlismni.fmu_wrapper.snapshot as snapshot_module
 from fake_simulation import FakeSimulation
+from fmu_helpers import ball_model
 from tlismni.core.errors import ModelError, SimulationError
 from tlismni.fmu_wrapper import CallOrderError, FmuError, FmuValueError, Slave, SnapshotError
 
@@ -253,7 +254,7 @@ def test_reset_equals_a_new_slave(fake_slave):
     assert run(started(used), GRID) == run(started(new), GRID)
 
 
-def test_foreign_and_damaged_states_are_refused(fake_slave, model):
+def test_foreign_and_damaged_states_are_refused(fake_slave, monkeypatch):
     slave = started(fake_slave())
     data = slave.snapshot().data
     other = started(Slave(ball_model(height=1.5), simulation_factory=FakeSimulation))
@@ -265,6 +266,10 @@ def test_foreign_and_damaged_states_are_refused(fake_slave, model):
         slave.snapshot_from_bytes(data[:-1])
     with pytest.raises(SnapshotError, match="damaged"):
         slave.snapshot_from_bytes(data[:-1] + bytes([data[-1] ^ 1]))
+    monkeypatch.setattr(snapshot_module, "package_version", lambda: "9.9")
+    with pytest.raises(SnapshotError, match=r"stored by tlismni \S+ \(format 1\), this is 9.9 \(format 1\)"):
+        slave.snapshot_from_bytes(data)
+    monkeypatch.undo()
     with pytest.raises(SnapshotError, match="these 7 bytes are no stored state"):
         slave.snapshot_from_bytes(b"garbage")
     slave.restore(slave.snapshot_from_bytes(data + b"\0\0"))  # a buffer may be longer
