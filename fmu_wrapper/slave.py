@@ -4,8 +4,6 @@ Phases: instantiated -> initialization -> step -> terminated; a failed step lead
 state or a reset leads back. The methods raise; `calls.py` turns what they raise into FMI statuses.
 """
 
-import hashlib
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -13,13 +11,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..core.description import Model
 from . import log as logs
 from .errors import CallOrderError, FmuValueError, SnapshotError, Status
+from .grid import check_step
 from .log import Log, LogCallback
 from .run import Run, SimulationFactory, build_simulation
 from .settings import Settings
-from .snapshot import Phase, Snapshot
+from .snapshot import Phase, Snapshot, identity
 from .values import Values, check_values
 from .variables import TIME, Kind, Variable, VariableTable, build_table
 
@@ -159,7 +157,7 @@ class Slave:
         SimulationError, FmuError : the solver failed; the slave is in phase `failed`.
         """
         self._need("do step", Phase.STEP)
-        target = self._target(t, h)
+        target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
         seen = len(run.events)
         try:
@@ -175,30 +173,6 @@ class Slave:
             for event in run.events[seen:]:
                 text = f"{event.kind} of contact '{event.contact}' at t = {event.t!r} s"
                 self.log.write(Status.OK, logs.EVENTS, f"{text}, impulse {event.impulse:.6g} N s")
-
-    def _target(self, t: float, h: float) -> float:
-        if not (math.isfinite(t) and math.isfinite(h)):
-            raise FmuValueError(f"communication point {t!r} s and step {h!r} s must be finite")
-        if h <= 0.0:
-            raise FmuValueError(f"the communication step is {h!r} s: a step greater than 0 is needed")
-        own = self._time
-        scale = max(abs(own), abs(t), h)
-        # rounding of the master, but never so much that a step done twice passes
-        slack = max(8.0 * math.ulp(scale), min(1e-9 * scale, 0.01 * h))
-        if abs(t - own) > slack:
-            raise FmuValueError(
-                f"the communication point is {t!r} s, but this slave is at {own!r} s: step from there, "
-                "or set a stored state first"
-            )
-        target = t + h
-        if target <= own:
-            raise FmuValueError(f"the communication step {h!r} s is lost in rounding at {own!r} s: make it larger")
-        if self._stop_time is not None and target > self._stop_time + slack:
-            raise FmuValueError(
-                f"the step from {t!r} s by {h!r} s ends after the stop time {self._stop_time!r} s of the experiment: "
-                "make it shorter, or set up the experiment without a stop time"
-            )
-        return target
 
     # values
 
@@ -329,9 +303,3 @@ class Slave:
     def _set_time(self, t: float) -> None:
         self._time = t
         self._values[self.variables.by_reference[TIME]] = t
-
-
-def identity(model: Model, settings: Settings, variables: VariableTable) -> str:
-    """Hash of everything that makes an FMU what it is."""
-    content = [model.model_dump(mode="json"), settings.as_arguments(), variables.to_data()]
-    return hashlib.sha256(json.dumps(content, sort_keys=True, default=repr).encode()).hexdigest()

@@ -1,5 +1,6 @@
 """A slave's whole state as one value: for rollback inside a process and, as bytes, across processes."""
 
+import hashlib
 import json
 import zlib
 from dataclasses import dataclass
@@ -7,7 +8,9 @@ from enum import StrEnum
 from functools import cached_property
 from typing import Any
 
+from ..core.description import Model
 from .errors import SnapshotError
+from .settings import Settings
 from .values import Values
 from .variables import VariableTable
 from .version import package_version
@@ -119,3 +122,9 @@ class Snapshot:
             simulation=body[b:] or None,
             identity=identity,
         )
+
+
+def identity(model: Model, settings: Settings, variables: VariableTable) -> str:
+    """Hash of everything that makes an FMU what it is."""
+    content = [model.model_dump(mode="json"), settings.as_arguments(), variables.to_data()]
+    return hashlib.sha256(json.dumps(content, sort_keys=True, default=repr).encode()).hexdigest()

@@ -138,7 +138,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         t = history_time(ms, 0)
         stop = clock[STOP_TIME]
         remaining = stop - t
-        if t >= clock[TARGET_TIME] or remaining <= 4e-16 * abs(stop):
+        if t >= clock[TARGET_TIME] or remaining <= 4e-16 * abs(t):
             return REACHED
         if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
             return FULL
