@@ -3,13 +3,15 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
+from pydantic import model_validator
+
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, vec
 from ..model.base import Name
 from ..model.channels import Channel
 from ..model.markers import Marker2D
-from ..model.signals import Signal, evaluate_signal
+from ..model.signals import Signal, Step, evaluate_signal
 from .base import Element, Numbering, Row
 
 
@@ -51,6 +53,15 @@ class CoordinateDriver(Element):
     coordinate: Literal["x", "y", "angle"]
     motion: Signal
     """Position in m or rad over time in s. An input channel moves with the rate it is given (0 unless set)."""
+
+    @model_validator(mode="after")
+    def _check(self) -> "CoordinateDriver":
+        if isinstance(self.motion, Step):
+            raise ValueError(
+                f"motion of driver '{self.name}' is a Step: a jump in position is no motion; "
+                "use a Ramp, a Polynomial or a Table"
+            )
+        return self
 
     def row(self, numbering: Numbering) -> Row:
         index = numbering.coordinates(self.body)[("x", "y", "angle").index(self.coordinate)]

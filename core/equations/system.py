@@ -183,8 +183,7 @@ class EquationSystem:
             (layout.a, "dd_", "second rate"),
         ):
             for k, name in enumerate(self.coordinates):
-                at = part.start + k
-                columns.append((Channel(prefix + name, "1", f"{what} {name}"), lambda s, at=at: s[:, at]))
+                columns.append((Channel(prefix + name, "1", f"{what} {name}"), part.start + k))
         return columns
 
 

@@ -43,8 +43,9 @@ class ChannelTable:
         self.layout = layout = SampleLayout(assembly)
         self.initial_energy = 0.0
         self._columns: list[tuple[Channel, Column]] = []
-        for channel, column in system.coordinate_channels(assembly, layout):
-            self._columns.append((channel, column))
+        self._plain: list[tuple[int, int]] = []
+        for channel, at in system.coordinate_channels(assembly, layout):
+            self._add(channel, at)
         for k, channel in enumerate(assembly.multiplier_channels):
             self._add(channel, layout.multipliers.start + k)
         for k, contact in enumerate(assembly.contacts):
@@ -57,9 +58,15 @@ class ChannelTable:
                 Channel(f"residual.{level}", unit, f"largest constraint violation at {level} level"), column_index
             )
         self.channels = tuple(channel for channel, _ in self._columns)
+        self._plain_channels = np.array([k for k, _ in self._plain], dtype=np.intp)
+        self._plain_columns = np.array([column for _, column in self._plain], dtype=np.intp)
+        plain = set(self._plain_channels.tolist())
+        self._computed = [k for k in range(len(self._columns)) if k not in plain]
         self.index = {channel.name: k for k, channel in enumerate(self.channels)}
 
     def _add(self, channel: Channel, column: int) -> None:
+        """A channel that stands in the sample as it is."""
+        self._plain.append((len(self._columns), column))
         self._columns.append((channel, lambda s: s[:, column]))
 
     def _add_contact(self, k: int, name: str) -> None:
@@ -79,7 +86,7 @@ class ChannelTable:
             ),
             (
                 Channel(f"{name}.in_contact", "1", "true while the contact carries force", "boolean"),
-                lambda s: np.isin(s[:, layout.mode + k], (CLOSED, ACTIVE)).astype(float),
+                lambda s: (s[:, layout.mode + k] == CLOSED) | (s[:, layout.mode + k] == ACTIVE),
             ),
             (
                 Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer"),
@@ -123,11 +130,15 @@ class ChannelTable:
 
     def column(self, samples: NDArray[np.float64], name: str) -> NDArray[np.float64]:
         """One channel over all samples (N,). Raises KeyError for an unknown name."""
-        return self._columns[self.index[name]][1](samples)
+        return self._columns[self.index[name]][1](samples).astype(float, copy=False)
 
     def values(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
         """All channels over all samples (N, channels)."""
-        return np.column_stack([column(samples) for _, column in self._columns])
+        out = np.empty((len(samples), len(self._columns)))
+        out[:, self._plain_channels] = samples[:, self._plain_columns]
+        for k in self._computed:
+            out[:, k] = self._columns[k][1](samples)
+        return out
 
     def total_energy(self, sample: NDArray[np.float64]) -> float:
         """Stored energy in one sample, J."""
@@ -135,12 +146,12 @@ class ChannelTable:
         return float(sample[layout.kinetic] + sample[layout.potential] + sample[layout.strain])
 
 
-def planar_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, Column]]:
-    """Position, velocity and acceleration of every body coordinate."""
-    columns: list[tuple[Channel, Column]] = []
+def planar_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, int]]:
+    """Position, velocity and acceleration of every body coordinate, with their columns in a sample."""
+    columns: list[tuple[Channel, int]] = []
 
     def add(name: str, unit: str, description: str, at: int) -> None:
-        columns.append((Channel(name, unit, description), lambda s: s[:, at]))
+        columns.append((Channel(name, unit, description), at))
 
     for body, coordinate, index in assembly.body_columns:
         rate, rate_unit = _RATES[coordinate]

@@ -62,7 +62,7 @@ def make_consistent(workspace: Workspace, tolerance: float = START_TOLERANCE) ->
         before = arrays[x][:n].copy()
         if level.startswith("v"):
             given = _violations(assembly, workspace.structure.active, arrays["phid"])
-        ok = _bring_to_rest(workspace, residual, x)
+        ok = bring_to_rest(workspace, residual, x)
         moved = np.abs(arrays[x][:n] - before) / scale
         worst = int(np.argmax(moved)) if n else 0
         if not ok or (n and not moved[worst] <= tolerance):
@@ -83,7 +83,7 @@ def make_consistent(workspace: Workspace, tolerance: float = START_TOLERANCE) ->
         prepare(workspace)
 
 
-def _bring_to_rest(workspace: Workspace, residual: str, x: str) -> bool:
+def bring_to_rest(workspace: Workspace, residual: str, x: str) -> bool:
     """Newton on one level; True when it holds to rounding."""
     ws, arrays = workspace.record, workspace.arrays
     table = workspace._record.table

@@ -1,0 +1,338 @@
+"""Wrong input is refused with a message that names it, before anything is computed."""
+
+import math
+
+import numpy as np
+import pytest
+from helpers import GROUND, ball_over_floor, circle_pendulum, floor_contact, on, point_pendulum, rod_pendulum
+from tlismni.core import (
+    AppliedForce2D,
+    ConsistencyError,
+    Constant,
+    CoordinateDriver,
+    Disk2D,
+    DiskOnDisk2D,
+    Distance2D,
+    EquationError,
+    EquationSystem,
+    Flores,
+    Gonthier,
+    Input,
+    InputSignal,
+    Model,
+    ModelError,
+    NewtonImpact,
+    Parameter,
+    PointMass2D,
+    Polynomial,
+    Revolute2D,
+    RigidBody2D,
+    Simulation,
+    SpringDamper2D,
+    Table,
+    simulate,
+)
+from tlismni.models import load
+
+NAN, INF = math.nan, math.inf
+
+
+@pytest.mark.parametrize(
+    "arguments, word",
+    [
+        ({"method": "runge"}, "runge"),
+        ({"method": ""}, "unknown method"),
+        ({"alpha": -0.1}, "alpha"),
+        ({"method": "hht", "alpha": 0.5}, "alpha"),
+        ({"method": "hht", "alpha": NAN}, "alpha"),
+        ({"k": 9}, "k"),
+        ({"k": 2.5}, "whole"),
+        ({"k": "4"}, "number"),
+        ({"k": True}, "number"),
+        ({"method": "bdf", "order": 6}, "order"),
+        ({"method": "bdf", "order": 0}, "order"),
+        ({"step": -0.1}, "step"),
+        ({"step": 0.0}, "step"),
+        ({"step": NAN}, "step"),
+        ({"step": INF}, "step"),
+        ({"step": "0.1"}, "step"),
+        ({"max_step": 0.0}, "max_step"),
+        ({"first_step": -1.0}, "first_step"),
+        ({"rtol": 0.0}, "rtol"),
+        ({"rtol": -1e-6}, "rtol"),
+        ({"rtol": NAN}, "rtol"),
+        ({"rtol": 1e-18}, "rtol"),
+        ({"atol": 0.0}, "atol"),
+        ({"atol": INF}, "atol"),
+        ({"outer": "picard"}, "picard"),
+        ({"newton_tolerance": 0.0}, "newton_tolerance"),
+        ({"start_tolerance": -1.0}, "start_tolerance"),
+        ({"t0": NAN}, "t0"),
+        ({"t0": 2.0}, "t0"),
+        ({"t_eval": [0.5, 0.2]}, "t_eval"),
+        ({"t_eval": [0.5, 1.5]}, "t_eval"),
+        ({"t_eval": [-0.5, 0.5]}, "t_eval"),
+        ({"t_eval": [0.5, NAN]}, "t_eval"),
+        ({"t_eval": [[0.5]]}, "t_eval"),
+        ({"t_eval": ["a"]}, "t_eval"),
+    ],
+)
+def test_bad_argument_of_simulate_is_named(arguments, word):
+    with pytest.raises(ModelError, match=word):
+        simulate(point_pendulum(), 1.0, **arguments)
+
+
+@pytest.mark.parametrize("t_end", [NAN, INF, "1", None, True, -1.0])
+def test_bad_end_time_is_named(t_end):
+    with pytest.raises(ModelError, match="t_end"):
+        simulate(point_pendulum(), t_end)
+
+
+def test_no_time_at_all_gives_the_start():
+    result = simulate(point_pendulum(0.3), 0.0)
+    assert len(result) >= 1 and result.t[-1] == 0.0
+    assert len(simulate(point_pendulum(0.3), 1.0, t_eval=[])) == 0
+
+
+@pytest.mark.parametrize(
+    "build, word",
+    [
+        (lambda: PointMass2D(name="p", mass=-1.0), "mass"),
+        (lambda: PointMass2D(name="p", mass=0.0), "mass"),
+        (lambda: PointMass2D(name="p", mass=NAN), "mass"),
+        (lambda: PointMass2D(name="p", mass=INF), "mass"),
+        (lambda: PointMass2D(name="p", mass=1.0, position=(NAN, 0.0)), "position"),
+        (lambda: PointMass2D(name="p", mass=1.0, velocity=(0.0, INF)), "velocity"),
+        (lambda: PointMass2D(name="p", mass=1.0, position=(0.0,)), "position"),
+        (lambda: PointMass2D(name="1p", mass=1.0), "name"),
+        (lambda: PointMass2D(name="p.x", mass=1.0), "name"),
+        (lambda: PointMass2D(name="", mass=1.0), "name"),
+        (lambda: PointMass2D(name="p"), "mass"),
+        (lambda: PointMass2D(name="p", mass=1.0, weight=3.0), "weight"),
+        (lambda: RigidBody2D(name="b", mass=1.0, inertia=0.0), "inertia"),
+        (lambda: RigidBody2D(name="b", mass=1.0, inertia=1.0, angle=NAN), "angle"),
+        (lambda: Distance2D(name="d", a=GROUND, b=on("p"), length=0.0), "length"),
+        (lambda: SpringDamper2D(name="s", a=GROUND, b=on("p"), stiffness=-1.0, natural_length=1.0), "stiffness"),
+        (
+            lambda: SpringDamper2D(name="s", a=GROUND, b=on("p"), stiffness=1.0, natural_length=1.0, damping=-1.0),
+            "damping",
+        ),
+        (lambda: NewtonImpact(restitution=1.1), "restitution"),
+        (lambda: NewtonImpact(restitution=-0.1), "restitution"),
+        (lambda: NewtonImpact(restitution=NAN), "restitution"),
+        (lambda: Flores(stiffness=1e5, restitution=0.0), "restitution"),
+        (lambda: Gonthier(stiffness=0.0, restitution=0.5), "stiffness"),
+        (lambda: Flores(stiffness=1e5, restitution=0.5, exponent=-1.0), "exponent"),
+        (lambda: Disk2D(marker=on("p"), radius=-0.1), "radius"),
+        (lambda: Table(times=(0.0, 1.0, 1.0, 2.0), values=(0.0, 0.0, 0.0, 0.0)), "times"),
+        (lambda: Table(times=(0.0, 1.0, 2.0, 3.0), values=(0.0,) * 5), "values"),
+        (lambda: Polynomial(coefficients=()), "coefficients"),
+        (lambda: CoordinateDriver(name="d", body="p", coordinate="z", motion=Constant(value=0.0)), "coordinate"),
+    ],
+)
+def test_bad_field_of_a_record_is_named(build, word):
+    with pytest.raises(ValueError, match=word):
+        build()
+
+
+P = PointMass2D(name="p", mass=1.0, position=(1.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "parts, word",
+    [
+        ({"bodies": [P, P]}, "p"),
+        ({"bodies": [P], "joints": [Distance2D(name="p", a=GROUND, b=on("p"), length=1.0)]}, "unique"),
+        ({"bodies": [P], "joints": [Distance2D(name="d", a=GROUND, b=on("nobody"), length=1.0)]}, "nobody"),
+        ({"bodies": [P], "contacts": [floor_contact(NewtonImpact(restitution=0.5), body="nobody")]}, "nobody"),
+        ({"bodies": [P], "forces": [AppliedForce2D(name="f", marker=on("nobody"))]}, "nobody"),
+        ({"bodies": [P], "forces": [AppliedForce2D(name="f", marker=on("p", 0.1))]}, "extension"),
+        (
+            {"bodies": [P], "forces": [AppliedForce2D(name="f", marker=on("p"), force_x=InputSignal(channel="u"))]},
+            "u",
+        ),
+        ({"bodies": [P], "inputs": [Input(name="p")]}, "unique"),
+        ({"bodies": [P], "parameters": [Parameter(name="m", targets=["p.weight"])]}, "weight"),
+        ({"bodies": [P], "parameters": [Parameter(name="m", targets=["q.mass"])]}, "q.mass"),
+        ({"bodies": [P], "parameters": [Parameter(name="m", targets=["p.type"])]}, "no number"),
+        ({"bodies": [PointMass2D(name="ground", mass=1.0)]}, "ground"),
+        ({"bodies": [PointMass2D(name="energy", mass=1.0)]}, "energy"),
+        ({"bodies": [P], "gravity": (0.0, NAN)}, "gravity"),
+        ({"bodies": [{"type": "Sphere", "name": "s"}]}, "Sphere"),
+        ({"bodies": [P], "springs": []}, "springs"),
+        ({"format": "tlismni-model-9"}, "format"),
+    ],
+)
+def test_bad_model_names_what_is_wrong(parts, word):
+    with pytest.raises(ModelError, match=word):
+        Model(**parts)
+
+
+def test_driver_of_a_coordinate_that_the_body_does_not_have_is_refused():
+    driver = CoordinateDriver(name="turn", body="p", coordinate="angle", motion=Constant(value=0.0))
+    with pytest.raises((ModelError, ConsistencyError), match="turn"):
+        simulate(Model(bodies=[P], joints=[driver]), 1.0)
+
+
+def test_spring_of_length_zero_is_refused_or_reported():
+    """Its direction is undefined: no silent NaN."""
+    spring = SpringDamper2D(name="s", a=GROUND, b=on("p"), stiffness=1.0, natural_length=1.0)
+    with pytest.raises(ConsistencyError):
+        simulate(Model(bodies=[PointMass2D(name="p", mass=1.0)], forces=[spring]), 1.0)
+
+
+# ---- starts ------------------------------------------------------------------------------------------
+
+
+def test_second_identical_joint_is_named_as_redundant():
+    again = Revolute2D(name="again", a=GROUND, b=on("rod", -0.5))
+    with pytest.raises(ConsistencyError, match=r"'(again|pin)' is redundant: it repeats what (pin|again)"):
+        simulate(rod_pendulum(joints=[again]), 1.0)
+
+
+def test_contradictory_joints_are_named():
+    other = Distance2D(name="other", a=GROUND, b=on("bob"), length=1.2)
+    model = point_pendulum(0.3)
+    with pytest.raises(ConsistencyError, match="other"):
+        simulate(model.model_copy(update={"joints": (*model.joints, other)}), 1.0)
+
+
+def test_joint_between_ground_and_ground_is_named():
+    nothing = Distance2D(name="nothing", a=GROUND, b=on("ground", 1.0), length=1.0)
+    with pytest.raises(ConsistencyError, match="'nothing' is redundant: it constrains nothing"):
+        simulate(Model(bodies=[P], joints=[nothing]), 1.0)
+
+
+def test_start_far_off_the_constraints_is_refused_and_names_the_joint():
+    rod = Distance2D(name="rod", a=GROUND, b=on("p"), length=0.5)
+    with pytest.raises(ConsistencyError, match=r"positions q0.*'rod'"):
+        simulate(Model(bodies=[P], joints=[rod]), 1.0)
+
+
+def test_velocity_far_off_the_constraints_is_refused_and_names_the_joint():
+    body = P.model_copy(update={"velocity": (1.0, 0.0)})
+    rod = Distance2D(name="rod", a=GROUND, b=on("p"), length=1.0)
+    with pytest.raises(ConsistencyError, match=r"velocities v0.*'rod'"):
+        simulate(Model(bodies=[body], joints=[rod]), 1.0)
+
+
+def test_start_slightly_off_is_moved_onto_the_constraints():
+    body = PointMass2D(name="p", mass=1.0, position=(1.0 + 1e-5, 0.0), velocity=(1e-5, 2.0))
+    rod = Distance2D(name="rod", a=GROUND, b=on("p"), length=1.0)
+    result = simulate(Model(bodies=[body], joints=[rod]), 0.1)
+    assert np.hypot(*result.q[0]) == pytest.approx(1.0, abs=1e-14)
+    assert result.q[0] @ result.v[0] == pytest.approx(0.0, abs=1e-14)
+    assert np.abs(result.q[0] - [1.0, 0.0]).max() < 2e-5 and abs(result.v[0][1] - 2.0) < 1e-4
+
+
+def test_start_tolerance_decides_how_far_off_is_too_far():
+    body = PointMass2D(name="p", mass=1.0, position=(1.05, 0.0))
+    rod = Distance2D(name="rod", a=GROUND, b=on("p"), length=1.0)
+    model = Model(bodies=[body], joints=[rod])
+    with pytest.raises(ConsistencyError):
+        simulate(model, 0.1)
+    assert simulate(model, 0.1, start_tolerance=0.1).q[0] == pytest.approx([1.0, 0.0], abs=1e-14)
+
+
+def test_correction_of_the_start_is_the_least_one_in_the_mass_norm():
+    """A light and a heavy point on a rod of wrong length: the corrections are as the masses' inverses."""
+    bodies = [
+        PointMass2D(name="light", mass=1.0, position=(0.0, 0.0)),
+        PointMass2D(name="heavy", mass=9.0, position=(1.0 + 1e-5, 0.0)),
+    ]
+    rod = Distance2D(name="rod", a=on("light"), b=on("heavy"), length=1.0)
+    (q, *_) = simulate(Model(bodies=bodies, joints=[rod]), 0.01).q
+    assert q[0] == pytest.approx(0.9e-5, rel=1e-4)
+    assert q[2] == pytest.approx(1.0 + 0.9e-5, abs=1e-9)
+
+
+def test_overlap_at_the_start_of_a_constraint_contact_is_refused():
+    with pytest.raises(ConsistencyError, match=r"'floor'.*overlapping by 0\.1"):
+        simulate(ball_over_floor(NewtonImpact(restitution=0.5), height=-0.1), 1.0)
+
+
+def test_overlap_of_two_disks_at_the_start_is_refused():
+    bodies = [P, PointMass2D(name="o", mass=1.0, position=(1.5, 0.0))]
+    disks = [Disk2D(marker=on(body), radius=0.3) for body in ("p", "o")]
+    contact = DiskOnDisk2D(name="knock", a=disks[0], b=disks[1], law=NewtonImpact(restitution=0.5))
+    with pytest.raises(ConsistencyError, match=r"'knock'.*overlapping by 0\.1"):
+        simulate(Model(bodies=bodies, contacts=[contact]), 1.0)
+
+
+def test_body_without_mass_in_user_equations_is_reported():
+    system = EquationSystem(mass=np.zeros((1, 1)), force=np.ones(1), q0=[0.0], v0=[0.0])
+    with pytest.raises(ConsistencyError, match="singular"):
+        simulate(system, 1.0)
+
+
+def test_force_that_becomes_nan_stops_the_run_and_keeps_what_was_computed():
+    from tlismni.core import SimulationError
+
+    def force(t, q, v):
+        return np.array([1.0 if t < 0.5 else np.nan])
+
+    system = EquationSystem(mass=np.eye(1), force=force, q0=[0.0], v0=[0.0])
+    with pytest.raises((SimulationError, EquationError)) as caught:
+        simulate(system, 1.0)
+    if isinstance(caught.value, SimulationError):
+        assert 0.4 < caught.value.t <= 0.5
+        assert caught.value.partial.t[-1] == pytest.approx(caught.value.t)
+
+
+def test_error_in_a_user_function_comes_out_as_it_is():
+    def force(t, q, v):
+        if t > 0.3:
+            raise ZeroDivisionError("my own mistake")
+        return np.zeros(1)
+
+    system = EquationSystem(mass=np.eye(1), force=force, q0=[0.0], v0=[1.0])
+    with pytest.raises(ZeroDivisionError, match="my own mistake"):
+        simulate(system, 1.0)
+
+
+@pytest.mark.parametrize("value", [NAN, INF])
+def test_input_that_is_no_number_is_refused(value):
+    sim = Simulation(load("pendulum_stop").model)
+    with pytest.raises(ModelError, match="torque"):
+        sim.set_inputs({"torque": value})
+    with pytest.raises(ModelError, match="there is no input 'force'"):
+        sim.set_inputs({"force": 1.0})
+
+
+def test_unknown_channel_names_the_nearest():
+    result = simulate(point_pendulum(), 0.01)
+    with pytest.raises(KeyError, match=r"bob\.vx"):
+        result["bob.v_x"]
+
+
+def test_what_is_no_system_is_refused():
+    with pytest.raises((ModelError, TypeError, AttributeError)):
+        simulate({"bodies": []}, 1.0)
+
+
+def test_model_without_bodies_is_refused_or_runs_empty():
+    try:
+        result = simulate(Model(), 1.0)
+    except ModelError as error:
+        assert "bod" in str(error)
+    else:
+        assert result.q.shape[1] == 0
+
+
+def test_user_equations_with_redundant_constraints_are_reported():
+    system = EquationSystem(
+        mass=np.eye(2),
+        force=np.zeros(2),
+        constraint=lambda t, q: np.array([q[0] - 1.0, 2.0 * q[0] - 2.0]),
+        q0=[1.0, 0.0],
+        v0=[0.0, 1.0],
+    )
+    with pytest.raises(ConsistencyError, match=r"constraint\[[01]\]"):
+        simulate(system, 1.0)
+
+
+def test_user_equations_far_off_their_constraint_are_refused():
+    system = circle_pendulum()
+    system.q0[:] = [2.0, 0.0]
+    with pytest.raises(ConsistencyError, match=r"constraint\[0\]"):
+        simulate(system, 1.0)

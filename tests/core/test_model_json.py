@@ -1,0 +1,211 @@
+"""Models as JSON: equal after the journey, and refused with the place when broken."""
+
+import json
+
+import pytest
+from helpers import rod_pendulum
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tlismni.core import (
+    AppliedForce2D,
+    AppliedTorque2D,
+    Constant,
+    CoordinateDriver,
+    Disk2D,
+    DiskOnDisk2D,
+    DiskOnHalfPlane2D,
+    Distance2D,
+    Flores,
+    Gonthier,
+    HalfPlane2D,
+    Hertz,
+    HuntCrossley,
+    Input,
+    InputSignal,
+    KelvinVoigt,
+    LankaraniNikravesh,
+    Marker2D,
+    Model,
+    ModelError,
+    NewtonImpact,
+    Parameter,
+    PointMass2D,
+    Polynomial,
+    Prismatic2D,
+    Ramp,
+    Revolute2D,
+    RigidBody2D,
+    Sine,
+    SpringDamper2D,
+    Step,
+    Table,
+    simulate,
+)
+
+quick = settings(deadline=None, max_examples=40, derandomize=True)
+
+number = st.floats(-1e6, 1e6)
+positive = st.floats(1e-6, 1e6)
+vector = st.tuples(number, number)
+marker = st.builds(Marker2D, body=st.just("b"), point=vector, angle=number)
+signal = st.one_of(
+    st.builds(Constant, value=number),
+    st.builds(Step, time=number, before=number, after=number),
+    st.builds(Ramp, start=number, duration=positive, before=number, after=number),
+    st.builds(Sine, amplitude=number, angular_frequency=number, phase=number, offset=number),
+    st.builds(Polynomial, coefficients=st.lists(number, min_size=1, max_size=5).map(tuple)),
+    st.builds(Table, times=st.just((0.0, 0.1, 0.5, 2.0)), values=st.tuples(number, number, number, number)),
+    st.just(InputSignal(channel="u")),
+)
+motion = signal.filter(lambda s: not isinstance(s, Step))
+e = st.floats(0.01, 1.0)
+law = st.one_of(
+    st.builds(NewtonImpact, restitution=e, rest_ratio=st.floats(0.0, 0.5)),
+    st.builds(Hertz, stiffness=positive, exponent=st.floats(1.0, 3.0)),
+    st.builds(KelvinVoigt, stiffness=positive, damping=positive),
+    *(
+        st.builds(kind, stiffness=positive, restitution=e, exponent=st.floats(1.0, 3.0))
+        for kind in (HuntCrossley, LankaraniNikravesh, Flores, Gonthier)
+    ),
+)
+disk = st.builds(Disk2D, marker=marker, radius=positive)
+ELEMENTS = {
+    "bodies": [
+        st.builds(PointMass2D, name=st.just("x"), mass=positive, position=vector, velocity=vector),
+        st.builds(
+            RigidBody2D, name=st.just("x"), mass=positive, inertia=positive, position=vector, velocity=vector,
+            angle=number, angular_velocity=number,
+        ),
+    ],
+    "joints": [
+        st.builds(Revolute2D, name=st.just("x"), a=marker, b=marker),
+        st.builds(Prismatic2D, name=st.just("x"), a=marker, b=marker, relative_angle=st.none() | number),
+        st.builds(Distance2D, name=st.just("x"), a=marker, b=marker, length=positive),
+        st.builds(
+            CoordinateDriver, name=st.just("x"), body=st.just("b"),
+            coordinate=st.sampled_from(["x", "y", "angle"]), motion=motion,
+        ),
+    ],
+    "forces": [
+        st.builds(
+            SpringDamper2D, name=st.just("x"), a=marker, b=marker, stiffness=positive, damping=positive,
+            natural_length=positive,
+        ),
+        st.builds(
+            AppliedForce2D, name=st.just("x"), marker=marker, force_x=signal, force_y=signal, follower=st.booleans()
+        ),
+        st.builds(AppliedTorque2D, name=st.just("x"), body=st.just("b"), torque=signal),
+    ],
+    "contacts": [
+        st.builds(
+            DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk, law=law
+        ),
+        st.builds(DiskOnDisk2D, name=st.just("x"), a=disk, b=disk, law=law),
+    ],
+}  # fmt: skip
+BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
+
+
+def model_with(kind, element):
+    parts = {"bodies": [BODY], "joints": [], "forces": [], "contacts": [], "inputs": [Input(name="u", unit="N")]}
+    parts[kind] = [*parts[kind], element]
+    return Model(name="journey", **parts)
+
+
+CASES = [(kind, k) for kind, strategies in ELEMENTS.items() for k in range(len(strategies))]
+
+
+@pytest.mark.parametrize("kind, k", CASES)
+def test_every_element_is_equal_after_json(kind, k):
+    @quick
+    @given(ELEMENTS[kind][k])
+    def check(element):
+        model = model_with(kind, element)
+        again = Model.from_json(model.to_json())
+        assert again == model
+        assert again.to_json() == model.to_json()
+        assert getattr(again, kind)[-1] == element and type(getattr(again, kind)[-1]) is type(element)
+
+    check()
+
+
+def test_the_list_of_elements_above_is_complete():
+    """A new element needs its line in ELEMENTS: the schema knows all of them."""
+    definitions = json.dumps(Model.model_json_schema())
+    found = {
+        name
+        for name, schema in Model.model_json_schema()["$defs"].items()
+        if {"name", "type"} <= set(schema.get("properties", {}))
+    }
+    here = {
+        "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
+        "AppliedForce2D", "AppliedTorque2D", "DiskOnHalfPlane2D", "DiskOnDisk2D",
+    }  # fmt: skip
+    assert found == here and "HalfPlane2D" in definitions
+
+
+def test_model_file_journey(tmp_path):
+    model = rod_pendulum(0.3, parameters=[Parameter(name="mass", unit="kg", targets=["rod.mass"])])
+    path = tmp_path / "rod.json"
+    model.save(path)
+    assert Model.load(path) == model
+    assert Model.load(str(path)) == model
+
+
+def test_model_from_a_file_moves_as_the_one_from_python(tmp_path):
+    model = rod_pendulum(0.3)
+    model.save(tmp_path / "rod.json")
+    ends = [simulate(m, 0.5).q[-1].tobytes() for m in (model, Model.load(tmp_path / "rod.json"))]
+    assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("keep", [0.0, 0.3, 0.9, 0.999])
+def test_file_cut_short_is_refused_with_its_path(tmp_path, keep):
+    text = rod_pendulum().to_json()
+    path = tmp_path / "cut.json"
+    path.write_text(text[: int(keep * len(text))])
+    with pytest.raises(ModelError, match=r"cut\.json.*not JSON"):
+        Model.load(path)
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"[1, 2]", b"3", b"null", b'{"bodies": 3}', b'{"mass": NaN}'])
+def test_file_that_is_no_model_is_refused(tmp_path, content):
+    path = tmp_path / "bad.json"
+    path.write_bytes(content)
+    with pytest.raises(ModelError, match=r"bad\.json"):
+        Model.load(path)
+
+
+def test_missing_file_and_folder_are_refused(tmp_path):
+    with pytest.raises(ModelError, match=r"nowhere\.json.*cannot be read"):
+        Model.load(tmp_path / "nowhere.json")
+    with pytest.raises(ModelError, match="cannot be read"):
+        Model.load(tmp_path)
+
+
+@pytest.mark.parametrize("where", [("mass",), ("position", 0), ("inertia",)])
+def test_nan_in_a_file_is_refused_with_its_place(where):
+    data = json.loads(rod_pendulum().to_json())
+    target = data["bodies"][0]
+    for key in where[:-1]:
+        target = target[key]
+    target[where[-1]] = float("nan")
+    with pytest.raises(ModelError, match=str(where[0])):
+        Model.from_json(json.dumps(data))
+
+
+def test_parameters_reach_their_fields():
+    model = rod_pendulum(
+        parameters=[Parameter(name="m", minimum=0.1, maximum=5.0, targets=["rod.mass", "rod.inertia"])]
+    )
+    changed = model.with_parameters({"m": 2.0})
+    assert (changed.bodies[0].mass, changed.bodies[0].inertia) == (2.0, 2.0)
+    assert changed.parameter_value("m") == 2.0 and model.parameter_value("m") == 1.0
+    for bad, word in (({"m": 9.0}, "range"), ({"k": 1.0}, "no parameter"), ({"m": float("nan")}, "m")):
+        with pytest.raises(ModelError, match=word):
+            model.with_parameters(bad)
+
+
+def test_models_do_not_change():
+    with pytest.raises(ValueError, match="frozen"):
+        rod_pendulum().bodies[0].mass = 3.0
