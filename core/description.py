@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
 from .contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
 from .contact.laws import NewtonImpact
@@ -42,12 +42,6 @@ class Model(Record):
     contacts: tuple[Contact, ...] = ()
     inputs: tuple[Input, ...] = ()
     parameters: tuple[Parameter, ...] = ()
-
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise ModelError(_explain(error)) from None
 
     @model_validator(mode="after")
     def _check(self) -> "Model":
@@ -187,15 +181,3 @@ class Model(Record):
     def has_constraint_contacts(self) -> bool:
         """True if some contact is a constraint (CCM)."""
         return any(isinstance(c.law, NewtonImpact) for c in self.contacts)
-
-
-def _explain(error: ValidationError) -> str:
-    """One line a problem: where, what was given, what was needed."""
-    lines = []
-    for problem in error.errors():
-        place = ".".join(str(part) for part in problem["loc"]) or "model"
-        given = problem.get("input")
-        shown = f" (given: {given!r})" if isinstance(given, str | int | float | bool | None) else ""
-        message = problem["msg"].removeprefix("Value error, ")
-        lines.append(f"{place}: {message}{shown}")
-    return "; ".join(lines)

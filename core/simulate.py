@@ -85,7 +85,10 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
 
 
 def _check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:
-    times = np.asarray(t_eval, dtype=float)
+    try:
+        times = np.asarray(t_eval, dtype=float)
+    except (TypeError, ValueError):
+        raise ModelError(f"t_eval must be a list of times, not {t_eval!r}") from None
     if times.ndim != 1 or not np.all(np.isfinite(times)):
         raise ModelError(f"t_eval must be a list of finite times, not an array of shape {times.shape}")
     if len(times) and (times[0] < t0 or times[-1] > t_end or np.any(np.diff(times) < 0)):

@@ -19,13 +19,13 @@ from ..system.records import (
     OK,
     OUTER_DIVERGED,
     OUTER_SLOW,
-    PARTITION_AGE,
     REANALYZE,
     SINGULAR,
 )
 from .locate import find_root, first_crossing
 from .loop import accept, run, trial_step
 from .records import (
+    BREAK_TIME,
     CHUNK,
     EVENT,
     FIXED_STEP,
@@ -46,8 +46,6 @@ if TYPE_CHECKING:
 CHUNK_STEPS = 20_000
 VELOCITY_JUMP = 1e-9
 """m/s; a larger violation of the velocity constraints at a breakpoint is a jump in a driver's rate."""
-PAUSE = 100.0
-"""Steps before a partition that was just confirmed is looked at again."""
 _REASONS = {
     OUTER_DIVERGED: ("outer", "the outer loop diverged"),
     OUTER_SLOW: ("outer", "the outer loop did not converge"),
@@ -75,12 +73,15 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             continue
         if now >= t:
             return
-        if now in sim.assembly.breakpoints and sim.method_arrays["ring"][1] > 1:
-            # only now: until the run goes on from here, samples before this time need the history
-            restart_at_newest(sim)
-            continue
+        # steps end just before a breakpoint, so that they see what holds to the left of it
         next_break = min((b for b in sim.assembly.breakpoints if b > now), default=math.inf)
-        sim.clock[STOP_TIME] = min(stop, next_break)
+        before_break = math.nextafter(next_break, -math.inf)
+        if now == before_break:
+            # only now: until the run goes on from here, samples before this time need the history
+            restart_at(sim, next_break)
+            continue
+        sim.clock[BREAK_TIME] = next_break
+        sim.clock[STOP_TIME] = min(stop, before_break)
         sim.clock[TARGET_TIME] = t
         code = run(ws, ms, lc, CHUNK_STEPS)
         sim.flush()
@@ -111,7 +112,6 @@ def _shrink(sim: "Simulation") -> bool:
 def _repair(sim: "Simulation") -> None:
     """New partition and orderings at the newest row."""
     recall(sim.workspace.record, sim._method.record, 0)
-    before = sim.workspace.arrays["dependent"].copy()
     try:
         prepare(sim.workspace)
     except (ConsistencyError, SingularMatrixError) as error:
@@ -120,8 +120,6 @@ def _repair(sim: "Simulation") -> None:
             t=sim.t_internal,
             loop="inner",
         ) from error
-    if np.array_equal(np.sort(before), np.sort(sim.workspace.arrays["dependent"])):
-        sim.workspace.arrays["rate"][PARTITION_AGE] = -PAUSE
 
 
 def _fail(sim: "Simulation", code: int) -> None:
@@ -219,13 +217,14 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     return find_root(gap, low_step, high_step, guess, 2e-16 * size)
 
 
-def restart_at_newest(sim: "Simulation") -> None:
-    """Go on from the newest row with accelerations computed anew: a force, or the rate of a driver, jumps there.
+def restart_at(sim: "Simulation", t: float) -> None:
+    """Go on at the breakpoint t, just after the newest row, where a force or the rate of a driver jumps.
 
     A driver's jump in rate is an impact of the driver: v jumps by M dv + Phi_q^T Lambda = 0, Phi_q dv = -phid, and
     the change of kinetic energy is the driver's work.
     """
     recall(sim.workspace.record, sim._method.record, 0)
+    sim.workspace.arrays["t"][0] = t
     evaluate_residuals(sim.workspace.record)
     kinetic = sim.kinetic_energy()
     violated = constraint_norm(sim.workspace.record, int(sim.workspace._record.table["phid"][0]))

@@ -16,6 +16,7 @@ from ..contact.laws import ForceLaw
 from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE
 from ..errors import CallbackError, ConsistencyError, SimulationError
 from ..events import Event
+from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
 from ..methods.records import METHOD, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
@@ -24,11 +25,11 @@ from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
-from ..system.records import OK, STAGE_SIGNATURE
+from ..system.records import OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.workspace import Workspace
-from .dense_output import solve_accelerations
+from .dense_output import query, solve_accelerations
 from .output import ChannelTable
-from .records import CLOCK_SIZE, FIXED_STEP, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
+from .records import BREAK_TIME, CLOCK_SIZE, FIXED_STEP, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
 from .sample import empty_buffer, sample_length, write_sample
 from .settings import Settings, set_control
 from .watch import remember
@@ -117,7 +118,7 @@ class Engine:
         self.clock = np.zeros(CLOCK_SIZE)
         self.clock[FIXED_STEP] = self.settings.step or 0.0
         self.clock[MAX_STEP] = self.settings.max_step or math.inf
-        self.clock[STOP_TIME] = math.inf
+        self.clock[STOP_TIME] = self.clock[BREAK_TIME] = math.inf
         fixed = self.settings.step is not None
         self.starter = step_address(FINE_STARTER if fixed else STARTER)
         self.fine_starter = step_address(FINE_STARTER)
@@ -309,3 +310,34 @@ class Engine:
         """Tell whoever listens how far the run has come."""
         if self.progress is not None:
             self.progress(t)
+
+    def sample(self) -> NDArray[np.float64]:
+        """All numbers at the present time `t`, as one row (see `sample.py`)."""
+        ws = self.workspace.record
+        with user_errors(self.assembly):
+            status = query(ws, self._method.record, self.t)
+            if status == REANALYZE:
+                status = self._query_with_other_pivots()
+        if status != OK:
+            raise SimulationError(
+                f"the state at t = {self.t:.9g} s between two steps cannot be projected onto the constraints "
+                f"(status {status}); reduce max_step",
+                t=self.t,
+                loop="inner",
+            )
+        row = np.zeros(self.buffer.shape[1])
+        with user_errors(self.assembly):
+            write_sample(ws, row)
+        return row
+
+    def _query_with_other_pivots(self) -> int:
+        """The query with pivots for this very point; the usual ones are put back, so that asking leaves no trace."""
+        kkt, values = self.workspace.structure.kkt_query, self.workspace.arrays["values"]
+        permutations = kkt.analysis()
+        try:
+            kkt.analyze(values)
+            return int(query(self.workspace.record, self._method.record, self.t))
+        except SingularMatrixError:
+            return SINGULAR
+        finally:
+            kkt.analyze_with(*permutations)

@@ -26,7 +26,8 @@ FIXED_STEP = 3  # 0: error controlled
 TRIAL_STEP = 4  # step of the last trial (an event or a failure)
 FAILURES = 5  # rejected trials in a row
 TARGET_TIME = 6  # `run` returns once it is reached; a step may go beyond it
-CLOCK_SIZE = 7
+BREAK_TIME = 7  # next time at which a force or a driver's rate jumps
+CLOCK_SIZE = 8
 
 # what `run` returns besides the status of a failed step
 REACHED = 100

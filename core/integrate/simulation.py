@@ -7,14 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ModelError, SimulationError
-from ..linalg import SingularMatrixError
+from ..errors import ModelError
 from ..state import State
-from ..system.records import COUNTERS_SIZE, OK, REANALYZE, SINGULAR
+from ..system.records import COUNTERS_SIZE
 from . import advance, restore
-from .dense_output import query
 from .engine import Engine, user_errors
-from .sample import write_sample
 
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
@@ -69,37 +66,6 @@ class Simulation(Engine):
     def _advance_to(self, target: float, stop: float) -> None:
         with user_errors(self.assembly):
             advance.advance_to(self, target, stop)
-
-    def sample(self) -> NDArray[np.float64]:
-        """All numbers at the present time `t`, as one row (see `sample.py`)."""
-        ws = self.workspace.record
-        with user_errors(self.assembly):
-            status = query(ws, self._method.record, self.t)
-            if status == REANALYZE:
-                status = self._query_with_other_pivots()
-        if status != OK:
-            raise SimulationError(
-                f"the state at t = {self.t:.9g} s between two steps cannot be projected onto the constraints "
-                f"(status {status}); reduce max_step",
-                t=self.t,
-                loop="inner",
-            )
-        row = np.zeros(self.buffer.shape[1])
-        with user_errors(self.assembly):
-            write_sample(ws, row)
-        return row
-
-    def _query_with_other_pivots(self) -> int:
-        """The query with pivots for this very point; the usual ones are put back, so that asking leaves no trace."""
-        kkt, values = self.workspace.structure.kkt_query, self.workspace.arrays["values"]
-        permutations = kkt.analysis()
-        try:
-            kkt.analyze(values)
-            return int(query(self.workspace.record, self._method.record, self.t))
-        except SingularMatrixError:
-            return SINGULAR
-        finally:
-            kkt.analyze_with(*permutations)
 
     # ---- channels, inputs, state ------------------------------------------------------------------------------------
 

@@ -26,6 +26,7 @@ from ..system.records import (
     FACTOR_CV,
     FACTORIZATIONS,
     FAILED_NORM,
+    FIRST_SENSITIVITY,
     INNER,
     LAST_INNER,
     LAST_OUTER,
@@ -42,6 +43,7 @@ from ..system.records import (
     RATE_SIZE,
     REANALYZE,
     RTOL,
+    SENSITIVITY,
     SINGULAR,
     STAGES,
 )
@@ -50,6 +52,7 @@ from .inner import inner_loop
 # Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
 MOST_OUTER = 3
 MOST_INNER = 3
+MOST_STAGES = 50  # the sensitivity of the partition is looked at only when matrices are renewed
 # A rate that was measured at an earlier stage is trusted less at each stage that does not measure it anew.
 LEAST_RATE = 0.02
 RATE_GROWTH = 1.5
@@ -71,10 +74,37 @@ def refactor(ws: Any, c_q: float, c_v: float) -> int:
             return REANALYZE
         if status != 0:
             return SINGULAR
+    _measure_sensitivity(ws)
     ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
     rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
     return OK
+
+
+@internal
+def _measure_sensitivity(ws: Any) -> None:
+    """How much the dependent coordinates move (scaled) for one move of all independent ones: |Phi_qd^-1 Phi_qi x|."""
+    rate = vec(ws.rate, RATE_SIZE)
+    if ws.m_act == 0 or ws.m_act == ws.n:
+        return
+    scale = vec(ws.scale, ws.n)
+    values = vec(ws.values, ws.n_values)
+    row, col, slot = ivec(ws.free_row, ws.n_free), ivec(ws.free_col, ws.n_free), ivec(ws.free_slot, ws.n_free)
+    dependent = ivec(ws.dependent, ws.m_act)
+    rhs = vec(ws.rhs, ws.m_act)
+    for i in range(ws.m_act):
+        rhs[i] = 0.0
+    for e in range(ws.n_free):
+        # weights between 1/2 and 3/2 in no simple ratio, so that the columns do not cancel
+        golden = 0.6180339887498949 * col[e]
+        rhs[row[e]] += values[slot[e]] * scale[col[e]] * (0.5 + golden - np.floor(golden))
+    solve(lu_at(ws.lu_d), ws.rhs)
+    largest = 0.0
+    for i in range(ws.m_act):
+        largest = max(largest, abs(rhs[i]) / scale[dependent[i]])
+    rate[SENSITIVITY] = largest
+    if rate[FIRST_SENSITIVITY] < 0.0:
+        rate[FIRST_SENSITIVITY] = largest
 
 
 @compiled

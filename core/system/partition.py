@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError
 from ..linalg import SingularMatrixError, pivot_rows
 from .evaluate import evaluate_residuals, evaluate_tangent
-from .records import ANALYSES, FACTOR_AGE, PARTITION_AGE, PARTITIONS
+from .records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
 from .workspace import Workspace
 
 RANK_TOLERANCE = 1e-9
@@ -77,4 +77,5 @@ def prepare(workspace: Workspace) -> None:
                 "nor a constraint, or a value is not finite"
             ) from error
     workspace.arrays["rate"][FACTOR_AGE] = -1.0
-    workspace.arrays["rate"][PARTITION_AGE] = 0.0
+    workspace.arrays["rate"][SENSITIVITY] = 0.0
+    workspace.arrays["rate"][FIRST_SENSITIVITY] = -1.0

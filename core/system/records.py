@@ -19,7 +19,7 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
             # structure (changes with the set of engaged contacts)
-            "active", "dependent", "kkt", "lu_d", "kkt_query",
+            "active", "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
             "control", "counters", "rate", "scale", "scratch",
@@ -54,8 +54,9 @@ FACTOR_CV = 3
 LAST_OUTER = 4
 LAST_INNER = 5
 FAILED_NORM = 6
-PARTITION_AGE = 7  # steps since the partition was chosen or confirmed
-RATE_SIZE = 8
+SENSITIVITY = 7  # |dq_d/dq_i| at the last factorisation, scaled
+FIRST_SENSITIVITY = 8  # the same when the partition was chosen; < 0: not known yet
+RATE_SIZE = 9
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES = range(9)

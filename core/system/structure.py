@@ -31,6 +31,8 @@ class Structure:
     kkt_query: Factorization
     lu_d: Factorization | None = None
     dependent: NDArray[np.int64] | None = None
+    free: tuple[NDArray[np.int64], ...] = ()
+    """Row, column and slot of the entries of Phi_q in independent columns."""
 
     @property
     def nnz(self) -> int:
@@ -42,8 +44,10 @@ class Structure:
         n = int(self.kkt.n) - len(self.active)
         position = np.full(n, -1, dtype=np.int64)
         position[dependent] = np.arange(len(dependent))
-        slots = np.flatnonzero((self.rows >= n) & (self.cols < n))
-        slots = slots[position[self.cols[slots]] >= 0]
+        entries = np.flatnonzero((self.rows >= n) & (self.cols < n))
+        is_dependent = position[self.cols[entries]] >= 0
+        free, slots = entries[~is_dependent], entries[is_dependent]
+        self.free = tuple(np.ascontiguousarray(x) for x in (self.rows[free] - n, self.cols[free], free))
         rows, cols = self.rows[slots] - n, position[self.cols[slots]]
         self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
         self.lu_d = Factorization(len(self.active), rows, cols, slots, source_size=self.nnz + 1)

@@ -61,6 +61,7 @@ class Workspace:
             "contact_release": np.array([_release(c.law) for c in a.contacts], dtype=np.int64),
             "active": np.zeros(0, dtype=np.int64),
             "dependent": np.zeros(0, dtype=np.int64),
+            **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot")},
             "stage_v": np.zeros(8 * n_ext),
             "stage_a": np.zeros(8 * n_ext + m_ext),
             "rhs": np.zeros(a.n + a.m),
@@ -81,7 +82,7 @@ class Workspace:
             WORKSPACE,
             record_arrays,
             {
-                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_kernels": len(a.batches),
+                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_free": 0, "n_kernels": len(a.batches),
                 "n_values": 1, "n_contacts": contacts, "n_work": len(a.work_names), "row_length": row_length,
                 "n_state": 0, "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
@@ -165,6 +166,10 @@ class Workspace:
         if structure.lu_d is None or structure.dependent is None:
             raise RuntimeError("the structure has no partition yet: call set_partition first")
         self._set("dependent", structure.dependent)
+        row, col, slot = structure.free
+        self._set("free_row", row, n_free=len(row))
+        self._set("free_col", col)
+        self._set("free_slot", slot)
         self._record.table["lu_d"] = structure.lu_d.address
 
     def _set(self, name: str, array: NDArray[Any], **sizes: int) -> None:

@@ -260,9 +260,8 @@ def test_overlap_of_two_disks_at_the_start_is_refused():
 
 
 def test_body_without_mass_in_user_equations_is_reported():
-    system = EquationSystem(mass=np.zeros((1, 1)), force=np.ones(1), q0=[0.0], v0=[0.0])
-    with pytest.raises(ConsistencyError, match="singular"):
-        simulate(system, 1.0)
+    with pytest.raises((ConsistencyError, EquationError), match="mass"):
+        simulate(EquationSystem(mass=np.zeros((1, 1)), force=np.ones(1), q0=[0.0], v0=[0.0]), 1.0)
 
 
 def test_force_that_becomes_nan_stops_the_run_and_keeps_what_was_computed():

@@ -1,0 +1,254 @@
+"""Tangents and constraint levels of every element against differences of its residuals.
+
+The sixth-order central difference with span H has an error of about 1e-10 for functions of scale 1.
+"""
+
+import numpy as np
+import pytest
+from helpers import GROUND, circle_pendulum, on
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tlismni.core import (
+    AppliedForce2D,
+    AppliedTorque2D,
+    Constant,
+    CoordinateDriver,
+    Disk2D,
+    DiskOnDisk2D,
+    DiskOnHalfPlane2D,
+    Distance2D,
+    EquationSystem,
+    Flores,
+    HalfPlane2D,
+    Hertz,
+    KelvinVoigt,
+    Model,
+    NewtonImpact,
+    PointMass2D,
+    Polynomial,
+    Prismatic2D,
+    Revolute2D,
+    RigidBody2D,
+    Sine,
+    SpringDamper2D,
+    Table,
+)
+from tlismni.core.contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
+from tlismni.core.system.evaluate import evaluate_residuals, evaluate_tangent
+from tlismni.core.system.workspace import Workspace
+
+quick = settings(deadline=None, max_examples=8, derandomize=True)
+H = 1e-2
+WEIGHTS = {1: 45.0 / 60.0, 2: -9.0 / 60.0, 3: 1.0 / 60.0}
+
+A = RigidBody2D(name="a", mass=1.3, inertia=0.4)
+B = RigidBody2D(name="b", mass=0.7, inertia=0.2, position=(2.0, 0.5))
+P = PointMass2D(name="p", mass=2.0, position=(0.5, 1.5))
+LEFT, RIGHT = on("a", 0.3, -0.2), on("b", -0.4, 0.1)
+SINE = Sine(amplitude=0.7, angular_frequency=2.0, phase=0.3, offset=0.2)
+
+
+def contact(law, kind="plane"):
+    if kind == "plane":
+        plane, disk = HalfPlane2D(marker=on("a", 0.3, -0.2, 0.4)), Disk2D(marker=RIGHT, radius=0.3)
+        return DiskOnHalfPlane2D(name="c", plane=plane, disk=disk, law=law)
+    return DiskOnDisk2D(name="c", a=Disk2D(marker=LEFT, radius=1.5), b=Disk2D(marker=RIGHT, radius=1.4), law=law)
+
+
+FORCE_LAWS = [
+    Hertz(stiffness=5.0, exponent=2.0),
+    KelvinVoigt(stiffness=4.0, damping=0.8),
+    Flores(stiffness=6.0, restitution=0.5, exponent=2.0),
+]
+CASES = {
+    "bodies": {},
+    "revolute": {"joints": [Revolute2D(name="j", a=LEFT, b=RIGHT)]},
+    "revolute on ground": {"joints": [Revolute2D(name="j", a=on("ground", 0.1, 0.2), b=RIGHT)]},
+    "revolute with a point mass": {"joints": [Revolute2D(name="j", a=LEFT, b=on("p"))]},
+    "prismatic": {"joints": [Prismatic2D(name="j", a=on("a", 0.3, -0.2, 0.4), b=RIGHT)]},
+    "prismatic on ground": {"joints": [Prismatic2D(name="j", a=on("ground", 0.1, 0.3, 1.1), b=RIGHT)]},
+    "distance": {"joints": [Distance2D(name="j", a=LEFT, b=RIGHT, length=1.2)]},
+    "distance to ground": {"joints": [Distance2D(name="j", a=on("ground", -1.0, 0.3), b=on("p"), length=1.2)]},
+    "driver": {"joints": [CoordinateDriver(name="j", body="a", coordinate="angle", motion=SINE)]},
+    "polynomial driver": {
+        "joints": [
+            CoordinateDriver(name="j", body="b", coordinate="x", motion=Polynomial(coefficients=(0.1, -1.0, 2.0, 0.5)))
+        ]
+    },
+    "table driver": {
+        "joints": [
+            CoordinateDriver(
+                name="j", body="p", coordinate="y",
+                motion=Table(times=(0.0, 1.0, 2.0, 3.0), values=(0.0, 1.0, -1.0, 2.0)),
+            )
+        ]
+    },
+    "spring": {"forces": [SpringDamper2D(name="f", a=LEFT, b=RIGHT, stiffness=3.0, damping=0.7, natural_length=0.9)]},
+    "spring to ground": {
+        "forces": [SpringDamper2D(name="f", a=on("ground", 0.0, -1.0), b=on("p"), stiffness=3.0, damping=0.7, natural_length=0.9)]
+    },
+    "force": {"forces": [AppliedForce2D(name="f", marker=RIGHT, force_x=SINE, force_y=Constant(value=1.4))]},
+    "follower": {
+        "forces": [AppliedForce2D(name="f", marker=RIGHT, force_x=SINE, force_y=Constant(value=1.4), follower=True)]
+    },
+    "torque": {"forces": [AppliedTorque2D(name="f", body="a", torque=SINE)]},
+    "closed plane": {"contacts": [contact(NewtonImpact(restitution=0.5))], "mode": CLOSED},
+    "closed disks": {"contacts": [contact(NewtonImpact(restitution=0.5), "disks")], "mode": CLOSED},
+    "open plane": {"contacts": [contact(NewtonImpact(restitution=0.5))]},
+    **{f"{law.type} on plane": {"contacts": [contact(law)], "mode": ACTIVE} for law in FORCE_LAWS},
+    **{f"{law.type} on disk": {"contacts": [contact(law, "disks")], "mode": ACTIVE} for law in FORCE_LAWS},
+}  # fmt: skip
+
+
+class Point:
+    """A system at some point of its state space, asked for residuals and tangents."""
+
+    def __init__(self, system, mode=None):
+        self.workspace = Workspace(system.assemble())
+        if mode is not None:
+            closed, engaged = (frozenset({0}) if mode == m else frozenset() for m in (CLOSED, ACTIVE))
+            self.workspace.engage(closed, engaged)
+            self.workspace.arrays["memory"][0, [MODE, APPROACH_SPEED]] = mode, 0.9
+        self.n, self.m = self.workspace.assembly.n, self.workspace.assembly.m
+
+    def at(self, t, q, v, a, lam):
+        """r and the residuals of the three levels."""
+        arrays = self.workspace.arrays
+        arrays["t"][0] = t
+        arrays["q"][: self.n], arrays["v"][: self.n], arrays["a"][: self.n] = q, v, a
+        arrays["lam"][: self.m] = lam
+        evaluate_residuals(self.workspace.record)
+        return (arrays["r"][: self.n].copy(), *(arrays[x][: self.m].copy() for x in ("phi", "phid", "phidd")))
+
+    def tangent(self, c_q, c_v):
+        """The matrix at the last point, dense."""
+        evaluate_tangent(self.workspace.record, c_q, c_v)
+        structure = self.workspace.structure
+        size = self.n + len(structure.active)
+        matrix = np.zeros((size, size))
+        matrix[structure.rows, structure.cols] = self.workspace.arrays["values"][: structure.nnz]
+        return matrix
+
+    def derivative(self, index, along, point, h=H):
+        """Derivative of result `index` of `at` along (dt, dq, dv, da, dlam)."""
+        total = 0.0
+        for k, weight in WEIGHTS.items():
+            for sign in (1.0, -1.0):
+                moved = [x + sign * k * h * d for x, d in zip(point, along, strict=True)]
+                total = total + sign * weight * self.at(*moved)[index]
+        return total / h
+
+
+def draw(point, seed):
+    """Some state near the initial positions (t, q, v, a, lam)."""
+    random = np.random.default_rng(seed)
+    q0 = point.workspace.assembly.q0
+    shift = 0.2 * random.uniform(-1.0, 1.0, point.n)
+    return [
+        1.3,
+        q0 + shift,
+        *(random.uniform(-1.0, 1.0, point.n) for _ in range(2)),
+        random.uniform(-2.0, 2.0, point.m),
+    ]
+
+
+def system(case):
+    parts = {key: value for key, value in CASES[case].items() if key != "mode"}
+    return Point(Model(gravity=(0.3, -9.0), bodies=[A, B, P], **parts), CASES[case].get("mode"))
+
+
+def check_matrix(point, state, c_q=0.6, c_v=0.8):
+    """S = dr/da + c_v dr/dv + c_q dr/dq; Phi_q; its transpose; and nothing below."""
+    n, active = point.n, point.workspace.structure.active
+    point.at(*state)
+    matrix = point.tangent(c_q, c_v)
+    zero, unit = np.zeros(n), np.eye(n)
+    no_lam = np.zeros(point.m)
+    s = np.array([point.derivative(0, (0.0, c_q * e, c_v * e, e, no_lam), state) for e in unit]).T
+    jacobian = np.array([point.derivative(1, (0.0, e, zero, zero, no_lam), state) for e in unit]).T[active]
+    scale = max(1.0, np.abs(s).max())
+    assert np.abs(matrix[:n, :n] - s).max() < 1e-8 * scale
+    assert np.abs(matrix[n:, :n] - jacobian).max(initial=0.0) < 1e-8
+    assert np.array_equal(matrix[:n, n:], matrix[n:, :n].T)
+    assert not matrix[n:, n:].any()
+    for row in active:  # forces of a constraint: r changes with its multiplier by Phi_q^T
+        dlam = np.eye(point.m)[row]
+        force = point.derivative(0, (0.0, zero, zero, zero, dlam), state)
+        assert np.abs(force - matrix[n + list(active).index(row), :n]).max() < 1e-9
+
+
+def check_levels(point, state):
+    """Phi' and Phi'' along the motion are the velocity and acceleration residuals: all gaps and constraints."""
+    t, q, v, a, lam = state
+    point.at(*state)
+    first = point.derivative(1, (1.0, v, np.zeros_like(q), np.zeros_like(q), np.zeros_like(lam)), state)
+    _, _, phid, phidd = point.at(*state)
+    assert np.abs(phid - first).max(initial=0.0) < 1e-8
+    second = point.derivative(2, (1.0, v, a, np.zeros_like(q), np.zeros_like(lam)), state)
+    assert np.abs(phidd - second).max(initial=0.0) < 1e-8
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_tangent_is_the_derivative_of_the_residual(case):
+    point = system(case)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        check_matrix(point, draw(point, seed))
+
+    check()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_velocity_and_acceleration_level_are_the_derivatives_of_the_position_level(case):
+    point = system(case)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        check_levels(point, draw(point, seed))
+
+    check()
+
+
+def test_contact_forces_really_act_in_these_tests():
+    """The shapes overlap at all states drawn above; else the tests of the laws would compare zeros."""
+    for case in CASES:
+        if CASES[case].get("mode") == ACTIVE:
+            point = system(case)
+            free = system("bodies")
+            for seed in range(10):
+                state = draw(point, seed)
+                with_force = point.at(*state)
+                without = free.at(state[0], state[1], state[2], state[3], np.zeros(0))
+                assert with_force[1][0] < 0.0, (case, seed)
+                assert np.abs(with_force[0] - without[0]).max() > 1e-3
+
+
+def pendulum_with_everything():
+    """User equations whose mass, force and constraint depend on all they may depend on."""
+    return EquationSystem(
+        mass=lambda t, q: np.array([[2.0 + np.sin(q[1]), 0.3 * q[0]], [0.3 * q[0], 1.5 + 0.2 * np.cos(t + q[0])]]),
+        force=lambda t, q, v: np.array([np.sin(q[0]) * v[1] - 3.0 * v[0] ** 2, t * q[1] ** 2 - v[0] * v[1]]),
+        constraint=lambda t, q: q[0] ** 2 + 2.0 * q[1] ** 2 * np.cos(q[0]) - (1.0 + 0.1 * np.sin(t)),
+        q0=[1.0, 0.0],
+        v0=[0.0, 0.4],
+    )
+
+
+@pytest.mark.parametrize("build", [circle_pendulum, pendulum_with_everything])
+@pytest.mark.parametrize("seed", range(4))
+def test_tangent_and_levels_of_user_equations(build, seed):
+    point = Point(build())
+    state = draw(point, seed)
+    check_matrix(point, state)
+    check_levels(point, state)
+
+
+def test_spring_at_the_ground_of_both_ends_does_nothing_to_others():
+    spring = SpringDamper2D(name="f", a=GROUND, b=on("ground", 1.0), stiffness=3.0, damping=0.7, natural_length=0.9)
+    point, free = Point(Model(bodies=[A, B, P], forces=[spring])), Point(Model(bodies=[A, B, P]))
+    state = draw(point, 1)
+    assert np.array_equal(point.at(*state)[0], free.at(*state)[0])
+    assert np.array_equal(point.tangent(1.0, 1.0), free.tangent(1.0, 1.0))
