@@ -20,6 +20,8 @@ class Impact:
 
     impulse: float
     """Normal impulse P, N s."""
+    impulses: dict[int, float]
+    """-Lambda of every active row of Phi: for contacts, their normal impulses, N s."""
     energy_loss: float
     """J."""
     residual: float
@@ -67,4 +69,5 @@ def apply_impact(workspace: Any, row: int, restitution: float) -> Impact | None:
     expected = np.zeros(len(active))
     expected[position] = -(1.0 + restitution) * approach
     residual = float(np.max(np.abs(after - before - expected), initial=0.0))
-    return Impact(impulse, impulse * 0.5 * (1.0 - restitution) * -approach, residual)
+    impulses = {int(r): -float(x) for r, x in zip(active, multipliers, strict=True)}
+    return Impact(impulse, impulses, impulse * 0.5 * (1.0 - restitution) * -approach, residual)

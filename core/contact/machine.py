@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
+RESTING_RATE = 1e-12
+"""m/s; a gap rate below this is none."""
 MOST_EVENTS_AT_ONCE = 50
 """Events without progress in time before a run is given up."""
 
@@ -48,8 +50,8 @@ def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> N
     memory = sim.memory[k]
     approach = -sim.gap_rate(k)
     if approach <= 0.0:
-        # a touch without approach: a constraint only if the bodies are pressed together
-        if sim.presses(k):
+        # a touch without approach: a constraint only if it does not separate and the bodies are pressed together
+        if approach > -RESTING_RATE and sim.presses(k):
             _close(sim, k, "close", approach)
         return
     largest = max(memory[LARGEST_APPROACH], approach)
@@ -71,7 +73,9 @@ def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> N
         impact = _strike(sim, k, contact, restitution)
     memory[APPROACH_SPEED] = approach
     memory[LARGEST_APPROACH] = largest
-    memory[IMPULSE_JUMP] += impact.impulse
+    for j, other in enumerate(sim.assembly.contacts):
+        # closed contacts carry their share of the blow
+        sim.memory[j, IMPULSE_JUMP] += impact.impulses.get(other.row, 0.0)
     memory[LOSS_JUMP] += impact.energy_loss
     sim.add_input_work(sim.kinetic_energy() - kinetic + impact.energy_loss)
     sim.add_event(

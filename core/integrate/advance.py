@@ -233,4 +233,5 @@ def restart_at(sim: "Simulation", t: float) -> None:
         sim.add_input_work(sim.kinetic_energy() - kinetic)
     sim.use_modes()
     sim._new_history()
+    sim.pending = sim.pulling()
     sim._sample_now()

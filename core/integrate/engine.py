@@ -29,7 +29,7 @@ from ..system.records import OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.workspace import Workspace
 from .dense_output import query, solve_accelerations
 from .output import ChannelTable
-from .records import BREAK_TIME, CLOCK_SIZE, FIXED_STEP, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
+from .records import BREAK_TIME, CLOCK_SIZE, FIXED_STEP, GROWTH, HOLD, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
 from .sample import empty_buffer, sample_length, write_sample
 from .settings import Settings, set_control
 from .watch import remember
@@ -37,6 +37,8 @@ from .watch import remember
 logger = logging.getLogger(__name__)
 
 HISTORY_ROWS = 12
+RESTING_RATE = 1e-12
+"""m/s; a gap rate below this is none, where shapes touch at the start."""
 
 
 @contextmanager
@@ -117,6 +119,7 @@ class Engine:
         self.buffer = empty_buffer(max(capacity, 1), length)
         self.clock = np.zeros(CLOCK_SIZE)
         self.clock[FIXED_STEP] = self.settings.step or 0.0
+        self.clock[GROWTH], self.clock[HOLD] = self.formula.growth, float(self.formula.rows)
         self.clock[MAX_STEP] = self.settings.max_step or math.inf
         self.clock[STOP_TIME] = self.clock[BREAK_TIME] = math.inf
         fixed = self.settings.step is not None
@@ -133,7 +136,6 @@ class Engine:
                 "rows": self.formula.rows,
                 "capacity": capacity,
                 "sample_length": length,
-                "grows_by_multistep": int(self.formula.rows > 1),
             },
         )
 
@@ -152,7 +154,10 @@ class Engine:
                     f"contact '{contact.name}' starts with the shapes overlapping by {-gap:.3g} m; "
                     "a constraint contact needs a gap >= 0 at the start"
                 )
-            if gap <= gap_tolerance and (gap < -gap_tolerance or self.gap_rate(k) < 0.0 or self.presses(k)):
+            if gap > gap_tolerance:
+                continue
+            rate = self.gap_rate(k)
+            if gap < -gap_tolerance or rate < -RESTING_RATE or (rate <= RESTING_RATE and self.presses(k)):
                 touching.append(k)
         self.use_modes()
         self.clock[STEP_SIZE] = self.settings.first_step or self._first_step()
@@ -241,6 +246,16 @@ class Engine:
         arrays["aux"][:] = arrays["a"]
         evaluate_power(self.workspace.record)
 
+    def pulling(self) -> list[int]:
+        """Closed contacts whose force is tensile at the workspace's point: they open at once."""
+        arrays = self.workspace.arrays
+        tolerance = 1e-12 * max(1.0, float(np.max(np.abs(arrays["lam"]), initial=0.0)))
+        return [
+            k
+            for k, contact in enumerate(self.assembly.contacts)
+            if self.memory[k, MODE] == CLOSED and arrays["lam"][contact.row] > tolerance
+        ]
+
     def presses(self, k: int) -> bool:
         """True if contact k, held as a constraint now, would carry a compressive force."""
         arrays, contact = self.workspace.arrays, self.assembly.contacts[k]
@@ -254,6 +269,7 @@ class Engine:
             return bool(arrays["lam"][contact.row] < 0.0)
         finally:
             self.memory[k, MODE] = mode
+            self.use_modes()
 
     # ---- at event rate ----------------------------------------
 
@@ -282,6 +298,7 @@ class Engine:
         for k in pending:
             machine.handle(self, k)
         self._new_history()
+        self.pending = self.pulling()
         self._sample_now()
 
     def _new_history(self) -> None:

@@ -31,6 +31,9 @@ from .records import (
     FAILURES,
     FIXED_STEP,
     FULL,
+    GROWTH,
+    HELD,
+    HOLD,
     MAX_STEP,
     REACHED,
     REPARTITION,
@@ -47,7 +50,7 @@ SAFETY = 0.9
 MIN_FACTOR = 0.2
 MAX_FACTOR = 2.0
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
-DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more: equal steps are cheaper and safer
+DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more
 
 
 @internal
@@ -107,15 +110,31 @@ def partition_strained(ws: Any) -> bool:
 
 
 @internal
-def _factor(error: float, order: float, multistep: bool) -> float:
+def _factor(error: float, order: float, growth: float) -> float:
     """By how much the step may change."""
     if error <= 0.0:
-        factor = MAX_FACTOR
-    else:
-        factor = min(MAX_FACTOR, max(MIN_FACTOR, SAFETY * error ** (-1.0 / (order + 1.0))))
-    if multistep and 1.0 <= factor < DEAD_BAND:
-        return 1.0
-    return factor
+        return growth
+    return min(growth, max(MIN_FACTOR, SAFETY * error ** (-1.0 / (order + 1.0))))
+
+
+@internal
+def _next_step(lc: Any, h: float, error: float, order: float, multistep: bool) -> float:
+    """Step to follow an accepted one of size h.
+
+    A multistep formula grows only after HOLD equal steps, and only if it pays: growing at every step is not
+    zero-stable for more than a few steps, growing by GROWTH between HOLD equal steps is (companion matrices of the
+    variable-step formulas), and equal steps keep the coefficients.
+    """
+    clock = vec(lc.clock, CLOCK_SIZE)
+    if not multistep:
+        clock[HELD] = 0.0
+        return h * _factor(error, order, MAX_FACTOR)
+    factor = _factor(error, order, clock[GROWTH])
+    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock[GROWTH]) or clock[HELD] < clock[HOLD]):
+        clock[HELD] += 1.0
+        return h
+    clock[HELD] = 0.0
+    return h * factor
 
 
 @compiled
@@ -152,8 +171,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             if status != OK:
                 h *= 0.25
             else:
-                h *= min(0.9, _factor(error[0], error[1], False))
-            clock[STEP_SIZE] = h
+                h *= min(0.9, _factor(error[0], error[1], 1.0))
+            clock[STEP_SIZE], clock[HELD] = h, 0.0
             if t + 0.01 * h == t or h < 1e-300:
                 return STEP_TOO_SMALL if status == OK else status
             continue
@@ -166,7 +185,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         accept(ws, ms, lc)
         strained = partition_strained(ws)
         if not fixed:
-            proposed = h * _factor(error[0], error[1], multistep)
+            proposed = _next_step(lc, h, error[0], error[1], multistep)
             clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed
         if strained:
             return REPARTITION

@@ -12,7 +12,6 @@ LOOP = np.dtype(
             "watch",                            # (n_contacts, 3) float64: gap, rate, acceleration at the newest row
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
             "cursor",                           # (1,) int64: samples in the buffer
-            "grows_by_multistep",               # 1: keep the step unless it can grow by a fifth
         )
     ]
 )  # fmt: skip
@@ -27,7 +26,10 @@ TRIAL_STEP = 4  # step of the last trial (an event or a failure)
 FAILURES = 5  # rejected trials in a row
 TARGET_TIME = 6  # `run` returns once it is reached; a step may go beyond it
 BREAK_TIME = 7  # next time at which a force or a driver's rate jumps
-CLOCK_SIZE = 8
+GROWTH = 8  # largest factor by which a step may grow
+HOLD = 9  # equal steps that a multistep formula takes between two growths
+HELD = 10  # equal steps taken since the last change
+CLOCK_SIZE = 11
 
 # what `run` returns besides the status of a failed step
 REACHED = 100

@@ -94,4 +94,5 @@ def restart_here(sim: "Simulation") -> None:
         sim.pending = []
     sim.use_modes()
     sim._new_history()
+    sim.pending += [k for k in sim.pulling() if k not in sim.pending]
     remember(ws, sim._loop.record)

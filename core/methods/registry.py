@@ -31,6 +31,8 @@ class Formula:
     parameters: tuple[float, ...] = ()
     rows: int = 1
     """Rows of history that a step needs; below that the starter works."""
+    growth: float = 2.0
+    """Largest factor by which error control lets a multistep step grow, each time after `rows` equal steps."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,10 @@ class Method:
     description: str
     options: Mapping[str, Option]
     formula: Callable[[Mapping[str, float]], Formula] = field(repr=False)
+
+
+# With growth by 2 after k + 1 equal steps the variable-step formulas are zero-stable up to k = 6; beyond, these are.
+EBDF_GROWTH = {7: 1.5, 8: 1.2}
 
 
 def _hht(values: Mapping[str, float]) -> Formula:
@@ -76,7 +82,7 @@ METHODS = {
             "ebdf",
             "TLISMNI with Cash's extended BDF of fixed k, order k + 1; A-stable up to k = 3",
             {"k": Option(4, 1, 8, "number of steps k; the order is k + 1", integer=True)},
-            lambda o: Formula(ebdf_step, int(o["k"]), (), int(o["k"]) + 1),
+            lambda o: Formula(ebdf_step, int(o["k"]), (), int(o["k"]) + 1, EBDF_GROWTH.get(int(o["k"]), 2.0)),
         ),
         Method(
             "irk",

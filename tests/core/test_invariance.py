@@ -74,7 +74,7 @@ class Scene:
         bodies = [
             rod("a", 0.5 * end, th1),
             rod("b", centre, th2),
-            PointMass2D(name="bob", mass=0.5, position=self.place(-1.0, 0.3), velocity=self.place(0.3, 1.0)),
+            PointMass2D(name="bob", mass=0.5, position=self.place(-1.0, 0.3), velocity=self.place(1.0 / 3.0, 1.0)),
             PointMass2D(name="ball", mass=0.8, position=self.place(-2.0, 0.8), velocity=self.place(0.5, 0.0)),
         ]
         joints = [

@@ -50,7 +50,7 @@ SINE = Sine(amplitude=0.7, angular_frequency=2.0, phase=0.3, offset=0.2)
 
 def contact(law, kind="plane"):
     if kind == "plane":
-        plane, disk = HalfPlane2D(marker=on("a", 0.3, -0.2, 0.4)), Disk2D(marker=RIGHT, radius=0.3)
+        plane, disk = HalfPlane2D(marker=on("a", 0.3, -0.2, 0.4)), Disk2D(marker=RIGHT, radius=2.5)
         return DiskOnHalfPlane2D(name="c", plane=plane, disk=disk, law=law)
     return DiskOnDisk2D(name="c", a=Disk2D(marker=LEFT, radius=1.5), b=Disk2D(marker=RIGHT, radius=1.4), law=law)
 
@@ -85,7 +85,11 @@ CASES = {
     },
     "spring": {"forces": [SpringDamper2D(name="f", a=LEFT, b=RIGHT, stiffness=3.0, damping=0.7, natural_length=0.9)]},
     "spring to ground": {
-        "forces": [SpringDamper2D(name="f", a=on("ground", 0.0, -1.0), b=on("p"), stiffness=3.0, damping=0.7, natural_length=0.9)]
+        "forces": [
+            SpringDamper2D(
+                name="f", a=on("ground", 0.0, -1.0), b=on("p"), stiffness=3.0, damping=0.7, natural_length=0.9
+            )
+        ]
     },
     "force": {"forces": [AppliedForce2D(name="f", marker=RIGHT, force_x=SINE, force_y=Constant(value=1.4))]},
     "follower": {
@@ -179,7 +183,7 @@ def check_matrix(point, state, c_q=0.6, c_v=0.8):
 
 def check_levels(point, state):
     """Phi' and Phi'' along the motion are the velocity and acceleration residuals: all gaps and constraints."""
-    t, q, v, a, lam = state
+    _, q, v, a, lam = state
     point.at(*state)
     first = point.derivative(1, (1.0, v, np.zeros_like(q), np.zeros_like(q), np.zeros_like(lam)), state)
     _, _, phid, phidd = point.at(*state)
