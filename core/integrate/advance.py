@@ -155,7 +155,7 @@ def _locate(sim: "Simulation") -> None:
     watched = [k for k in contacts if crossed(ws, lc, k, h)]
     ends = {k: (sim.gap(k), sim.gap_rate(k), _gap_acceleration(sim, k)) for k in watched}
     found = {k: _event_step(sim, k, h, ends[k]) for k in watched}
-    step = min(found.values())
+    step = min(min(found.values()), h)
     _trial(sim, step, h)
     accept(ws, sim._method.record, lc)
     sim.flush()
@@ -209,11 +209,14 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
         return sign * float(arrays["phi"][contact.row])
 
     size = float(np.max(np.abs(arrays["q"][: sim.assembly.n]), initial=1.0))
-    guess = 0.5 * (low + high) * h
     low_step, high_step = low * h, high * h
-    if high < 1.0 and gap(high_step) > 0.0:
+    safe_end = sign * end[0] > 0.0
+    if safe_end and (high >= 1.0 or gap(high_step) > 0.0):
+        # an interpolant dipped below zero, the motion does not: no event
+        return math.inf
+    if not safe_end and high < 1.0 and gap(high_step) > 0.0:
         low_step, high_step = high_step, h
-        guess = 0.5 * (low_step + high_step)
+    guess = 0.5 * (low_step + high_step)
     return find_root(gap, low_step, high_step, guess, 2e-16 * size)
 
 
@@ -234,4 +237,5 @@ def restart_at(sim: "Simulation", t: float) -> None:
     sim.use_modes()
     sim._new_history()
     sim.pending = sim.pulling()
-    sim._sample_now()
+    if not sim.pending:
+        sim._sample_now()

@@ -29,13 +29,17 @@ def first_crossing(
 ) -> tuple[float, float]:
     """Bracket (low, high) of s in (0, 1] in which the gap's interpolant first crosses zero (downwards or upwards).
 
-    A start on the contact itself that moves away (g = 0 to rounding, g' of the safe sign) is no crossing.
+    The points where the interpolant turns are looked at too: a graze may dip below zero only there. A start on the
+    contact itself that moves away (g = 0 to rounding, g' of the safe sign) is no crossing.
     """
     sign = 1.0 if down else -1.0
     if sign * start[0] <= 0.0:
         start = (0.0, start[1], start[2])
     coefficients = sign * quintic(h, start, end)
-    s = np.unique(np.concatenate([2.0 ** np.arange(-44.0, 0.0), np.linspace(0.0, 1.0, 65)[1:]]))
+    turning = np.roots(np.polyder(coefficients))
+    turning = turning[np.isreal(turning)].real
+    turning = turning[(turning > 0.0) & (turning < 1.0)]
+    s = np.unique(np.concatenate([2.0 ** np.arange(-44.0, 0.0), np.linspace(0.0, 1.0, 65)[1:], turning]))
     value = np.polyval(coefficients, s)
     below = np.flatnonzero(value < 0.0)
     if len(below) == 0:

@@ -79,7 +79,7 @@ def all_finite(ws: Any) -> bool:
 def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     """One step of size h from the newest row, not accepted yet; its end is the workspace's current point."""
     # a formula that looks ahead (extended BDF) must not see what lies behind a jump of a force
-    blind = lc.rows > 1 and history_time(ms, 0) + 2.0 * h > vec(lc.clock, CLOCK_SIZE)[BREAK_TIME]
+    blind = lc.rows > 1 and history_time(ms, 0) + 2.000001 * h > vec(lc.clock, CLOCK_SIZE)[BREAK_TIME]
     starting = rows_available(ms) < lc.rows or blind
     set_weights(ws, ms)
     status = call_step(lc.starter if starting else lc.step, ws, ms, h)

