@@ -13,6 +13,7 @@ from ..system.records import (
     ATOL,
     CONTROL_SIZE,
     COUNTERS_SIZE,
+    FACTOR_AGE,
     FIRST_SENSITIVITY,
     NOT_FINITE,
     OK,
@@ -50,6 +51,7 @@ SAFETY = 0.9
 MIN_FACTOR = 0.2
 MAX_FACTOR = 2.0
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
+LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
 DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more
 
 
@@ -106,7 +108,22 @@ def partition_strained(ws: Any) -> bool:
     the partition was chosen: q_d(q_i) then has steep derivatives, which costs accuracy long before Phi_qd is singular.
     """
     rate = vec(ws.rate, RATE_SIZE)
-    return rate[SENSITIVITY] > STRAIN * max(rate[FIRST_SENSITIVITY], 1.0)
+    if rate[SENSITIVITY] > STRAIN * max(rate[FIRST_SENSITIVITY], 1.0):
+        return True
+    if ws.m_act == 0 or ws.m_act == ws.n or rate[FACTOR_AGE] < LOOK_AGAIN:
+        return False
+    # the sensitivity is known from the last factorisation; dependent coordinates that now move faster than the
+    # independent ones are a reason to look again: the next stage factors anew
+    v, scale = vec(ws.v, ws.n_ext), vec(ws.scale, ws.n)
+    dependent = ivec(ws.dependent, ws.m_act)
+    everything, of_dependent = 0.0, 0.0
+    for i in range(ws.n):
+        everything += (v[i] / scale[i]) ** 2
+    for k in range(ws.m_act):
+        of_dependent += (v[dependent[k]] / scale[dependent[k]]) ** 2
+    if of_dependent * (ws.n - ws.m_act) > (everything - of_dependent) * ws.m_act:
+        rate[FACTOR_AGE] = -1.0
+    return False
 
 
 @internal

@@ -28,6 +28,7 @@ from tlismni.core import (
     Revolute2D,
     RigidBody2D,
     Simulation,
+    SimulationError,
     SpringDamper2D,
     Table,
     simulate,
@@ -265,17 +266,16 @@ def test_body_without_mass_in_user_equations_is_reported():
 
 
 def test_force_that_becomes_nan_stops_the_run_and_keeps_what_was_computed():
-    from tlismni.core import SimulationError
-
     def force(t, q, v):
         return np.array([1.0 if t < 0.5 else np.nan])
 
     system = EquationSystem(mass=np.eye(1), force=force, q0=[0.0], v0=[0.0])
-    with pytest.raises((SimulationError, EquationError)) as caught:
+    with pytest.raises(SimulationError, match="infinite or NaN") as caught:
         simulate(system, 1.0)
-    if isinstance(caught.value, SimulationError):
-        assert 0.4 < caught.value.t <= 0.5
-        assert caught.value.partial.t[-1] == pytest.approx(caught.value.t)
+    assert caught.value.t == pytest.approx(0.5, abs=1e-9)
+    partial = caught.value.partial
+    assert partial.t[-1] == pytest.approx(0.5, abs=1e-9) and np.all(np.isfinite(partial.q))
+    assert partial.q[-1, 0] == pytest.approx(0.125, abs=1e-6)
 
 
 def test_error_in_a_user_function_comes_out_as_it_is():
@@ -304,18 +304,15 @@ def test_unknown_channel_names_the_nearest():
         result["bob.v_x"]
 
 
-def test_what_is_no_system_is_refused():
-    with pytest.raises((ModelError, TypeError, AttributeError)):
-        simulate({"bodies": []}, 1.0)
+@pytest.mark.parametrize("system", [{"bodies": []}, None, "pendulum_stop"])
+def test_what_is_no_system_is_refused(system):
+    with pytest.raises(ModelError, match="EquationSystem"):
+        simulate(system, 1.0)
 
 
-def test_model_without_bodies_is_refused_or_runs_empty():
-    try:
-        result = simulate(Model(), 1.0)
-    except ModelError as error:
-        assert "bod" in str(error)
-    else:
-        assert result.q.shape[1] == 0
+def test_model_without_bodies_runs_empty():
+    result = simulate(Model(), 1.0)
+    assert result.q.shape == (len(result), 0) and result.t[-1] == 1.0
 
 
 def test_user_equations_with_redundant_constraints_are_reported():

@@ -116,7 +116,6 @@ def test_order_survives_full_turns_and_the_new_partitions_that_they_need(method,
     system = point_pendulum(angle, rate)
     errors = global_errors(system, exact(t_end, angle, rate), t_end, steps, method, **options)
     assert slope(steps, errors) > expected - 0.3
-    assert errors[-1] < 1e-7 or method == "hht" or method == "bdf"
     result = simulate(system, t_end, method, step=t_end / steps[0], record=False, **options)
     assert result.stats["partitions"] >= 4.0 * turns - 1.0
 
