@@ -18,9 +18,7 @@ from tlismni.core.linalg.record import COLUMNS, DENSE, PROGRAM
 KINDS = {DENSE: "dense", PROGRAM: "program", COLUMNS: "columns"}
 
 
-def chain_matrix(
-    links: int, angles: np.ndarray, mass: float = 1.0
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def chain_matrix(links: int, angles: np.ndarray, mass: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Rows, columns and values of [M Phi^T; Phi 0] of a chain of bars of length 1 at the given angles."""
     rows, cols, values = list(range(3 * links)), list(range(3 * links)), [mass, mass, mass / 12] * links
     for joint in range(links):
@@ -58,9 +56,7 @@ def best_time(run: Callable[[], object], repeats: int = 5) -> float:
     return min(times)
 
 
-def measure(
-    n: int, rows: np.ndarray, cols: np.ndarray, values: np.ndarray, dense: bool | None = None
-) -> None:
+def measure(n: int, rows: np.ndarray, cols: np.ndarray, values: np.ndarray, dense: bool | None = None) -> None:
     """Print one line of the table."""
     factorization = Factorization(n, rows, cols, np.arange(len(rows)), dense=dense)
     factorization.analyze(values)

@@ -2,6 +2,7 @@
 NaN, which the step control sees, instead of an exception in the middle of a step)."""
 
 from collections.abc import Callable
+from types import FunctionType
 from typing import Any
 
 from numba import njit, types
@@ -35,6 +36,13 @@ def _cached(dispatcher: Any) -> Any:
 
 inlined = njit(inline="always", error_model="numpy")
 """Decorator of tiny helpers."""
+
+
+def interpreted(function: Any, *helpers: Any) -> Any:
+    """The same source run by Python, its compiled `helpers` too: for inputs so small that compiling costs more."""
+    source = function.py_func
+    names = {**source.__globals__, **{helper.py_func.__name__: helper.py_func for helper in helpers}}
+    return FunctionType(source.__code__, names, source.__name__, source.__defaults__)
 
 
 def address_of(function: Any, signature: Any) -> int:

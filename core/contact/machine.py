@@ -61,16 +61,15 @@ def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> N
     kinetic, before = sim.kinetic_energy(), sim.workspace.arrays["v"].copy()
     stays = False
     if resting or plastic:
-        impact = _strike(sim, k, contact, 0.0)
+        impact, released = _strike(sim, k, contact, 0.0)
         stays = sim.presses(k)
         if resting and not plastic and not stays:
             sim.workspace.arrays["v"][:] = before
-            sim.use_modes()
-            impact = _strike(sim, k, contact, restitution)
+            impact, released = _strike(sim, k, contact, restitution)
         else:
             restitution = 0.0
     else:
-        impact = _strike(sim, k, contact, restitution)
+        impact, released = _strike(sim, k, contact, restitution)
     memory[APPROACH_SPEED] = approach
     memory[LARGEST_APPROACH] = largest
     for j, other in enumerate(sim.assembly.contacts):
@@ -84,27 +83,47 @@ def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> N
             restitution * approach, impact.residual,
         )
     )  # fmt: skip
+    for j in released:
+        other = sim.assembly.contacts[j]
+        sim.add_event(Event(sim.t_internal, "open", other.name, separation_speed=max(sim.gap_rate(j), 0.0)))
     if stays:
         _close(sim, k, "rest" if resting and not plastic else "close", 0.0)
     else:
         sim.use_modes()
 
 
-def _strike(sim: "Engine", k: int, contact: ContactInfo, restitution: float) -> Impact:
-    """The velocity jump, computed in the structure in which the contact is closed; the mode is left as it was."""
+def _strike(sim: "Engine", k: int, contact: ContactInfo, restitution: float) -> tuple[Impact, list[int]]:
+    """The velocity jump, computed in the structure in which the contact is closed; its mode is left as it was.
+
+    Other closed contacts can push but not pull: those whose impulse would be tensile let go, and the impact is
+    computed again from the velocities before, until none pulls. Returns the impact and the contacts that let go.
+    """
+    before = sim.workspace.arrays["v"].copy()
     mode = sim.memory[k, MODE]
-    sim.memory[k, MODE] = CLOSED
-    sim.use_modes(accelerations=False)
-    impact = apply_impact(sim.workspace, contact.row, restitution)
-    sim.memory[k, MODE] = mode
-    if impact is None:
-        raise SimulationError(
-            f"impact at contact '{contact.name}', t = {sim.t_internal:.9g} s: the matrix of the velocity increment "
-            "is singular, so the contact repeats what other constraints say. Remove one of them.",
-            t=sim.t_internal,
-            loop="impact",
-        )
-    return impact
+    released: list[int] = []
+    while True:
+        sim.memory[k, MODE] = CLOSED
+        sim.use_modes(accelerations=False)
+        impact = apply_impact(sim.workspace, contact.row, restitution)
+        sim.memory[k, MODE] = mode
+        if impact is None:
+            raise SimulationError(
+                f"impact at contact '{contact.name}', t = {sim.t_internal:.9g} s: the matrix of the velocity increment "
+                "is singular, so the contact repeats what other constraints say. Remove one of them.",
+                t=sim.t_internal,
+                loop="impact",
+            )
+        pulling = [
+            j
+            for j, other in enumerate(sim.assembly.contacts)
+            if j != k and impact.impulses.get(other.row, 0.0) < -1e-12 * impact.impulse
+        ]
+        if not pulling:
+            return impact, released
+        sim.workspace.arrays["v"][:] = before
+        for j in pulling:
+            sim.memory[j, MODE] = OPEN
+        released += pulling
 
 
 def _close(sim: "Engine", k: int, kind: str, approach: float) -> None:

@@ -14,7 +14,9 @@ from ..compiled.records import ArrayRecord
 from ..contact import machine
 from ..contact.laws import ForceLaw
 from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE
-from ..errors import CallbackError, ConsistencyError, SimulationError
+from ..description import Model
+from ..equations.system import EquationSystem
+from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
@@ -78,6 +80,8 @@ class Engine:
             method_options=dict(method_options),
         )  # fmt: skip
         self.formula: Formula = get_formula(method, method_options)
+        if not isinstance(system, Model | EquationSystem):
+            raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
         self.system = system
         self.assembly: Assembly = system.assemble()
         self.workspace = Workspace(self.assembly)

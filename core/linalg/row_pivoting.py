@@ -16,13 +16,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, interpreted
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
 # A redundant row depends on an earlier one if |coefficient| * its norm exceeds this times the row's own norm.
 NEGLIGIBLE = 1e-9
+# Up to so many entries the elimination is interpreted: a millisecond at most, against a second of compiling.
+FEW_ENTRIES = 60
 
 
 @compiled
@@ -132,16 +134,20 @@ def _eliminate(
     return rank
 
 
+_eliminate_interpreted = interpreted(_eliminate, _insert)
+
+
 def eliminate_rows(
     m: int, n: int, indptr: Ints, indices: Ints, data: Floats, column_scale: Floats, tol: float
 ) -> tuple[Ints, int, Ints, Ints, Floats]:
     """As `independent_columns`, and the factors: (pivot_column, rank, f_start (m + 1,), f_row, f)."""
     space = 4 * len(indices) + 4 * n
+    eliminate = _eliminate_interpreted if len(indices) <= FEW_ENTRIES else _eliminate
     while True:
         pivot_column = np.full(m, -1, np.int64)
         u_start, f_start = np.zeros(m + 1, np.int64), np.zeros(m + 1, np.int64)
         f_row, f = np.empty(space, np.int64), np.empty(space)
-        rank = _eliminate(
+        rank = eliminate(
             m, n, indptr, indices, data, column_scale, tol, pivot_column,
             np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.empty(n, np.int64), np.empty(n, np.int64),
             np.zeros(n), u_start, np.empty(space, np.int64), np.empty(space), f_start, f_row, f,

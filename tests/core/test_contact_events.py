@@ -292,6 +292,31 @@ def test_impact_on_a_lying_body_passes_its_impulse_to_the_floor():
     assert result["floor.impulse"][-1] == pytest.approx(5.0 * G * 0.7 + hit.impulse, rel=1e-9)
 
 
+def test_impact_never_pulls_at_another_contact():
+    """A plank lies on two supports and is struck on its overhang: it turns about the near support, the far one lets
+    go. Turning about the support at distance d of the centre it has the effective mass (J + m d^2)/l^2 at the ball."""
+    e, inertia, d, lever = 0.5, 1.0 / 3.0, 0.4, 0.6
+    feet = [
+        DiskOnHalfPlane2D(name=name, plane=HalfPlane2D(), disk=Disk2D(marker=on("plank", x)), law=PLASTIC)
+        for name, x in (("far", -0.6), ("near", d))
+    ]
+    top = DiskOnHalfPlane2D(
+        name="top", plane=HalfPlane2D(marker=on("plank")), disk=Disk2D(marker=on("ball")), law=HALF
+    )  # fmt: skip
+    bodies = [
+        RigidBody2D(name="plank", mass=1.0, inertia=inertia),
+        PointMass2D(name="ball", mass=1.0, position=(d + lever, 0.5)),
+    ]
+    result = simulate(Model(bodies=bodies, contacts=[*feet, top]), 0.33, rtol=1e-8, atol=1e-10)
+    hit = next(event for event in result.events if event.contact == "top")
+    reduced = 1.0 / (1.0 + lever**2 / (inertia + d**2))
+    assert hit.impulse == pytest.approx((1.0 + e) * math.sqrt(G) * reduced, rel=1e-7)
+    assert [event.contact for event in events(result, "open")] == ["far"]
+    assert result["far.gap"][-1] > 0.0 and np.abs(result["near.gap"]).max() < 1e-12
+    for name in ("far", "near", "top"):
+        assert np.all(np.diff(result[f"{name}.impulse"]) > -1e-12)
+
+
 def test_ball_on_ball_on_floor_come_to_rest():
     """Two balls, one above the other, e = 0.5: both lie still at the end, floor under both weights. They are led
     upright: freely, one on top of the other would roll off."""

@@ -147,9 +147,7 @@ def test_special_points_follow_numpy():
     assert (jets([7.0])[0] % 2.0).value == 1.0
 
 
-@pytest.mark.parametrize(
-    "convert", [float, int, complex, math.sin, math.sqrt, lambda x: np.array([x], dtype=float)]
-)
+@pytest.mark.parametrize("convert", [float, int, complex, math.sin, math.sqrt, lambda x: np.array([x], dtype=float)])
 def test_no_silent_loss_of_derivatives(convert):
     with pytest.raises(TypeError, match=r"lose its derivatives.*numpy.sin instead of math.sin"):
         convert(jets([0.5])[0])
@@ -450,13 +448,9 @@ def opaque_circle(t, q):
 
 def test_a_constraint_that_cannot_be_differentiated_needs_its_derivatives():
     f = EquationFunctions(np.eye(2), pull, opaque_circle, n=2)
-    with pytest.raises(
-        EquationError, match=r"constraint\(t, q\) cannot .*numpy.sin.*constraint_jacobian= and gamma="
-    ):
+    with pytest.raises(EquationError, match=r"constraint\(t, q\) cannot .*numpy.sin.*constraint_jacobian= and gamma="):
         f.check(0.0, Q, V)
-    given_all = EquationFunctions(
-        np.eye(2), pull, opaque_circle, breathing_jacobian, lambda t, q, v: -2 * v @ v, n=2
-    )
+    given_all = EquationFunctions(np.eye(2), pull, opaque_circle, breathing_jacobian, lambda t, q, v: -2 * v @ v, n=2)
     given_all.check(0.0, Q, V)
     np.testing.assert_allclose(given_all.tangent(0.0, Q, V, A, LAM, 1.0, 0.0)[0][0, 0], 1 + 2 * LAM[0])
     # Without time in it, the jacobian alone gives gamma.

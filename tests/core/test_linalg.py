@@ -68,9 +68,7 @@ def sparse_kind(request, monkeypatch):
 
 
 @settings(deadline=None, max_examples=60)
-@given(
-    seed=seeds, n=st.integers(1, 60), per_row=st.integers(0, 8), dense=st.sampled_from([True, False, None])
-)
+@given(seed=seeds, n=st.integers(1, 60), per_row=st.integers(0, 8), dense=st.sampled_from([True, False, None]))
 def test_solution_is_that_of_numpy(seed, n, per_row, dense):
     rng = np.random.default_rng(seed)
     rows, cols, values = random_matrix(n, rng, per_row)
@@ -347,9 +345,7 @@ def test_pivot_is_the_largest_scaled_entry_and_the_lowest_of_equals():
 def test_redundant_rows_and_what_they_repeat(seed, m, extra, repeats):
     rng = np.random.default_rng(seed)
     n = m + extra
-    a = [
-        *(4.0 * np.eye(m, n)[:, rng.permutation(n)] + rng.uniform(-1, 1, (m, n)) * (rng.random((m, n)) < 0.2))
-    ]
+    a = [*(4.0 * np.eye(m, n)[:, rng.permutation(n)] + rng.uniform(-1, 1, (m, n)) * (rng.random((m, n)) < 0.2))]
     if np.linalg.cond(np.array(a)) > 1e6:
         return
     expected = []
