@@ -179,7 +179,9 @@ def trajectory_difference(t: Array, y: Array, reference: Array, mask: Array | No
         raise ValueError("there is no time left at which the trajectories could be compared")
     gap = np.abs(y[keep] - reference[keep])
     k = int(np.argmax(gap))
-    scale = 0.5 * float(np.ptp(reference[keep]))
+    # a channel that stays constant has no amplitude: then its own size is the scale, not the rounding of it
+    values = reference[keep]
+    scale = max(0.5 * float(np.ptp(values)), 1e-6 * float(np.max(np.abs(values))))
     return Difference(float(gap[k]), float(t[keep][k]), float(np.sqrt(np.mean(gap**2))), scale)
 
 

@@ -4,6 +4,7 @@ The gap's value, rate and acceleration always stand in phi, phid and phidd of th
 contact makes them part of the constraints. A contact that acts as a force adds -F dg/dq to r.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -144,6 +145,10 @@ class _Contact2D(Element):
     law: ContactLaw
     """What happens when the gap closes."""
 
+    def extent(self) -> float:
+        """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
+        return math.inf
+
     def _row(self, numbering: Numbering, a: Marker2D, b: Marker2D, angle: float, radius: float) -> Row:
         if isinstance(self.law, ForceLaw):
             parameters = self.law.parameters()
@@ -173,7 +178,7 @@ class DiskOnHalfPlane2D(_Contact2D):
     disk: Disk2D
 
     def row(self, numbering: Numbering) -> Row:
-        angle = self.plane.marker.angle + 1.5707963267948966
+        angle = self.plane.marker.angle + 0.5 * math.pi
         return self._row(numbering, self.plane.marker, self.disk.marker, angle, self.disk.radius)
 
     def markers(self) -> Sequence[Marker2D]:
@@ -188,6 +193,9 @@ class DiskOnDisk2D(_Contact2D):
 
     a: Disk2D
     b: Disk2D
+
+    def extent(self) -> float:
+        return self.a.radius + self.b.radius or math.inf
 
     def row(self, numbering: Numbering) -> Row:
         return self._row(numbering, self.a.marker, self.b.marker, 0.0, self.a.radius + self.b.radius)

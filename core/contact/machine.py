@@ -146,6 +146,7 @@ def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> 
     memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
     sim.open_accounts[k] = sim.contact_accounts(k)
     sim.use_modes()
+    sim.start_small(memory[APPROACH_SPEED])
     sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
 
 
@@ -158,6 +159,7 @@ def _end_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw, mode:
             # pressed again before the shapes came apart
             memory[MODE] = ACTIVE
             memory[LOSS_JUMP] -= sim.elastic_energy(k, contact)
+            sim.start_small(memory[APPROACH_SPEED])
         sim.use_modes()
         return
     early = law.release == "force"

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from .simulation import Simulation
 
 CHUNK_STEPS = 20_000
+MOST_HALVINGS = 40
 VELOCITY_JUMP = 1e-9
 """m/s; a larger violation of the velocity constraints at a breakpoint is a jump in a driver's rate."""
 _REASONS = {
@@ -202,7 +203,7 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     down = mode == OPEN
     sign = 1.0 if down else -1.0
     start = tuple(float(x) for x in sim.watch[k])
-    low, high = first_crossing(h, (start[0], start[1], start[2]), end, down)
+    low, high, extremum = first_crossing(h, (start[0], start[1], start[2]), end, down)
 
     def gap(step: float) -> float:
         _trial(sim, step, h)
@@ -211,11 +212,21 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     size = float(np.max(np.abs(arrays["q"][: sim.assembly.n]), initial=1.0))
     low_step, high_step = low * h, high * h
     safe_end = sign * end[0] > 0.0
-    if safe_end and (high >= 1.0 or gap(high_step) > 0.0):
-        # an interpolant dipped below zero, the motion does not: no event
+    if high < 1.0 and gap(high_step) > 0.0:
+        # the motion is behind its interpolant: look where that goes deepest
+        low_step, high_step = high_step, extremum * h
+        if safe_end and gap(high_step) > 0.0:
+            return math.inf
+        if not safe_end and (high_step <= low_step or gap(high_step) > 0.0):
+            high_step = h
+    elif high >= 1.0 and safe_end:
+        # the cubic dipped below zero, the quintic does not: no event
         return math.inf
-    if not safe_end and high < 1.0 and gap(high_step) > 0.0:
-        low_step, high_step = high_step, h
+    for _ in range(MOST_HALVINGS):
+        # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
+        if low_step == 0.0 or gap(low_step) > 0.0:
+            break
+        low_step, high_step = 0.5 * low_step, low_step
     guess = 0.5 * (low_step + high_step)
     return find_root(gap, low_step, high_step, guess, 2e-16 * size)
 

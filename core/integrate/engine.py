@@ -39,6 +39,7 @@ from .watch import remember
 logger = logging.getLogger(__name__)
 
 HISTORY_ROWS = 12
+FIRST_TOUCH = 1e-8
 RESTING_RATE = 1e-12
 """m/s; a gap rate below this is none, where shapes touch at the start."""
 
@@ -133,7 +134,7 @@ class Engine:
         self.watch = np.zeros((max(len(a.contacts), 1), 3))
         self._loop = ArrayRecord(
             LOOP,
-            {"clock": self.clock, "watch": self.watch, "samples": self.buffer, "cursor": self.cursor},
+            {"clock": self.clock, "watch": self.watch, "leap": a.leap, "samples": self.buffer, "cursor": self.cursor},
             {
                 "step": step_address(self.formula.step),
                 "starter": self.starter,
@@ -172,15 +173,16 @@ class Engine:
         self._handle_pending()
 
     def _first_step(self) -> float:
-        """Hairer's guess: a step over which the state changes by a hundredth."""
-        arrays, n, s = self.workspace.arrays, self.assembly.n, self.settings
-        weight_q = s.atol + s.rtol * np.abs(arrays["q"][:n])
-        weight_v = s.atol + s.rtol * np.abs(arrays["v"][:n])
-        level = max(float(np.max(np.abs(arrays["q"][:n]) / weight_q, initial=0.0)), 1.0)
-        rate = float(np.max(np.abs(arrays["v"][:n]) / weight_q, initial=0.0))
-        rate = max(rate, math.sqrt(float(np.max(np.abs(arrays["a"][:n]) / weight_v, initial=0.0)) * level))
-        guess = 0.01 * level / rate if rate > 0.0 else 1e-3
-        return min(guess, self.clock[MAX_STEP], 0.1)
+        """A step in which nothing moves by more than a hundredth of its scale; error control takes it from there."""
+        arrays, n, scale = self.workspace.arrays, self.assembly.n, self.assembly.coordinate_scale
+        speed = float(np.max(np.abs(arrays["v"][:n]) / scale, initial=0.0))
+        acceleration = float(np.max(np.abs(arrays["a"][:n]) / scale, initial=0.0))
+        guess = 0.1
+        if speed > 0.0:
+            guess = min(guess, 0.01 / speed)
+        if acceleration > 0.0:
+            guess = min(guess, 0.1 / math.sqrt(acceleration))
+        return min(guess, float(self.clock[MAX_STEP]))
 
     # ---- what the contact state machine asks ---------------------------------------------------------------------
 
@@ -223,6 +225,12 @@ class Engine:
     def elastic_energy(self, k: int, contact: Any) -> float:
         """Elastic energy that the force law of contact k holds, J."""
         return float(contact.law.elastic_energy(max(-self.gap(k), 0.0)))
+
+    def start_small(self, speed: float) -> None:
+        """Begin a contact with a step in which it closes by FIRST_TOUCH of the mechanism's size, so that the error
+        control sees the force grow: a step over the whole contact would find no force at its stages."""
+        size = float(np.max(self.assembly.coordinate_scale, initial=1.0))
+        self.clock[STEP_SIZE] = min(self.clock[STEP_SIZE], FIRST_TOUCH * size / speed)
 
     def add_event(self, event: Event) -> None:
         """Record an event."""

@@ -26,8 +26,9 @@ def quintic(h: float, start: tuple[float, float, float], end: tuple[float, float
 
 def first_crossing(
     h: float, start: tuple[float, float, float], end: tuple[float, float, float], down: bool
-) -> tuple[float, float]:
-    """Bracket (low, high) of s in (0, 1] in which the gap's interpolant first crosses zero (downwards or upwards).
+) -> tuple[float, float, float]:
+    """Bracket (low, high) of s in (0, 1] in which the gap's interpolant first crosses zero (downwards or upwards), and
+    the place of its extremum beyond zero.
 
     The points where the interpolant turns are looked at too: a graze may dip below zero only there. A start on the
     contact itself that moves away (g = 0 to rounding, g' of the safe sign) is no crossing.
@@ -43,11 +44,9 @@ def first_crossing(
     value = np.polyval(coefficients, s)
     below = np.flatnonzero(value < 0.0)
     if len(below) == 0:
-        return 0.0, 1.0
+        return 0.0, 1.0, 1.0
     first = int(below[0])
-    if first > 0:
-        return float(s[first - 1]), float(s[first])
-    return 0.0, float(s[0])
+    return float(s[first - 1]) if first > 0 else 0.0, float(s[first]), float(s[np.argmin(value)])
 
 
 def find_root(function: Callable[[float], float], low: float, high: float, guess: float, floor: float) -> float:

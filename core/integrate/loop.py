@@ -49,7 +49,7 @@ from .watch import any_crossed, remember
 
 SAFETY = 0.9
 MIN_FACTOR = 0.2
-MAX_FACTOR = 2.0
+MAX_FACTOR = 5.0  # of one-step formulas; multistep ones have their own
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
 LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
 DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more
@@ -154,6 +154,16 @@ def _next_step(lc: Any, h: float, error: float, order: float, multistep: bool) -
     return h * factor
 
 
+@internal
+def _leap(ws: Any, ms: Any, lc: Any) -> float:
+    """How far the step has gone, relative to what it may: beyond 1 two shapes could have passed through each other."""
+    row, q, leap = history_row(ws, ms, 0), vec(ws.q, ws.n), vec(lc.leap, ws.n)
+    largest = 0.0
+    for i in range(ws.n):
+        largest = max(largest, abs(q[i] - row[i]) / leap[i])
+    return largest
+
+
 @compiled
 def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
     """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
@@ -193,6 +203,12 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             if t + 0.01 * h == t or h < 1e-300:
                 return STEP_TOO_SMALL if status == OK else status
             continue
+        if ws.n_contacts > 0 and not fixed:
+            leap = _leap(ws, ms, lc)
+            if leap > 1.0:
+                clock[STEP_SIZE], clock[HELD] = 0.9 * h / leap, 0.0
+                counters[REJECTED] += 1
+                continue
         clock[FAILURES] = 0.0
         if ws.n_contacts > 0 and any_crossed(ws, lc, h):
             return EVENT

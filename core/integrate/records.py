@@ -9,6 +9,7 @@ LOOP = np.dtype(
         for name in (
             "step", "starter", "rows",          # addresses of the step functions, rows that `step` needs
             "clock",                            # (CLOCK_SIZE,) float64
+            "leap",                             # (n,) float64: how far a step may move each coordinate
             "watch",                            # (n_contacts, 3) float64: gap, rate, acceleration at the newest row
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
             "cursor",                           # (1,) int64: samples in the buffer

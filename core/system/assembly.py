@@ -43,6 +43,8 @@ class ContactInfo:
     law: NewtonImpact | ForceLaw
     impulse_account: int
     dissipation_account: int
+    extent: float = np.inf
+    """Distance over which the shapes could pass through each other within a step, m."""
 
 
 @dataclass
@@ -75,6 +77,15 @@ class Assembly:
     """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
     user_error: list[BaseException] = field(default_factory=list)
     """An exception that a user's function raised inside the compiled loop."""
+
+    @property
+    def leap(self) -> NDArray[np.float64]:
+        """How far one error-controlled step may move each coordinate, (n,): half its scale, and half the size of the
+        smallest pair of shapes, so that no shape passes through another unseen. Without contacts nothing limits it."""
+        if not self.contacts:
+            return np.full(self.n, np.inf)
+        smallest = min(contact.extent for contact in self.contacts)
+        return np.ascontiguousarray(0.5 * np.minimum(self.coordinate_scale, smallest))
 
     @property
     def ground(self) -> int:
@@ -200,6 +211,7 @@ def assemble(model: Model) -> Assembly:
                 c.law,
                 numbering.work(f"{c.name}.impulse"),
                 numbering.work(f"{c.name}.dissipation"),
+                c.extent(),
             )
             for c in model.contacts
         ],
