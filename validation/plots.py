@@ -74,6 +74,7 @@ def draw(axes: Any, panel: Panel) -> None:
         axes.set_xlim(*((np.array(panel.window) - start) * factor))
     if panel.points:
         low, high = axes.get_ylim()
+        low = max(low, 1e-18)  # below rounding there is nothing to see
         axes.set_ylim(low, high * (high / low) ** 0.35)  # room for the legend over a cloud of points
     axes.set_title(panel.title)
     axes.set_xlabel(label)

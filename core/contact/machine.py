@@ -49,7 +49,7 @@ def handle(sim: "Engine", k: int) -> None:
 def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> None:
     memory = sim.memory[k]
     approach = -sim.gap_rate(k)
-    if approach <= 0.0:
+    if approach <= RESTING_RATE:
         # a touch without approach: a constraint only if it does not separate and the bodies are pressed together
         if approach > -RESTING_RATE and sim.presses(k):
             _close(sim, k, "close", approach)

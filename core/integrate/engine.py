@@ -34,7 +34,7 @@ from .output import ChannelTable
 from .records import BREAK_TIME, CLOCK_SIZE, FIXED_STEP, GROWTH, HOLD, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
 from .sample import empty_buffer, sample_length, write_sample
 from .settings import Settings, set_control
-from .watch import remember
+from .watch import FORCE_ROUNDING, remember
 
 logger = logging.getLogger(__name__)
 
@@ -260,16 +260,19 @@ class Engine:
 
     def pulling(self) -> list[int]:
         """Closed contacts whose force is tensile at the workspace's point: they open at once."""
-        arrays = self.workspace.arrays
-        tolerance = 1e-12 * max(1.0, float(np.max(np.abs(arrays["lam"]), initial=0.0)))
+        arrays, tolerance = self.workspace.arrays, self._no_force()
         return [
             k
             for k, contact in enumerate(self.assembly.contacts)
             if self.memory[k, MODE] == CLOSED and arrays["lam"][contact.row] > tolerance
         ]
 
+    def _no_force(self) -> float:
+        """Rounding of the multipliers: a force below this is none, N."""
+        return FORCE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["lam"]), initial=0.0)))
+
     def presses(self, k: int) -> bool:
-        """True if contact k, held as a constraint now, would carry a compressive force."""
+        """True if contact k, held as a constraint now, would carry a compressive force (not just rounding)."""
         arrays, contact = self.workspace.arrays, self.assembly.contacts[k]
         mode = self.memory[k, MODE]
         if isinstance(contact.law, ForceLaw):
@@ -278,7 +281,7 @@ class Engine:
         self.memory[k, MODE] = CLOSED
         try:
             self.use_modes()
-            return bool(arrays["lam"][contact.row] < 0.0)
+            return bool(arrays["lam"][contact.row] < -self._no_force())
         finally:
             self.memory[k, MODE] = mode
             self.use_modes()

@@ -5,6 +5,12 @@ from typing import Any
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, OPEN, RELEASED
+from ..stage.inner import rounding_level
+
+# A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
+FORCE_ROUNDING = 1e-12
+RATE_ROUNDING = 1e-12  # m/s
+GAP_ROUNDING = 1e-12  # of the largest coordinate (or of 1 m)
 
 
 @compiled
@@ -51,13 +57,18 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
     watch = mat(lc.watch, ws.n_contacts, 3)
     if mode == OPEN:
         if g < 0.0:
-            return True
+            # shapes that touch and neither part nor press drift by rounding only
+            return rate < -RATE_ROUNDING or g < -GAP_ROUNDING * rounding_level(ws, ws.q)
         if watch[k, 1] < 0.0 and rate > 0.0 and watch[k, 0] > 0.0:
             lowest, _ = lowest_inside(watch[k, 0], watch[k, 1], g, rate, h)
             return lowest < 0.0
         return False
     if mode == CLOSED:
-        return force < 0.0
+        lam = vec(ws.lam, ws.m_ext)
+        largest = 1.0
+        for i in range(ws.m_ext - 1):
+            largest = max(largest, abs(lam[i]))
+        return force < -FORCE_ROUNDING * largest
     if mode == ACTIVE:
         return g > 0.0 or (release == 2 and force < 0.0)
     if mode == RELEASED:

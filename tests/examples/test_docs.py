@@ -31,6 +31,29 @@ def test_the_quickstart_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert (tmp_path / "ball.json").is_file()
 
 
+def test_the_readme_runs_and_its_figures_are_those_that_come_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    first, model, equations = re.findall(r"```python\n(.*?)```", text, re.S)
+    names: dict[str, Any] = {}
+    exec(first, names)
+    printed = capsys.readouterr().out.splitlines()
+    assert len(printed) == 6
+    for line in printed[:3]:
+        assert f"    {line}\n" in text
+    for event in names["result"].events:
+        assert f"{event.approach_speed:.6g}" in text and f"{event.energy_loss:.6g}" in text
+    for level in ("position", "velocity", "acceleration"):
+        assert names["result"][f"residual.{level}"].max() < 1e-10
+    exec(model, names)
+    last = names["simulate"](names["model"], 5.0).events
+    assert sum(event.kind == "impact" for event in last) == 62
+    assert last[-1].kind == "rest" and f"{last[-1].t:.4f}" in text
+    exec(equations, names)
+
+
 def test_the_fmu_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("lxml")
     if not (HERE / SHIM).is_file():
