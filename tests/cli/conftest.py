@@ -30,8 +30,8 @@ class Outcome:
 
     @property
     def cause(self) -> str:
-        """The one line on stderr."""
-        (line,) = self.err.splitlines()
+        """The one line on stderr, besides the notice of compiling that a cold cache brings."""
+        (line,) = [line for line in self.err.splitlines() if "first run only" not in line]
         return line
 
 
