@@ -33,7 +33,7 @@ def simulate(
     ----------
     system : Model or EquationSystem.
     t_end : end time, s.
-    method : "newmark", "hht", "bdf", "ebdf", "irk".
+    method : "newmark", "hht", "bdf", "ebdf", "mebdf", "irk" (`METHODS` describes them).
     rtol, atol : tolerances of the error control, on coordinates and velocities.
     step : fixed step in s instead of error control.
     t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ModelError
+from ..errors import ConsistencyError, ModelError, SimulationError
 from ..state import State
 from ..system.records import COUNTERS_SIZE
 from . import advance, restore
@@ -64,8 +64,12 @@ class Simulation(Engine):
         self.t = target
 
     def _advance_to(self, target: float, stop: float) -> None:
-        with user_errors(self.assembly):
-            advance.advance_to(self, target, stop)
+        try:
+            with user_errors(self.assembly):
+                advance.advance_to(self, target, stop)
+        except ConsistencyError as error:
+            t = self.t_internal
+            raise SimulationError(f"at t = {t:.9g} s: {error}", t=t, loop="event") from error
 
     # ---- channels, inputs, state ------------------------------------------------------------------------------------
 

@@ -1,7 +1,11 @@
-"""Extended BDF inside TLISMNI (Cash 1980), k = 1..8, order k + 1: three stages a step.
+"""Extended BDF (Cash 1980) and modified extended BDF (Cash 1983) inside TLISMNI, k = 1..8, order k + 1.
+
+Three stages a step:
 
 (i) BDF to t_{n+1}; (ii) the same formula one step further, to t_{n+2} = t_{n+1} + h;
-(iii) y_{n+1} = sum A_j y_{n-j} + h B y'_{n+1} + h B1 ybar'_{n+2}.
+(iii) EBDF: y_{n+1} = sum A_j y_{n-j} + h B y'_{n+1} + h B1 ybar'_{n+2};
+(iii') MEBDF: y_{n+1} = sum A_j y_{n-j} + h b y'_{n+1} + h (B - b) ybar'_{n+1} + h B1 ybar'_{n+2}, with b of the BDF:
+all three stages then have the same matrix.
 Error estimate: ||y_{n+1} - ybar_{n+1}||, the difference of orders k + 1 and k: safe, and free.
 """
 
@@ -16,6 +20,7 @@ from .history import history_time
 from .multistep import bdf_stage, combine_stars, finish_stage, nodes, predict, weight_rows
 
 NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED = range(7)
+MODIFIED = 0  # parameter: 1 for MEBDF
 
 
 @internal
@@ -71,14 +76,16 @@ def ebdf_step(ws: Any, ms: Any, h: float) -> int:
 
     coefficients = table[EXTENDED]
     ahead = h * coefficients[k + 1]
+    own = table[BDF][k] if vec(ms.parameters, 8)[MODIFIED] != 0.0 else coefficients[k]
+    beside = h * (coefficients[k] - own)
     for i in range(n):
-        q_star[i] = ahead * v[i]
-        v_star[i] = ahead * a[i]
+        q_star[i] = ahead * v[i] + beside * bar_v[i]
+        v_star[i] = ahead * a[i] + beside * bar_a[i]
     for i in range(ws.n):
         a[i] = bar_a[i]
     for i in range(ws.m_ext):
         lam[i] = bar_lam[i]
-    c_v = h * coefficients[k]
+    c_v = h * own
     combine_stars(ws, ms, coefficients, 0, k, c_v)
     status = finish_stage(ws, t_new, c_v)
     if status != OK:

@@ -49,6 +49,10 @@ class Method:
 EBDF_GROWTH = {7: 1.5, 8: 1.2}
 
 
+def _extended(k: int, modified: float) -> Formula:
+    return Formula(ebdf_step, k, (modified,), k + 1, EBDF_GROWTH.get(k, 2.0))
+
+
 def _hht(values: Mapping[str, float]) -> Formula:
     alpha = values["alpha"]
     return Formula(newmark_step, 2, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha))
@@ -82,7 +86,13 @@ METHODS = {
             "ebdf",
             "TLISMNI with Cash's extended BDF of fixed k, order k + 1; A-stable up to k = 3",
             {"k": Option(4, 1, 8, "number of steps k; the order is k + 1", integer=True)},
-            lambda o: Formula(ebdf_step, int(o["k"]), (), int(o["k"]) + 1, EBDF_GROWTH.get(int(o["k"]), 2.0)),
+            lambda o: _extended(int(o["k"]), 0.0),
+        ),
+        Method(
+            "mebdf",
+            "TLISMNI with the modified extended BDF: as ebdf, more stable, one matrix for all its stages",
+            {"k": Option(4, 1, 8, "number of steps k; the order is k + 1", integer=True)},
+            lambda o: _extended(int(o["k"]), 1.0),
         ),
         Method(
             "irk",

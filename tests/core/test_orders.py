@@ -59,6 +59,7 @@ def slope(steps, errors):
         ("ebdf", {"k": 3}, 4, (120, 240)),
         ("ebdf", {"k": 4}, 5, (120, 240)),
         ("ebdf", {"k": 5}, 6, (120, 240)),
+        *(("mebdf", {"k": k}, k + 1, (160 if k == 1 else 120, 320 if k == 1 else 240)) for k in range(1, 6)),
         ("irk", {}, 4, (80, 160)),
     ],
 )
