@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from .contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
-from .contact.laws import NewtonImpact
 from .elements import Body, Element, Force, Joint, PointMass2D
 from .errors import ModelError
 from .model.base import Record, Vector2
@@ -176,8 +175,3 @@ class Model(Record):
         from .integrate.output import planar_coordinate_channels
 
         return planar_coordinate_channels(assembly, layout)
-
-    @property
-    def has_constraint_contacts(self) -> bool:
-        """True if some contact is a constraint (CCM)."""
-        return any(isinstance(c.law, NewtonImpact) for c in self.contacts)

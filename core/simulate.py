@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,9 @@ from numpy.typing import ArrayLike
 from .errors import ModelError, SimulationError, TlismniError
 from .integrate.simulation import Simulation
 from .result import Result
+
+MOST_STEPS = 1e12
+"""Fixed steps beyond this number are a slip of the pen: they would take days."""
 
 
 def simulate(
@@ -39,7 +43,9 @@ def simulate(
     t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.
     record : False records only start and end (for timing).
     progress : called with the time reached, now and then.
-    options : method options (alpha, order, k ...) and those of `Simulation` (max_step, outer, ...).
+    options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
+        only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
+        `outer`, `newton_tolerance`, `start_tolerance`.
 
     Returns
     -------
@@ -49,10 +55,16 @@ def simulate(
     ------
     ModelError : for bad arguments. ConsistencyError : for a start that does not meet the constraints.
     """
-    if isinstance(t_end, bool) or not isinstance(t_end, int | float) or not math.isfinite(t_end):
-        raise ModelError(f"t_end must be a finite number, not {t_end!r}")
+    for name, value in (("t0", t0), ("t_end", t_end)):
+        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+            raise ModelError(f"{name} must be a finite number, not {value!r}")
+    t0, t_end = float(t0), float(t_end)
     if t_end < t0:
         raise ModelError(f"t_end = {t_end!r} lies before t0 = {t0!r}")
+    if isinstance(step, Real) and step > 0.0 and (t_end - t0) / step > MOST_STEPS:
+        raise ModelError(
+            f"step = {step!r} would take {(t_end - t0) / step:.3g} steps from t0 to t_end: use a larger one"
+        )
     times = None if t_eval is None else _check_times(t_eval, t0, t_end)
     started = time.perf_counter()
     sim = Simulation(system, method, rtol, atol, step=step, t0=t0, record=record and times is None, **options)

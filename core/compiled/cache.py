@@ -34,9 +34,3 @@ def cache_folder() -> Path:
             digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + text)
     given = os.environ.get("NUMBA_CACHE_DIR")
     return (Path(given) if given else _user_cache() / "tlismni") / digest.hexdigest()[:16]
-
-
-def is_cold() -> bool:
-    """True if nothing has been compiled for these sources on this machine yet."""
-    folder = cache_folder()
-    return not folder.is_dir() or not any(folder.rglob("*.nbi"))

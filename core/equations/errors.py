@@ -1,7 +1,9 @@
 """Errors about a user's equations."""
 
+from ..errors import ModelError
 
-class EquationError(ValueError):
+
+class EquationError(ModelError):
     """A user's equation function gives something unusable; the message names it, the value and the remedy."""
 
 

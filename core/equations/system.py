@@ -100,6 +100,7 @@ class EquationSystem:
         )
         self.functions.check(t0, self.q0, self.v0)
         self.contacts = tuple(contacts)
+        self._check_contacts()
         self.gaps = [ConstraintFunctions(c.gap, None, None, None, n) for c in self.contacts]
         for contact, gap in zip(self.contacts, self.gaps, strict=True):
             value = gap.value(t0, self.q0)
@@ -107,6 +108,19 @@ class EquationSystem:
                 raise EquationError(f"gap of contact '{contact.name}' must be one number, it has shape {value.shape}")
         self.potential = potential
         self._given = (mass, force, constraint, constraint_jacobian, gamma, constraint_rate)
+
+    def _check_contacts(self) -> None:
+        for contact in self.contacts:
+            if not isinstance(contact, GapContact):
+                raise EquationError(f"contacts must be GapContact records, not {contact!r}")
+            if not contact.name.isidentifier() or contact.name in ("energy", "residual", "time"):
+                raise EquationError(
+                    f"contact name {contact.name!r} cannot be used: letters, digits and underscores, and not energy, "
+                    "residual or time, which name channels already"
+                )
+        names = [contact.name for contact in self.contacts]
+        if len(set(names)) < len(names):
+            raise EquationError(f"contacts must have different names, they are {names}")
 
     @property
     def n(self) -> int:

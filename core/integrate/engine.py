@@ -125,7 +125,7 @@ class Engine:
         self.clock = np.zeros(CLOCK_SIZE)
         self.clock[FIXED_STEP] = self.settings.step or 0.0
         self.clock[GROWTH], self.clock[HOLD] = self.formula.growth, float(self.formula.rows)
-        self.clock[MAX_STEP] = self.settings.max_step or math.inf
+        self.clock[MAX_STEP] = min(self.settings.max_step or math.inf, a.longest_step)
         self.clock[STOP_TIME] = self.clock[BREAK_TIME] = math.inf
         fixed = self.settings.step is not None
         self.starter = step_address(FINE_STARTER if fixed else STARTER)

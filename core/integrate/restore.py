@@ -54,6 +54,8 @@ def get_state(sim: "Simulation") -> State:
 
 def set_state(sim: "Simulation", state: State) -> None:
     """Make `sim` what it was when `state` was taken."""
+    if not isinstance(state, State):
+        raise ModelError(f"a State is needed to restore, not {type(state).__name__}; bytes go through State.from_bytes")
     expected = model_hash(sim)
     if state.model_hash != expected:
         raise ModelError(

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -96,13 +97,14 @@ class Simulation(Engine):
         ModelError : for an unknown name or a value that is not finite.
         """
         names = self.assembly.input_names
-        inputs = self.workspace.arrays["inputs"]
-        changed = False
         for name, value in values.items():
             if name not in names:
                 raise ModelError(f"there is no input '{name}'; inputs are {names}")
-            if not math.isfinite(value):
+            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
                 raise ModelError(f"input '{name}' = {value!r}: a finite number is needed")
+        inputs = self.workspace.arrays["inputs"]
+        changed = False
+        for name, value in values.items():
             k = names.index(name)
             if inputs[k, 0] != value:
                 inputs[k, 0] = value

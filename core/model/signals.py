@@ -16,7 +16,15 @@ from .base import Name, Positive, Record
 CONSTANT, STEP, RAMP, SINE, POLYNOMIAL, TABLE, INPUT = range(7)
 
 
-class Constant(Record):
+class TimeFunction(Record):
+    """Base of the time functions."""
+
+    def longest_step(self) -> float:
+        """Step beyond which error control could miss what the function does, s."""
+        return math.inf
+
+
+class Constant(TimeFunction):
     """f(t) = value."""
 
     type: Literal["Constant"] = "Constant"
@@ -29,7 +37,7 @@ class Constant(Record):
         return []
 
 
-class Step(Record):
+class Step(TimeFunction):
     """f jumps from `before` to `after` at `time` (s). Not for drivers: a jump in position is no motion."""
 
     type: Literal["Step"] = "Step"
@@ -44,7 +52,7 @@ class Step(Record):
         return [self.time]
 
 
-class Ramp(Record):
+class Ramp(TimeFunction):
     """f goes linearly from `before` at `start` (s) to `after` at `start + duration`."""
 
     type: Literal["Ramp"] = "Ramp"
@@ -60,7 +68,7 @@ class Ramp(Record):
         return [self.start, self.start + self.duration]
 
 
-class Sine(Record):
+class Sine(TimeFunction):
     """f(t) = offset + amplitude sin(angular_frequency t + phase); angular_frequency in rad/s, phase in rad."""
 
     type: Literal["Sine"] = "Sine"
@@ -69,6 +77,9 @@ class Sine(Record):
     phase: float = 0.0
     offset: float = 0.0
 
+    def longest_step(self) -> float:
+        return 0.5 * math.pi / abs(self.angular_frequency) if self.angular_frequency else math.inf
+
     def pool(self, inputs: dict[str, int]) -> list[float]:
         return [SINE, self.amplitude, self.angular_frequency, self.phase, self.offset]
 
@@ -76,7 +87,7 @@ class Sine(Record):
         return []
 
 
-class Polynomial(Record):
+class Polynomial(TimeFunction):
     """f(t) = c0 + c1 t + c2 t^2 + ...; `coefficients` from the constant upwards."""
 
     type: Literal["Polynomial"] = "Polynomial"
@@ -89,7 +100,7 @@ class Polynomial(Record):
         return []
 
 
-class Table(Record):
+class Table(TimeFunction):
     """Not-a-knot cubic spline through (times, values); outside, the first or last cubic goes on."""
 
     type: Literal["Table"] = "Table"
@@ -104,6 +115,9 @@ class Table(Record):
             raise ValueError("times must grow strictly")
         return self
 
+    def longest_step(self) -> float:
+        return min(b - a for a, b in zip(self.times, self.times[1:], strict=False))
+
     def pool(self, inputs: dict[str, int]) -> list[float]:
         # importing scipy costs more than most runs: only who needs a spline pays
         from scipy.interpolate import CubicSpline
@@ -115,7 +129,7 @@ class Table(Record):
         return []
 
 
-class InputSignal(Record):
+class InputSignal(TimeFunction):
     """The value of the model's input channel `channel`."""
 
     type: Literal["Input"] = "Input"

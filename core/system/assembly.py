@@ -11,6 +11,7 @@ from ..compiled.kernels import kernel_address
 from ..contact.laws import ForceLaw, NewtonImpact, law_address
 from ..description import Model
 from ..elements.base import Element, Row
+from ..errors import ModelError
 from ..model.channels import Channel
 from ..model.markers import GROUND
 from ..model.signals import Signal
@@ -73,6 +74,8 @@ class Assembly:
     """(body, coordinate name, index)."""
     coordinate_scale: NDArray[np.float64]
     """Typical magnitude of each coordinate, so that units do not choose the partition."""
+    longest_step: float = np.inf
+    """Step beyond which error control could miss what a time function does, s."""
     bind: Callable[[Any], None] | None = None
     """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
     user_error: list[BaseException] = field(default_factory=list)
@@ -154,7 +157,14 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
 
 
 def assemble(model: Model) -> Assembly:
-    """The model as flat tables."""
+    """The model as flat tables. Raises ModelError for a contact of a body with itself."""
+    for contact in model.contacts:
+        first, second = (marker.body for marker in contact.markers())
+        if first == second:
+            raise ModelError(
+                f"both shapes of contact '{contact.name}' are on '{first}': their gap never changes; "
+                "give it shapes on two bodies"
+            )
     numbering = _Numbering(model)
     grouped: dict[int, list[tuple[Element, Row, tuple[int, ...]]]] = {}
     kernels: dict[int, type[Element]] = {}
@@ -223,6 +233,7 @@ def assemble(model: Model) -> Assembly:
         multiplier_channels=multipliers,
         body_columns=columns,
         coordinate_scale=_coordinate_scale(model, columns),
+        longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
 
 

@@ -198,6 +198,31 @@ def test_contradictory_joints_are_named():
         simulate(model.model_copy(update={"joints": (*model.joints, other)}), 1.0)
 
 
+def test_contact_of_a_body_with_itself_is_refused():
+    contact = DiskOnDisk2D(
+        name="c",
+        a=Disk2D(marker=on("p"), radius=0.1),
+        b=Disk2D(marker=on("p"), radius=0.1),
+        law=NewtonImpact(restitution=1.0),
+    )
+    with pytest.raises(ModelError, match="'c' are on 'p'"):
+        simulate(Model(bodies=[P], contacts=[contact]), 1.0)
+
+
+@pytest.mark.parametrize("step", [1e-20, 1e-14])
+def test_steps_without_end_are_refused(step):
+    with pytest.raises(ModelError, match="steps from t0 to t_end"):
+        simulate(Model(bodies=[P]), 1.0, step=step)
+
+
+def test_inputs_are_all_checked_before_any_is_set():
+    model = Model(bodies=[P], inputs=[Input(name="u")])
+    sim = Simulation(model)
+    with pytest.raises(ModelError, match="'z'"):
+        sim.set_inputs({"u": 1.0, "z": 2.0})
+    assert sim.workspace.arrays["inputs"][0, 0] == 0.0
+
+
 def test_joint_between_ground_and_ground_is_named():
     nothing = Distance2D(name="nothing", a=GROUND, b=on("ground", 1.0), length=1.0)
     with pytest.raises(ConsistencyError, match="'nothing' is redundant: it constrains nothing"):
