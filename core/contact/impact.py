@@ -46,6 +46,14 @@ def _velocity_increment(ws: Any, row: int, increment: float) -> int:
     return 0
 
 
+def unit_impulse(workspace: Any, row: int) -> float:
+    """Normal impulse that changes the gap's rate in `row` by 1 m/s, in the closed structure, N s."""
+    if _velocity_increment(workspace.record, row, 1.0) != 0:
+        return 0.0
+    position = int(np.flatnonzero(workspace.structure.active == row)[0])
+    return -float(workspace.arrays["rhs"][workspace.assembly.n + position])
+
+
 def apply_impact(workspace: Any, row: int, restitution: float) -> Impact | None:
     """Newton's impact law on the contact in `row`, in the closed structure; changes v.
 

@@ -141,13 +141,35 @@ def _open(sim: "Engine", k: int, contact: ContactInfo) -> None:
 def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> None:
     memory = sim.memory[k]
     approach = -sim.gap_rate(k)
+    memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed, _settling_speed(sim, k, contact, law))
     memory[MODE] = ACTIVE
-    memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed)
     memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
     sim.open_accounts[k] = sim.contact_accounts(k)
     sim.use_modes()
     sim.start_small(memory[APPROACH_SPEED])
     sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
+
+
+def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> float:
+    """Speed with which shapes that are laid on each other settle: sqrt(g d), with g the acceleration that presses them
+    and d the static penetration under it, m/s.
+
+    Laws that divide by the approach speed would hold a contact that begins without one like glue.
+    """
+    pressing = -float(sim.workspace.arrays["phidd"][contact.row])
+    if pressing <= 0.0:
+        return 0.0
+    weight = pressing * sim.effective_mass(k)
+    low, high = 0.0, 1e-12
+    while law.evaluate(high, 0.0, 1.0)[3] < weight:
+        low, high = high, 2.0 * high
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        if law.evaluate(middle, 0.0, 1.0)[3] < weight:
+            low = middle
+        else:
+            high = middle
+    return float((pressing * high) ** 0.5)
 
 
 def _end_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw, mode: float) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
 from ..contact import machine
+from ..contact.impact import unit_impulse
 from ..contact.laws import ForceLaw
 from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE
 from ..description import Model
@@ -167,9 +168,14 @@ class Engine:
         self.use_modes()
         self.clock[STEP_SIZE] = self.settings.first_step or self._first_step()
         self._new_history()
+        # a force law that acts from the start holds energy from the start
+        for k in touching:
+            if isinstance(a.contacts[k].law, ForceLaw):
+                machine.handle(self, k)
+        self._new_history()
         self.table.initial_energy = self.table.total_energy(self.sample())
         self._sample_now()
-        self.pending = touching
+        self.pending = [k for k in touching if not isinstance(a.contacts[k].law, ForceLaw)]
         self._handle_pending()
 
     def _first_step(self) -> float:
@@ -225,6 +231,17 @@ class Engine:
     def elastic_energy(self, k: int, contact: Any) -> float:
         """Elastic energy that the force law of contact k holds, J."""
         return float(contact.law.elastic_energy(max(-self.gap(k), 0.0)))
+
+    def effective_mass(self, k: int) -> float:
+        """Mass that contact k feels: normal impulse for a unit change of the gap's rate, joints included, kg."""
+        mode = self.memory[k, MODE]
+        self.memory[k, MODE] = CLOSED
+        try:
+            self.use_modes(accelerations=False)
+            return unit_impulse(self.workspace, self.assembly.contacts[k].row)
+        finally:
+            self.memory[k, MODE] = mode
+            self.use_modes()
 
     def start_small(self, speed: float) -> None:
         """Begin a contact with a step in which it closes by FIRST_TOUCH of the mechanism's size, so that the error

@@ -64,6 +64,9 @@ def set_weights(ws: Any, ms: Any) -> None:
     for i in range(ws.n):
         weight_q[i] = control[ATOL] + control[RTOL] * abs(row[i])
         weight_v[i] = control[ATOL] + control[RTOL] * abs(row[ws.n_ext + i])
+    # work accounts: relative to what they hold, or to 1 J (N s)
+    for i in range(ws.n_ext - ws.n_work, ws.n_ext):
+        weight_v[i] = control[ATOL] + control[RTOL] * max(1.0, abs(row[ws.n_ext + i]))
 
 
 @internal

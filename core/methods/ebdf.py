@@ -93,7 +93,11 @@ def ebdf_step(ws: Any, ms: Any, h: float) -> int:
     for i in range(ws.n):
         bar_q[i] -= q[i]
         bar_v[i] -= v[i]
+    weight_v = vec(ws.weight_v, n)
+    of_work = 0.0
+    for i in range(n - ws.n_work, n):
+        of_work = max(of_work, abs(bar_v[i] - v[i]) / weight_v[i])
     error = vec(ms.error, 2)
-    error[0] = max(weighted_norm(bar_q, vec(ws.weight_q, n), ws.n), weighted_norm(bar_v, vec(ws.weight_v, n), ws.n))
+    error[0] = max(of_work, weighted_norm(bar_q, vec(ws.weight_q, n), ws.n), weighted_norm(bar_v, weight_v, ws.n))
     error[1] = k
     return OK

@@ -112,6 +112,12 @@ def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
             for i in range(ws.n):
                 difference[i] -= weights[j] * row[kind * n + i]
         norm = max(norm, weighted_norm(difference, vec(ws.weight_v if kind else ws.weight_q, n), ws.n))
+    weight_v = vec(ws.weight_v, n)
+    for i in range(n - ws.n_work, n):
+        off = v[i]
+        for j in range(count):
+            off -= weights[j] * history_row(ws, ms, j)[n + i]
+        norm = max(norm, abs(off) / weight_v[i])
     return norm
 
 

@@ -68,7 +68,14 @@ def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
         for j in range(STAGES):
             total += (A[4, j] - B_EMBEDDED[j]) * stage_a[j, i]
         error[i] = h * total
-    return OK, max(norm, weighted_norm(error, vec(ws.weight_v, n), ws.n))
+    weight_v = vec(ws.weight_v, n)
+    norm = max(norm, weighted_norm(error, weight_v, ws.n))
+    for i in range(first_work, n):
+        total = 0.0
+        for j in range(STAGES):
+            total += (A[4, j] - B_EMBEDDED[j]) * stage_a[j, i]
+        norm = max(norm, abs(h * total) / weight_v[i])
+    return OK, norm
 
 
 @internal
