@@ -17,6 +17,7 @@ from .modes import (
     LOSS_JUMP,
     MODE,
     OPEN,
+    RATE_ROUNDING,
     RELEASED,
 )
 
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-RESTING_RATE = 1e-12
-"""m/s; a gap rate below this is none."""
 MOST_EVENTS_AT_ONCE = 50
 """Events without progress in time before a run is given up."""
 
@@ -49,9 +48,9 @@ def handle(sim: "Engine", k: int) -> None:
 def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> None:
     memory = sim.memory[k]
     approach = -sim.gap_rate(k)
-    if approach <= RESTING_RATE:
+    if approach <= RATE_ROUNDING:
         # a touch without approach: a constraint only if it does not separate and the bodies are pressed together
-        if approach > -RESTING_RATE and sim.presses(k):
+        if approach > -RATE_ROUNDING and sim.presses(k):
             _close(sim, k, "close", approach)
         return
     largest = max(memory[LARGEST_APPROACH], approach)

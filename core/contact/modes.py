@@ -14,3 +14,6 @@ LARGEST_APPROACH = 2  # since the start, m/s
 IMPULSE_JUMP = 3  # sum of impact impulses, N s
 LOSS_JUMP = 4  # sum of energy lost at impacts and releases, J
 MEMORY_SIZE = 5
+
+RATE_ROUNDING = 1e-12
+"""m/s; a gap rate below this is none."""

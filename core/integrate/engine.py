@@ -14,7 +14,7 @@ from ..compiled.records import ArrayRecord
 from ..contact import machine
 from ..contact.impact import unit_impulse
 from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE
+from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, RATE_ROUNDING
 from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
@@ -41,8 +41,6 @@ logger = logging.getLogger(__name__)
 
 HISTORY_ROWS = 12
 FIRST_TOUCH = 1e-8
-RESTING_RATE = 1e-12
-"""m/s; a gap rate below this is none, where shapes touch at the start."""
 
 
 @contextmanager
@@ -163,7 +161,7 @@ class Engine:
             if gap > gap_tolerance:
                 continue
             rate = self.gap_rate(k)
-            if gap < -gap_tolerance or rate < -RESTING_RATE or (rate <= RESTING_RATE and self.presses(k)):
+            if gap < -gap_tolerance or rate < -RATE_ROUNDING or (rate <= RATE_ROUNDING and self.presses(k)):
                 touching.append(k)
         self.use_modes()
         self.clock[STEP_SIZE] = self.settings.first_step or self._first_step()

@@ -1,6 +1,5 @@
 """The loop record: clock, sample buffer and what the watch over contacts remembers."""
 
-import numba as nb
 import numpy as np
 
 LOOP = np.dtype(
@@ -16,7 +15,6 @@ LOOP = np.dtype(
         )
     ]
 )  # fmt: skip
-LOOP_TYPE = nb.from_dtype(LOOP)
 
 # columns of `clock`
 STEP_SIZE = 0  # proposed next step

@@ -4,12 +4,11 @@ from typing import Any
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, OPEN, RELEASED
+from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, OPEN, RATE_ROUNDING, RELEASED
 from ..stage.inner import rounding_level
 
 # A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
 FORCE_ROUNDING = 1e-12
-RATE_ROUNDING = 1e-12  # m/s
 GAP_ROUNDING = 1e-12  # of the largest coordinate (or of 1 m)
 
 

@@ -52,7 +52,6 @@ from .inner import inner_loop
 # Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
 MOST_OUTER = 3
 MOST_INNER = 3
-MOST_STAGES = 50  # the sensitivity of the partition is looked at only when matrices are renewed
 # A rate that was measured at an earlier stage is trusted less at each stage that does not measure it anew.
 LEAST_RATE = 0.02
 RATE_GROWTH = 1.5

@@ -12,7 +12,6 @@ WORKSPACE = np.dtype(
         for name in (
             # sizes
             "n", "n_ext", "m_ext", "m_act", "n_kernels", "n_values", "n_contacts", "n_work", "row_length",
-            "n_state",
             # the current point
             "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
             "values", "coef", "energy", "monitor", "memory", "inputs",

@@ -84,7 +84,7 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_free": 0, "n_kernels": len(a.batches),
                 "n_values": 1, "n_contacts": contacts, "n_work": len(a.work_names), "row_length": row_length,
-                "n_state": 0, "stage_function": 0,
+                "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
         )  # fmt: skip
