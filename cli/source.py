@@ -11,7 +11,10 @@ from ..core import METHODS, Model, ModelError
 from ..models import Scenario, catalogue, load
 from .options import pairs, value_of
 
-RUN_OPTIONS = ("first_step", "max_step", "newton_tolerance", "outer", "start_tolerance")
+RUN_OPTIONS = (
+    "acceleration", "controller", "depth", "fallback", "first_step", "max_step", "newton_tolerance", "outer",
+    "start_tolerance",
+)  # fmt: skip
 """Options that every method takes."""
 
 

@@ -1,4 +1,4 @@
-"""Events: what happened at a contact, and when."""
+"""Events: what happened at a contact, and when; and where one outer loop took over from another."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -30,3 +30,14 @@ class Event:
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
         return asdict(self)
+
+
+@dataclass(frozen=True)
+class Fallback:
+    """The outer loop that was asked for failed, and Newton's took over for the rest of the run."""
+
+    t: float
+    """s."""
+    outer: str
+    """The outer loop that failed."""
+    reason: str

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .events import Event
+from .errors import ModelError
+from .events import Event, Fallback
 from .integrate.output import ChannelTable
+from .integrate.records import LOG_COLUMNS
 from .model.channels import Channel
 
 
@@ -24,6 +26,8 @@ class Result:
         table: ChannelTable,
         events: Sequence[Event],
         stats: Mapping[str, float],
+        fallbacks: Sequence[Fallback] = (),
+        step_log: NDArray[np.float64] | None = None,
     ) -> None:
         self._samples = samples
         self._table = table
@@ -31,6 +35,9 @@ class Result:
         """What happened at contacts (`Event`)."""
         self.stats = dict(stats)
         """steps, rejected, outer_iterations, inner_iterations, factorizations, partitions, wall_time ..."""
+        self.fallbacks = tuple(fallbacks)
+        """Where another outer loop took over (only with fallback=True)."""
+        self._step_log = step_log
 
     @property
     def t(self) -> NDArray[np.float64]:
@@ -56,6 +63,21 @@ class Result:
     def multipliers(self) -> NDArray[np.float64]:
         """Multipliers (N, m): joints, then one column a contact (zero while it is open)."""
         return self._samples[:, self._table.layout.multipliers]
+
+    @property
+    def steps(self) -> dict[str, NDArray[np.float64]]:
+        """What each accepted step took, arrays (steps,) by name: t (its end, s), h (s), error (norm; at most 1), k
+        (of a multistep formula), rejected (trials before it), outer, inner, factorizations, evaluations and krylov.
+
+        Raises
+        ------
+        ModelError : if they were not asked for (`step_records=True`).
+        """
+        if self._step_log is None:
+            raise ModelError("no per-step records were kept: ask for them with simulate(..., step_records=True)")
+        columns = dict(zip(LOG_COLUMNS, self._step_log.T, strict=True))
+        running = ("outer", "inner", "factorizations", "evaluations", "krylov")
+        return {name: np.diff(x, prepend=0.0) if name in running else x.copy() for name, x in columns.items()}
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from numbers import Real
 from typing import Any
 
@@ -22,7 +22,7 @@ def simulate(
     t_end: float,
     method: str = "ebdf",
     rtol: float = 1e-6,
-    atol: float = 1e-9,
+    atol: float | Mapping[str, float] = 1e-9,
     *,
     step: float | None = None,
     t_eval: ArrayLike | None = None,
@@ -37,15 +37,16 @@ def simulate(
     ----------
     system : Model or EquationSystem.
     t_end : end time, s.
-    method : "newmark", "hht", "bdf", "ebdf", "mebdf", "irk" (`METHODS` describes them).
-    rtol, atol : tolerances of the error control, on coordinates and velocities.
+    method : one of `METHODS`, which describes them.
+    rtol, atol : tolerances of the error control, on coordinates and velocities; atol may be a mapping by kind.
     step : fixed step in s instead of error control.
     t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.
     record : False records only start and end (for timing).
     progress : called with the time reached, now and then.
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
-        `outer`, `newton_tolerance`, `start_tolerance`.
+        `outer`, `acceleration`, `depth`, `fallback`, `controller`, `newton_tolerance`, `start_tolerance`,
+        `step_records`.
 
     Returns
     -------
@@ -93,7 +94,8 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
     sim.flush()
     blocks = sim.samples if sim.samples else [row[None, :] for row in rows]
     samples = np.concatenate(blocks) if blocks else np.zeros((0, sim.buffer.shape[1]))
-    return Result(samples, sim.table, sim.events, {**sim.stats, "wall_time": wall_time})
+    steps = np.concatenate(sim.step_logs) if sim.step_logs else None
+    return Result(samples, sim.table, sim.events, {**sim.stats, "wall_time": wall_time}, sim.fallbacks, steps)
 
 
 def _check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:

@@ -19,28 +19,38 @@ def methods(json: Json = False, debug: Debug = False) -> None:
         return
     for method in METHODS.values():
         stdout().print(f"[bold]{method.name}[/bold]: {method.description}")
-        rows = [
-            (name, number(_value(o, o.default)), f"[{number(o.minimum, 3)}, {number(o.maximum, 3)}]", o.description)
-            for name, o in method.options.items()
-        ]
+        rows = [(name, _shown(_value(o, o.default)), _range(o), o.description) for name, o in method.options.items()]
         if rows:
             print_table("", ("option", "default", "range", "meaning"), rows, left=4)
 
 
-def _value(option: Any, value: float) -> float | int:
+def _value(option: Any, value: float | str) -> float | int | str:
+    if isinstance(value, str):
+        return value
     return int(value) if option.integer else float(value)
+
+
+def _shown(value: float | int | str) -> str:
+    return value if isinstance(value, str) else number(value)
+
+
+def _range(option: Any) -> str:
+    numbers = [f"[{number(option.minimum, 3)}, {number(option.maximum, 3)}]"] if option.numeric else []
+    return " or ".join([*numbers, *option.choices])
 
 
 def _data(method: Any) -> dict[str, Any]:
     return {
         "name": method.name,
         "description": method.description,
+        "family": method.family,
         "options": [
             {
                 "name": name,
                 "default": _value(o, o.default),
-                "minimum": _value(o, o.minimum),
-                "maximum": _value(o, o.maximum),
+                "minimum": _value(o, o.minimum) if o.numeric else None,
+                "maximum": _value(o, o.maximum) if o.numeric else None,
+                "choices": list(o.choices),
                 "description": o.description,
             }
             for name, o in method.options.items()

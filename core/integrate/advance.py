@@ -1,5 +1,6 @@
 """The Python side of the time loop: what happens at event rate."""
 
+import logging
 import math
 from typing import TYPE_CHECKING
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from ..contact.modes import ACTIVE, CLOSED, MODE, OPEN
 from ..errors import ConsistencyError, SimulationError
+from ..events import Fallback
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
 from ..system.consistent import bring_to_rest
@@ -42,6 +44,8 @@ from .watch import crossed
 
 if TYPE_CHECKING:
     from .simulation import Simulation
+
+logger = logging.getLogger(__name__)
 
 CHUNK_STEPS = 20_000
 MOST_HALVINGS = 40
@@ -94,6 +98,8 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             _locate(sim)
         elif code == REPARTITION:
             _repair(sim)
+        elif code in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":
+            _fall_back(sim, code)
         elif code in _REPAIRABLE and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
             _repair(sim)
@@ -108,6 +114,24 @@ def _shrink(sim: "Simulation") -> bool:
     h = 0.25 * sim.clock[TRIAL_STEP]
     sim.clock[STEP_SIZE] = h
     return bool(h > 1e-13 * max(abs(sim.t_internal), 1e-6))
+
+
+def _fall_back(sim: "Simulation", code: int) -> None:
+    """Let Newton's outer loop take over from one that has failed, and say so."""
+    t, h, outer = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.outer
+    reason = f"{_REASONS[code][1]} with a step of {h:.3g} s{_limit(sim, h)}"
+    logger.warning("at t = %.9g s outer loop '%s' gave way to 'newton': %s", t, outer, reason)
+    sim.fallbacks.append(Fallback(t, outer, reason))
+    sim.use_outer_loop("newton")
+    recall(sim.workspace.record, sim._method.record, 0)
+
+
+def _limit(sim: "Simulation", h: float) -> str:
+    """The largest step of the simple iteration, as its measured contraction tells."""
+    rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
+    if sim.outer != "simple" or not (math.isfinite(rate) and rate > 0.0):
+        return ""
+    return f" (contraction {rate:.3g}; it goes with h^2, so the limit is about {h / math.sqrt(rate):.3g} s)"
 
 
 def _repair(sim: "Simulation") -> None:
@@ -127,11 +151,12 @@ def _fail(sim: "Simulation", code: int) -> None:
     loop, reason = _REASONS.get(code, ("outer", f"status {code}"))
     t, h, settings = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.settings
     tried = f"fixed step {h:.3g} s" if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"
-    if settings.outer == "simple" and loop == "outer":
+    if sim.outer == "simple" and loop == "outer":
         rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
         remedy = (
             f"The simple iteration contracts only if c_q omega^2 < 1 (its factor was {rate:.3g}; c_q = beta h^2 or "
-            "(h b)^2): use outer='newton', or a smaller step"
+            f"(h b)^2), omega the highest frequency: the largest step here is about {h / math.sqrt(rate):.3g} s. Use "
+            "outer='newton' or 'jfnk', fallback=True, or a smaller step"
         )
     elif settings.step:
         remedy = "Use a smaller step, or error-controlled steps (step=None)"

@@ -84,12 +84,13 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
                 table[2 * j + l, 1] = h * row[2 * n + i]
         _divided_differences(z, table, 2 * rows)
         v[i], _ = _newton_value(z, table, 2 * rows, s)
-    newest = history_row(ws, ms, 0)
+    # linear: what is shown of a method that does not meet the constraints, a first guess for the others
+    newest, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
     a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
     for i in range(ws.n):
-        a[i] = newest[2 * n + i]
+        a[i] = newest[2 * n + i] + s * (newest[2 * n + i] - older[2 * n + i])
     for i in range(ws.m_ext):
-        lam[i] = newest[4 * n + i]
+        lam[i] = newest[4 * n + i] + s * (newest[4 * n + i] - older[4 * n + i])
     vec(ws.t, 1)[0] = t
 
 
@@ -187,4 +188,7 @@ def query(ws: Any, ms: Any, t: float) -> int:
     if rows_available(ms) < 2:
         return SINGULAR
     interpolate(ws, ms, t)
+    if ms.exact == 0:
+        evaluate_residuals(ws)
+        return OK
     return project(ws)

@@ -2,7 +2,7 @@
 
 import logging
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -18,21 +18,37 @@ from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, RATE_ROUNDING
 from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
-from ..events import Event
+from ..events import Event, Fallback
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
-from ..methods.records import METHOD, step_address
+from ..methods.records import CHOICE_SIZE, METHOD, K, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
-from ..stage.solver import solve_stage
+from ..stage import OUTER_LOOPS
 from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
-from ..system.records import OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
+from ..system.records import FACTOR_AGE, MAX_OUTER, OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.workspace import Workspace
+from .controllers import CONTROLLERS
 from .dense_output import query, solve_accelerations
 from .output import ChannelTable
-from .records import BREAK_TIME, CLOCK_SIZE, FIXED_STEP, GROWTH, HOLD, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
+from .records import (
+    A2,
+    B1,
+    B2,
+    BREAK_TIME,
+    CLOCK_SIZE,
+    EAGER,
+    FIXED_STEP,
+    GROWTH,
+    HOLD,
+    LOG_COLUMNS,
+    LOOP,
+    MAX_STEP,
+    STEP_SIZE,
+    STOP_TIME,
+)
 from .sample import empty_buffer, sample_length, write_sample
 from .settings import Settings, set_control
 from .watch import FORCE_ROUNDING, remember
@@ -62,21 +78,27 @@ class Engine:
         system: Any,
         method: str = "ebdf",
         rtol: float = 1e-6,
-        atol: float = 1e-9,
+        atol: float | Mapping[str, float] = 1e-9,
         *,
         step: float | None = None,
         max_step: float | None = None,
         first_step: float | None = None,
         t0: float = 0.0,
         outer: str = "newton",
+        acceleration: str = "none",
+        depth: int = 3,
+        fallback: bool = False,
+        controller: str = "elementary",
         newton_tolerance: float | None = None,
         start_tolerance: float = START_TOLERANCE,
         record: bool = False,
+        step_records: bool = False,
         **method_options: Any,
     ) -> None:
         self.settings = Settings(
             method=method, rtol=rtol, atol=atol, step=step, max_step=max_step, first_step=first_step, t0=t0,
-            outer=outer, newton_tolerance=newton_tolerance, start_tolerance=start_tolerance,
+            outer=outer, acceleration=acceleration, depth=depth, fallback=fallback, controller=controller,
+            newton_tolerance=newton_tolerance, start_tolerance=start_tolerance,
             method_options=dict(method_options),
         )  # fmt: skip
         self.formula: Formula = get_formula(method, method_options)
@@ -92,9 +114,11 @@ class Engine:
         self.pending: list[int] = []
         self.t = float(t0)
         self._times_handled = (math.nan, 0)
+        self.fallbacks: list[Fallback] = []
         self._build_method()
-        self._build_loop(record)
-        set_control(self.settings, self.workspace.arrays["control"])
+        self._build_loop(record, step_records)
+        set_control(self.settings, self.assembly, self.workspace.arrays)
+        self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
         with user_errors(self.assembly):
             self._start()
@@ -102,7 +126,7 @@ class Engine:
     # ---- set-up -------------------------------------------------------------------------------------------------
 
     def _build_method(self) -> None:
-        self.workspace.use_stage(address_of(solve_stage, STAGE_SIGNATURE))
+        self.use_outer_loop(self.settings.outer)
         formula, length = self.formula, self.workspace.row_length
         parameters = np.zeros(8)
         parameters[: len(formula.parameters)] = formula.parameters
@@ -113,10 +137,32 @@ class Engine:
             "parameters": parameters,
             "weights": np.zeros((8, 12)),
             "error": np.zeros(2),
+            "choice": np.zeros(CHOICE_SIZE),
         }
-        self._method = ArrayRecord(METHOD, self.method_arrays, {"capacity": HISTORY_ROWS, "order": formula.order})
+        self.method_arrays["choice"][K] = formula.k
+        self._method = ArrayRecord(METHOD, self.method_arrays, {"capacity": HISTORY_ROWS, "exact": int(formula.exact)})
 
-    def _build_loop(self, record: bool) -> None:
+    def use_outer_loop(self, name: str) -> None:
+        """Solve stages with the outer loop `name` from now on.
+
+        Raises
+        ------
+        ModelError : if the method has a stage solver of its own and knows no other outer loop than newton.
+        """
+        own = self.formula.stage
+        if own is not None and name != "newton":
+            raise ModelError(
+                f"method '{self.settings.method}' has its own Newton iteration: outer = '{name}' belongs to the "
+                "TLISMNI methods"
+            )
+        loop = OUTER_LOOPS[name]
+        self.outer = name
+        self.workspace.make_basis(loop.basis_rows)
+        self.workspace.use_stage(address_of(own or loop.stage, STAGE_SIGNATURE))
+        self.workspace.arrays["control"][MAX_OUTER] = loop.most_iterations
+        self.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+
+    def _build_loop(self, record: bool, step_records: bool) -> None:
         a = self.assembly
         length = sample_length(a.n, a.m, len(a.contacts), len(a.work_names))
         capacity = max(16, min(4096, 4_000_000 // length)) if record else 0
@@ -124,6 +170,9 @@ class Engine:
         self.clock = np.zeros(CLOCK_SIZE)
         self.clock[FIXED_STEP] = self.settings.step or 0.0
         self.clock[GROWTH], self.clock[HOLD] = self.formula.growth, float(self.formula.rows)
+        controller = CONTROLLERS[self.settings.controller]
+        self.clock[B1], self.clock[B2], self.clock[A2] = controller.b1, controller.b2, controller.a2
+        self.clock[EAGER] = float(self.settings.fallback)
         self.clock[MAX_STEP] = min(self.settings.max_step or math.inf, a.longest_step)
         self.clock[STOP_TIME] = self.clock[BREAK_TIME] = math.inf
         fixed = self.settings.step is not None
@@ -131,10 +180,23 @@ class Engine:
         self.fine_starter = step_address(FINE_STARTER)
         self.cursor = np.zeros(1, dtype=np.int64)
         self.watch = np.zeros((max(len(a.contacts), 1), 3))
+        log_capacity = 4096 if step_records else 0
+        self.log_buffer = empty_buffer(max(log_capacity, 1), len(LOG_COLUMNS))
+        self.log_cursor = np.zeros(1, dtype=np.int64)
         self._loop = ArrayRecord(
             LOOP,
-            {"clock": self.clock, "watch": self.watch, "leap": a.leap, "samples": self.buffer, "cursor": self.cursor},
             {
+                "clock": self.clock,
+                "watch": self.watch,
+                "leap": a.leap,
+                "samples": self.buffer,
+                "cursor": self.cursor,
+                "log": self.log_buffer,
+                "log_cursor": self.log_cursor,
+            },
+            {
+                "select": 0 if self.formula.select is None else step_address(self.formula.select),
+                "log_capacity": log_capacity,
                 "step": step_address(self.formula.step),
                 "starter": self.starter,
                 "rows": self.formula.rows,
@@ -352,6 +414,10 @@ class Engine:
         if count:
             self.samples.append(self.buffer[:count].copy())
             self.cursor[0] = 0
+        logged = int(self.log_cursor[0])
+        if logged:
+            self.step_logs.append(self.log_buffer[:logged].copy())
+            self.log_cursor[0] = 0
 
     def report_progress(self, t: float) -> None:
         """Tell whoever listens how far the run has come."""

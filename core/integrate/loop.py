@@ -8,15 +8,22 @@ from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
-from ..methods.records import call_step
+from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
 from ..system.records import (
     ATOL,
     CONTROL_SIZE,
     COUNTERS_SIZE,
+    EVALUATIONS,
     FACTOR_AGE,
+    FACTORIZATIONS,
     FIRST_SENSITIVITY,
+    INNER,
+    KRYLOV,
     NOT_FINITE,
     OK,
+    OUTER,
+    OUTER_DIVERGED,
+    OUTER_SLOW,
     RATE_SIZE,
     REANALYZE,
     REJECTED,
@@ -25,9 +32,13 @@ from ..system.records import (
     STEPS,
 )
 from .records import (
+    A2,
+    B1,
+    B2,
     BREAK_TIME,
     CHUNK,
     CLOCK_SIZE,
+    EAGER,
     EVENT,
     FAILURES,
     FIXED_STEP,
@@ -35,8 +46,12 @@ from .records import (
     GROWTH,
     HELD,
     HOLD,
+    LOG_COLUMNS,
     MAX_STEP,
+    PREVIOUS_NORM,
+    PREVIOUS_RATIO,
     REACHED,
+    REJECTED_HERE,
     REPARTITION,
     STEP_SIZE,
     STEP_TOO_SMALL,
@@ -47,6 +62,7 @@ from .records import (
 from .sample import write_sample
 from .watch import any_crossed, remember
 
+LOG_SIZE = len(LOG_COLUMNS)
 SAFETY = 0.9
 MIN_FACTOR = 0.2
 MAX_FACTOR = 5.0  # of one-step formulas; multistep ones have their own
@@ -61,9 +77,10 @@ def set_weights(ws: Any, ms: Any) -> None:
     control = vec(ws.control, CONTROL_SIZE)
     row = history_row(ws, ms, 0)
     weight_q, weight_v = vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)
+    atol_q, atol_v = vec(ws.atol_q, ws.n_ext), vec(ws.atol_v, ws.n_ext)
     for i in range(ws.n):
-        weight_q[i] = control[ATOL] + control[RTOL] * abs(row[i])
-        weight_v[i] = control[ATOL] + control[RTOL] * abs(row[ws.n_ext + i])
+        weight_q[i] = atol_q[i] + control[RTOL] * abs(row[i])
+        weight_v[i] = atol_v[i] + control[RTOL] * abs(row[ws.n_ext + i])
     # work accounts: relative to what they hold, or to 1 J (N s)
     for i in range(ws.n_ext - ws.n_work, ws.n_ext):
         weight_v[i] = control[ATOL] + control[RTOL] * max(1.0, abs(row[ws.n_ext + i]))
@@ -93,12 +110,31 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     return status
 
 
+@internal
+def _write_log(ws: Any, ms: Any, lc: Any) -> None:
+    """A record of the step that has just been accepted; counters are running totals."""
+    cursor = ivec(lc.log_cursor, 1)
+    row = mat(lc.log, lc.log_capacity, LOG_SIZE)[cursor[0]]
+    counters, clock = ivec(ws.counters, COUNTERS_SIZE), vec(lc.clock, CLOCK_SIZE)
+    row[0] = history_time(ms, 0)
+    row[1] = row[0] - history_time(ms, 1) if rows_available(ms) > 1 else 0.0
+    row[2] = vec(ms.error, 2)[0]
+    row[3] = vec(ms.choice, CHOICE_SIZE)[K]
+    row[4] = clock[REJECTED_HERE]
+    row[5], row[6] = counters[OUTER], counters[INNER]
+    row[7], row[8], row[9] = counters[FACTORIZATIONS], counters[EVALUATIONS], counters[KRYLOV]
+    clock[REJECTED_HERE] = 0.0
+    cursor[0] += 1
+
+
 @compiled
 def accept(ws: Any, ms: Any, lc: Any) -> None:
-    """The current point becomes the newest row, and a sample if samples are wanted."""
+    """The current point becomes the newest row, and a sample and a step record if they are wanted."""
     push(ws, ms)
     remember(ws, lc)
     ivec(ws.counters, COUNTERS_SIZE)[STEPS] += 1
+    if lc.log_capacity > 0:
+        _write_log(ws, ms, lc)
     if lc.capacity > 0:
         cursor = ivec(lc.cursor, 1)
         write_sample(ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
@@ -138,19 +174,38 @@ def _factor(error: float, order: float, growth: float) -> float:
 
 
 @internal
-def _next_step(lc: Any, h: float, error: float, order: float, multistep: bool) -> float:
+def _controlled(clock: Any, error: float, order: float) -> float:
+    """By how much a one-step formula's step changes, by the controller's coefficients."""
+    if error <= 0.0:
+        clock[PREVIOUS_NORM] = 0.0
+        return MAX_FACTOR
+    exponent = 1.0 / (order + 1.0)
+    factor = (SAFETY ** (order + 1.0) / error) ** (clock[B1] * exponent)
+    if clock[PREVIOUS_NORM] > 0.0:
+        factor *= (SAFETY ** (order + 1.0) / clock[PREVIOUS_NORM]) ** (clock[B2] * exponent)
+        factor *= clock[PREVIOUS_RATIO] ** -clock[A2]
+    else:
+        # without a past every controller is the elementary one
+        factor = SAFETY * error**-exponent
+    factor = min(MAX_FACTOR, max(MIN_FACTOR, factor))
+    clock[PREVIOUS_NORM], clock[PREVIOUS_RATIO] = error, factor
+    return factor
+
+
+@internal
+def _next_step(lc: Any, h: float, error: float, order: float, multistep: bool, hold: float) -> float:
     """Step to follow an accepted one of size h.
 
-    A multistep formula grows only after HOLD equal steps, and only if it pays: growing at every step is not
-    zero-stable for more than a few steps, growing by GROWTH between HOLD equal steps is (companion matrices of the
-    variable-step formulas), and equal steps keep the coefficients.
+    A multistep formula grows only after `hold` equal steps, and only if it pays: growing at every step is not
+    zero-stable for more than a few steps, growing by GROWTH between such runs of equal steps is (companion matrices
+    of the variable-step formulas), and equal steps keep the coefficients.
     """
     clock = vec(lc.clock, CLOCK_SIZE)
     if not multistep:
         clock[HELD] = 0.0
-        return h * _factor(error, order, MAX_FACTOR)
+        return h * _controlled(clock, error, order)
     factor = _factor(error, order, clock[GROWTH])
-    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock[GROWTH]) or clock[HELD] < clock[HOLD]):
+    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock[GROWTH]) or clock[HELD] < hold):
         clock[HELD] += 1.0
         return h
     clock[HELD] = 0.0
@@ -181,6 +236,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             return REACHED
         if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
             return FULL
+        if lc.log_capacity > 0 and ivec(lc.log_cursor, 1)[0] >= lc.log_capacity:
+            return FULL
         fixed = clock[FIXED_STEP] > 0.0
         wanted = clock[FIXED_STEP] if fixed else min(clock[STEP_SIZE], clock[MAX_STEP])
         h = wanted
@@ -195,8 +252,10 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             return status
         if status != OK or (not fixed and not error[0] <= 1.0):
             counters[REJECTED] += 1
+            clock[REJECTED_HERE] += 1.0
             clock[FAILURES] += 1.0
-            if fixed:
+            clock[PREVIOUS_NORM] = 0.0
+            if fixed or (clock[EAGER] > 0.0 and (status == OUTER_DIVERGED or status == OUTER_SLOW)):
                 return status
             if status != OK:
                 h *= 0.25
@@ -211,6 +270,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             if leap > 1.0:
                 clock[STEP_SIZE], clock[HELD] = 0.9 * h / leap, 0.0
                 counters[REJECTED] += 1
+                clock[REJECTED_HERE] += 1.0
                 continue
         clock[FAILURES] = 0.0
         if ws.n_contacts > 0 and any_crossed(ws, lc, h):
@@ -221,7 +281,14 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         accept(ws, ms, lc)
         strained = partition_strained(ws)
         if not fixed:
-            proposed = _next_step(lc, h, error[0], error[1], multistep)
+            norm, order, hold = error[0], error[1], clock[HOLD]
+            choice = vec(ms.choice, CHOICE_SIZE)
+            if multistep and lc.select != 0:
+                hold = choice[K] + 1.0
+                if clock[HELD] >= hold and call_step(lc.select, ws, ms, h) == OK and choice[NEXT_K] > 0.0:
+                    choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
+                    choice[NEXT_K] = 0.0
+            proposed = _next_step(lc, h, norm, order, multistep, hold)
             clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed
         if strained:
             return REPARTITION

@@ -7,11 +7,14 @@ LOOP = np.dtype(
         (name, np.int64)
         for name in (
             "step", "starter", "rows",          # addresses of the step functions, rows that `step` needs
+            "select",                           # address of the function that chooses the order; 0: none
             "clock",                            # (CLOCK_SIZE,) float64
             "leap",                             # (n,) float64: how far a step may move each coordinate
             "watch",                            # (n_contacts, 3) float64: gap, rate, acceleration at the newest row
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
             "cursor",                           # (1,) int64: samples in the buffer
+            "log", "log_capacity",              # per-step records; capacity 0: none are wanted
+            "log_cursor",                       # (1,) int64
         )
     ]
 )  # fmt: skip
@@ -28,7 +31,15 @@ BREAK_TIME = 7  # next time at which a force or a driver's rate jumps
 GROWTH = 8  # largest factor by which a step may grow
 HOLD = 9  # equal steps that a multistep formula takes between two growths
 HELD = 10  # equal steps taken since the last change
-CLOCK_SIZE = 11
+EAGER = 11  # 1: `run` returns when an outer loop fails, so that another can take over
+PREVIOUS_NORM = 12  # of one-step formulas: error norm of the last accepted step; 0: there is none
+PREVIOUS_RATIO = 13  # and by how much the step changed after it
+B1, B2, A2 = 14, 15, 16  # coefficients of the step-size controller
+REJECTED_HERE = 17  # trials that failed since the last accepted step
+CLOCK_SIZE = 18
+
+# columns of a per-step record
+LOG_COLUMNS = ("t", "h", "error", "k", "rejected", "outer", "inner", "factorizations", "evaluations", "krylov")
 
 # what `run` returns besides the status of a failed step
 REACHED = 100

@@ -5,7 +5,7 @@ import json
 from typing import TYPE_CHECKING
 
 from ..errors import ModelError, SimulationError
-from ..events import Event
+from ..events import Event, Fallback
 from ..methods.history import recall
 from ..state import State
 from ..system.records import OK
@@ -47,6 +47,8 @@ def get_state(sim: "Simulation") -> State:
         "pending": list(sim.pending),
         "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
         "handled": [repr(sim._times_handled[0]), sim._times_handled[1]],
+        "outer": sim.outer,
+        "fallbacks": [[f.t, f.outer, f.reason] for f in sim.fallbacks],
         "events": [event.to_dict() for event in sim.events],
     }
     return State(arrays, facts, model_hash(sim))
@@ -63,6 +65,9 @@ def set_state(sim: "Simulation", state: State) -> None:
             f"has {expected[:12]}): restore it into a simulation built the same way"
         )
     workspace, facts, arrays = sim.workspace, state.facts, state.arrays
+    if sim.outer != facts["outer"]:
+        sim.use_outer_loop(facts["outer"])
+    sim.fallbacks = [Fallback(*entry) for entry in facts["fallbacks"]]
     workspace.engage(frozenset(facts["closed"]), frozenset(facts["engaged"]))
     workspace.set_partition(arrays["dependent"])
     structure = workspace.structure

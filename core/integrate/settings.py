@@ -1,27 +1,35 @@
 """The settings of a run, checked."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError
+from ..stage import OUTER_LOOPS
+from ..stage.simple import MOST_DEPTH
+from ..system.assembly import Assembly
 from ..system.records import (
+    ACCELERATION,
     ACCELERATION_TOLERANCE,
     ATOL,
     MAX_INNER,
     MAX_OUTER,
     NEWTON_TOLERANCE,
-    OUTER_LOOP,
     POSITION_TOLERANCE,
     RTOL,
     VELOCITY_TOLERANCE,
 )
+from .controllers import CONTROLLERS
 
-OUTER_LOOPS = ("newton", "simple")
+ACCELERATIONS = ("none", "aitken", "anderson")
 CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
 """At position, velocity and acceleration level: absolute below 1, relative to the largest entry above."""
+KINDS = ("length", "angle", "speed", "angular_speed")
+"""What absolute tolerances can be told apart by: translations, rotations and their rates."""
 
 
 @dataclass(frozen=True)
@@ -30,45 +38,88 @@ class Settings:
 
     method: str
     rtol: float
-    atol: float
+    atol: float | Mapping[str, float]
     step: float | None
     max_step: float | None
     first_step: float | None
     t0: float
     outer: str
+    acceleration: str
+    depth: int
+    fallback: bool
+    controller: str
     newton_tolerance: float | None
     start_tolerance: float
     method_options: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("rtol", "atol", "step", "max_step", "first_step", "newton_tolerance", "start_tolerance"):
+        for name in ("rtol", "step", "max_step", "first_step", "newton_tolerance", "start_tolerance"):
             value = getattr(self, name)
-            if value is None and name not in ("rtol", "atol", "start_tolerance"):
+            if value is None and name not in ("rtol", "start_tolerance"):
                 continue
-            if isinstance(value, bool) or not isinstance(value, int | float) or not value > 0.0:
-                raise ModelError(f"{name} must be a positive number, not {value!r}")
-            if not math.isfinite(value) and name != "max_step":
-                raise ModelError(f"{name} must be finite, not {value!r}")
+            _check_positive(name, value, infinite=name == "max_step")
+        if isinstance(self.atol, Mapping):
+            unknown = set(self.atol) - set(KINDS)
+            if unknown:
+                raise ModelError(f"atol has no kind {sorted(unknown)}; there are {list(KINDS)}")
+            for kind, value in self.atol.items():
+                _check_positive(f"atol of {kind}", value)
+        else:
+            _check_positive("atol", self.atol)
         if self.rtol < 1e-14:
             raise ModelError(f"rtol = {self.rtol!r} is below what double precision can resolve; use at least 1e-13")
         if not isinstance(self.t0, int | float) or not math.isfinite(self.t0):
             raise ModelError(f"t0 must be a finite number, not {self.t0!r}")
-        if self.outer not in OUTER_LOOPS:
-            raise ModelError(f"outer loop '{self.outer}' is unknown; there are {list(OUTER_LOOPS)}")
+        for name, choices in (
+            ("outer", tuple(OUTER_LOOPS)),
+            ("acceleration", ACCELERATIONS),
+            ("controller", tuple(CONTROLLERS)),
+        ):
+            if getattr(self, name) not in choices:
+                raise ModelError(f"{name} = {getattr(self, name)!r} is unknown; there are {list(choices)}")
+        if self.acceleration != "none" and self.outer != "simple":
+            raise ModelError(
+                f"acceleration = '{self.acceleration}' belongs to outer = 'simple', not to outer = '{self.outer}'"
+            )
+        if isinstance(self.depth, bool) or not isinstance(self.depth, int) or not 1 <= self.depth <= MOST_DEPTH:
+            raise ModelError(
+                f"depth = {self.depth!r} of Anderson's acceleration must be a whole number 1 to {MOST_DEPTH}"
+            )
+        if not isinstance(self.fallback, bool):
+            raise ModelError(f"fallback must be True or False, not {self.fallback!r}")
 
 
-def set_control(settings: Settings, control: NDArray[Any]) -> None:
-    """Fill the workspace's control numbers."""
+def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not value > 0.0:
+        raise ModelError(f"{name} must be a positive number, not {value!r}")
+    if not math.isfinite(value) and not infinite:
+        raise ModelError(f"{name} must be finite, not {value!r}")
+
+
+DEFAULT_ATOL = 1e-9
+"""Of kinds that a mapping leaves out."""
+
+
+def set_control(settings: Settings, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Fill the workspace's control numbers and absolute tolerances."""
+    control = arrays["control"]
     fixed = settings.step is not None
     if fixed:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
         tolerance = settings.newton_tolerance or 1e-10
         control[RTOL] = control[ATOL] = tolerance
         control[NEWTON_TOLERANCE] = 1.0
+        arrays["atol_q"][:] = arrays["atol_v"][:] = tolerance
     else:
-        control[RTOL], control[ATOL] = settings.rtol, settings.atol
+        control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or 0.01
+        given = settings.atol if isinstance(settings.atol, Mapping) else dict.fromkeys(KINDS, settings.atol)
+        atol = {kind: float(given.get(kind, DEFAULT_ATOL)) for kind in KINDS}
+        control[ATOL] = min(atol.values())
+        n, angles = assembly.n, assembly.is_angle
+        arrays["atol_q"][:n] = np.where(angles, atol["angle"], atol["length"])
+        arrays["atol_v"][:n] = np.where(angles, atol["angular_speed"], atol["speed"])
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
-    control[OUTER_LOOP] = float(OUTER_LOOPS.index(settings.outer))
-    control[MAX_OUTER] = 10.0 if settings.outer == "newton" else 60.0
+    control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
+    control[MAX_OUTER] = OUTER_LOOPS[settings.outer].most_iterations
     control[MAX_INNER] = 12.0

@@ -16,7 +16,7 @@ from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
-    "residual_evaluations", "stages", "analyses",
+    "residual_evaluations", "stages", "analyses", "krylov_iterations",
 )  # fmt: skip
 
 
@@ -27,15 +27,20 @@ class Simulation(Engine):
     ----------
     system : a Model or an EquationSystem.
     method : name of an integration method (`tlismni.core.methods.registry.METHODS`).
-    rtol, atol : tolerances of the error control, in the units of q and v.
+    rtol, atol : tolerances of the error control, in the units of q and v; atol may be a mapping with any of
+        "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are 1e-9.
     step : fixed step in s; None: error-controlled steps.
     max_step, first_step : bounds of error-controlled steps, s.
     t0 : start time, s.
-    outer : "newton" or "simple", the outer loop of the stage solver.
+    outer : "newton", "simple" or "jfnk", the outer loop of the stage solver (`tlismni.core.stage.OUTER_LOOPS`).
+    acceleration : "none", "aitken" or "anderson", of outer = "simple"; depth : that of Anderson's, 1 to 5.
+    fallback : let newton take over if the outer loop fails; `fallbacks` says when and why, and a warning is logged.
+    controller : "elementary", "pi" or "h211b", how one-step methods choose their next step.
     newton_tolerance : where the outer loop stops; with `step` an absolute and relative tolerance on q and v
         (default 1e-10), else a fraction of the error weights (default 0.01).
     start_tolerance : how far q0 and v0 may be moved to meet the constraints (relative).
     record : keep a sample at every step.
+    step_records : keep size, error, order and iterations of every step (`step_logs`).
     method_options : see the method.
 
     Raises
@@ -87,7 +92,8 @@ class Simulation(Engine):
     def stats(self) -> dict[str, int]:
         """Counters of the run so far."""
         counters = self.workspace.arrays["counters"]
-        return {name: int(counters[k]) for k, name in enumerate(_COUNTER_NAMES[:COUNTERS_SIZE])}
+        counts = {name: int(counters[k]) for k, name in enumerate(_COUNTER_NAMES[:COUNTERS_SIZE])}
+        return {**counts, "fallbacks": len(self.fallbacks)}
 
     def set_inputs(self, values: Mapping[str, float]) -> None:
         """Set input channels; they hold from the present time on.

@@ -11,11 +11,12 @@ from ..system.records import OK
 from .coefficients import bdf_coefficients, extrapolation_weights
 from .history import history_time
 from .multistep import bdf_stage, nodes, predictor_error, weight_rows
+from .records import CHOICE_SIZE, K
 
 
 @internal
 def bdf_step(ws: Any, ms: Any, h: float) -> int:
-    k = ms.order
+    k = int(vec(ms.choice, CHOICE_SIZE)[K])
     table = weight_rows(ms)
     if nodes(ms, h, k + 1, table[0]):
         bdf_coefficients(table[0], k, table[1])

@@ -18,6 +18,7 @@ from ..system.records import OK
 from .coefficients import bdf_coefficients, ebdf_coefficients, extrapolation_weights
 from .history import history_time
 from .multistep import bdf_stage, combine_stars, finish_stage, nodes, predict, weight_rows
+from .records import CHOICE_SIZE, K
 
 NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED = range(7)
 MODIFIED = 0  # parameter: 1 for MEBDF
@@ -42,7 +43,7 @@ def _coefficients(ms: Any, h: float, k: int, table: Any) -> None:
 
 @internal
 def ebdf_step(ws: Any, ms: Any, h: float) -> int:
-    k, n = ms.order, ws.n_ext
+    k, n = int(vec(ms.choice, CHOICE_SIZE)[K]), ws.n_ext
     table = weight_rows(ms)
     _coefficients(ms, h, k, table)
     t_new = history_time(ms, 0) + h

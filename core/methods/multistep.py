@@ -15,11 +15,22 @@ from .history import history_row, history_time
 from .records import MAX_NODES
 
 
+@inlined
+def weight_rows(ms: Any) -> Any:
+    """Table of the coefficients."""
+    return mat(ms.weights, 8, MAX_NODES)
+
+
+COUNT_ROW = 7  # of the table of coefficients: for how many nodes it was made
+
+
 @internal
 def nodes(ms: Any, h: float, count: int, out: Any) -> bool:
     """s_j = (t_j - t_new)/h of the newest `count` rows into `out`; True if they differ from what stood there."""
     t_new = history_time(ms, 0) + h
-    changed = False
+    of_table = weight_rows(ms)[COUNT_ROW]
+    changed = of_table[0] != count
+    of_table[0] = count
     for j in range(count):
         if abs((history_time(ms, j) - t_new) / h - out[j]) > 1e-12:
             changed = True
@@ -119,12 +130,6 @@ def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
             off -= weights[j] * history_row(ws, ms, j)[n + i]
         norm = max(norm, abs(off) / weight_v[i])
     return norm
-
-
-@inlined
-def weight_rows(ms: Any) -> Any:
-    """Table of the coefficients."""
-    return mat(ms.weights, 8, MAX_NODES)
 
 
 @inlined

@@ -14,13 +14,14 @@ METHOD = np.dtype(
         (name, np.int64)
         for name in (
             "capacity",   # rows of history that are kept
-            "order",      # k of a multistep formula
             "history",    # (capacity, row_length) float64, a ring
             "times",      # (capacity,) float64
             "ring",       # (2,) int64: position of the newest row, number of rows
             "parameters", # (8,) float64: alpha, beta, gamma ...
             "weights",    # (8, MAX_NODES) float64: nodes and the coefficients that belong to them
             "error",      # (2,) float64: error norm of the last step, order of its estimate
+            "choice",     # (CHOICE_SIZE,) float64: steps k of a multistep formula, and what order selection proposes
+            "exact",      # 1: samples between steps are projected onto the constraints; 0: shown as they are
         )
     ]
 )  # fmt: skip
@@ -28,6 +29,12 @@ METHOD_TYPE = nb.from_dtype(METHOD)
 
 MAX_NODES = 12
 """Most rows of history that a formula uses, and the width of `weights`."""
+
+# columns of `choice`
+K = 0  # 0: the formula has no order to choose
+NEXT_K = 1  # k that the next step shall take; 0: the same
+NEXT_NORM = 2  # error norm that it would have had
+CHOICE_SIZE = 3
 
 STEP_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
 """A step: from the newest row of history by h; leaves the new point in the workspace and its error norm."""

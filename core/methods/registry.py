@@ -5,9 +5,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..errors import ModelError
+from .adams import adams_step
 from .bdf import bdf_step
 from .ebdf import ebdf_step
 from .newmark import newmark_step
+from .order_selection import select_k
+from .park import park_step
 from .sdirk import sdirk_fine_step, sdirk_step
 
 
@@ -15,11 +18,40 @@ from .sdirk import sdirk_fine_step, sdirk_step
 class Option:
     """One option of a method."""
 
-    default: float
+    default: float | str
     minimum: float
     maximum: float
     description: str
     integer: bool = False
+    choices: tuple[str, ...] = ()
+    """Words that it may be; with minimum > maximum it must be one of them."""
+
+    @property
+    def numeric(self) -> bool:
+        """True if it may be a number."""
+        return self.minimum <= self.maximum
+
+    @classmethod
+    def word(cls, default: str, choices: tuple[str, ...], description: str) -> "Option":
+        """An option that is one of `choices`."""
+        return cls(default, 1.0, 0.0, description, choices=choices)
+
+    def allowed(self) -> str:
+        """What it may be, in words."""
+        whole = "a whole number " if self.integer else ""
+        numbers = [f"{whole}from {self.minimum:g} to {self.maximum:g}"] if self.numeric else []
+        return " or ".join([*numbers, *(f"'{choice}'" for choice in self.choices)])
+
+    def read(self, value: Any, name: str) -> float | str:
+        """The value, checked. Raises ModelError naming the option."""
+        if isinstance(value, str) and value in self.choices:
+            return value
+        number = not isinstance(value, bool) and isinstance(value, int | float)
+        if not (self.numeric and number and self.minimum <= value <= self.maximum):
+            raise ModelError(f"{name} must be {self.allowed()}, not {value!r}")
+        if self.integer and int(value) != value:
+            raise ModelError(f"{name} must be {self.allowed()}, not {value!r}")
+        return float(value)
 
 
 @dataclass(frozen=True)
@@ -27,12 +59,19 @@ class Formula:
     """An integration formula ready to run."""
 
     step: Any
-    order: int = 0
+    k: int = 0
+    """Number of steps of a multistep formula that has several; 0: its order is its own."""
     parameters: tuple[float, ...] = ()
     rows: int = 1
     """Rows of history that a step needs; below that the starter works."""
     growth: float = 2.0
     """Largest factor by which error control lets a multistep step grow, each time after `rows` equal steps."""
+    select: Any = None
+    """Chooses the number of steps after an accepted step (a function of STEP_SIGNATURE); None: it is fixed."""
+    stage: Any = None
+    """The stage solver of a comparison method; None: that of TLISMNI with the chosen outer loop."""
+    exact: bool = True
+    """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
 
 
 @dataclass(frozen=True)
@@ -42,20 +81,42 @@ class Method:
     name: str
     description: str
     options: Mapping[str, Option]
-    formula: Callable[[Mapping[str, float]], Formula] = field(repr=False)
+    formula: Callable[[Mapping[str, Any]], Formula] = field(repr=False)
+    family: str = "TLISMNI"
 
 
 # With growth by 2 after k + 1 equal steps the variable-step formulas are zero-stable up to k = 6; beyond, these are.
 EBDF_GROWTH = {7: 1.5, 8: 1.2}
+# Angles of A(alpha)-stability in degrees for k = 1, 2 ... (Hairer and Wanner II, V.1 and V.3; Cash 1980, 1983)
+ANGLES = {
+    "bdf": (90.0, 90.0, 86.03, 73.35, 51.84, 17.84),
+    "ebdf": (90.0, 90.0, 90.0, 87.61, 80.21, 67.73, 48.82, 19.98),
+    "mebdf": (90.0, 90.0, 90.0, 88.36, 83.07, 74.48, 61.98, 42.87),
+}
+MOST_AUTOMATIC = {"bdf": 5, "ebdf": 6, "mebdf": 6}
+FIRST_AUTOMATIC = 3
+
+_ANGLE = Option(
+    0.0, 0.0, 90.0, "automatic choice only: least angle of A(alpha)-stability, degrees; 90 keeps to A-stable formulas"
+)
 
 
-def _extended(k: int, modified: float) -> Formula:
-    return Formula(ebdf_step, k, (modified,), k + 1, EBDF_GROWTH.get(k, 2.0))
+def _steps(default: int, most: int, description: str) -> Option:
+    return Option(default, 1, most, description, integer=True, choices=("auto",))
 
 
-def _hht(values: Mapping[str, float]) -> Formula:
+def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: tuple[float, ...]) -> Formula:
+    """A formula of k steps; "auto": k is chosen as the run goes, among those that are stable enough."""
+    if k != "auto":
+        return Formula(step, int(k), parameters, int(k) + 1, EBDF_GROWTH.get(int(k), 2.0) if name != "bdf" else 2.0)
+    most = max(i + 1 for i, alpha in enumerate(ANGLES[name][: MOST_AUTOMATIC[name]]) if alpha >= angle)
+    first = min(FIRST_AUTOMATIC, most)
+    return Formula(step, first, (*parameters, 1.0, float(most)), first + 1, select=select_k)
+
+
+def _hht(values: Mapping[str, Any]) -> Formula:
     alpha = values["alpha"]
-    return Formula(newmark_step, 2, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha))
+    return Formula(newmark_step, 0, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha))
 
 
 METHODS = {
@@ -68,7 +129,7 @@ METHODS = {
                 "beta": Option(0.25, 0.01, 2.0, "beta; 1/4 with gamma 1/2 is the average acceleration"),
                 "gamma": Option(0.5, 0.5, 1.5, "gamma; above 1/2 it damps, at order 1"),
             },
-            lambda o: Formula(newmark_step, 2, (0.0, o["beta"], o["gamma"])),
+            lambda o: Formula(newmark_step, 0, (0.0, o["beta"], o["gamma"])),
         ),
         Method(
             "hht",
@@ -77,28 +138,49 @@ METHODS = {
             _hht,
         ),
         Method(
+            "trapezoidal",
+            "TLISMNI with the trapezoidal rule, coordinates and velocities as unknowns; order 2, A-stable",
+            {},
+            lambda o: Formula(adams_step, 2, (), 2),
+        ),
+        Method(
+            "park",
+            "TLISMNI with Park's formula, the mean of BDF 2 and BDF 3; order 2, L-stable",
+            {},
+            lambda o: Formula(park_step, 0, (), 3),
+        ),
+        Method(
             "bdf",
-            "TLISMNI with the BDF of fixed order, coordinates and velocities as unknowns",
-            {"order": Option(3, 1, 5, "order k", integer=True)},
-            lambda o: Formula(bdf_step, int(o["order"]), (), int(o["order"]) + 1),
+            "TLISMNI with the BDF of k steps and order k, coordinates and velocities as unknowns",
+            {
+                "order": _steps(3, 6, "order k, or chosen by the error; 7 and 8 are unstable for any step"),
+                "angle": _ANGLE,
+            },
+            lambda o: _multistep("bdf", bdf_step, o["order"], o["angle"], (0.0,)),
         ),
         Method(
             "ebdf",
-            "TLISMNI with Cash's extended BDF of fixed k, order k + 1; A-stable up to k = 3",
-            {"k": Option(4, 1, 8, "number of steps k; the order is k + 1", integer=True)},
-            lambda o: _extended(int(o["k"]), 0.0),
+            "TLISMNI with Cash's extended BDF of k steps, order k + 1; A-stable up to k = 3",
+            {"k": _steps(4, 8, "number of steps k, or chosen by the error; the order is k + 1"), "angle": _ANGLE},
+            lambda o: _multistep("ebdf", ebdf_step, o["k"], o["angle"], (0.0,)),
         ),
         Method(
             "mebdf",
             "TLISMNI with the modified extended BDF: as ebdf, more stable, one matrix for all its stages",
-            {"k": Option(4, 1, 8, "number of steps k; the order is k + 1", integer=True)},
-            lambda o: _extended(int(o["k"]), 1.0),
+            {"k": _steps(4, 8, "number of steps k, or chosen by the error; the order is k + 1"), "angle": _ANGLE},
+            lambda o: _multistep("mebdf", ebdf_step, o["k"], o["angle"], (1.0,)),
+        ),
+        Method(
+            "adams",
+            "TLISMNI with implicit Adams formulas on the actual grid, Milne's error estimate; not for stiff systems",
+            {"order": Option(4, 2, 6, "order", integer=True)},
+            lambda o: Formula(adams_step, int(o["order"]), (), int(o["order"])),
         ),
         Method(
             "irk",
             "TLISMNI with the implicit Runge-Kutta method SDIRK of order 4, L-stable, self-starting",
             {},
-            lambda o: Formula(sdirk_step, 4),
+            lambda o: Formula(sdirk_step),
         ),
     )
 }
@@ -120,16 +202,7 @@ def get_formula(name: str, options: Mapping[str, Any]) -> Formula:
     unknown = set(options) - set(method.options)
     if unknown:
         raise ModelError(f"method '{name}' has no option {sorted(unknown)}; it has {sorted(method.options)}")
-    values = {key: option.default for key, option in method.options.items()}
+    values: dict[str, Any] = {key: option.default for key, option in method.options.items()}
     for key, value in options.items():
-        option = method.options[key]
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ModelError(f"option {key} of method '{name}' must be a number, not {value!r}")
-        if option.integer and int(value) != value:
-            raise ModelError(f"option {key} of method '{name}' must be a whole number, not {value!r}")
-        if not option.minimum <= value <= option.maximum:
-            raise ModelError(
-                f"option {key} of method '{name}' must be from {option.minimum:g} to {option.maximum:g}, not {value!r}"
-            )
-        values[key] = float(value)
+        values[key] = method.options[key].read(value, f"option {key} of method '{name}'")
     return method.formula(values)

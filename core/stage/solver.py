@@ -6,15 +6,15 @@ Given t, q*, v*, c_q, c_v find (q, v, a, lambda) with
 
 Outer loop `newton`: the increment (da, dlambda) solves [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] (da, dlambda) =
 -(r, Phi_q a - gamma), which to first order is the Newton step of the reduced system, since c_q da moves q along the
-constraints. Outer loop `simple`: the fixed point of Shabana and Hussein (2009), the same with K = D = 0.
-The matrices are kept while the iteration converges fast enough.
+constraints. The matrices are kept while the iteration converges fast enough.
+The other outer loops (`simple.py`, `jfnk.py`) and the stages of the comparison methods share what stands here.
 """
 
 from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..system.evaluate import evaluate_residuals, evaluate_tangent
@@ -36,7 +36,6 @@ from ..system.records import (
     OK,
     OUTER,
     OUTER_DIVERGED,
-    OUTER_LOOP,
     OUTER_RATE,
     OUTER_SLOW,
     POSITION_TOLERANCE,
@@ -141,82 +140,96 @@ def set_from_accelerations(ws: Any, c_q: float, c_v: float) -> None:
 
 
 @internal
+def increment_norm(ws: Any, c_q: float, c_v: float) -> float:
+    """Size of the acceleration increment in `rhs`, as the change of q and v that it makes, in error weights."""
+    increment = vec(ws.rhs, ws.n + ws.m_act)
+    of_q = weighted_norm(increment, vec(ws.weight_q, ws.n_ext), ws.n)
+    of_v = weighted_norm(increment, vec(ws.weight_v, ws.n_ext), ws.n)
+    return max(c_q * of_q, c_v * of_v)
+
+
+@internal
+def add_increment(ws: Any, c_q: float, c_v: float) -> None:
+    """Add the increments of accelerations and multipliers in `rhs`; q and v follow."""
+    n, m_act = ws.n, ws.m_act
+    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
+    lam = vec(ws.lam, ws.m_ext)
+    active = ivec(ws.active, m_act)
+    increment = vec(ws.rhs, n + m_act)
+    for i in range(n):
+        q[i] += c_q * increment[i]
+        v[i] += c_v * increment[i]
+        a[i] += increment[i]
+    for i in range(m_act):
+        lam[active[i]] += increment[n + i]
+
+
+@inlined
+def inner_slack(control: Any) -> float:
+    """By how much the inner loop may be looser while the outer one moves: before that has converged, the constraints
+    need to hold only a hundred times better than it does."""
+    return max(1.0, min(1e4, 0.01 * control[NEWTON_TOLERANCE] * control[RTOL] / control[POSITION_TOLERANCE]))
+
+
+@internal
 def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage from the predicted a, lambda in the workspace. Returns OK or what went wrong.
 
     On failure with old matrices it tries once more with new ones.
     """
     rate = vec(ws.rate, RATE_SIZE)
-    simple = vec(ws.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0
-    tangent_q, tangent_v = (0.0, 0.0) if simple else (c_q, c_v)
     vec(ws.t, 1)[0] = t
     ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
     set_from_accelerations(ws, c_q, c_v)
     evaluate_residuals(ws)
-    if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > MOST_OUTER or rate[LAST_INNER] > MOST_INNER or simple:
-        status = refactor(ws, tangent_q, tangent_v)
+    if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > MOST_OUTER or rate[LAST_INNER] > MOST_INNER:
+        status = refactor(ws, c_q, c_v)
         if status != OK:
             return status
     fresh = rate[FACTOR_AGE] == 0.0
     rate[FACTOR_AGE] += 1.0
-    status = _iterate(ws, c_q, c_v, simple)
+    status = _iterate(ws, c_q, c_v)
     if status == OK or fresh:
         return status
     set_from_accelerations(ws, c_q, c_v)
     evaluate_residuals(ws)
-    status = refactor(ws, tangent_q, tangent_v)
+    status = refactor(ws, c_q, c_v)
     if status != OK:
         return status
     rate[FACTOR_AGE] += 1.0
-    return _iterate(ws, c_q, c_v, simple)
+    return _iterate(ws, c_q, c_v)
 
 
 @internal
-def _iterate(ws: Any, c_q: float, c_v: float, simple: bool) -> int:
+def _iterate(ws: Any, c_q: float, c_v: float) -> int:
     """The outer loop."""
     control = vec(ws.control, CONTROL_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
     rate = vec(ws.rate, RATE_SIZE)
-    n, m_act = ws.n, ws.m_act
-    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
-    lam = vec(ws.lam, ws.m_ext)
-    active = ivec(ws.active, m_act)
-    weight_q, weight_v = vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)
-    increment = vec(ws.rhs, n + m_act)
     tolerance = control[NEWTON_TOLERANCE]
     start_inner = counters[INNER]
     previous = np.inf
     renewed = 0
-    # before the outer loop has converged, the constraints need to hold only a hundred times better than it does
-    slack = max(1.0, min(1e4, 0.01 * tolerance * control[RTOL] / control[POSITION_TOLERANCE]))
+    slack = inner_slack(control)
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
         status = inner_loop(ws, ws.lu_d, slack, np.inf)
         if status != OK:
             return status
-        if simple and k > 0:
-            status = refactor(ws, 0.0, 0.0)
-            if status != OK:
-                return status
         solve_increment(ws, ws.kkt)
         counters[OUTER] += 1
-        norm = max(c_q * weighted_norm(increment, weight_q, n), c_v * weighted_norm(increment, weight_v, n))
+        norm = increment_norm(ws, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
-        for i in range(n):
-            q[i] += c_q * increment[i]
-            v[i] += c_v * increment[i]
-            a[i] += increment[i]
-        for i in range(m_act):
-            lam[active[i]] += increment[n + i]
+        add_increment(ws, c_q, c_v)
         evaluate_residuals(ws)
         if k > 0:
             contraction = norm / previous
             rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
-            if contraction > 0.9 and norm > tolerance and (renewed > 0 or simple or contraction > 2.0):
+            if contraction > 0.9 and norm > tolerance and (renewed > 0 or contraction > 2.0):
                 rate[FAILED_NORM] = contraction
                 return OUTER_DIVERGED
-            if contraction > SLOW and norm > tolerance and not simple and renewed < 2:
+            if contraction > SLOW and norm > tolerance and renewed < 2:
                 # the matrix of the predicted point is not good enough: that of the present one is
                 renewed += 1
                 status = refactor(ws, c_q, c_v)

@@ -91,6 +91,13 @@ class Assembly:
         return np.ascontiguousarray(0.5 * np.minimum(self.coordinate_scale, smallest))
 
     @property
+    def is_angle(self) -> NDArray[np.bool_]:
+        """Which coordinates are angles (rad), (n,); the others are lengths (m)."""
+        angles = np.zeros(self.n, dtype=bool)
+        angles[[index for _, coordinate, index in self.body_columns if coordinate == "angle"]] = True
+        return angles
+
+    @property
     def ground(self) -> int:
         """Index of the ground's x in extended vectors."""
         return self.n

@@ -21,7 +21,9 @@ WORKSPACE = np.dtype(
             "active", "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
-            "control", "counters", "rate", "scale", "scratch",
+            "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
+            # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
+            "basis", "n_basis",
         )
     ]
 )  # fmt: skip
@@ -40,10 +42,12 @@ VELOCITY_TOLERANCE = 2
 ACCELERATION_TOLERANCE = 3
 MAX_OUTER = 4
 MAX_INNER = 5
-OUTER_LOOP = 6  # 0 newton, 1 simple
+ACCELERATION = 6  # of the simple iteration: 0 none, 1 Aitken, m + 1 Anderson of depth m
 RTOL = 7
-ATOL = 8
-CONTROL_SIZE = 9
+ATOL = 8  # of the work accounts
+STAGE_ALPHA = 9  # parameters of the stage functions of comparison methods
+STAGE_BETA = 10
+CONTROL_SIZE = 11
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
@@ -58,8 +62,8 @@ FIRST_SENSITIVITY = 8  # the same when the partition was chosen; < 0: not known 
 RATE_SIZE = 9
 
 # columns of `counters` (int64)
-STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES = range(9)
-COUNTERS_SIZE = 9
+STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)
+COUNTERS_SIZE = 10
 
 # status of stages, steps and of the loop
 OK = 0

@@ -67,6 +67,9 @@ class Workspace:
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),
             "scratch": np.zeros(64),
+            "basis": np.zeros((1, n_ext)),
+            "atol_q": np.zeros(n_ext),
+            "atol_v": np.zeros(n_ext),
             "control": np.zeros(CONTROL_SIZE),
             "counters": np.zeros(COUNTERS_SIZE, dtype=np.int64),
             "rate": np.zeros(RATE_SIZE),
@@ -83,7 +86,8 @@ class Workspace:
             record_arrays,
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_free": 0, "n_kernels": len(a.batches),
-                "n_values": 1, "n_contacts": contacts, "n_work": len(a.work_names), "row_length": row_length,
+                "n_values": 1, "n_basis": 1, "n_contacts": contacts,
+                "n_work": len(a.work_names), "row_length": row_length,
                 "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
@@ -101,6 +105,10 @@ class Workspace:
     def use_stage(self, address: int) -> None:
         """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE)."""
         self._record.table["stage_function"] = address
+
+    def make_basis(self, count: int) -> None:
+        """Room for `count` vectors of an accelerated or Krylov outer loop."""
+        self._set("basis", np.zeros((count, self.assembly.n_extended)), n_basis=count)
 
     @property
     def row_length(self) -> int:

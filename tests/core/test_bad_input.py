@@ -50,7 +50,7 @@ NAN, INF = math.nan, math.inf
         ({"k": 2.5}, "whole"),
         ({"k": "4"}, "number"),
         ({"k": True}, "number"),
-        ({"method": "bdf", "order": 6}, "order"),
+        ({"method": "bdf", "order": 7}, "order"),
         ({"method": "bdf", "order": 0}, "order"),
         ({"step": -0.1}, "step"),
         ({"step": 0.0}, "step"),

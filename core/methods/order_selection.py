@@ -1,0 +1,71 @@
+"""Automatic choice of the number of steps k of BDF, EBDF and MEBDF.
+
+With nabla^j y the newest difference of order j, the error of the BDF of k steps is |nabla^(k+1) y|/(k + 1); on an
+unequal grid the difference is that between y and its extrapolation through k + 1 rows (Brenan, Campbell and Petzold,
+Numerical Solution of IVPs in DAEs, 5.2.4). The errors for k - 1, k and k + 1 tell which k allows the largest step.
+EBDF and MEBDF are judged by the same: their first stage is that BDF.
+"""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import vec
+from ..stage.solver import weighted_norm
+from ..system.records import OK
+from .coefficients import extrapolation_weights
+from .history import history_row, history_time
+from .multistep import rows_available, weight_rows
+from .records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
+
+LEAST_K, MOST_K = 1, 2  # parameters of the formula
+# another k must promise a step larger by this factor: changing costs new coefficients
+WORTH = 1.1
+# rows of the table of coefficients that no formula needs after its step
+NODES, WEIGHTS = 5, 6
+
+
+@internal
+def _error(ws: Any, ms: Any, h: float, k: int) -> float:
+    """Error norm that the BDF of k steps would have had at the newest row."""
+    n = ws.n_ext
+    table = weight_rows(ms)
+    s, weights = table[NODES], table[WEIGHTS]
+    for j in range(k + 1):
+        s[j] = (history_time(ms, j + 1) - history_time(ms, 0)) / h
+    extrapolation_weights(s, k + 1, weights)
+    newest = history_row(ws, ms, 0)
+    difference = vec(ws.rhs, ws.n)
+    norm = 0.0
+    for kind in range(2):
+        for i in range(ws.n):
+            difference[i] = newest[kind * n + i]
+        for j in range(k + 1):
+            row = history_row(ws, ms, j + 1)
+            for i in range(ws.n):
+                difference[i] -= weights[j] * row[kind * n + i]
+        norm = max(norm, weighted_norm(difference, vec(ws.weight_v if kind else ws.weight_q, n), ws.n))
+    # for equal steps s[k] = -(k + 1)
+    return norm / -s[k]
+
+
+@internal
+def select_k(ws: Any, ms: Any, h: float) -> int:
+    """Propose the number of steps for what follows, from the history alone."""
+    choice, parameters = vec(ms.choice, CHOICE_SIZE), vec(ms.parameters, 8)
+    k = int(choice[K])
+    choice[NEXT_K] = 0.0
+    best, best_growth, best_norm = k, 0.0, 0.0
+    for trial in range(k - 1, k + 2):
+        if trial < parameters[LEAST_K] or trial > parameters[MOST_K] or rows_available(ms) < trial + 2:
+            continue
+        norm = _error(ws, ms, h, trial)
+        growth = (norm + 1e-30) ** (-1.0 / (trial + 1.0))
+        if trial == k:
+            growth *= WORTH
+        if growth > best_growth:
+            best, best_growth, best_norm = trial, growth, norm
+    # the coefficients' nodes stood where the errors were formed
+    weight_rows(ms)[7, 0] = 0.0
+    if best != k:
+        choice[NEXT_K], choice[NEXT_NORM] = best, best_norm
+    return OK

@@ -1,0 +1,297 @@
+"""Outer loop `jfnk`: Jacobian-free Newton-Krylov (Knoll and Keyes 2004) on the accelerations of a stage.
+
+Newton needs the increment of [S, Phi_q^T; Phi_q, 0] with S = M + c_v D + c_q K at the present point. Here S is never
+formed there: GMRES (Saad and Schultz 1986) gets S w as the difference quotient of the residual along the motion that
+w means (q + eps c_q w, v + eps c_v w, a + eps w), preconditioned from the left by the factors that the simulation
+has, however old. They are renewed only if GMRES gets slow. Multipliers enter linearly and with the true Phi_q, so that
+the Krylov vectors are accelerations alone, in error weights.
+Forcing terms: Eisenstat and Walker (1996), choice 2, eta = 0.9 (|g_k| / |g_k-1|)^2.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..linalg import lu_at, solve
+from ..system.evaluate import evaluate_residuals
+from ..system.records import (
+    CONTROL_SIZE,
+    COUNTERS_SIZE,
+    FACTOR_AGE,
+    FAILED_NORM,
+    INNER,
+    KRYLOV,
+    LAST_INNER,
+    LAST_OUTER,
+    MAX_OUTER,
+    NEWTON_TOLERANCE,
+    NOT_FINITE,
+    OK,
+    OUTER,
+    OUTER_DIVERGED,
+    OUTER_RATE,
+    OUTER_SLOW,
+    RATE_SIZE,
+    STAGES,
+)
+from .inner import inner_loop
+from .solver import (
+    LEAST_RATE,
+    MOST_INNER,
+    RATE_GROWTH,
+    add_increment,
+    increment_norm,
+    inner_slack,
+    refactor,
+    set_from_accelerations,
+    solve_increment,
+)
+
+MOST_VECTORS = 30
+SLOW_KRYLOV = 12  # vectors that a stage may take before the preconditioner is renewed at the next
+# rows of `basis`: the point (q, v, a), residuals there, the solution, then the Krylov vectors
+POINT_Q, POINT_V, POINT_A, POINT_R, POINT_C, SOLUTION, FIRST = range(7)
+BASIS_ROWS = FIRST + MOST_VECTORS + 1
+LEAST_FORCING, MOST_FORCING = 1e-4, 0.1
+# of the size of the coordinates: the square root of their rounding
+PROBE = 1e-7
+
+
+@internal
+def _apply(ws: Any, w: Any, c_q: float, c_v: float) -> None:
+    """rhs = preconditioner^-1 (S w, Phi_q w) by a difference quotient at the stored point; the point stays."""
+    n = ws.n
+    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
+    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
+    r, phidd = vec(ws.r, ws.n_ext), vec(ws.phidd, ws.m_ext)
+    scale = vec(ws.scale, n)
+    active = ivec(ws.active, ws.m_act)
+    move, speed_move, speed = 0.0, 0.0, 0.0
+    for i in range(n):
+        move = max(move, abs(w[i]) / scale[i])
+        speed = max(speed, abs(basis[POINT_V, i]) / scale[i])
+    speed_move = c_v * move
+    move *= c_q
+    size = np.inf
+    if move > 0.0:
+        size = PROBE / move
+    if speed_move > 0.0:
+        size = min(size, PROBE * (1.0 + speed) / speed_move)
+    rhs = vec(ws.rhs, n + ws.m_act)
+    for i in range(n + ws.m_act):
+        rhs[i] = 0.0
+    if not np.isfinite(size):
+        return
+    for i in range(n):
+        q[i] = basis[POINT_Q, i] + size * c_q * w[i]
+        v[i] = basis[POINT_V, i] + size * c_v * w[i]
+        a[i] = basis[POINT_A, i] + size * w[i]
+    evaluate_residuals(ws)
+    for i in range(n):
+        rhs[i] = (r[i] - basis[POINT_R, i]) / size
+    for i in range(ws.m_act):
+        rhs[n + i] = (phidd[active[i]] - vec(ws.basis + 8 * POINT_C * ws.n_ext, ws.m_act)[i]) / size
+    solve(lu_at(ws.kkt), ws.rhs)
+
+
+@internal
+def _gmres(ws: Any, c_q: float, c_v: float, forcing: float, hessenberg: Any) -> Any:
+    """Solve for the accelerations' increment; the right-hand side stands in row FIRST, weighted, with norm in
+    hessenberg[0, -1]. Returns (vectors used, relative residual); the solution is in row SOLUTION."""
+    n = ws.n
+    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
+    weight = vec(ws.weight_v, ws.n_ext)
+    increment = vec(ws.rhs, n + ws.m_act)
+    cosine, sine, g = hessenberg[MOST_VECTORS + 1], hessenberg[MOST_VECTORS + 2], hessenberg[MOST_VECTORS + 3]
+    beta = 0.0
+    for i in range(n):
+        beta += basis[FIRST, i] ** 2
+    beta = np.sqrt(beta)
+    solution = basis[SOLUTION]
+    for i in range(n):
+        solution[i] = 0.0
+    if beta == 0.0:
+        return 0, 0.0
+    for i in range(n):
+        basis[FIRST, i] /= beta
+    g[0] = beta
+    used = 0
+    probe = solution
+    for j in range(min(MOST_VECTORS, n)):
+        for i in range(n):
+            probe[i] = basis[FIRST + j, i] * weight[i]
+        _apply(ws, probe, c_q, c_v)
+        new = basis[FIRST + j + 1]
+        for i in range(n):
+            new[i] = increment[i] / weight[i]
+        before = 0.0
+        for i in range(n):
+            before += new[i] * new[i]
+        for l in range(j + 1):
+            hessenberg[l, j] = 0.0
+        for _ in range(2):
+            for l in range(j + 1):
+                along = 0.0
+                for i in range(n):
+                    along += basis[FIRST + l, i] * new[i]
+                hessenberg[l, j] += along
+                for i in range(n):
+                    new[i] -= along * basis[FIRST + l, i]
+        length = 0.0
+        for i in range(n):
+            length += new[i] * new[i]
+        length = np.sqrt(length)
+        if length > 1e-12 * np.sqrt(before):
+            for i in range(n):
+                new[i] /= length
+        else:
+            length = 0.0
+        for l in range(j):
+            upper = cosine[l] * hessenberg[l, j] + sine[l] * hessenberg[l + 1, j]
+            hessenberg[l + 1, j] = -sine[l] * hessenberg[l, j] + cosine[l] * hessenberg[l + 1, j]
+            hessenberg[l, j] = upper
+        radius = np.hypot(hessenberg[j, j], length)
+        if radius == 0.0:
+            break
+        cosine[j], sine[j] = hessenberg[j, j] / radius, length / radius
+        hessenberg[j, j] = radius
+        g[j + 1] = -sine[j] * g[j]
+        g[j] *= cosine[j]
+        used = j + 1
+        if abs(g[j + 1]) <= forcing * beta or length == 0.0:
+            break
+    for i in range(n):
+        solution[i] = 0.0
+    for j in range(used - 1, -1, -1):
+        y = g[j]
+        for l in range(j + 1, used):
+            y -= hessenberg[j, l] * g[l]
+        g[j] = y / hessenberg[j, j]
+    for j in range(used):
+        for i in range(n):
+            solution[i] += g[j] * basis[FIRST + j, i] * weight[i]
+    return used, abs(g[used]) / beta if used > 0 else 1.0
+
+
+@internal
+def _remember(ws: Any) -> None:
+    """Store the present point and its residuals."""
+    n = ws.n
+    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
+    q, v, a, r = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext), vec(ws.r, ws.n_ext)
+    phidd, active = vec(ws.phidd, ws.m_ext), ivec(ws.active, ws.m_act)
+    constraints = vec(ws.basis + 8 * POINT_C * ws.n_ext, ws.m_act)
+    for i in range(n):
+        basis[POINT_Q, i], basis[POINT_V, i], basis[POINT_A, i], basis[POINT_R, i] = q[i], v[i], a[i], r[i]
+    for i in range(ws.m_act):
+        constraints[i] = phidd[active[i]]
+
+
+@internal
+def _return(ws: Any) -> None:
+    """Back to the stored point."""
+    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
+    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
+    for i in range(ws.n):
+        q[i], v[i], a[i] = basis[POINT_Q, i], basis[POINT_V, i], basis[POINT_A, i]
+
+
+@internal
+def solve_jfnk_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+    """Solve one stage from the predicted a, lambda in the workspace; with a new preconditioner if an old one fails."""
+    rate = vec(ws.rate, RATE_SIZE)
+    vec(ws.t, 1)[0] = t
+    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
+    set_from_accelerations(ws, c_q, c_v)
+    evaluate_residuals(ws)
+    if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > SLOW_KRYLOV or rate[LAST_INNER] > MOST_INNER:
+        status = refactor(ws, c_q, c_v)
+        if status != OK:
+            return status
+    fresh = rate[FACTOR_AGE] == 0.0
+    rate[FACTOR_AGE] += 1.0
+    status = _iterate(ws, c_q, c_v)
+    if status == OK or fresh:
+        return status
+    set_from_accelerations(ws, c_q, c_v)
+    evaluate_residuals(ws)
+    status = refactor(ws, c_q, c_v)
+    if status != OK:
+        return status
+    rate[FACTOR_AGE] += 1.0
+    return _iterate(ws, c_q, c_v)
+
+
+@internal
+def _iterate(ws: Any, c_q: float, c_v: float) -> int:
+    """The inexact Newton iteration."""
+    control, counters, rate = (
+        vec(ws.control, CONTROL_SIZE), ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE),
+    )  # fmt: skip
+    n, m_act = ws.n, ws.m_act
+    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
+    weight = vec(ws.weight_v, ws.n_ext)
+    increment = vec(ws.rhs, n + m_act)
+    lam, active = vec(ws.lam, ws.m_ext), ivec(ws.active, m_act)
+    hessenberg = np.zeros((MOST_VECTORS + 4, MOST_VECTORS + 1))
+    tolerance, slack = control[NEWTON_TOLERANCE], inner_slack(control)
+    start_inner = counters[INNER]
+    previous, vectors, forcing = np.inf, 0, MOST_FORCING
+    status = OUTER_SLOW
+    for k in range(int(control[MAX_OUTER])):
+        status = inner_loop(ws, ws.lu_d, slack, np.inf)
+        if status != OK:
+            return status
+        _remember(ws)
+        solve_increment(ws, ws.kkt)
+        counters[OUTER] += 1
+        norm = increment_norm(ws, c_q, c_v)
+        if not np.isfinite(norm):
+            return NOT_FINITE
+        known = min(rate[OUTER_RATE] * RATE_GROWTH, 0.99)
+        if k > 0:
+            contraction = norm / previous
+            known = min(max(contraction, LEAST_RATE), 0.99)
+            rate[OUTER_RATE] = known
+            if contraction > 0.9 and norm > tolerance:
+                rate[FAILED_NORM] = contraction
+                return OUTER_DIVERGED
+            forcing = min(MOST_FORCING, max(LEAST_FORCING, 0.9 * contraction * contraction))
+        previous = norm
+        for i in range(m_act):
+            lam[active[i]] += increment[n + i]
+        # as long as the preconditioned residual is above the tolerance, GMRES decides on the increment
+        if norm > 0.1 * tolerance:
+            for i in range(n):
+                basis[FIRST, i] = increment[i] / weight[i]
+            # the residual that stays in the linear system need not be far below the tolerance either
+            wanted = max(forcing, min(MOST_FORCING, 0.05 * tolerance / norm))
+            # the multipliers have moved: so has the reference of the difference quotients
+            evaluate_residuals(ws)
+            _remember(ws)
+            used, left = _gmres(ws, c_q, c_v, wanted, hessenberg)
+            counters[KRYLOV] += used
+            vectors = max(vectors, used)
+            _return(ws)
+            if left > 0.5:
+                return OUTER_SLOW
+            for i in range(n):
+                increment[i] = basis[SOLUTION, i]
+            known = max(known, left)
+        for i in range(m_act):
+            increment[n + i] = 0.0
+        add_increment(ws, c_q, c_v)
+        evaluate_residuals(ws)
+        status = OUTER_SLOW
+        if norm * known / (1.0 - known) <= tolerance:
+            status = OK
+            rate[OUTER_RATE] = known
+            rate[LAST_OUTER] = float(vectors)
+            break
+    if status != OK:
+        return status
+    status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
+    rate[LAST_INNER] = counters[INNER] - start_inner
+    return status
