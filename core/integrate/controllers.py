@@ -20,5 +20,5 @@ class Controller:
 CONTROLLERS = {
     "elementary": Controller(1.0, 0.0, 0.0, "each step from its own error"),
     "pi": Controller(0.7, -0.4, 0.0, "proportional-integral, as in DOPRI5 and for stiff problems (Gustafsson 1991)"),
-    "h211b": Controller(0.25, 0.25, 0.25, "digital filter H211b with b = 4: smooth steps (Soederlind 2003)"),
+    "h211b": Controller(0.25, 0.25, 0.25, "digital filter H211b with b = 4 (Soederlind 2003, table 3)"),
 }

@@ -103,6 +103,10 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     # a formula that looks ahead (extended BDF) must not see what lies behind a jump of a force
     blind = lc.rows > 1 and history_time(ms, 0) + 2.000001 * h > vec(lc.clock, CLOCK_SIZE)[BREAK_TIME]
     starting = rows_available(ms) < lc.rows or blind
+    choice = vec(ms.choice, CHOICE_SIZE)
+    if lc.select != 0 and choice[K] >= lc.rows and rows_available(ms) <= choice[K]:
+        # a chosen order that the history cannot serve yet
+        choice[K] = max(lc.rows, rows_available(ms)) - 1.0
     set_weights(ws, ms)
     status = call_step(lc.starter if starting else lc.step, ws, ms, h)
     if status == OK and not all_finite(ws):
