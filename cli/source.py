@@ -1,7 +1,7 @@
 """What a command works on: a scenario of the catalogue or a model file, with the settings of the command line."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -11,10 +11,21 @@ from ..core import METHODS, Model, ModelError
 from ..models import Scenario, catalogue, load
 from .options import pairs, value_of
 
-RUN_OPTIONS = (
-    "acceleration", "controller", "depth", "fallback", "first_step", "max_step", "newton_tolerance", "outer",
-    "start_tolerance",
-)  # fmt: skip
+RUN_OPTIONS: Mapping[str, tuple[str, str]] = {
+    "outer": ("newton", "outer loop of the TLISMNI methods: newton, simple (the fixed point) or jfnk (Newton-Krylov)"),
+    "acceleration": ("none", "of outer=simple: none, aitken or anderson"),
+    "depth": ("3", "of acceleration=anderson: iterates that are combined, 1 to 5"),
+    "fallback": ("false", "true: newton takes over if the outer loop fails; it is reported"),
+    "controller": ("elementary", "step sizes of one-step methods: elementary, pi or h211b"),
+    "first_step": ("", "first step under error control, s"),
+    "max_step": ("", "largest step under error control, s"),
+    "newton_tolerance": (
+        "",
+        "where the outer loop stops: with --step absolute and relative (1e-10), else in error weights (0.01)",
+    ),
+    "start_tolerance": ("0.001", "how far the start may be moved to meet the constraints, relative"),
+}
+"""Options of a run that belong to every method: default and meaning."""
 """Options that every method takes."""
 
 

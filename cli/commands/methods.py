@@ -13,15 +13,20 @@ EXAMPLES = "Examples:\n\n  tlismni methods\n\n  tlismni run chain --method ebdf 
 def methods(json: Json = False, debug: Debug = False) -> None:
     """List the integration methods with their options."""
     from ...core import METHODS
+    from ..source import RUN_OPTIONS
 
     if json:
-        print_json({"methods": [_data(method) for method in METHODS.values()]})
+        shared = [{"name": n, "default": d, "description": text} for n, (d, text) in RUN_OPTIONS.items()]
+        print_json({"methods": [_data(method) for method in METHODS.values()], "run_options": shared})
         return
     for method in METHODS.values():
         stdout().print(f"[bold]{method.name}[/bold]: {method.description}")
         rows = [(name, _shown(_value(o, o.default)), _range(o), o.description) for name, o in method.options.items()]
         if rows:
             print_table("", ("option", "default", "range", "meaning"), rows, left=4)
+    stdout().print()
+    rows = [(name, default, meaning) for name, (default, meaning) in RUN_OPTIONS.items()]
+    print_table("options of every run", ("option", "default", "meaning"), rows, left=3)
 
 
 def _value(option: Any, value: float | str) -> float | int | str:
