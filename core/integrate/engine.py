@@ -332,8 +332,9 @@ class Engine:
                 f"no accelerations and multipliers at t = {arrays['t'][0]:.9g} s: the augmented system "
                 "[M Phi_q^T; Phi_q 0] is singular or a force is not finite there"
             )
-        arrays["aux"][:] = arrays["a"]
         evaluate_power(self.workspace.record)
+        # with the rates of the work accounts: Newmark's formula integrates them from here
+        arrays["aux"][:] = arrays["a"]
 
     def pulling(self) -> list[int]:
         """Closed contacts whose force is tensile at the workspace's point: they open at once."""

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from helpers import GROUND, G, ball_over_floor, floor_contact, on, point_pendulum, rod_pendulum
+from helpers import GROUND, G, ball_over_floor, events, floor_contact, on, point_pendulum, rod_pendulum
 from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -197,3 +197,17 @@ def test_sampling_between_steps_adds_no_error_to_the_ledger(method):
     between = imbalance(simulate(model, 1.0, method, t_eval=times, **tolerances))
     assert at_steps < 1e-5
     assert between < 2.0 * at_steps + 1e-8
+
+
+@pytest.mark.parametrize("method", ["hht", "newmark", "trapezoidal", "park"])
+def test_ledger_of_low_order_formulas_follows_the_tolerance_through_damped_contacts(method):
+    """The damper's power jumps at the end of the contact: it must not leak into the step after."""
+    system = ball_over_floor(KelvinVoigt(stiffness=200.0, damping=3.0))
+    worst = []
+    for rtol in (1e-6, 1e-8):
+        result = simulate(system, 2.0, method, rtol, rtol * 1e-2)
+        worst.append(np.abs(result["energy.balance"]).max() / 9.81)
+        assert len(events(result, "open")) == 2
+    assert worst[1] < 1e-5
+    # of second order, h ~ rtol^(1/3)
+    assert worst[1] < 0.15 * worst[0]
