@@ -127,14 +127,13 @@ def slider_crank(
         Revolute2D(name="crank_pin", a=crank_end, b=Marker2D(body="rod", point=(-0.5 * rod_length, 0.0))),
         Prismatic2D(name="guide", a=Marker2D(), b=Marker2D(body="slider")),
     )
-    wrist = {"name": "wrist", "a": rod_end, "b": Marker2D(body="slider")}
+    on_slider = Marker2D(body="slider")
     if bushing_stiffness:
-        pin = Bushing2D(**wrist, stiffness=bushing_stiffness, damping=bushing_damping)
-        model = Model(name="slider_crank", gravity=(0.0, -gravity), bodies=bodies, joints=joints, forces=(pin,))
+        bushing = Bushing2D(name="wrist", a=rod_end, b=on_slider, stiffness=bushing_stiffness, damping=bushing_damping)
+        model = Model(name="slider_crank", gravity=(0.0, -gravity), bodies=bodies, joints=joints, forces=(bushing,))
     else:
-        model = Model(
-            name="slider_crank", gravity=(0.0, -gravity), bodies=bodies, joints=(*joints, Revolute2D(**wrist))
-        )
+        pin = Revolute2D(name="wrist", a=rod_end, b=on_slider)
+        model = Model(name="slider_crank", gravity=(0.0, -gravity), bodies=bodies, joints=(*joints, pin))
     return Scenario(
         name=model.name,
         description="",

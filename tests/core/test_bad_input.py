@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from helpers import GROUND, ball_over_floor, circle_pendulum, floor_contact, on, point_pendulum, rod_pendulum
 from tlismni.core import (
-    Bushing2D,
     AppliedForce2D,
+    Bushing2D,
     ConsistencyError,
     Constant,
     CoordinateDriver,

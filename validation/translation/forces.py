@@ -1,6 +1,5 @@
 """Springs and applied loads."""
 
-import math
 from typing import Any
 
 from ...core.elements import AppliedForce2D, AppliedTorque2D, Bushing2D, SpringDamper2D
@@ -33,7 +32,7 @@ def bushing(record: Bushing2D, build: Build) -> None:
     if not (record.rotational_stiffness or record.rotational_damping):
         return
     # exudyn measures the angle within one turn only; the data node carries it on beyond
-    start = build.start_angle(record.b.body) + record.b.angle - build.start_angle(record.a.body) - record.a.angle
+    start = build.start_angle(record.b.body) - build.start_angle(record.a.body)
     turns = build.add("NodeGenericData", numberOfDataCoordinates=1, initialCoordinates=[start])
     build.add(
         "ObjectConnectorTorsionalSpringDamper",
@@ -41,14 +40,8 @@ def bushing(record: Bushing2D, build: Build) -> None:
         nodeNumber=turns,
         stiffness=record.rotational_stiffness,
         damping=record.rotational_damping,
-        rotationMarker0=_about_z(record.a.angle),
-        rotationMarker1=_about_z(record.b.angle),
+        offset=record.a.angle - record.b.angle,
     )
-
-
-def _about_z(angle: float) -> list[list[float]]:
-    c, s = math.cos(angle), math.sin(angle)
-    return [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
 
 
 @translates(AppliedForce2D)
