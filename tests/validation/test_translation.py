@@ -8,10 +8,12 @@ import pytest
 from momentum import momentum_drift
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
+from tlismni.core import simulate
 from tlismni.core.description import Model
 from tlismni.core.elements import (
     AppliedForce2D,
     AppliedTorque2D,
+    Bushing2D,
     CoordinateDriver,
     Distance2D,
     PointMass2D,
@@ -24,6 +26,7 @@ from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.signals import InputSignal, Polynomial, Ramp, Sine, Step, Table
 from tlismni.models import load
+from tlismni.validation.errors import NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.exudyn_run import ExudynSettings, run_exudyn
 
@@ -195,6 +198,49 @@ def test_spring_between_two_bodies_off_their_centres_conserves_momentum() -> Non
         ),
     )  # fmt: skip
     assert momentum_drift(model, 1.0, 1e-3) < 1e-5
+
+
+@pytest.mark.parametrize("turns", [0.0, -4.0, 9.0])
+def test_bushing_between_two_bodies_follows_our_own_run(turns: float) -> None:
+    """Off the centres, with all its four coefficients, wound up by more than one turn too."""
+    model = Model(
+        **WEIGHTLESS,
+        bodies=(
+            RigidBody2D(name="a", mass=2.0, inertia=0.2, velocity=(0.1, 0.4), angular_velocity=1.0),
+            RigidBody2D(name="b", mass=1.0, inertia=0.1, position=(0.4, 0.2), angle=turns),
+        ),
+        forces=(
+            Bushing2D(
+                name="s", a=Marker2D(body="a", point=(0.1, 0.2), angle=0.3),
+                b=Marker2D(body="b", point=(-0.2, 0.1), angle=-0.5), stiffness=50.0, damping=0.8,
+                rotational_stiffness=1.5, rotational_damping=0.1,
+            ),
+        ),
+    )  # fmt: skip
+    r = run_exudyn(model, 1.0, 1e-3)
+    ours = simulate(model, 1.0, rtol=1e-9, atol=1e-11, t_eval=r.t)
+    for body in ("a", "b"):
+        for name in ("x", "y", "angle"):
+            assert np.abs(r[f"{body}.{name}"] - ours[f"{body}.{name}"]).max() < 2e-4
+    assert np.ptp(ours["b.angle"]) > 0.5
+
+
+def test_bushing_on_a_point_mass_oscillates_about_its_rest_point() -> None:
+    model = Model(
+        **WEIGHTLESS,
+        bodies=(PointMass2D(name="p", mass=2.0, position=(0.3, 0.0), velocity=(0.0, 1.0)),),
+        forces=(Bushing2D(name="s", a=Marker2D(), b=Marker2D(body="p"), stiffness=200.0, damping=4.0),),
+    )
+    r = run_exudyn(model, 2.0, 1e-3)
+    w, decay = math.sqrt(100.0 - 1.0), np.exp(-r.t)
+    assert np.abs(r["p.x"] - 0.3 * decay * (np.cos(w * r.t) + np.sin(w * r.t) / w)).max() < 1e-4
+    assert np.abs(r["p.y"] - decay * np.sin(w * r.t) / w).max() < 1e-4
+
+
+def test_bushing_with_a_rotational_part_needs_a_body_that_can_turn() -> None:
+    bushing = Bushing2D(name="s", a=Marker2D(), b=Marker2D(body="p"), stiffness=1.0, rotational_stiffness=1.0)
+    with pytest.raises(NotTranslatable, match="orientation of 'p'"):
+        run_exudyn(Model(bodies=(PointMass2D(name="p", mass=2.0),), forces=(bushing,)), 0.1, 1e-2)
 
 
 @pytest.mark.parametrize("follower", [False, True])

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...core.elements import AppliedForce2D, AppliedTorque2D, SpringDamper2D
+from ...core.elements import AppliedForce2D, AppliedTorque2D, Bushing2D, SpringDamper2D
 from ...core.model.markers import GROUND, Marker2D
 from .registry import Build, translates
 from .signals import TimeFunction, time_function
@@ -17,6 +17,30 @@ def spring_damper(record: SpringDamper2D, build: Build) -> None:
         referenceLength=record.natural_length,
         stiffness=record.stiffness,
         damping=record.damping,
+    )
+
+
+@translates(Bushing2D)
+def bushing(record: Bushing2D, build: Build) -> None:
+    """ObjectConnectorCartesianSpringDamper, and ObjectConnectorTorsionalSpringDamper for the rotational part."""
+    build.add(
+        "ObjectConnectorCartesianSpringDamper",
+        markerNumbers=[build.point(record.a), build.point(record.b)],
+        stiffness=[record.stiffness, record.stiffness, 0.0],
+        damping=[record.damping, record.damping, 0.0],
+    )
+    if not (record.rotational_stiffness or record.rotational_damping):
+        return
+    # exudyn measures the angle within one turn only; the data node carries it on beyond
+    start = build.start_angle(record.b.body) - build.start_angle(record.a.body)
+    turns = build.add("NodeGenericData", numberOfDataCoordinates=1, initialCoordinates=[start])
+    build.add(
+        "ObjectConnectorTorsionalSpringDamper",
+        markerNumbers=[build.frame(record.a, record.name), build.frame(record.b, record.name)],
+        nodeNumber=turns,
+        stiffness=record.rotational_stiffness,
+        damping=record.rotational_damping,
+        offset=record.a.angle - record.b.angle,
     )
 
 
