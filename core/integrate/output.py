@@ -153,7 +153,7 @@ class ChannelTable:
         """All channels (channels,) of one sample, the same bits as `column` gives."""
         # bincount adds the terms of each channel in their order
         channel, column = self._terms
-        out = np.bincount(channel, self._signs * sample[column], len(self._formulas))
+        out = np.bincount(channel, self._signs * sample[column], len(self._formulas)).astype(np.float64, copy=False)
         out[self._balance] -= self.initial_energy
         channel, column = self._plain
         out[channel] = sample[column]
