@@ -15,6 +15,20 @@ def positive(value: float | None) -> float | None:
     return value
 
 
+MOST_SAMPLES = 10_000_000
+"""Points in time beyond this number are a slip of the pen: they would fill the memory."""
+
+
+def check_samples(t_end: float, interval: float, option: str) -> None:
+    """Refuse an interval (s) that would divide the run into more than MOST_SAMPLES parts."""
+    if t_end / interval > MOST_SAMPLES:
+        raise typer.BadParameter(
+            f"{interval:g} s would give {t_end / interval:.3g} points up to t_end = {t_end:g} s, more than "
+            f"{MOST_SAMPLES:.0e}: use at least {t_end / MOST_SAMPLES:.3g} s, or a smaller --t-end",
+            param_hint=option,
+        )
+
+
 def pairs(given: Iterable[str], option: str) -> dict[str, str]:
     """`name=value` texts as a dict. Raises BadParameter for a text without `=` or a name given twice."""
     found: dict[str, str] = {}
@@ -80,6 +94,36 @@ MethodOption = Annotated[
 CommunicationStep = Annotated[
     float | None,
     typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s."),
+]
+ComparisonStep = Annotated[
+    float, typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s.")
+]
+Irregular = Annotated[bool, typer.Option("--irregular", help="Steps of 0.2 to 1.8 times that, the same in every run.")]
+ExudynStep = Annotated[
+    float | None, typer.Option("--exudyn-step", callback=positive, help="exudyn's step in s; chosen if left out.")
+]
+FmiVersion = Annotated[str, typer.Option("--fmi", help="Version of the FMI standard.")]
+FmuFile = Annotated[Path, typer.Option("--output", "-o", help="The FMU to write, .fmu.")]
+FmuFolder = Annotated[
+    Path | None, typer.Option("--output", "-o", metavar="DIR", help="Leave FMU, CSV files and figure here.")
+]
+ReportFolder = Annotated[
+    Path | None, typer.Option("--report", metavar="DIR", help="Write the report, its figures and numbers here.")
+]
+Every = Annotated[
+    float | None,
+    typer.Option(
+        "--every", callback=positive, help="Record at intervals of this many s, not at every step.",
+        rich_help_panel=_OUTPUT,
+    ),
+]  # fmt: skip
+ResultFile = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", help="Write all channels: .csv, .json or .npz.", rich_help_panel=_OUTPUT),
+]
+PlotFile = Annotated[
+    Path | None,
+    typer.Option("--plot", help="Draw the main channels: .png, .pdf or .svg.", rich_help_panel=_OUTPUT),
 ]
 Json = Annotated[bool, typer.Option("--json", help="One JSON object on stdout.", rich_help_panel=_OUTPUT)]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of a failure.", rich_help_panel=_OUTPUT)]

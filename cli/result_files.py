@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..core import Result
+from .errors import Failure
 from .screen import plain
 
 
@@ -47,7 +48,20 @@ def _rows(columns: Sequence[Any]) -> Iterable[Sequence[Any]]:
 
 
 def replace_whole(path: Path, write: Callable[[str], Any]) -> Path:
-    """Let `write` fill a file beside `path`, then put it in its place. Missing folders are made."""
+    """Let `write` fill a file beside `path`, then put it in its place. Missing folders are made.
+
+    Raises
+    ------
+    Failure : if it cannot be written; names `path`.
+    """
+    try:
+        return _replace_whole(path, write)
+    except OSError as error:
+        # the system speaks of the temporary file, of which the user knows nothing
+        raise Failure(f"'{path}' cannot be written: {error.strerror or error}") from error
+
+
+def _replace_whole(path: Path, write: Callable[[str], Any]) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(suffix=path.suffix, dir=path.parent)
     os.close(handle)

@@ -3,13 +3,14 @@
 import json
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from .contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
-from .elements import Body, Element, Force, Joint, PointMass2D
+from .elements import Body, Element, Force, Joint, PlanarBody, PointMass2D
 from .errors import ModelError
 from .model.base import Record, Vector2
 from .model.channels import Input, Parameter
@@ -65,6 +66,8 @@ class Model(Record):
                         f"'{element.name}' has a marker at {marker.point} of point mass '{marker.body}', "
                         "which has no extension: use (0, 0), or a RigidBody2D"
                     )
+            for body, coordinate in element.moved_coordinates():
+                self._check_coordinate(element, body, bodies.get(body), coordinate)
             for signal in element.signals():
                 if isinstance(signal, InputSignal) and signal.channel not in inputs:
                     raise ValueError(
@@ -72,11 +75,26 @@ class Model(Record):
                         f"declared are {sorted(inputs)}"
                     )
         for parameter in self.parameters:
-            for target in parameter.targets:
-                value = self._value_at(target)
-                if isinstance(value, bool) or not isinstance(value, int | float):
-                    raise ValueError(f"parameter '{parameter.name}': '{target}' holds {value!r}, which is no number")
+            parameter.refuse_outside(self._number_at(parameter, parameter.targets[0]))
+            for target in parameter.targets[1:]:
+                self._number_at(parameter, target)
         return self
+
+    def _number_at(self, parameter: Parameter, target: str) -> float:
+        value = self._value_at(target)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"parameter '{parameter.name}': '{target}' holds {value!r}, which is no number")
+        return value
+
+    @staticmethod
+    def _check_coordinate(element: Element, name: str, body: PlanarBody | None, coordinate: str) -> None:
+        if body is None:
+            raise ValueError(f"'{element.name}' acts on coordinate '{coordinate}' of the ground, which does not move")
+        if coordinate not in body.coordinate_names:
+            raise ValueError(
+                f"'{element.name}' acts on coordinate '{coordinate}' of '{name}', but a {type(body).__name__} has only "
+                f"{list(body.coordinate_names)}: use a RigidBody2D, or another coordinate"
+            )
 
     def elements(self) -> Iterator[Element]:
         """All elements in the order bodies, joints, forces, contacts."""
@@ -118,9 +136,12 @@ class Model(Record):
         elements = {e["name"]: e for kind in ("bodies", "joints", "forces", "contacts") for e in data[kind]}
         for name, value in values.items():
             parameter = self._parameter(name)
-            low, high = parameter.minimum, parameter.maximum
-            if (low is not None and value < low) or (high is not None and value > high):
-                raise ModelError(f"parameter '{name}' = {value} is outside its range [{low}, {high}]")
+            if isinstance(value, bool) or not isinstance(value, Real):
+                raise ModelError(f"parameter '{name}' = {value!r}: a number is needed")
+            try:
+                parameter.refuse_outside(value)
+            except ValueError as error:
+                raise ModelError(str(error)) from None
             for target in parameter.targets:
                 element, *path, last = target.split(".")
                 record = elements[element]

@@ -29,6 +29,10 @@ class FmuValueError(FmuError, ValueError):
     """A value, a name or a value reference that the slave refuses."""
 
 
+class SourceError(FmuError, TypeError):
+    """What shall be a slave or an FMU is neither a model nor a scenario."""
+
+
 class SnapshotError(FmuError):
     """A stored state that is unknown, damaged, or belongs to another model or version."""
 

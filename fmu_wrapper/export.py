@@ -56,8 +56,10 @@ def export_fmu(
 
     Raises
     ------
-    ExportError : for an FMI version that is not written, a missing shim or folder, a setting that is no JSON data.
+    ExportError : for an FMI version that is not written, a missing shim, a file that cannot be written, a setting
+        that is no JSON data.
     ModelError, FmuValueError : for a wrong model or setting.
+    SourceError : for what is neither a Model nor a Scenario; an EquationSystem is code, not data.
     """
     if fmi_version != "2.0":
         known = str(fmi_version).startswith("3")
@@ -147,6 +149,14 @@ def _json(data: Any) -> bytes:
 
 def _write(path: Path, files: dict[str, bytes]) -> Path:
     """Write the archive with fixed dates, so that equal content is an equal file; whole, or not at all."""
+    try:
+        return _write_beside(path, files)
+    except OSError as error:
+        # the system speaks of the temporary file beside it
+        raise ExportError(f"'{path}' cannot be written: {error.strerror or error}") from error
+
+
+def _write_beside(path: Path, files: dict[str, bytes]) -> Path:
     handle, temporary = tempfile.mkstemp(suffix=".fmu", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream, zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:

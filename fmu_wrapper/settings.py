@@ -6,7 +6,8 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from ..core.description import Model
-from .errors import FmuValueError
+from ..core.equations.system import EquationSystem
+from .errors import FmuValueError, SourceError
 
 OWN = ("method", "rtol", "atol", "step", "t_end", "communication_step")
 
@@ -45,12 +46,18 @@ class Settings:
 
         Raises
         ------
-        TypeError : if `source` is neither a Model nor has a `.model` that is one.
+        SourceError (a TypeError) : if `source` is neither a Model nor has a `.model` that is one.
         FmuValueError : for a setting out of range.
         """
         model = source if isinstance(source, Model) else getattr(source, "model", None)
+        if isinstance(source, EquationSystem) or isinstance(model, EquationSystem):
+            raise SourceError(
+                "an EquationSystem cannot become a slave or an FMU: an FMU embeds its model as data, which any "
+                "machine can read and check, and user functions are code; describe the system as a "
+                "tlismni.core.Model, or step it in Python with tlismni.core.Simulation"
+            )
         if not isinstance(model, Model):
-            raise TypeError(
+            raise SourceError(
                 f"a Model or a Scenario is needed, not {type(source).__name__}; "
                 "use tlismni.core.Model.load(path) or tlismni.models.load(name)"
             )

@@ -255,8 +255,12 @@ class Slave:
 
         Raises
         ------
-        SnapshotError : if it belongs to another model or other settings.
+        SnapshotError : if it is no snapshot, or belongs to another model or other settings.
         """
+        if not isinstance(snapshot, Snapshot):
+            raise SnapshotError(
+                f"a Snapshot is needed to restore, not {type(snapshot).__name__}; bytes go through snapshot_from_bytes"
+            )
         if snapshot.identity != self.identity:
             raise SnapshotError("the stored state belongs to another model or other settings")
         values = snapshot.values.copy()

@@ -89,6 +89,8 @@ class Snapshot:
         ------
         SnapshotError : if the bytes are no snapshot, damaged, or of another version or model.
         """
+        if not isinstance(data, bytes | bytearray):
+            raise SnapshotError(f"the bytes of a stored state are needed, not {type(data).__name__}")
         if not data.startswith(MAGIC):
             raise SnapshotError(f"these {len(data)} bytes are no stored state of a tlismni slave")
         start = len(MAGIC) + LENGTHS

@@ -9,7 +9,7 @@ from .registry import scenario
 from .scenario import Scenario
 
 PARAMETERS = (
-    ScenarioParameter("links", 10, "-", "number of links", 1),
+    ScenarioParameter("links", 10, "-", "number of links", 1, 20_000),
     ScenarioParameter("length", 1.0, "m", "length of each link", 0.0, exclusive=True),
     ScenarioParameter("mass", 1.0, "kg", "mass of each link", 0.0, exclusive=True),
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, downwards", 0.0),

@@ -11,6 +11,9 @@ from typing import Any
 
 from ..core.errors import ModelError
 
+LARGEST_INTEGER = 20_000.0
+"""Largest value of an integer parameter that does not say its own."""
+
 Value = float | int | bool | str | None
 
 
@@ -22,7 +25,12 @@ class ScenarioError(ModelError):
 class ScenarioParameter:
     """One parameter of a scenario.
 
-    `kind` follows from `default` unless given: "number", "integer", "switch" or "choice".
+    `kind` follows from `default`: "number", "integer", "switch" or "choice". An integer without `maximum` goes up to
+    LARGEST_INTEGER: integers count parts of a model, and a slip of the pen must not fill the memory.
+
+    Raises
+    ------
+    ScenarioError : if the default is not in the range, or the range is empty.
     """
 
     name: str
@@ -44,6 +52,16 @@ class ScenarioParameter:
         if isinstance(self.default, bool):
             return "switch"
         return "integer" if isinstance(self.default, int) else "number"
+
+    def __post_init__(self) -> None:
+        if self.kind == "integer" and self.maximum is None:
+            object.__setattr__(self, "maximum", LARGEST_INTEGER)
+        if self.minimum is not None and self.maximum is not None and self.minimum > self.maximum:
+            raise ScenarioError(
+                f"parameter '{self.name}' has minimum {self.minimum:g} above maximum {self.maximum:g}: no value fits"
+            )
+        if self.default is not None:
+            self.check(self.default)
 
     def check(self, value: Any) -> Value:
         """`value` in the parameter's type. Raises ScenarioError if it cannot be."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from .parameters import ScenarioParameter, fill, unknown
+from .parameters import ScenarioError, ScenarioParameter, fill, unknown
 from .scenario import Scenario
 
 
@@ -63,6 +63,8 @@ def catalogue() -> tuple[Entry, ...]:
 
 
 def _entry(name: str) -> Entry:
+    if not isinstance(name, str):
+        raise ScenarioError(f"a scenario's name is needed, a text, not {name!r}; there are {sorted(_ENTRIES)}")
     if name not in _ENTRIES:
         raise unknown("scenario", name, _ENTRIES)
     return _ENTRIES[name]

@@ -99,9 +99,13 @@ def crosscheck(
     ------
     ExudynUnavailable : if exudyn cannot be used. NotTranslatable : if the model has no equal in exudyn.
     ScenarioError : for unknown scenarios and parameters. ValueError : for a Model without t_end.
+    OSError : if `report_dir` cannot be made, before anything is run.
     """
     chosen = _scenario(scenario, t_end, parameters)
     import_exudyn()  # before our own run: say at once if it is missing
+    folder = None if report_dir is None else Path(report_dir)
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
     task = Task(chosen, exudyn_model or chosen.model, step, progress or log.info)
     if not chosen.model.contacts:
         comparison = compare_motion(task)
@@ -110,7 +114,7 @@ def crosscheck(
     else:
         comparison = compare_forces(task)
     found = CrossCheck(chosen.name, chosen.description, chosen.parameters, comparison)
-    return found if report_dir is None else _reported(found, Path(report_dir))
+    return found if folder is None else _reported(found, folder)
 
 
 def _scenario(scenario: str | Scenario | Model, t_end: float | None, parameters: Mapping[str, Any]) -> Scenario:
@@ -142,7 +146,6 @@ def _reported(found: CrossCheck, folder: Path) -> CrossCheck:
     from .plots import save_figures
     from .report import write_report
 
-    folder.mkdir(parents=True, exist_ok=True)
     figures = save_figures(found, folder)
     written = replace(found, figures=figures, report=folder / f"{found.scenario}_crosscheck.html")
     write_report(written)

@@ -2,13 +2,27 @@
 
 import tempfile
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from ..errors import Failure, one_line_errors
-from ..options import Atol, Debug, EndTime, Json, MethodName, MethodOption, Rtol, Set, Source, Step, positive
+from ..options import (
+    Atol,
+    ComparisonStep,
+    Debug,
+    EndTime,
+    FmuFolder,
+    Irregular,
+    Json,
+    MethodName,
+    MethodOption,
+    Rtol,
+    Set,
+    Source,
+    Step,
+    check_samples,
+)
 from ..screen import compile_notice, number, print_json, print_table, say, status_line, stdout
+from ..targets import check_folder
 
 EXAMPLES = (
     "Examples:\n\n  tlismni cosim pendulum_stop -o out/demo\n\n"
@@ -19,15 +33,9 @@ EXAMPLES = (
 @one_line_errors
 def cosim(
     source: Source,
-    communication_step: Annotated[
-        float, typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s.")
-    ] = 0.01,
-    irregular: Annotated[
-        bool, typer.Option("--irregular", help="Steps of 0.2 to 1.8 times that, the same in every run.")
-    ] = False,
-    folder: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="DIR", help="Leave FMU, CSV files and figure here.")
-    ] = None,
+    communication_step: ComparisonStep = 0.01,
+    irregular: Irregular = False,
+    folder: FmuFolder = None,
     sets: Set = None,
     t_end: EndTime = None,
     method: MethodName = None,
@@ -43,11 +51,14 @@ def cosim(
     At every communication point all outputs must be the same bit for bit; if not, the exit code is 1. For
     information, the run is compared with one that has no communication points too.
     """
+    check_folder(folder)
+
     from ...fmu_wrapper import export_fmu
     from ..cosimulation import communication_points, compare
     from ..source import read_source
 
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
+    check_samples(scenario.t_end, communication_step, "--communication-step")
     times = communication_points(scenario.t_end, communication_step, irregular)
     with tempfile.TemporaryDirectory(prefix="tlismni_", ignore_cleanup_errors=True) as temporary:
         place = Path(temporary) if folder is None else folder

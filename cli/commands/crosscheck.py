@@ -1,13 +1,23 @@
 """`tlismni crosscheck`: the same scenario in exudyn, quantity by quantity."""
 
-from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from ..errors import Failure, one_line_errors
-from ..options import Atol, Debug, EndTime, Json, MethodName, MethodOption, Rtol, Set, Source, positive
+from ..options import (
+    Atol,
+    Debug,
+    EndTime,
+    ExudynStep,
+    Json,
+    MethodName,
+    MethodOption,
+    ReportFolder,
+    Rtol,
+    Set,
+    Source,
+)
 from ..screen import compile_notice, number, print_json, print_table, say, status_line, stdout
+from ..targets import check_folder
 
 EXAMPLES = (
     "Examples:\n\n  tlismni crosscheck pendulum_stop --report out/check\n\n"
@@ -18,13 +28,8 @@ EXAMPLES = (
 @one_line_errors
 def crosscheck(
     source: Source,
-    report: Annotated[
-        Path | None, typer.Option("--report", metavar="DIR", help="Write the report, its figures and numbers here.")
-    ] = None,
-    exudyn_step: Annotated[
-        float | None,
-        typer.Option("--exudyn-step", callback=positive, help="exudyn's step in s; chosen if left out."),
-    ] = None,
+    report: ReportFolder = None,
+    exudyn_step: ExudynStep = None,
     sets: Set = None,
     t_end: EndTime = None,
     method: MethodName = None,
@@ -35,6 +40,8 @@ def crosscheck(
     debug: Debug = False,
 ) -> None:
     """Run a scenario or a model file here and in exudyn, and compare; exit code 1 if a quantity differs."""
+    check_folder(report)
+
     from ...validation import crosscheck as check
     from ..source import read_source
 

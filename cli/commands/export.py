@@ -1,16 +1,13 @@
 """`tlismni export`: write an FMU."""
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
-
 from ..errors import one_line_errors
 from ..options import (
     Atol,
     CommunicationStep,
     Debug,
     EndTime,
+    FmiVersion,
+    FmuFile,
     Json,
     MethodName,
     MethodOption,
@@ -21,6 +18,7 @@ from ..options import (
     check_suffix,
 )
 from ..screen import compile_notice, print_json, say
+from ..targets import check_file
 
 EXAMPLES = (
     "Examples:\n\n  tlismni export pendulum_stop -o pendulum.fmu\n\n"
@@ -31,8 +29,8 @@ EXAMPLES = (
 @one_line_errors
 def export(
     source: Source,
-    output: Annotated[Path, typer.Option("--output", "-o", help="The FMU to write, .fmu.")],
-    fmi: Annotated[str, typer.Option("--fmi", help="Version of the FMI standard.")] = "2.0",
+    output: FmuFile,
+    fmi: FmiVersion = "2.0",
     sets: Set = None,
     t_end: EndTime = None,
     communication_step: CommunicationStep = None,
@@ -46,6 +44,7 @@ def export(
 ) -> None:
     """Export a scenario or a model file as a co-simulation FMU."""
     check_suffix(output, (".fmu",), "--output")
+    check_file(output)
 
     from ...fmu_wrapper import export_fmu
     from ..source import read_source, solver_settings

@@ -1,26 +1,25 @@
 """`tlismni run`: integrate, and say what happened."""
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
-
 from ..errors import one_line_errors
 from ..options import (
     Atol,
     Debug,
     EndTime,
+    Every,
     Json,
     MethodName,
     MethodOption,
+    PlotFile,
+    ResultFile,
     Rtol,
     Set,
     Source,
     Step,
+    check_samples,
     check_suffix,
-    positive,
 )
 from ..screen import compile_notice, print_json, progress_bar, say
+from ..targets import check_file
 
 EXAMPLES = (
     "Examples:\n\n  tlismni run pendulum_stop --set restitution=0.5 --plot swing.png\n\n"
@@ -39,29 +38,17 @@ def run(
     atol: Atol = None,
     step: Step = None,
     option: MethodOption = None,
-    every: Annotated[
-        float | None,
-        typer.Option(
-            "--every",
-            callback=positive,
-            help="Record at intervals of this many s, not at every step.",
-            rich_help_panel="Output",
-        ),
-    ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Write all channels: .csv, .json or .npz.", rich_help_panel="Output"),
-    ] = None,
-    plot: Annotated[
-        Path | None,
-        typer.Option("--plot", help="Draw the main channels: .png, .pdf or .svg.", rich_help_panel="Output"),
-    ] = None,
+    every: Every = None,
+    output: ResultFile = None,
+    plot: PlotFile = None,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Run a scenario or a model file, and print events, constraint residuals, energy balance and statistics."""
     check_suffix(output, (".csv", ".json", ".npz"), "--output")
     check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
+    for path in (output, plot):
+        check_file(path)
 
     from ...core import simulate
     from ..source import read_source
@@ -100,6 +87,7 @@ def run(
 
 def _times(t_end: float, every: float) -> list[float]:
     """0, every, 2 every ... and the end."""
+    check_samples(t_end, every, "--every")
     count = int(t_end / every * (1.0 + 1e-12))
     times = [min(k * every, t_end) for k in range(count + 1)]
     return times if times[-1] >= t_end * (1.0 - 1e-12) else [*times, t_end]

@@ -63,7 +63,10 @@ def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> N
         impact, released = _strike(sim, k, contact, 0.0)
         stays = sim.presses(k)
         if resting and not plastic and not stays:
+            # as it was before the try: the blow decides anew which contacts let go
             sim.workspace.arrays["v"][:] = before
+            for j in released:
+                sim.memory[j, MODE] = CLOSED
             impact, released = _strike(sim, k, contact, restitution)
         else:
             restitution = 0.0

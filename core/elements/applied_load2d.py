@@ -103,5 +103,8 @@ class AppliedTorque2D(_AppliedLoad2D):
     def markers(self) -> Sequence[Marker2D]:
         return (Marker2D(body=self.body),)
 
+    def moved_coordinates(self) -> Sequence[tuple[str, str]]:
+        return ((self.body, "angle"),)
+
     def signals(self) -> Sequence[Signal]:
         return (self.torque,)

@@ -73,6 +73,10 @@ class Element(Record):
         """The markers it uses (their bodies must exist)."""
         return ()
 
+    def moved_coordinates(self) -> Sequence[tuple[str, str]]:
+        """(body, coordinate name) pairs that it acts on by name (they must exist)."""
+        return ()
+
     def signals(self) -> Sequence[Signal]:
         """The time functions it uses."""
         return ()

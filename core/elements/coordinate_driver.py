@@ -52,7 +52,8 @@ class CoordinateDriver(Element):
     body: Name
     coordinate: Literal["x", "y", "angle"]
     motion: Signal
-    """Position in m or rad over time in s. An input channel moves with the rate it is given (0 unless set)."""
+    """Position in m or rad over time in s. An input channel moves with the rate it is given (0 unless set).
+    At the ends of a Ramp the velocity jumps: an impact of the driver, with a warning in the log."""
 
     @model_validator(mode="after")
     def _check(self) -> "CoordinateDriver":
@@ -69,6 +70,9 @@ class CoordinateDriver(Element):
 
     def markers(self) -> Sequence[Marker2D]:
         return (Marker2D(body=self.body),)
+
+    def moved_coordinates(self) -> Sequence[tuple[str, str]]:
+        return ((self.body, self.coordinate),)
 
     def signals(self) -> Sequence[Signal]:
         return (self.motion,)

@@ -21,6 +21,13 @@ FULL_PATTERN: Sequence[tuple[int, int]] = tuple((i, j) for i in range(6) for j i
 ROW_PATTERN: Sequence[tuple[int, int]] = tuple((0, j) for j in range(6))
 
 
+def place(point: tuple[float, float], body: tuple[float, float, float]) -> tuple[float, float]:
+    """Where a marker's `point` is when its body is at (x, y, angle), m."""
+    x, y, angle = body
+    c, s = math.cos(angle), math.sin(angle)
+    return x + c * point[0] - s * point[1], y + s * point[0] + c * point[1]
+
+
 @compiled
 def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
     """Height of point b (offset w) over the line through point a (offset u) with normal at `angle` in a's frame.

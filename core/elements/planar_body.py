@@ -47,6 +47,7 @@ class PlanarBody(Element):
 
     kernel: ClassVar[Any] = planar_body_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 0), (1, 1), (2, 2))
+    coordinate_names: ClassVar[Sequence[str]]
 
     mass: Positive
     """Mass, kg."""

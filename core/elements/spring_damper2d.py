@@ -1,15 +1,20 @@
 """Translational spring-damper between two markers: F = k (l - l0) + c l', along the line of the markers."""
 
+import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..errors import ConsistencyError
 from ..model.base import NonNegative, Positive
 from ..model.markers import Marker2D
 from .base import Element, Numbering, Row
-from .geometry2d import FULL_PATTERN, HESSIAN_PAIRS, add_hessian, along, distance
+from .geometry2d import FULL_PATTERN, HESSIAN_PAIRS, add_hessian, along, distance, place
+
+MEETING = 1e-12
+"""Markers nearer than this, relative to the size of the mechanism, have no direction between them but rounding."""
 
 
 @internal
@@ -67,6 +72,15 @@ class SpringDamper2D(Element):
     """m. The direction of the force is that of the line: the markers must not meet."""
 
     def row(self, numbering: Numbering) -> Row:
+        """Raises ConsistencyError if the markers meet at the start: the force would have no direction."""
+        a, b = (place(marker.point, numbering.initial(marker.body)) for marker in (self.a, self.b))
+        size = max(self.natural_length, *(abs(x) for x in (*a, *b)))
+        if math.dist(a, b) <= MEETING * size:
+            raise ConsistencyError(
+                f"spring '{self.name}' starts with length {math.dist(a, b):.3g} m: marker a on '{self.a.body}' is at "
+                f"({a[0]:g}, {a[1]:g}), marker b on '{self.b.body}' at ({b[0]:g}, {b[1]:g}), so its force has no "
+                "direction; start with the markers apart, or use two springs across each other"
+            )
         return Row(
             (*self.a.point, *self.b.point, self.stiffness, self.damping, self.natural_length),
             (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),

@@ -12,8 +12,9 @@ from .user_function import UserFunction
 class ConstraintFunctions:
     """Phi(t, q) and its derivatives; see `EquationFunctions` for parameters and conventions."""
 
-    def __init__(self, constraint: Any, jacobian: Any, gamma: Any, rate: Any, n: int) -> None:
+    def __init__(self, constraint: Any, jacobian: Any, gamma: Any, rate: Any, n: int, name: str = "constraint") -> None:
         self.n = n
+        self._name = name
         self._function: UserFunction | None = None
         self._jacobian: UserFunction | None = None
         self._gamma: UserFunction | None = None
@@ -25,8 +26,8 @@ class ConstraintFunctions:
                     raise EquationError(f"{name} is given without constraint; give constraint=, the function Phi(t, q)")
             return
         if not callable(constraint):
-            raise EquationError(f"constraint is {constraint!r}; needed is a function of (t, q)")
-        self._function = UserFunction("constraint", "t, q", constraint, None)
+            raise EquationError(f"{name} is {constraint!r}; needed is a function of (t, q)")
+        self._function = UserFunction(name, "t, q", constraint, None)
         self._depends_on_time = self._function.uses_first_argument()
 
     @property
@@ -56,12 +57,10 @@ class ConstraintFunctions:
     def without_given(self) -> "ConstraintFunctions":
         """The same constraint with every derivative formed from it."""
         constraint = None if self._function is None else self._function.original
-        return ConstraintFunctions(constraint, None, None, None, self.n)
+        return ConstraintFunctions(constraint, None, None, None, self.n, self._name)
 
-    def _prepare(self, t: float, q: Array) -> UserFunction:
-        """Wrap the given derivatives as soon as the number of constraints is known."""
-        function = self._function
-        assert function is not None  # callers return early without constraints
+    def _prepare(self, function: UserFunction, t: float, q: Array) -> UserFunction:
+        """The constraint's `function`; wraps the given derivatives as soon as the number of constraints is known."""
         if function.shape is None:
             function.value(t, q)
         if any(f is not None for f in self._given.values()) and not (self._jacobian or self._gamma or self._rate):
@@ -84,17 +83,18 @@ class ConstraintFunctions:
         """Phi_q, (m, n)."""
         if self._function is None:
             return np.zeros((0, self.n))
-        function = self._prepare(t, q)
+        function = self._prepare(self._function, t, q)
         if self._jacobian is not None:
             return self._jacobian.value(t, q)
         return function.gradient((t, q), (1,))[1]
 
     def rate(self, t: float, q: Array) -> Array:
         """Phi_t, (m,)."""
-        return np.zeros(0) if self._function is None else self._value_and_rate(t, q)[1]
+        if self._function is None:
+            return np.zeros(0)
+        return self._value_and_rate(self._prepare(self._function, t, q), t, q)[1]
 
-    def _value_and_rate(self, t: float, q: Array) -> tuple[Array, Array]:
-        function = self._prepare(t, q)
+    def _value_and_rate(self, function: UserFunction, t: float, q: Array) -> tuple[Array, Array]:
         if self._rate is not None:
             return function.value(t, q), self._rate.value(t, q)
         if not self._depends_on_time:
@@ -106,7 +106,7 @@ class ConstraintFunctions:
         """gamma = -(Phi_q v)_q v - 2 Phi_qt v - Phi_tt, (m,): minus the second derivative along (v, 1)."""
         if self._function is None:
             return np.zeros(0)
-        function = self._prepare(t, q)
+        function = self._prepare(self._function, t, q)
         if self._gamma is not None:
             return self._gamma.value(t, q, v)
         try:
@@ -122,7 +122,7 @@ class ConstraintFunctions:
         """Phi_q (m, n), Phi, Phi_q v + Phi_t and Phi_q a - gamma (m,), in few evaluations."""
         if self._function is None:
             return np.zeros((0, self.n)), np.zeros(0), np.zeros(0), np.zeros(0)
-        function = self._prepare(t, q)
+        function = self._prepare(self._function, t, q)
         if self._gamma is None:
             try:
                 # The curve q + s v + s^2 a / 2 at the time t + s has all three levels as its derivatives.
@@ -136,14 +136,14 @@ class ConstraintFunctions:
             return jacobian, phi, jacobian @ v + rate, jacobian @ a - self._gamma.value(t, q, v)
         gamma = self.gamma(t, q, v)
         jacobian = self.jacobian(t, q)
-        phi, rate = self._value_and_rate(t, q)
+        phi, rate = self._value_and_rate(function, t, q)
         return jacobian, phi, jacobian @ v + rate, jacobian @ a - gamma
 
     def jacobian_and_curvature(self, t: float, q: Array, lam: Array) -> tuple[Array, Array]:
         """Phi_q (m, n) and (Phi_q^T lam)_q (n, n)."""
         if self._function is None:
             return np.zeros((0, self.n)), np.zeros((self.n, self.n))
-        function = self._prepare(t, q)
+        function = self._prepare(self._function, t, q)
         if self._jacobian is not None:
             if self._jacobian.constant is not None:
                 return self._jacobian.value(t, q), np.zeros((self.n, self.n))

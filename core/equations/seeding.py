@@ -85,24 +85,26 @@ def as_array(result: Any) -> NDArray[Any]:
     return array.astype(float)
 
 
-def split(array: NDArray[Any], k: int, order: int) -> tuple[Array, Array, Array | None]:
-    """Values (shape), gradients (shape + (k,)) and Hessians (shape + (k, k)) of an array with jets.
-
-    `order` 0 reads the values only.
-    """
+def values_of(array: NDArray[Any]) -> Array:
+    """Values of an array with jets, of its shape."""
     if array.dtype != object:
-        hessian = np.zeros((*array.shape, k, k)) if order == 2 else None
-        return array, np.zeros((*array.shape, k)), hessian
-    size = array.size
-    value = np.array([x.value if isinstance(x, Jet) else float(x) for x in array.flat])
-    gradient = np.zeros((size, k))
-    hessian = np.zeros((size, k, k)) if order == 2 else None
-    for i, x in enumerate(array.flat if order > 0 else ()):
+        return array
+    return np.array([x.value if isinstance(x, Jet) else float(x) for x in array.flat]).reshape(array.shape)
+
+
+def split(array: NDArray[Any], k: int) -> tuple[Array, Array]:
+    """Values (shape) and gradients (shape + (k,)) of an array with jets."""
+    gradient = np.zeros((array.size, k))
+    for i, x in enumerate(array.flat if array.dtype == object else ()):
         if isinstance(x, Jet):
             gradient[i] = x.gradient
-            if hessian is not None:
-                hessian[i] = x.hessian
-    shape = array.shape
-    if hessian is not None:
-        hessian = hessian.reshape((*shape, k, k))
-    return value.reshape(shape), gradient.reshape((*shape, k)), hessian
+    return values_of(array), gradient.reshape((*array.shape, k))
+
+
+def split_twice(array: NDArray[Any], k: int) -> tuple[Array, Array, Array]:
+    """Values, gradients and Hessians (shape + (k, k)) of an array with jets of second order."""
+    hessian = np.zeros((array.size, k, k))
+    for i, x in enumerate(array.flat if array.dtype == object else ()):
+        if isinstance(x, Jet):
+            hessian[i] = x.hessian
+    return *split(array, k), hessian.reshape((*array.shape, k, k))

@@ -18,6 +18,7 @@ from .constraints import ConstraintFunctions
 from .errors import EquationError
 from .functions import EquationFunctions
 from .kernel import CALLBACK, equations_kernel
+from .user_function import UserFunction
 
 
 @dataclass(frozen=True)
@@ -101,13 +102,24 @@ class EquationSystem:
         self.functions.check(t0, self.q0, self.v0)
         self.contacts = tuple(contacts)
         self._check_contacts()
-        self.gaps = [ConstraintFunctions(c.gap, None, None, None, n) for c in self.contacts]
+        self.gaps = [
+            ConstraintFunctions(c.gap, None, None, None, n, f"gap of contact '{c.name}'") for c in self.contacts
+        ]
         for contact, gap in zip(self.contacts, self.gaps, strict=True):
             value = gap.value(t0, self.q0)
             if value.shape != (1,):
                 raise EquationError(f"gap of contact '{contact.name}' must be one number, it has shape {value.shape}")
         self.potential = potential
+        if potential is not None:
+            self._check_potential(t0)
         self._given = (mass, force, constraint, constraint_jacobian, gamma, constraint_rate)
+
+    def _check_potential(self, t0: float) -> None:
+        if not callable(self.potential):
+            raise EquationError(f"potential is {self.potential!r}; needed is a function of (t, q)")
+        value = UserFunction("potential", "t, q", self.potential, None).value(t0, self.q0)
+        if value.shape != (1,):
+            raise EquationError(f"potential(t, q) must be one number, it has shape {value.shape}")
 
     def _check_contacts(self) -> None:
         for contact in self.contacts:

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .arity import check_arity
 from .errors import EquationError, NotDifferentiableError
 from .rebind import rebind
-from .seeding import Array, along_curve, as_array, split, variables
+from .seeding import Array, along_curve, as_array, split, split_twice, values_of, variables
 
 COMPLEX_STEP = 1e-150  # its square vanishes against 1; large enough that scaling by 1e-150 does not underflow
 _CONFIRM_STEP = 1e-5  # step and tolerance of the plausibility check of the complex step
@@ -40,6 +41,7 @@ class UserFunction:
             self.constant = self._shaped(function)
             self.constant.flags.writeable = False
             return
+        check_arity(name, arguments, function)
         self._python: Callable[..., Any] = getattr(function, "py_func", function)
         self._variants: list[Callable[..., Any]] = [self._python]
         self._rebound = False
@@ -63,24 +65,20 @@ class UserFunction:
         if self.constant is not None:
             return self.constant, np.zeros((*self.constant.shape, k))
         try:
-            value, gradient, _ = split(self._jets(seeded, arguments), k, 1)
-            return value, gradient
+            return split(self._jets(seeded, arguments), k)
         except NotDifferentiableError as error:
             return self._complex_gradient(arguments, wrt, k, error)
 
     def hessian(self, arguments: tuple[Any, ...], wrt: tuple[int, ...]) -> tuple[Array, Array, Array]:
         """Value, first and second derivatives, shape + (k, k); by jets only."""
         seeded, k = variables(arguments, wrt, 2)
-        value, gradient, hessian = split(self._jets(seeded, arguments), k, 2)
-        assert hessian is not None  # asked for above
-        return value, gradient, hessian
+        return split_twice(self._jets(seeded, arguments), k)
 
     def along(
         self, arguments: tuple[Any, ...], first: tuple[Any, ...], second: tuple[Any, ...]
     ) -> tuple[Array, Array, Array]:
         """Value and first two derivatives along a curve of the arguments; by jets only."""
-        value, gradient, hessian = split(self._jets(along_curve(arguments, first, second), arguments), 1, 2)
-        assert hessian is not None  # asked for above
+        value, gradient, hessian = split_twice(self._jets(along_curve(arguments, first, second), arguments), 1)
         return value, gradient[..., 0], hessian[..., 0, 0]
 
     def slope(self, arguments: tuple[Any, ...], rates: tuple[Any, ...]) -> tuple[Array, Array]:
@@ -88,7 +86,7 @@ class UserFunction:
         if self.constant is not None:
             return self.constant, np.zeros(self.constant.shape)
         try:
-            value, gradient, _ = split(self._jets(along_curve(arguments, rates, None), arguments), 1, 1)
+            value, gradient = split(self._jets(along_curve(arguments, rates, None), arguments), 1)
             return value, gradient[..., 0]
         except NotDifferentiableError as error:
             return self._complex_slope(arguments, rates, error)
@@ -164,7 +162,7 @@ class UserFunction:
 
     def _compare(self, jets: NDArray[Any], arguments: tuple[Any, ...]) -> None:
         """Once: the copy made for jets must give the function's own value."""
-        plain, value = self.value(*arguments), split(jets, 0, 0)[0]
+        plain, value = self.value(*arguments), values_of(jets)
         size = np.max(np.abs(plain), initial=0.0)
         if not np.allclose(value, plain, rtol=1e-9, atol=1e-9 * size, equal_nan=True):
             raise NotDifferentiableError(self._complaint("its value changes when numpy and math work on jets"))

@@ -256,11 +256,27 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     return find_root(gap, low_step, high_step, guess, 2e-16 * size)
 
 
+def _warn_of_jump(sim: "Simulation", t: float) -> None:
+    """Say which drivers strike: an event is of a contact, and a jump of a Ramp's velocity is seldom meant."""
+    assembly, rates = sim.assembly, sim.workspace.arrays["phid"]
+    jumps = {
+        assembly.row_names[row]: -float(rates[row])
+        for row in range(assembly.m_joints)
+        if abs(rates[row]) > VELOCITY_JUMP
+    }
+    logger.warning(
+        "at t = %.9g s the velocity jumps (%s): an impact of the driver; its work is in energy.input_work. "
+        "A Polynomial or a Table starts smoothly",
+        t,
+        ", ".join(f"driver '{name}' by {jump:.6g}" for name, jump in jumps.items()),
+    )
+
+
 def restart_at(sim: "Simulation", t: float) -> None:
     """Go on at the breakpoint t, just after the newest row, where a force or the rate of a driver jumps.
 
-    A driver's jump in rate is an impact of the driver: v jumps by M dv + Phi_q^T Lambda = 0, Phi_q dv = -phid, and
-    the change of kinetic energy is the driver's work.
+    A driver's jump in rate is an impact of the driver, logged as a warning: v jumps by M dv + Phi_q^T Lambda = 0,
+    Phi_q dv = -phid, and the change of kinetic energy is the driver's work.
     """
     recall(sim.workspace.record, sim._method.record, 0)
     sim.workspace.arrays["t"][0] = t
@@ -268,6 +284,7 @@ def restart_at(sim: "Simulation", t: float) -> None:
     kinetic = sim.kinetic_energy()
     violated = constraint_norm(sim.workspace.record, int(sim.workspace._record.table["phid"][0]))
     if violated > VELOCITY_JUMP:
+        _warn_of_jump(sim, t)
         bring_to_rest(sim.workspace, "phid", "v")
         sim.add_input_work(sim.kinetic_energy() - kinetic)
     sim.use_modes()

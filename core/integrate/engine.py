@@ -65,9 +65,13 @@ def user_errors(assembly: Assembly) -> Iterator[None]:
     try:
         yield
     except CallbackError:
-        error = assembly.user_error.pop()
-        assembly.user_error.clear()
-        raise error from None
+        raise _own_error(assembly) from None
+
+
+def _own_error(assembly: Assembly) -> BaseException:
+    error = assembly.user_error.pop()
+    assembly.user_error.clear()
+    return error
 
 
 class Engine:
@@ -428,10 +432,15 @@ class Engine:
     def sample(self) -> NDArray[np.float64]:
         """All numbers at the present time `t`, as one row (see `sample.py`)."""
         ws = self.workspace.record
-        with user_errors(self.assembly):
+        row = np.zeros(self.buffer.shape[1])
+        try:  # not `user_errors`: a context manager costs as much as the query, and samples are taken at every point
             status = query(ws, self._method.record, self.t)
             if status == REANALYZE:
                 status = self._query_with_other_pivots()
+            if status == OK:
+                write_sample(ws, row)
+        except CallbackError:
+            raise _own_error(self.assembly) from None
         if status != OK:
             raise SimulationError(
                 f"the state at t = {self.t:.9g} s between two steps cannot be projected onto the constraints "
@@ -439,9 +448,6 @@ class Engine:
                 t=self.t,
                 loop="inner",
             )
-        row = np.zeros(self.buffer.shape[1])
-        with user_errors(self.assembly):
-            write_sample(ws, row)
         return row
 
     def _query_with_other_pivots(self) -> int:

@@ -1,6 +1,7 @@
 """Channels: named columns computed from recorded samples."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,6 @@ from numpy.typing import NDArray
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel
 from ..system.assembly import Assembly
-
-Column = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 _RATES = {"x": ("vx", "m/s"), "y": ("vy", "m/s"), "angle": ("angular_velocity", "rad/s")}
 _ACCELERATIONS = {"x": ("ax", "m/s2"), "y": ("ay", "m/s2"), "angle": ("angular_acceleration", "rad/s2")}
@@ -36,108 +35,131 @@ class SampleLayout:
         self.residuals = (at, at + 1, at + 2)
 
 
+@dataclass(frozen=True)
+class Sum:
+    """A channel that is a sum of columns, less other columns and a constant. It is added up one by one from the left,
+    so that a single sample gives the same bits as a column of many."""
+
+    columns: tuple[int, ...]
+    less: tuple[int, ...] = ()
+
+    def __call__(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
+        total = np.zeros(len(samples))
+        for column in self.columns:
+            total += samples[:, column]
+        for column in self.less:
+            total -= samples[:, column]
+        return total
+
+
+@dataclass(frozen=True)
+class InContact:
+    """A channel that is 1 while the mode in `column` says that the contact carries force."""
+
+    column: int
+
+    def __call__(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
+        mode = samples[:, self.column]
+        return ((mode == CLOSED) | (mode == ACTIVE)).astype(np.float64)
+
+
 class ChannelTable:
     """The output channels of a system and how to compute them."""
 
     def __init__(self, system: Any, assembly: Assembly) -> None:
         self.layout = layout = SampleLayout(assembly)
         self.initial_energy = 0.0
-        self._columns: list[tuple[Channel, Column]] = []
-        self._plain: list[tuple[int, int]] = []
+        self._formulas: list[tuple[Channel, int | Sum | InContact]] = []
         for channel, at in system.coordinate_channels(assembly, layout):
-            self._add(channel, at)
+            self._formulas.append((channel, at))
         for k, channel in enumerate(assembly.multiplier_channels):
-            self._add(channel, layout.multipliers.start + k)
+            self._formulas.append((channel, layout.multipliers.start + k))
         for k, contact in enumerate(assembly.contacts):
             self._add_contact(k, contact.name)
         self._add_energies(assembly)
-        for column_index, level, unit in zip(
+        for column, level, unit in zip(
             layout.residuals, ("position", "velocity", "acceleration"), ("m", "m/s", "m/s2"), strict=True
         ):
-            self._add(
-                Channel(f"residual.{level}", unit, f"largest constraint violation at {level} level"), column_index
-            )
-        self.channels = tuple(channel for channel, _ in self._columns)
-        self._plain_channels = np.array([k for k, _ in self._plain], dtype=np.intp)
-        self._plain_columns = np.array([column for _, column in self._plain], dtype=np.intp)
-        plain = set(self._plain_channels.tolist())
-        self._computed = [k for k in range(len(self._columns)) if k not in plain]
+            text = f"largest constraint violation at {level} level"
+            self._formulas.append((Channel(f"residual.{level}", unit, text), column))
+        self.channels = tuple(channel for channel, _ in self._formulas)
         self.index = {channel.name: k for k, channel in enumerate(self.channels)}
+        self._balance = self.index["energy.balance"]
+        self._prepare_values()
 
-    def _add(self, channel: Channel, column: int) -> None:
-        """A channel that stands in the sample as it is."""
-        self._plain.append((len(self._columns), column))
-        self._columns.append((channel, lambda s: s[:, column]))
+    def _prepare_values(self) -> None:
+        """The formulas as index arrays, for one sample at a time."""
+        plain = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, int)]
+        flags = [(k, f.column) for k, (_, f) in enumerate(self._formulas) if isinstance(f, InContact)]
+        sums = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, Sum)]
+        terms = [
+            *((k, column, 1.0) for k, f in sums for column in f.columns),
+            *((k, column, -1.0) for k, f in sums for column in f.less),
+        ]
+        self._plain, self._flags = _pairs(plain), _pairs(flags)
+        self._terms = _pairs([(k, column) for k, column, _ in terms])
+        self._signs = np.array([sign for *_, sign in terms])
 
     def _add_contact(self, k: int, name: str) -> None:
         layout = self.layout
         impulse, dissipation = layout.work[f"{name}.impulse"], layout.work[f"{name}.dissipation"]
-        self._add(Channel(f"{name}.gap", "m", "gap, negative where the shapes overlap"), layout.gap + k)
-        self._add(Channel(f"{name}.gap_rate", "m/s", "rate of the gap"), layout.gap_rate + k)
-        self._add(Channel(f"{name}.normal_force", "N", "normal force, compression positive"), layout.force + k)
-        self._columns += [
+        self._formulas += [
+            (Channel(f"{name}.gap", "m", "gap, negative where the shapes overlap"), layout.gap + k),
+            (Channel(f"{name}.gap_rate", "m/s", "rate of the gap"), layout.gap_rate + k),
+            (Channel(f"{name}.normal_force", "N", "normal force, compression positive"), layout.force + k),
             (
                 Channel(f"{name}.impulse", "N.s", "normal impulse since the start, impacts included"),
-                lambda s: s[:, impulse] + s[:, layout.impulse_jump + k],
+                Sum((impulse, layout.impulse_jump + k)),
             ),
             (
                 Channel(f"{name}.dissipation", "J", "energy lost in the contact since the start"),
-                lambda s: s[:, dissipation] + s[:, layout.loss_jump + k],
+                Sum((dissipation, layout.loss_jump + k)),
             ),
             (
                 Channel(f"{name}.in_contact", "1", "true while the contact carries force", "boolean"),
-                lambda s: (s[:, layout.mode + k] == CLOSED) | (s[:, layout.mode + k] == ACTIVE),
+                InContact(layout.mode + k),
             ),
-            (
-                Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer"),
-                lambda s: s[:, layout.mode + k],
-            ),
+            (Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer"), layout.mode + k),
         ]
 
     def _add_energies(self, assembly: Assembly) -> None:
         layout, contacts = self.layout, len(assembly.contacts)
-        loss = slice(layout.loss_jump, layout.loss_jump + contacts)
-        dissipated = [c for name, c in layout.work.items() if name == "dampers" or name.endswith(".dissipation")]
-        put_in = [c for name, c in layout.work.items() if name == "input"]
-        stored = slice(layout.kinetic, layout.strain + 1)
-        self._add(Channel("energy.kinetic", "J", "kinetic energy"), layout.kinetic)
-        self._add(Channel("energy.potential", "J", "potential energy of the weights"), layout.potential)
-        self._add(Channel("energy.strain", "J", "energy of springs and of contact forces"), layout.strain)
-        self._columns += [
-            (
-                Channel("energy.input_work", "J", "work of applied loads and drivers since the start"),
-                lambda s: s[:, put_in].sum(axis=1),
-            ),
-            (
-                Channel("energy.dissipation", "J", "work of dampers and contact damping since the start"),
-                lambda s: s[:, dissipated].sum(axis=1),
-            ),
-            (
-                Channel("energy.impact_loss", "J", "energy lost at impacts and releases since the start"),
-                lambda s: s[:, loss].sum(axis=1),
-            ),
-            (
-                Channel("energy.balance", "J", "stored + dissipated + lost - put in - initial: zero but for errors"),
-                lambda s: (
-                    s[:, stored].sum(axis=1)
-                    + s[:, dissipated].sum(axis=1)
-                    + s[:, loss].sum(axis=1)
-                    - s[:, put_in].sum(axis=1)
-                    - self.initial_energy
-                ),
-            ),
-        ]
+        loss = tuple(range(layout.loss_jump, layout.loss_jump + contacts))
+        dissipated = tuple(c for name, c in layout.work.items() if name == "dampers" or name.endswith(".dissipation"))
+        put_in = tuple(c for name, c in layout.work.items() if name == "input")
+        stored = (layout.kinetic, layout.potential, layout.strain)
+        balance = "stored + dissipated + lost - put in - initial: zero but for errors"
+        for name, description, formula in (
+            ("kinetic", "kinetic energy", layout.kinetic),
+            ("potential", "potential energy of the weights", layout.potential),
+            ("strain", "energy of springs and of contact forces", layout.strain),
+            ("input_work", "work of applied loads and drivers since the start", Sum(put_in)),
+            ("dissipation", "work of dampers and contact damping since the start", Sum(dissipated)),
+            ("impact_loss", "energy lost at impacts and releases since the start", Sum(loss)),
+            ("balance", balance, Sum((*stored, *dissipated, *loss), put_in)),
+        ):
+            self._formulas.append((Channel(f"energy.{name}", "J", description), formula))
 
     def column(self, samples: NDArray[np.float64], name: str) -> NDArray[np.float64]:
         """One channel over all samples (N,). Raises KeyError for an unknown name."""
-        return self._columns[self.index[name]][1](samples).astype(float, copy=False)
+        k = self.index[name]
+        formula = self._formulas[k][1]
+        if isinstance(formula, int):
+            return samples[:, formula]
+        found = formula(samples)
+        return found - self.initial_energy if k == self._balance else found
 
-    def values(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
-        """All channels over all samples (N, channels)."""
-        out = np.empty((len(samples), len(self._columns)))
-        out[:, self._plain_channels] = samples[:, self._plain_columns]
-        for k in self._computed:
-            out[:, k] = self._columns[k][1](samples)
+    def values(self, sample: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All channels (channels,) of one sample, the same bits as `column` gives."""
+        # bincount adds the terms of each channel in their order
+        channel, column = self._terms
+        out = np.bincount(channel, self._signs * sample[column], len(self._formulas)).astype(np.float64, copy=False)
+        out[self._balance] -= self.initial_energy
+        channel, column = self._plain
+        out[channel] = sample[column]
+        channel, column = self._flags
+        mode = sample[column]
+        out[channel] = (mode == CLOSED) | (mode == ACTIVE)
         return out
 
     def total_energy(self, sample: NDArray[np.float64]) -> float:
@@ -163,3 +185,9 @@ def planar_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list
             layout.a.start + index,
         )  # fmt: skip
     return columns
+
+
+def _pairs(pairs: Sequence[tuple[int, int]]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Channels and columns of (channel, column) pairs as index arrays."""
+    table = np.array(pairs, dtype=np.intp).reshape(-1, 2)
+    return table[:, 0].copy(), table[:, 1].copy()

@@ -4,8 +4,10 @@ import hashlib
 import json
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..errors import ModelError, SimulationError
-from ..events import Event, Fallback
+from ..events import Fallback
 from ..methods.history import recall
 from ..state import State
 from ..system.records import OK
@@ -40,6 +42,8 @@ def get_state(sim: "Simulation") -> State:
         arrays[f"{name}_values"] = factorization.lu_values.copy()
         arrays[f"{name}_pivots"] = factorization.pivots.copy()
     closed, engaged = workspace.key
+    if len(sim.stored_events) != len(sim.events):
+        sim.stored_events = tuple(sim.events)
     facts = {
         "t": sim.t,
         "closed": sorted(closed),
@@ -49,16 +53,15 @@ def get_state(sim: "Simulation") -> State:
         "handled": [repr(sim._times_handled[0]), sim._times_handled[1]],
         "outer": sim.outer,
         "fallbacks": [[f.t, f.outer, f.reason] for f in sim.fallbacks],
-        "events": [event.to_dict() for event in sim.events],
     }
-    return State(arrays, facts, model_hash(sim))
+    return State(arrays, facts, sim.model_hash, sim.stored_events)
 
 
 def set_state(sim: "Simulation", state: State) -> None:
     """Make `sim` what it was when `state` was taken."""
     if not isinstance(state, State):
         raise ModelError(f"a State is needed to restore, not {type(state).__name__}; bytes go through State.from_bytes")
-    expected = model_hash(sim)
+    expected = sim.model_hash
     if state.model_hash != expected:
         raise ModelError(
             f"the state belongs to another model, method or tolerance (hash {state.model_hash[:12]}, this simulation "
@@ -68,12 +71,19 @@ def set_state(sim: "Simulation", state: State) -> None:
     if sim.outer != facts["outer"]:
         sim.use_outer_loop(facts["outer"])
     sim.fallbacks = [Fallback(*entry) for entry in facts["fallbacks"]]
-    workspace.engage(frozenset(facts["closed"]), frozenset(facts["engaged"]))
-    workspace.set_partition(arrays["dependent"])
-    structure = workspace.structure
+    key = (frozenset(facts["closed"]), frozenset(facts["engaged"]))
+    if workspace.key != key:
+        workspace.engage(*key)
+    structure, dependent = workspace.structure, arrays["dependent"]
+    # most ways back are short, and patterns are dear: what fits is kept
+    analysed = structure.dependent is not None and np.array_equal(structure.dependent, dependent)
+    if not analysed:
+        workspace.set_partition(dependent)
     for name in ("kkt", "lu_d", "kkt_query"):
         factorization = getattr(structure, name)
-        factorization.analyze_with(arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"])
+        wanted = arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"]
+        if not (analysed and all(map(np.array_equal, factorization.analysis(), wanted))):
+            factorization.analyze_with(*wanted)
         factorization.lu_values[:] = arrays[f"{name}_values"]
         factorization.pivots[:] = arrays[f"{name}_pivots"]
     for name in _WORKSPACE:
@@ -85,7 +95,7 @@ def set_state(sim: "Simulation", state: State) -> None:
     sim.pending = [int(k) for k in facts["pending"]]
     sim.open_accounts = {int(k): (v[0], v[1]) for k, v in facts["open_accounts"].items()}
     sim._times_handled = (float(facts["handled"][0]), int(facts["handled"][1]))
-    sim.events = [Event(**event) for event in facts["events"]]
+    sim.events, sim.stored_events = list(state.events), state.events
 
 
 def restart_here(sim: "Simulation") -> None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import cached_property
 from numbers import Real
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConsistencyError, ModelError, SimulationError
+from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
 from . import advance, restore
@@ -48,6 +50,14 @@ class Simulation(Engine):
     ModelError, ConsistencyError : before anything is computed.
     """
 
+    stored_events: tuple[Event, ...] = ()
+    """The events as the last state had them: states share them until one is added."""
+
+    @cached_property
+    def model_hash(self) -> str:
+        """Hash of the model and the settings: a state fits only these."""
+        return restore.model_hash(self)
+
     # ---- running --------------------------------------------------------------------------------------------------
 
     def advance(self, t: float) -> None:
@@ -86,7 +96,7 @@ class Simulation(Engine):
 
     def values(self) -> NDArray[np.float64]:
         """Values of all channels at the present time."""
-        return self.table.values(self.sample()[None, :])[0]
+        return self.table.values(self.sample())
 
     @property
     def stats(self) -> dict[str, int]:

@@ -1,8 +1,11 @@
 """Base of all model records: frozen, validated, no unknown fields, no NaN."""
 
-from typing import Annotated, Any
+from collections.abc import Mapping
+from functools import cache
+from typing import Annotated, Any, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import ModelError
 
@@ -19,6 +22,40 @@ class Record(BaseModel):
             super().__init__(**data)
         except ValidationError as error:
             raise ModelError(explain(error)) from None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _numbers_only(cls, data: Any) -> Any:
+        """pydantic would read the text '3' as 3 and True as 1: in a model either is a slip of the pen."""
+        if isinstance(data, Mapping):
+            for name in _number_fields(cls) & data.keys():
+                _refuse_no_number(name, data[name])
+        return data
+
+
+def _refuse_no_number(place: str, value: Any) -> None:
+    """Raise ValueError for a text or a truth value, alone or among the entries of a sequence."""
+    if isinstance(value, str | bytes):
+        raise ValueError(f"{place}: a number is needed, not the text {value!r}: write it without quotes")
+    if isinstance(value, bool | np.bool_):
+        raise ValueError(f"{place}: a number is needed, not the truth value {value!r}")
+    if isinstance(value, list | tuple):
+        for k, entry in enumerate(value):
+            _refuse_no_number(f"{place}.{k}", entry)
+
+
+@cache
+def _number_fields(record: type[BaseModel]) -> frozenset[str]:
+    """Names of the fields that hold a number, a sequence of numbers, or None."""
+    leaves = {name: _leaves(field.annotation) for name, field in record.model_fields.items()}
+    return frozenset(name for name, found in leaves.items() if found & {int, float} and not found & {str, bool})
+
+
+def _leaves(annotation: Any) -> set[type]:
+    """The plain types that an annotation is made of."""
+    if isinstance(annotation, type) and not get_args(annotation):
+        return {annotation}
+    return {leaf for part in get_args(annotation) for leaf in _leaves(part)}
 
 
 def explain(error: ValidationError) -> str:

@@ -4,7 +4,7 @@ quantities that a cross-check compares."""
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from .base import Name, Record
 
@@ -29,6 +29,22 @@ class Parameter(Record):
     description: str = ""
     targets: Annotated[tuple[str, ...], Field(min_length=1)]
     """Where the number stands: "element.field" or "element.field.field", e.g. "stop.law.restitution"."""
+
+    @model_validator(mode="after")
+    def _check(self) -> "Parameter":
+        if self.minimum is not None and self.maximum is not None and self.minimum > self.maximum:
+            raise ValueError(
+                f"parameter '{self.name}' has minimum {self.minimum:g} above maximum {self.maximum:g}: "
+                "no value fits; exchange them, or leave one out"
+            )
+        return self
+
+    def refuse_outside(self, value: float) -> None:
+        """Raise ValueError for a value outside the range."""
+        low, high = self.minimum, self.maximum
+        if (low is not None and value < low) or (high is not None and value > high):
+            shown = f"[{'-inf' if low is None else low}, {'inf' if high is None else high}]"
+            raise ValueError(f"parameter '{self.name}' = {value!r} is outside its range {shown}")
 
 
 @dataclass(frozen=True)

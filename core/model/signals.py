@@ -53,7 +53,12 @@ class Step(TimeFunction):
 
 
 class Ramp(TimeFunction):
-    """f goes linearly from `before` at `start` (s) to `after` at `start + duration`."""
+    """f goes linearly from `before` at `start` (s) to `after` at `start + duration`.
+
+    As a driver's motion it jumps in velocity at both ends: that is an impact of the driver, which the run computes
+    exactly and reports by a warning in the log, not as an `Event` (those are of contacts). A smooth start needs a
+    Polynomial or a Table.
+    """
 
     type: Literal["Ramp"] = "Ramp"
     start: float

@@ -93,3 +93,23 @@ def test_a_failing_fmu_says_why(tmp_path: Path) -> None:
     fmu = export_fmu(load("pendulum_stop"), tmp_path / "p.fmu", step=0.5)
     with pytest.raises(Failure, match=r"p\.fmu.*stopped at t"):
         cosimulation.drive_fmu(fmu, tmp_path / "unzipped", np.array([0.0, 2.0]))
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
+    tlismni: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def never(*args: object, **kwargs: object) -> None:
+        raise AssertionError("the work was begun")
+
+    monkeypatch.setattr("tlismni.fmu_wrapper.export_fmu", never)
+    file = tmp_path / "file"
+    file.write_text("")
+    for arguments in (("cosim", "chain", "-o", file / "out"), ("export", "chain", "-o", file / "chain.fmu")):
+        done = tlismni(*arguments)
+        assert done.code == 1 and f"'{arguments[-1]}' cannot be written" in done.cause
+
+
+def test_more_communication_points_than_fit_are_refused(tlismni: Command) -> None:
+    done = tlismni("cosim", "chain", "-c", 1e-12)
+    text = " ".join(done.err.replace("│", " ").split())
+    assert done.code == 2 and "--communication-step" in text and "2e+12 points up to t_end = 2 s" in text

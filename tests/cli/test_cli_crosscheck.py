@@ -1,12 +1,13 @@
 """`tlismni crosscheck`."""
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from tlismni.validation import exudyn_available
+from tlismni.validation import crosscheck, exudyn_available
 
 needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot be imported")
 
@@ -42,3 +43,31 @@ def test_the_verdict_decides_the_exit_code(tlismni: Command, monkeypatch: pytest
     assert done.code == (0 if ok else 1)
     assert "ball.y" in done.out and "a note" in done.out
     assert ok or done.err.splitlines()[-1] == "tlismni: 1 of 1 quantities differ: ball.y"
+
+
+def test_a_report_that_cannot_be_written_is_refused_before_the_work(
+    tlismni: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def never(*args: object, **kwargs: object) -> None:
+        raise AssertionError("the work was begun")
+
+    monkeypatch.setattr("tlismni.validation.crosscheck", never)
+    file = tmp_path / "file"
+    file.write_text("")
+    for target in (file, file / "report"):
+        done = tlismni("crosscheck", "bouncing_ball", "--report", target)
+        assert done.code == 1 and f"'{target}' cannot be written" in done.cause
+
+
+@needs_exudyn
+def test_a_report_folder_that_cannot_be_made_is_refused_before_the_work(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def never(*args: object, **kwargs: object) -> None:
+        raise AssertionError("the work was begun")
+
+    module = sys.modules["tlismni.validation.crosscheck"]
+    monkeypatch.setattr(module, "compare_constraints", never)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError, match="file"):
+        crosscheck("bouncing_ball", tmp_path / "file" / "report")

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tlismni.cli.errors import Failure
+from tlismni.cli.result_files import replace_whole
 from tlismni.core import Result, simulate
 from tlismni.models import load
 
@@ -138,7 +140,7 @@ def test_model_file_needs_an_end_time(tlismni: Command, tmp_path: Path) -> None:
         (("no_such_scenario",), "there is no scenario 'no_such_scenario'"),
         (("chain", "--set", "link=2"), "did you mean 'links'?"),
         (("chain", "--set", "links=many"), "'many' is not a number"),
-        (("chain", "--set", "links=0"), "outside [1, inf)"),
+        (("chain", "--set", "links=0"), "outside [1, 20000]"),
         (("pendulum_stop", "--set", "law=rubber"), "'rubber' is not one of"),
         (("chain", "--method", "euler"), "unknown method 'euler'"),
         (("chain", "--option", "order=2"), "method 'ebdf' has no option ['order']"),
@@ -163,10 +165,38 @@ def test_a_damaged_model_file_is_one_line(tlismni: Command, tmp_path: Path) -> N
     assert done.code == 1 and "greater than 0" in done.cause
 
 
-def test_an_output_file_that_cannot_be_written(tlismni: Command, tmp_path: Path) -> None:
+@pytest.mark.parametrize("option, name", [("-o", "x.csv"), ("--plot", "x.png")])
+def test_a_target_that_cannot_be_written_is_refused_before_the_run(
+    tlismni: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, option: str, name: str
+) -> None:
+    def never(*args: object, **kwargs: object) -> None:
+        raise AssertionError("the run was started")
+
+    monkeypatch.setattr("tlismni.core.simulate", never)
     (tmp_path / "file").write_text("")
-    done = tlismni("run", "chain", "--t-end", 0.01, "-o", tmp_path / "file" / "x.csv")
-    assert done.code == 1 and str(tmp_path / "file") in done.cause
+    (tmp_path / name).mkdir()
+    for target in (tmp_path / "file" / name, tmp_path / "file" / "deeper" / name, tmp_path / name):
+        done = tlismni("run", "chain", "--t-end", 0.01, option, target)
+        assert done.code == 1 and f"'{target}' cannot be written" in done.cause
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", name]
+
+
+def test_a_file_that_fails_while_it_is_written_is_named(tmp_path: Path) -> None:
+    def full(name: str) -> None:
+        raise OSError(28, "No space left on device", name)
+
+    target = tmp_path / "x.csv"
+    with pytest.raises(Failure) as caught:
+        replace_whole(target, full)
+    assert str(caught.value) == f"'{target}' cannot be written: No space left on device"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_more_samples_than_fit_are_refused(tlismni: Command) -> None:
+    done = tlismni("run", "chain", "--t-end", 2, "--every", 1e-12)
+    text = " ".join(done.err.replace("│", " ").split())
+    assert done.code == 2 and "--every" in text
+    assert "1e-12 s would give 2e+12 points up to t_end = 2 s" in text and "at least 2e-07 s" in text
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 from helpers import GROUND, ball_over_floor, circle_pendulum, floor_contact, on, point_pendulum, rod_pendulum
 from tlismni.core import (
     AppliedForce2D,
+    AppliedTorque2D,
     Bushing2D,
     ConsistencyError,
     Constant,
@@ -20,6 +21,7 @@ from tlismni.core import (
     Gonthier,
     Input,
     InputSignal,
+    Marker2D,
     Model,
     ModelError,
     NewtonImpact,
@@ -133,11 +135,41 @@ def test_no_time_at_all_gives_the_start():
         (lambda: Table(times=(0.0, 1.0, 2.0, 3.0), values=(0.0,) * 5), "values"),
         (lambda: Polynomial(coefficients=()), "coefficients"),
         (lambda: CoordinateDriver(name="d", body="p", coordinate="z", motion=Constant(value=0.0)), "coordinate"),
+        (lambda: PointMass2D(name="p", mass="3"), r"mass: a number is needed, not the text '3'"),
+        (lambda: PointMass2D(name="p", mass=True), "mass: a number is needed, not the truth value True"),
+        (lambda: PointMass2D(name="p", mass=np.True_), "mass: .*truth value"),
+        (lambda: PointMass2D(name="p", mass=1.0, position=(0.0, "1")), r"position\.1: .*text '1'"),
+        (lambda: Polynomial(coefficients=[0.0, False]), r"coefficients\.1: .*False"),
+        (lambda: Parameter(name="m", minimum="0", targets=["p.mass"]), "minimum: .*text '0'"),
+        (
+            lambda: Parameter(name="m", minimum=2.0, maximum=1.0, targets=["p.mass"]),
+            "'m' has minimum 2 above maximum 1",
+        ),
     ],
 )
 def test_bad_field_of_a_record_is_named(build, word):
     with pytest.raises(ValueError, match=word):
         build()
+
+
+def test_whole_numbers_and_numbers_of_numpy_are_numbers():
+    body = PointMass2D(name="p", mass=2, position=[0, np.float32(0.5)], velocity=(np.int64(1), np.float64(2.0)))
+    assert (body.mass, body.position, body.velocity) == (2.0, (0.0, 0.5), (1.0, 2.0))
+    assert all(type(x) is float for x in (body.mass, *body.position, *body.velocity))
+
+
+@pytest.mark.parametrize("mass", ['"3"', "true"])
+def test_text_or_truth_value_for_a_number_in_a_model_file_is_named(mass):
+    text = f'{{"bodies": [{{"type": "PointMass2D", "name": "p", "mass": {mass}}}]}}'
+    with pytest.raises(ModelError, match=r"bodies\.0\.PointMass2D: mass: a number is needed"):
+        Model.from_json(text)
+
+
+@pytest.mark.parametrize("value", ["2", True, None])
+def test_new_value_of_a_parameter_must_be_a_number(value):
+    model = Model(bodies=[P], parameters=[Parameter(name="m", minimum=0.5, targets=["p.mass"])])
+    with pytest.raises(ModelError, match=f"parameter 'm' = {value!r}: a number is needed"):
+        model.with_parameters({"m": value})
 
 
 P = PointMass2D(name="p", mass=1.0, position=(1.0, 0.0))
@@ -160,6 +192,10 @@ P = PointMass2D(name="p", mass=1.0, position=(1.0, 0.0))
         ({"bodies": [P], "parameters": [Parameter(name="m", targets=["p.weight"])]}, "weight"),
         ({"bodies": [P], "parameters": [Parameter(name="m", targets=["q.mass"])]}, "q.mass"),
         ({"bodies": [P], "parameters": [Parameter(name="m", targets=["p.type"])]}, "no number"),
+        (
+            {"bodies": [P], "parameters": [Parameter(name="m", maximum=0.5, targets=["p.mass"])]},
+            r"'m' = 1\.0 is outside its range \[-inf, 0\.5\]",
+        ),
         ({"bodies": [PointMass2D(name="ground", mass=1.0)]}, "ground"),
         ({"bodies": [PointMass2D(name="energy", mass=1.0)]}, "energy"),
         ({"bodies": [P], "gravity": (0.0, NAN)}, "gravity"),
@@ -173,17 +209,39 @@ def test_bad_model_names_what_is_wrong(parts, word):
         Model(**parts)
 
 
-def test_driver_of_a_coordinate_that_the_body_does_not_have_is_refused():
-    driver = CoordinateDriver(name="turn", body="p", coordinate="angle", motion=Constant(value=0.0))
-    with pytest.raises((ModelError, ConsistencyError), match="turn"):
-        simulate(Model(bodies=[P], joints=[driver]), 1.0)
+@pytest.mark.parametrize(
+    "element, kind",
+    [
+        (CoordinateDriver(name="turn", body="p", coordinate="angle", motion=Constant(value=0.0)), "joints"),
+        (AppliedTorque2D(name="turn", body="p", torque=Constant(value=1.0)), "forces"),
+    ],
+)
+def test_what_turns_a_point_mass_is_refused(element, kind):
+    with pytest.raises(ModelError, match=r"'turn'.* 'angle' of 'p'.*PointMass2D has only \['x', 'y'\]"):
+        Model(bodies=[P], **{kind: [element]})
 
 
-def test_spring_of_length_zero_is_refused_or_reported():
-    """Its direction is undefined: no silent NaN."""
-    spring = SpringDamper2D(name="s", a=GROUND, b=on("p"), stiffness=1.0, natural_length=1.0)
-    with pytest.raises(ConsistencyError):
-        simulate(Model(bodies=[PointMass2D(name="p", mass=1.0)], forces=[spring]), 1.0)
+def test_driver_of_the_ground_is_refused():
+    driver = CoordinateDriver(name="quake", body="ground", coordinate="x", motion=Constant(value=0.0))
+    with pytest.raises(ModelError, match=r"'quake'.*ground, which does not move"):
+        Model(bodies=[P], joints=[driver])
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-14])
+def test_spring_of_length_zero_is_named_with_the_positions(offset):
+    """Its direction is undefined: no silent NaN, and no riddle about a singular matrix."""
+    half_turn = RigidBody2D(name="b", mass=1.0, inertia=1.0, position=(2.0 + offset, 1.0), angle=math.pi)
+    anchor = Marker2D(point=(1.5, 1.0))
+    spring = SpringDamper2D(name="s", a=anchor, b=on("b", 0.5), stiffness=1.0, natural_length=1.0)
+    with pytest.raises(ConsistencyError, match=r"spring 's'.*'ground' is at \(1\.5, 1\).*'b' at \(1\.5, 1\)"):
+        simulate(Model(bodies=[half_turn], forces=[spring]), 1.0)
+
+
+def test_short_spring_is_no_spring_of_length_zero():
+    body = PointMass2D(name="p", mass=1.0, position=(1e-6, 0.0))
+    spring = SpringDamper2D(name="s", a=GROUND, b=on("p"), stiffness=1.0, natural_length=1e-6)
+    result = simulate(Model(bodies=[body], forces=[spring], gravity=(0.0, 0.0)), 1.0)
+    assert result["p.x"] == pytest.approx(1e-6, rel=1e-9)
 
 
 # ---- starts ------------------------------------------------------------------------------------------

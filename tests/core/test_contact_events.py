@@ -7,6 +7,7 @@ import pytest
 from helpers import GROUND, G, ball_over_floor, events, floor_contact, on, residuals
 from tlismni.core import (
     AppliedForce2D,
+    AppliedTorque2D,
     Constant,
     CoordinateDriver,
     Disk2D,
@@ -315,6 +316,39 @@ def test_impact_never_pulls_at_another_contact():
     assert result["far.gap"][-1] > 0.0 and np.abs(result["near.gap"]).max() < 1e-12
     for name in ("far", "near", "top"):
         assert np.all(np.diff(result[f"{name}.impulse"]) > -1e-12)
+
+
+@pytest.mark.parametrize("rest_ratio", [1e-6, 0.9])
+def test_contact_that_lets_go_in_a_blow_first_tried_as_resting_has_its_event(rest_ratio):
+    """A bar turns about its tip on the floor onto a peg near its middle (a < J/(m l)), so that the blow lifts the tip;
+    a torque lifts the bar off the peg, so that the blow is no rest. rest_ratio 0.9 tries rest first.
+
+    The free bar's rates after the blow: dv_c = P/m, dw = P a/J with the gap rate at the peg reversed by e = 1/2.
+    """
+    m, inertia, a, rate, torque, drop = 1.0, 1.0, 0.1, -1.0, 5.0, 0.01
+    bar = RigidBody2D(
+        name="bar", mass=m, inertia=inertia, position=(1.0, 0.0), velocity=(0.0, rate), angular_velocity=rate
+    )
+    law = NewtonImpact(restitution=0.5, rest_ratio=rest_ratio)
+    peg = HalfPlane2D(marker=Marker2D(point=(0.0, -drop)))
+    model = Model(
+        gravity=(0.0, 0.0),
+        bodies=[bar],
+        forces=[AppliedTorque2D(name="lift", body="bar", torque=Constant(value=torque))],
+        contacts=[
+            DiskOnHalfPlane2D(name="tip", plane=HalfPlane2D(), disk=Disk2D(marker=on("bar", -1.0)), law=law),
+            DiskOnHalfPlane2D(name="peg", plane=peg, disk=Disk2D(marker=on("bar", a)), law=law),
+        ],
+    )
+    result = simulate(model, 0.05, rtol=1e-9, atol=1e-12)
+    assert [(e.kind, e.contact) for e in result.events] == [("close", "tip"), ("impact", "peg"), ("open", "tip")]
+    _, blow, release = result.events
+    assert release.t == blow.t
+    impulse = 1.5 * blow.approach_speed / (1.0 / m + a * a / inertia)
+    assert blow.impulse == pytest.approx(impulse, rel=1e-3)  # the bar is nearly level
+    assert release.separation_speed == pytest.approx(impulse * (1.0 / m - a / inertia), rel=1e-3)
+    assert not result["tip.in_contact"][-1] and result["tip.gap"][-1] > 0.0
+    assert np.abs(result["energy.balance"]).max() < 1e-8
 
 
 def test_ball_on_ball_on_floor_come_to_rest():

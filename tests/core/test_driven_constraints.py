@@ -154,6 +154,25 @@ def test_ramp_driver_jumps_in_velocity_at_its_corners_and_keeps_to_the_ramp():
     assert np.abs(result["p.y"] + 0.5 * G * times**2).max() < 1e-8
 
 
+def test_jump_of_a_ramp_driver_is_reported_with_its_name_time_and_size(caplog):
+    ramp = Ramp(start=0.25, duration=0.5, before=0.0, after=1.5)
+    smooth = CoordinateDriver(
+        name="hold", body="cart", coordinate="y", motion=Sine(amplitude=0.1, angular_frequency=2.0)
+    )
+    drive = CoordinateDriver(name="drive", body="cart", coordinate="x", motion=ramp)
+    model = Model(
+        bodies=[PointMass2D(name="cart", mass=2.0, velocity=(0.0, 0.2))], joints=[drive, smooth], gravity=(0.0, 0.0)
+    )
+    with caplog.at_level("WARNING", logger="tlismni.core"):
+        result = simulate(model, 1.0)
+    begin, end = (record.getMessage() for record in caplog.records)
+    assert "t = 0.25 s" in begin and "driver 'drive' by 3" in begin and "hold" not in begin
+    assert "t = 0.75 s" in end and "driver 'drive' by -3" in end
+    assert result.events == []  # events are of contacts
+    jump = np.flatnonzero(np.diff(result["energy.input_work"]) > 8.9)
+    assert len(jump) == 1 and result.t[jump[0]] == pytest.approx(0.25)  # m v^2/2 = 9 J at once
+
+
 def crane(motion, angle=-math.pi / 2):
     """A rod on a pin of a slider whose place is driven."""
     c, s = 0.5 * math.cos(angle), 0.5 * math.sin(angle)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tlismni.core import EquationSystem, GapContact, NewtonImpact
 from tlismni.core.equations import EquationError, EquationFunctions, Jet, LineJet
 
 numbers = st.floats(-2.0, 2.0).map(lambda x: round(x, 6))
@@ -551,3 +552,44 @@ def test_functions_cannot_change_the_state():
     s, _ = f.tangent(T, q, V, A, np.zeros(0), 1.0, 0.0)
     assert s[0, 0] == pytest.approx(1 + 2 * 99.5)
     np.testing.assert_array_equal(q, Q)
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (
+            {"mass": lambda q: np.eye(2)},
+            r"mass is the function '<lambda>', which takes 1 argument \(q\); .*mass\(t, q\)",
+        ),
+        (
+            {"mass": np.eye(2), "force": breathing},
+            r"force is the function 'breathing', which takes 2 .*force\(t, q, v\)",
+        ),
+        (
+            {"constraint": pull},
+            r"constraint is the function 'pull', which takes 3 arguments .* of 2: constraint\(t, q\)",
+        ),
+        ({"constraint": compiled_length}, "constraint is the function 'compiled_length', which takes 1 argument "),
+        ({"constraint": circle, "gamma": circle}, r"gamma is the function 'circle', .* of 3: gamma\(t, q, v\)"),
+        ({"constraint": circle, "constraint_jacobian": pull}, "constraint_jacobian is the function 'pull'"),
+        (
+            {"contacts": [GapContact("floor", length, NewtonImpact(restitution=0.5))]},
+            "gap of contact 'floor' is the .*'length'",
+        ),
+        ({"potential": length}, "potential is the function 'length', which takes 1 argument"),
+        ({"potential": 3.0}, r"potential is 3\.0; needed is a function of \(t, q\)"),
+        ({"potential": lambda t, q: q}, "potential.* must be one number"),
+    ],
+)
+def test_function_with_other_arguments_is_named_with_those_it_needs(arguments, message):
+    given = {"mass": np.eye(2), "force": np.zeros(2), "q0": [1.0, 0.0], "v0": [0.0, 0.0], **arguments}
+    with pytest.raises(EquationError, match=message):
+        EquationSystem(**given)
+
+
+def test_functions_with_defaults_or_any_arguments_are_called_as_they_are():
+    def mass(t, q, density=2.0):
+        return density * np.eye(2)
+
+    system = EquationSystem(mass=mass, force=lambda *arguments: np.zeros(2), q0=[1.0, 0.0], v0=[0.0, 0.0])
+    assert system.functions.mass(0.0, system.q0) == pytest.approx(2.0 * np.eye(2))

@@ -238,3 +238,56 @@ def test_restore_into_a_running_simulation_that_failed_meanwhile():
         with pytest.raises(TlismniError):
             wrong()
     assert sim.state() == before
+
+
+def test_states_share_their_events_and_keep_them():
+    sim = started(ball_over_floor(NewtonImpact(restitution=0.5)), 0.6)
+    first = sim.state()
+    assert isinstance(first.events, tuple) and len(first.events) == 1
+    assert sim.state().events is first.events
+    sim.advance(1.0)
+    later = sim.state()
+    assert len(later.events) > 1 and len(first.events) == 1
+    assert later.events[0] is first.events[0]
+    sim.restore(first)
+    assert sim.events == list(first.events) and sim.state().events is first.events
+    sim.advance(1.0)
+    assert sim.state() == later
+    assert State.from_bytes(later.to_bytes()) == later
+
+
+def test_taking_a_state_serialises_nothing(monkeypatch):
+    """States are taken at every communication point: only those that travel as bytes pay for it."""
+    sim = started(pendulum_stop(), 1.0)
+    before = sim.state()
+
+    def forbidden(*arguments, **options):
+        raise AssertionError("serialised")
+
+    monkeypatch.setattr("json.dumps", forbidden)
+    monkeypatch.setattr(type(sim.events[0]), "to_dict", forbidden)
+    monkeypatch.setattr(type(sim.system), "identity", forbidden)
+    state = sim.state()
+    sim.restore(state)
+    monkeypatch.undo()
+    assert state == before
+
+
+def test_values_of_one_sample_are_the_columns_of_many_bit_for_bit():
+    """Contact as a constraint, as a force, and a driven damper: every kind of channel."""
+    law = Flores(stiffness=1e3, restitution=0.6)
+    for model in (pendulum_stop(driven=True), ball_over_floor(law), ball_over_floor(NewtonImpact(restitution=0.5))):
+        sim = Simulation(model, rtol=1e-7, atol=1e-10)
+        samples, rows = [], []
+        for t in np.linspace(0.0, 1.5, 31):
+            sim.advance(float(t))
+            samples.append(sim.sample())
+            rows.append(sim.values())
+        columns = [sim.table.column(np.array(samples), channel.name) for channel in sim.channels]
+        assert np.array(rows).tobytes() == np.ascontiguousarray(np.transpose(columns)).tobytes()
+
+
+@pytest.mark.parametrize("given", ["x", 3, None])
+def test_what_are_no_bytes_is_refused(given):
+    with pytest.raises(ModelError, match="bytes of a solver state are needed"):
+        State.from_bytes(given)

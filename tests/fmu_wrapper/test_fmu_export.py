@@ -9,6 +9,7 @@ import fmpy
 import numpy as np
 import pytest
 import tlismni.fmu_wrapper.export as export_module
+from fake_simulation import FakeSimulation
 from fmpy.validation import validate_fmu
 from fmu_helpers import ball_model
 from lxml import etree
@@ -130,3 +131,20 @@ def test_bad_settings_leave_no_file(fake_fmu, tmp_path, monkeypatch):
 )
 def test_identifiers(name, identifier):
     assert c_identifier(name) == identifier
+
+
+def test_a_file_that_cannot_be_written_is_named(tmp_path, monkeypatch):
+    """A folder in the file's place, and a folder that takes no files: never the name of a temporary file."""
+    target = tmp_path / "x.fmu"
+    target.mkdir()
+    with pytest.raises(ExportError, match=re.escape(f"'{target}' cannot be written: Is a directory")):
+        export_fmu(ball_model(), target, simulation_factory=FakeSimulation)
+    assert list(tmp_path.iterdir()) == [target]
+
+    def refused(*arguments, dir, **options):
+        raise PermissionError(13, "Permission denied", str(dir / "tmp1234.fmu"))
+
+    monkeypatch.setattr(export_module.tempfile, "mkstemp", refused)
+    with pytest.raises(ExportError) as caught:
+        export_module._write(tmp_path / "y.fmu", {})
+    assert str(caught.value) == f"'{tmp_path / 'y.fmu'}' cannot be written: Permission denied"

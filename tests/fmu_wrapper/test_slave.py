@@ -2,14 +2,17 @@
 
 import math
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import tlismni.fmu_wrapper.snapshot as snapshot_module
 from fake_simulation import FakeSimulation
 from fmu_helpers import ball_model
-from tlismni.core.errors import ModelError, SimulationError
-from tlismni.fmu_wrapper import CallOrderError, FmuError, FmuValueError, Slave, SnapshotError
+from tlismni.core import EquationSystem
+from tlismni.core.errors import ModelError, SimulationError, TlismniError
+from tlismni.fmu_wrapper import CallOrderError, FmuError, FmuValueError, Slave, SnapshotError, export_fmu
+from tlismni.fmu_wrapper.errors import SourceError
 
 
 def started(slave, start=0.0, **values):
@@ -339,3 +342,28 @@ def test_names_must_be_unique(model):
 def test_sources_that_are_no_models_are_refused():
     with pytest.raises(TypeError, match=r"a Model or a Scenario is needed, not str"):
         Slave("ball")
+
+
+def test_own_equations_are_refused_with_the_reason(tmp_path):
+    system = EquationSystem(mass=np.eye(1), force=np.zeros(1), q0=[0.0], v0=[1.0])
+    for source in (system, SimpleNamespace(model=system)):
+        with pytest.raises(SourceError, match=r"embeds its model as data.*user functions are code.*Simulation"):
+            Slave(source)
+        with pytest.raises(TlismniError, match="EquationSystem cannot become"):
+            export_fmu(source, tmp_path / "x.fmu")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("given", ["x", b"x", None, 3])
+def test_what_is_no_snapshot_is_refused(fake_slave, given):
+    slave = started(fake_slave())
+    before = slave.snapshot().data
+    with pytest.raises(SnapshotError, match=f"not {type(given).__name__}; bytes go through snapshot_from_bytes"):
+        slave.restore(given)
+    assert slave.snapshot().data == before
+
+
+@pytest.mark.parametrize("given", ["x", None, 3])
+def test_what_are_no_bytes_is_refused(fake_slave, given):
+    with pytest.raises(SnapshotError, match="the bytes of a stored state are needed"):
+        fake_slave().snapshot_from_bytes(given)

@@ -10,6 +10,7 @@ from tlismni.core.description import Model
 from tlismni.core.elements import Distance2D, Prismatic2D, Revolute2D
 from tlismni.models import ScenarioError, catalogue, load, names
 from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio, kelvin_voigt_restitution
+from tlismni.models.parameters import ScenarioParameter
 from tlismni.validation.translation.kinematics import BodyStates, States, gap_motion
 
 WITH_CONTACT = ("bouncing_ball", "pendulum_stop")
@@ -90,6 +91,12 @@ def test_the_stop_faces_the_pendulum_from_either_side(start: float, stop: float)
         (lambda: load("chain", link=3), "did you mean 'links'"),
         (lambda: load("chain", links=2.5), "whole number"),
         (lambda: load("chain", links=0), "outside"),
+        (lambda: load("chain", links=1e9), r"'links' = 1e\+09 is outside \[1, 20000\]"),
+        (lambda: load(3), r"a scenario's name is needed, a text, not 3; there are \['bouncing_ball'"),
+        (lambda: load(["chain"]), "a scenario's name is needed"),
+        (lambda: ScenarioParameter("n", 3, "-", "a count", 1).check(10**6), r"outside \[1, 20000\]"),
+        (lambda: ScenarioParameter("x", 3.0, "m", "a length", 0.0, 1.0), r"'x' = 3 is outside \[0, 1\]"),
+        (lambda: ScenarioParameter("x", 1.5, "m", "a length", 2.0, 1.0), "minimum 2 above maximum 1"),
         (lambda: load("bouncing_ball", restitution=1.2), "outside"),
         (lambda: load("bouncing_ball", height=float("nan")), "finite"),
         (lambda: load("bouncing_ball", height="high"), "finite number"),

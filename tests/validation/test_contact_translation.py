@@ -18,9 +18,8 @@ from tlismni.core.contact.laws import (
     NewtonImpact,
 )
 from tlismni.core.description import Model
-from tlismni.core.elements import AppliedTorque2D, PointMass2D, Prismatic2D, RigidBody2D
+from tlismni.core.elements import PointMass2D, Prismatic2D, RigidBody2D
 from tlismni.core.model.markers import Marker2D
-from tlismni.core.model.signals import Constant
 from tlismni.models.laws import kelvin_voigt_restitution
 from tlismni.validation.errors import ExudynUnavailable, NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available, import_exudyn
@@ -167,18 +166,12 @@ def point_mass_in_a_prismatic_joint() -> Model:
     return Model(bodies=(PointMass2D(name="p", mass=1.0),), joints=(joint,))
 
 
-def torque_on_a_point_mass() -> Model:
-    load = AppliedTorque2D(name="m", body="p", torque=Constant(value=1.0))
-    return Model(bodies=(PointMass2D(name="p", mass=1.0),), forces=(load,))
-
-
 @needs_exudyn
 @pytest.mark.parametrize(
     "make, text",
     [
         (newton_drop, "constraint .* limit"),
         (point_mass_in_a_prismatic_joint, "point mass: make it a RigidBody2D"),
-        (torque_on_a_point_mass, "point mass: make it a RigidBody2D"),
         (lambda: "not a model", "only a Model"),
     ],
 )
