@@ -55,6 +55,8 @@ SLOW_KRYLOV = 12  # vectors that a stage may take before the preconditioner is r
 POINT_Q, POINT_V, POINT_A, POINT_R, POINT_C, SOLUTION, FIRST = range(7)
 BASIS_ROWS = FIRST + MOST_VECTORS + 1
 LEAST_FORCING, MOST_FORCING = 1e-4, 0.1
+# of the tolerance: a preconditioned residual below this is solved for without Krylov vectors
+HIDDEN = 0.01
 # of the size of the coordinates: the square root of their rounding
 PROBE = 1e-7
 
@@ -250,23 +252,14 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         norm = increment_norm(ws, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
-        known = min(rate[OUTER_RATE] * RATE_GROWTH, 0.99)
-        if k > 0:
-            contraction = norm / previous
-            known = min(max(contraction, LEAST_RATE), 0.99)
-            rate[OUTER_RATE] = known
-            if contraction > 0.9 and norm > tolerance:
-                rate[FAILED_NORM] = contraction
-                return OUTER_DIVERGED
-            forcing = min(MOST_FORCING, max(LEAST_FORCING, 0.9 * contraction * contraction))
-        previous = norm
         for i in range(m_act):
             lam[active[i]] += increment[n + i]
-        # as long as the preconditioned residual is above the tolerance, GMRES decides on the increment
-        if norm > 0.1 * tolerance:
+        known = min(rate[OUTER_RATE] * RATE_GROWTH, 0.99)
+        # an old preconditioner may hide some of the increment, but not all of it
+        if norm > HIDDEN * tolerance:
             for i in range(n):
                 basis[FIRST, i] = increment[i] / weight[i]
-            # the residual that stays in the linear system need not be far below the tolerance either
+            # what stays in the linear system need not be far below the tolerance either
             wanted = max(forcing, min(MOST_FORCING, 0.05 * tolerance / norm))
             # the multipliers have moved: so has the reference of the difference quotients
             evaluate_residuals(ws)
@@ -279,7 +272,17 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
                 return OUTER_SLOW
             for i in range(n):
                 increment[i] = basis[SOLUTION, i]
+            norm = increment_norm(ws, c_q, c_v)
             known = max(known, left)
+        if k > 0:
+            contraction = norm / previous
+            known = min(max(contraction, LEAST_RATE), 0.99)
+            rate[OUTER_RATE] = known
+            if contraction > 0.9 and norm > tolerance:
+                rate[FAILED_NORM] = contraction
+                return OUTER_DIVERGED
+            forcing = min(MOST_FORCING, max(LEAST_FORCING, 0.9 * contraction * contraction))
+        previous = norm
         for i in range(m_act):
             increment[n + i] = 0.0
         add_increment(ws, c_q, c_v)
