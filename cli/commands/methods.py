@@ -19,12 +19,19 @@ def methods(json: Json = False, debug: Debug = False) -> None:
         return
     for method in METHODS.values():
         stdout().print(f"[bold]{method.name}[/bold]: {method.description}")
-        rows = [
-            (name, number(_value(o, o.default)), f"[{number(o.minimum, 3)}, {number(o.maximum, 3)}]", o.description)
-            for name, o in method.options.items()
-        ]
+        rows = [(name, _shown(o), _range(o), o.description) for name, o in method.options.items()]
         if rows:
             print_table("", ("option", "default", "range", "meaning"), rows, left=4)
+
+
+def _shown(option: Any) -> str:
+    return str(option.default) if option.choices else number(_value(option, option.default))
+
+
+def _range(option: Any) -> str:
+    if option.choices:
+        return ", ".join(option.choices)
+    return f"[{number(option.minimum, 3)}, {number(option.maximum, 3)}]"
 
 
 def _value(option: Any, value: float) -> float | int:
@@ -36,7 +43,9 @@ def _data(method: Any) -> dict[str, Any]:
         "name": method.name,
         "description": method.description,
         "options": [
-            {
+            {"name": name, "default": o.default, "choices": list(o.choices), "description": o.description}
+            if o.choices
+            else {
                 "name": name,
                 "default": _value(o, o.default),
                 "minimum": _value(o, o.minimum),

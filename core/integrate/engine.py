@@ -21,8 +21,9 @@ from ..errors import CallbackError, ConsistencyError, ModelError, SimulationErro
 from ..events import Event
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
-from ..methods.records import METHOD, step_address
+from ..methods.records import ESTIMATE, MAX_NODES, METHOD, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
+from ..stage.accelerations import solve_accelerations
 from ..stage.solver import solve_stage
 from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
@@ -30,7 +31,7 @@ from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residual
 from ..system.partition import prepare
 from ..system.records import OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.workspace import Workspace
-from .dense_output import query, solve_accelerations
+from .dense_output import query
 from .output import ChannelTable
 from .records import BREAK_TIME, CLOCK_SIZE, FIXED_STEP, GROWTH, HOLD, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
 from .sample import empty_buffer, sample_length, write_sample
@@ -106,12 +107,16 @@ class Engine:
         formula, length = self.formula, self.workspace.row_length
         parameters = np.zeros(8)
         parameters[: len(formula.parameters)] = formula.parameters
+        parameters[ESTIMATE] = 1.0 if self.settings.step is None else 0.0
+        weights = np.zeros((8, MAX_NODES))
+        for row, values in zip(weights, formula.weights, strict=False):
+            row[: len(values)] = values
         self.method_arrays: dict[str, NDArray[Any]] = {
             "history": np.zeros((HISTORY_ROWS, length)),
             "times": np.zeros(HISTORY_ROWS),
             "ring": np.zeros(2, dtype=np.int64),
             "parameters": parameters,
-            "weights": np.zeros((8, 12)),
+            "weights": weights,
             "error": np.zeros(2),
         }
         self._method = ArrayRecord(METHOD, self.method_arrays, {"capacity": HISTORY_ROWS, "order": formula.order})

@@ -18,8 +18,8 @@ METHOD = np.dtype(
             "history",    # (capacity, row_length) float64, a ring
             "times",      # (capacity,) float64
             "ring",       # (2,) int64: position of the newest row, number of rows
-            "parameters", # (8,) float64: alpha, beta, gamma ...
-            "weights",    # (8, MAX_NODES) float64: nodes and the coefficients that belong to them
+            "parameters", # (8,) float64: alpha, beta, gamma ...; the last is ESTIMATE
+            "weights",    # (8, MAX_NODES) float64: nodes and coefficients of the present grid; a tableau
             "error",      # (2,) float64: error norm of the last step, order of its estimate
         )
     ]
@@ -28,6 +28,9 @@ METHOD_TYPE = nb.from_dtype(METHOD)
 
 MAX_NODES = 12
 """Most rows of history that a formula uses, and the width of `weights`."""
+
+ESTIMATE = 7
+"""Column of `parameters`: 0 with fixed steps, where nobody asks for the error."""
 
 STEP_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
 """A step: from the newest row of history by h; leaves the new point in the workspace and its error norm."""

@@ -7,19 +7,22 @@ from typing import Any
 from ..errors import ModelError
 from .bdf import bdf_step
 from .ebdf import ebdf_step
+from .irk import irk_step
 from .newmark import newmark_step
 from .sdirk import sdirk_fine_step, sdirk_step
+from .tableaus import TABLEAUS
 
 
 @dataclass(frozen=True)
 class Option:
-    """One option of a method."""
+    """One option of a method: a number from `minimum` to `maximum`, or one of the words in `choices`."""
 
-    default: float
+    default: float | str
     minimum: float
     maximum: float
     description: str
     integer: bool = False
+    choices: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,8 @@ class Formula:
     """Rows of history that a step needs; below that the starter works."""
     growth: float = 2.0
     """Largest factor by which error control lets a multistep step grow, each time after `rows` equal steps."""
+    weights: tuple[tuple[float, ...], ...] = ()
+    """First content of the method record's `weights`, row by row."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,7 @@ class Method:
     name: str
     description: str
     options: Mapping[str, Option]
-    formula: Callable[[Mapping[str, float]], Formula] = field(repr=False)
+    formula: Callable[[Mapping[str, Any]], Formula] = field(repr=False)
 
 
 # With growth by 2 after k + 1 equal steps the variable-step formulas are zero-stable up to k = 6; beyond, these are.
@@ -51,6 +56,14 @@ EBDF_GROWTH = {7: 1.5, 8: 1.2}
 
 def _extended(k: int, modified: float) -> Formula:
     return Formula(ebdf_step, k, (modified,), k + 1, EBDF_GROWTH.get(k, 2.0))
+
+
+def _irk(name: str) -> Formula:
+    if name == "sdirk4":
+        return Formula(sdirk_step, 4)
+    tableau = TABLEAUS[name]
+    parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_estimate)
+    return Formula(irk_step, tableau.order, parameters, weights=tableau.data())
 
 
 def _hht(values: Mapping[str, float]) -> Formula:
@@ -96,9 +109,11 @@ METHODS = {
         ),
         Method(
             "irk",
-            "TLISMNI with the implicit Runge-Kutta method SDIRK of order 4, L-stable, self-starting",
-            {},
-            lambda o: Formula(sdirk_step, 4),
+            "TLISMNI with an implicit Runge-Kutta method, self-starting: "
+            + "; ".join(f"{name}: {tableau.description}" for name, tableau in TABLEAUS.items())
+            + "; sdirk4: SDIRK with 5 stages one after the other, order 4, L-stable",
+            {"tableau": Option("radau3", 0.0, 0.0, "the Runge-Kutta coefficients", choices=(*TABLEAUS, "sdirk4"))},
+            lambda o: _irk(o["tableau"]),
         ),
     )
 }
@@ -120,9 +135,16 @@ def get_formula(name: str, options: Mapping[str, Any]) -> Formula:
     unknown = set(options) - set(method.options)
     if unknown:
         raise ModelError(f"method '{name}' has no option {sorted(unknown)}; it has {sorted(method.options)}")
-    values = {key: option.default for key, option in method.options.items()}
+    values: dict[str, Any] = {key: option.default for key, option in method.options.items()}
     for key, value in options.items():
         option = method.options[key]
+        if option.choices:
+            if value not in option.choices:
+                raise ModelError(
+                    f"option {key} of method '{name}' must be one of {list(option.choices)}, not {value!r}"
+                )
+            values[key] = value
+            continue
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ModelError(f"option {key} of method '{name}' must be a number, not {value!r}")
         if option.integer and int(value) != value:

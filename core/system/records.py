@@ -20,8 +20,8 @@ WORKSPACE = np.dtype(
             # structure (changes with the set of engaged contacts)
             "active", "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
             # stage solver
-            "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
-            "control", "counters", "rate", "scale", "scratch",
+            "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "stage_rows", "rhs",
+            "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch",
         )
     ]
 )  # fmt: skip
@@ -32,6 +32,9 @@ EVALUATE_SIGNATURE = types.void(WORKSPACE_TYPE, types.int64)
 STAGE_SIGNATURE = types.int64(WORKSPACE_TYPE, types.float64, types.float64, types.float64)
 call_evaluate = caller(EVALUATE_SIGNATURE)
 call_stage = caller(STAGE_SIGNATURE)
+
+COUPLED_STAGES = 3
+"""Rows of `stage_rows`: the most stages that are solved together."""
 
 # columns of `control` (float64)
 NEWTON_TOLERANCE = 0
