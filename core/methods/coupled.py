@@ -6,8 +6,6 @@ A sweep goes through the stages in turn: the point of stage i is shifted by the 
 found (v by h S_ij da_j, q by h^2 (S S)_ij da_j; S of `tableaus.py`), the inner loop brings it onto the constraints,
 and the matrix M + h gamma D + (h gamma)^2 K, bordered by Phi_q, gives (da_i, dlambda_i). Then all points move as the
 tableau says. The fixed point is the solution, whatever the matrices are.
-
-The method record's `weights` hold the tableau (rows as named below) and what the convergence test remembers.
 """
 
 from typing import Any
@@ -15,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import ivec, vec
 from ..stage.inner import inner_loop
 from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, refactor, solve_increment
 from ..system.evaluate import evaluate_residuals
@@ -37,22 +35,28 @@ from ..system.records import (
     OUTER_SLOW,
     POSITION_TOLERANCE,
     RATE_SIZE,
+    REANALYZE,
     RTOL,
     STAGES,
 )
-from .coefficients import extrapolation_weights
-from .history import history_row, history_time
-from .multistep import rows_available, weight_rows
-
-# rows of `weights`; matrices are stored row by row, COUPLED_STAGES wide
-A, A2, SHIFT, SHIFT2, VECTORS, EMBEDDED, MEMORY = range(7)
-# parts of VECTORS: nodes c, b, b^T A, extrapolation of the stages to the end
-NODES, B, BA, END = 0, COUPLED_STAGES, 2 * COUPLED_STAGES, 3 * COUPLED_STAGES
-# parts of EMBEDDED after the weights of the stages: weight of the start, gamma
-START, GAMMA = COUPLED_STAGES, COUPLED_STAGES + 1
-# columns of MEMORY: contraction of the sweeps; sweeps, inner iterations for each stage and size of the last step
-SWEEP_RATE, LAST_SWEEPS, INNER_EACH, LAST_STEP = range(4)
-STAGE_COUNT = 0  # parameter
+from .guess import AT_REST, best_guess, predict_stages
+from .multistep import weight_rows
+from .stages import (
+    A2,
+    EMBEDDED,
+    GAMMA,
+    INNER_EACH,
+    LAST_STEP,
+    LAST_SWEEPS,
+    MEMORY,
+    SHIFT,
+    SHIFT2,
+    SWEEP_RATE,
+    A,
+    load_stage,
+    stage_count,
+    stage_rows,
+)
 
 SWEEPS = 3  # times the most iterations of a single stage: also with the exact tangent a sweep leaves up to 0.4
 MOST_SWEEPS = 3
@@ -60,78 +64,13 @@ STEP_CHANGE = 0.2  # change of the step that calls for a new matrix where stiffn
 STIFF_RATE = 0.1
 SLOW_SWEEP = 0.5  # more than the tableau itself can cause, except in the first sweeps
 EXPLODING = 5.0  # so can a tableau not grow in one sweep
-MOST_ROWS = 4
-LARGEST_EXTRAPOLATION = 20.0  # sum of the magnitudes of the weights: beyond, it amplifies more than it predicts
-
-
-@internal
-def stage_rows(ws: Any) -> Any:
-    """The stages as rows like those of the history: q, v, a, correction of a (each n_ext), lam (m_ext)."""
-    return mat(ws.stage_rows, COUPLED_STAGES, ws.row_length)
-
-
-@internal
-def load_stage(ws: Any, ms: Any, i: int, t: float, h: float) -> None:
-    """Stage i becomes the current point of the workspace."""
-    n, row = ws.n_ext, stage_rows(ws)[i]
-    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    for l in range(ws.n):
-        q[l] = row[l]
-        v[l] = row[n + l]
-        a[l] = row[2 * n + l]
-    for l in range(ws.m_ext):
-        lam[l] = row[4 * n + l]
-    vec(ws.t, 1)[0] = t + weight_rows(ms)[VECTORS, NODES + i] * h
-
-
-@internal
-def _predict(ws: Any, ms: Any, t: float, h: float) -> None:
-    """Accelerations and multipliers of the stages by extrapolation through the history; q and v that belong to them."""
-    n = ws.n_ext
-    stages = int(vec(ms.parameters, 8)[STAGE_COUNT])
-    table, rows = weight_rows(ms), stage_rows(ws)
-    nodes, weights = vec(ws.scratch, MOST_ROWS), vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS)
-    for i in range(stages):
-        c, row = table[VECTORS, NODES + i], rows[i]
-        count = min(rows_available(ms), MOST_ROWS)
-        for j in range(count):
-            nodes[j] = (history_time(ms, j) - t) / h - c
-        while True:
-            extrapolation_weights(nodes, count, weights)
-            size = 0.0
-            for j in range(count):
-                size += abs(weights[j])
-            if count == 1 or size <= LARGEST_EXTRAPOLATION:
-                break
-            count -= 1
-        for l in range(n):
-            row[2 * n + l] = 0.0
-        for l in range(ws.m_ext):
-            row[4 * n + l] = 0.0
-        for j in range(count):
-            old = history_row(ws, ms, j)
-            for l in range(ws.n):
-                row[2 * n + l] += weights[j] * old[2 * n + l]
-            for l in range(ws.m_ext):
-                row[4 * n + l] += weights[j] * old[4 * n + l]
-    newest = history_row(ws, ms, 0)
-    for i in range(stages):
-        row = rows[i]
-        for l in range(ws.n):
-            move_q, move_v = 0.0, 0.0
-            for j in range(stages):
-                a = rows[j, 2 * n + l]
-                move_q += table[A2, COUPLED_STAGES * i + j] * a
-                move_v += table[A, COUPLED_STAGES * i + j] * a
-            row[l] = newest[l] + h * (table[VECTORS, NODES + i] * newest[n + l] + h * move_q)
-            row[n + l] = newest[n + l] + h * move_v
 
 
 @internal
 def _refactor(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
     """New matrices at the stage in the middle."""
     table = weight_rows(ms)
-    load_stage(ws, ms, int(vec(ms.parameters, 8)[STAGE_COUNT]) // 2, t, h)
+    load_stage(ws, ms, stage_count(ms) // 2, t, h)
     c_v = 0.0 if simple else h * table[EMBEDDED, GAMMA]
     table[MEMORY, SWEEP_RATE] = 1.0
     return refactor(ws, c_v * c_v, c_v)
@@ -145,7 +84,7 @@ def _sweep(ws: Any, ms: Any, t: float, h: float, slack: float, simple: bool) -> 
     q, v, active = vec(ws.q, n), vec(ws.v, n), ivec(ws.active, m_act)
     increment = vec(ws.rhs, ws.n + m_act)
     counters = ivec(ws.counters, COUNTERS_SIZE)
-    for i in range(int(vec(ms.parameters, 8)[STAGE_COUNT])):
+    for i in range(stage_count(ms)):
         load_stage(ws, ms, i, t, h)
         for j in range(i):
             shift_q = h * h * table[SHIFT2, COUPLED_STAGES * i + j]
@@ -180,7 +119,7 @@ def _move(ws: Any, ms: Any, h: float) -> float:
     Independent coordinates are then those of the tableau; for the dependent ones it is a prediction.
     """
     n = ws.n_ext
-    stages = int(vec(ms.parameters, 8)[STAGE_COUNT])
+    stages = stage_count(ms)
     table, rows = weight_rows(ms), stage_rows(ws)
     weight_q, weight_v = vec(ws.weight_q, n), vec(ws.weight_v, n)
     largest = 0.0
@@ -209,7 +148,7 @@ def _iterate(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
     """Sweeps until the stages have converged."""
     control, memory = vec(ws.control, CONTROL_SIZE), weight_rows(ms)[MEMORY]
     counters = ivec(ws.counters, COUNTERS_SIZE)
-    stages = int(vec(ms.parameters, 8)[STAGE_COUNT])
+    stages = stage_count(ms)
     tolerance = control[NEWTON_TOLERANCE]
     # before the sweeps have converged, the constraints need to hold only a hundred times better than they do
     slack = max(1.0, min(1e4, 0.01 * tolerance * control[RTOL] / control[POSITION_TOLERANCE]))
@@ -260,13 +199,12 @@ def _iterate(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
 def solve_coupled(ws: Any, ms: Any, t: float, h: float) -> int:
     """Solve all stages of a step of size h from t, into `stage_rows`. Returns OK or what went wrong.
 
-    On failure with old matrices it tries once more with new ones.
+    On failure with old matrices it tries once more with new ones, then once more from stages at rest.
     """
     rate, memory = vec(ws.rate, RATE_SIZE), weight_rows(ms)[MEMORY]
-    stages = int(vec(ms.parameters, 8)[STAGE_COUNT])
+    stages = stage_count(ms)
     simple = vec(ws.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0
     ivec(ws.counters, COUNTERS_SIZE)[STAGES] += stages
-    _predict(ws, ms, t, h)
     if h > memory[LAST_STEP] > 0.0:
         memory[SWEEP_RATE] *= (h / memory[LAST_STEP]) ** 2
     other_step = abs(h * weight_rows(ms)[EMBEDDED, GAMMA] / rate[FACTOR_CV] - 1.0) > STEP_CHANGE
@@ -277,14 +215,17 @@ def solve_coupled(ws: Any, ms: Any, t: float, h: float) -> int:
         or (other_step and memory[SWEEP_RATE] > STIFF_RATE)
         or simple
     )
-    for attempt in range(2):
-        if fresh or attempt == 1:
+    guess = best_guess(ws, ms, h)
+    for attempt in range(3):
+        if attempt == 1 and fresh:
+            continue
+        predict_stages(ws, ms, t, h, AT_REST if attempt == 2 else guess)
+        if attempt > 0 or fresh:
             status = _refactor(ws, ms, t, h, simple)
             if status != OK:
                 return status
         rate[FACTOR_AGE] += stages
         status = _iterate(ws, ms, t, h, simple)
-        if status == OK or fresh:
+        if status == OK or status == REANALYZE:
             break
-        _predict(ws, ms, t, h)
     return status

@@ -18,10 +18,11 @@ from ..stage.inner import inner_loop
 from ..stage.solver import weighted_norm
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import COUNTERS_SIZE, FACTORIZATIONS, LAST_INNER, LAST_OUTER, OK, RATE_SIZE
-from .coupled import BA, EMBEDDED, END, GAMMA, STAGE_COUNT, START, VECTORS, B, load_stage, solve_coupled, stage_rows
+from .coupled import solve_coupled
 from .history import history_row, history_time
 from .multistep import finish_stage, weight_rows
 from .records import ESTIMATE
+from .stages import BA, EMBEDDED, END, GAMMA, START, VECTORS, B, load_stage, stage_count, stage_rows
 
 # parameters, besides STAGE_COUNT
 STIFFLY_ACCURATE = 1
@@ -35,7 +36,7 @@ def _rates_of_work(ws: Any, ms: Any, t: float, h: float) -> None:
         return
     n = ws.n_ext
     a, rows = vec(ws.a, n), stage_rows(ws)
-    for i in range(int(vec(ms.parameters, 8)[STAGE_COUNT])):
+    for i in range(stage_count(ms)):
         load_stage(ws, ms, i, t, h)
         evaluate_power(ws)
         for l in range(n - ws.n_work, n):
@@ -48,7 +49,7 @@ def _extrapolate_to_end(ws: Any, ms: Any) -> None:
     n = ws.n_ext
     table, rows = weight_rows(ms), stage_rows(ws)
     a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    stages = int(vec(ms.parameters, 8)[STAGE_COUNT])
+    stages = stage_count(ms)
     for l in range(ws.n):
         a[l] = 0.0
         for i in range(stages):
@@ -65,7 +66,7 @@ def _embedded(ws: Any, ms: Any, t: float, h: float) -> int:
     n = ws.n_ext
     table, rows, old = weight_rows(ms), stage_rows(ws), history_row(ws, ms, 0)
     q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
-    stages = int(vec(ms.parameters, 8)[STAGE_COUNT])
+    stages = stage_count(ms)
     c_v = h * table[EMBEDDED, GAMMA]
     for l in range(n):
         p_q = table[EMBEDDED, START] * old[n + l]
@@ -94,7 +95,7 @@ def _end(ws: Any, ms: Any, t: float, h: float) -> int:
     n = ws.n_ext
     table, rows, old = weight_rows(ms), stage_rows(ws), history_row(ws, ms, 0)
     parameters = vec(ms.parameters, 8)
-    stages = int(parameters[STAGE_COUNT])
+    stages = stage_count(ms)
     q, v = vec(ws.q, n), vec(ws.v, n)
     if parameters[STIFFLY_ACCURATE] == 1.0:
         load_stage(ws, ms, stages - 1, t, h)

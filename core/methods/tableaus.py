@@ -87,7 +87,7 @@ class Tableau:
         return np.array([np.prod([(1.0 - y) / (x - y) for y in c if y != x]) for x in c])
 
     def data(self) -> tuple[tuple[float, ...], ...]:
-        """All that a step needs, in the rows that `coupled.py` names (the method record's `weights`)."""
+        """All that a step needs, in the rows that `stages.py` names (the method record's `weights`)."""
         a, sweep, b = np.array(self.a), np.array(self.sweep), np.array(self.b)
         shift = np.tril(sweep, -1)
         shift2 = np.tril(sweep @ sweep, -1)
@@ -103,7 +103,15 @@ class Tableau:
         tail = np.zeros(COUPLED_STAGES + 2)
         tail[: len(b)] = embedded
         tail[COUPLED_STAGES:] = start, self.gamma
-        return (block(a), block(a @ a), block(shift), block(shift2), tuple(vectors.ravel()), tuple(tail))
+        return (
+            block(a),
+            block(a @ a),
+            block(shift),
+            block(shift2),
+            tuple(vectors.ravel()),
+            tuple(tail),
+            block(np.linalg.inv(a)),
+        )
 
 
 TABLEAUS = {
