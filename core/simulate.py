@@ -43,8 +43,8 @@ def simulate(
     t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.
     record : False records only start and end (for timing).
     progress : called with the time reached, now and then.
-    options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
-        only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
+    options : method options (alpha, order, k, tableau ...) and those of `Simulation`: `max_step` (error control sees a
+        load only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
         `outer`, `newton_tolerance`, `start_tolerance`.
 
     Returns

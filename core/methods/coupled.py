@@ -39,7 +39,7 @@ from ..system.records import (
     RTOL,
     STAGES,
 )
-from .guess import AT_REST, best_guess, predict_stages
+from .guess import AT_REST, best_guess, guess_stages
 from .multistep import weight_rows
 from .stages import (
     A2,
@@ -58,12 +58,14 @@ from .stages import (
     stage_rows,
 )
 
-SWEEPS = 3  # times the most iterations of a single stage: also with the exact tangent a sweep leaves up to 0.4
+# Sweeps allowed, times the most iterations of a single stage: with the exact tangent too a sweep leaves up to 0.4.
+SWEEPS = 3
+# Beyond this the matrices are renewed at the next step: a factorisation costs less than a sweep.
 MOST_SWEEPS = 3
-STEP_CHANGE = 0.2  # change of the step that calls for a new matrix where stiffness decides the contraction
-STIFF_RATE = 0.1
-SLOW_SWEEP = 0.5  # more than the tableau itself can cause, except in the first sweeps
-EXPLODING = 5.0  # so can a tableau not grow in one sweep
+# A relative change of the step by this much calls for new matrices if the sweeps contract no faster than STIFF_RATE.
+STEP_CHANGE, STIFF_RATE = 0.2, 0.1
+# Contractions that the tableau alone does not cause: once the first sweeps are over, and ever.
+SLOW_SWEEP, EXPLODING = 0.5, 5.0
 
 
 @internal
@@ -137,10 +139,10 @@ def _move(ws: Any, ms: Any, h: float) -> float:
             row[n + l] += h * (move_v - moved_v)
             of_q += (h * h * move_q / weight_q[l]) ** 2
             of_v += (h * move_v / weight_v[l]) ** 2
-        norm = np.sqrt(max(of_q, of_v) / max(ws.n, 1))
-        if not norm <= largest:  # NaN too
-            largest = norm
-    return largest
+        if not of_q + of_v < np.inf:  # NaN, which `max` could lose
+            return np.inf
+        largest = max(largest, of_q, of_v)
+    return np.sqrt(largest / max(ws.n, 1))
 
 
 @internal
@@ -219,7 +221,7 @@ def solve_coupled(ws: Any, ms: Any, t: float, h: float) -> int:
     for attempt in range(3):
         if attempt == 1 and fresh:
             continue
-        predict_stages(ws, ms, t, h, AT_REST if attempt == 2 else guess)
+        guess_stages(ws, ms, t, h, AT_REST if attempt == 2 else guess)
         if attempt > 0 or fresh:
             status = _refactor(ws, ms, t, h, simple)
             if status != OK:

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..system.records import COUPLED_STAGES
@@ -12,8 +10,11 @@ from .history import history_row, history_time
 from .multistep import rows_available, weight_rows
 from .stages import A2, INVERSE, NODES, VECTORS, A, stage_count, stage_rows
 
-MOST_ROWS = 4
-LARGEST_EXTRAPOLATION = 20.0  # sum of the magnitudes of the weights: beyond, it amplifies more than it predicts
+MOST_ROWS = 5
+# Sum of the magnitudes of the weights: beyond, extrapolation amplifies errors more than it predicts.
+LARGEST_EXTRAPOLATION = 40.0
+# Accelerations that would move a coordinate by more of its scale in one step are those of stiff components.
+LONGEST_MOVE = 0.25
 # how the stages are predicted
 BY_ACCELERATIONS, BY_VELOCITIES, AT_REST = range(3)
 
@@ -38,43 +39,38 @@ def _weights(ws: Any, ms: Any, first: int, t: float, h: float) -> int:
 @internal
 def best_guess(ws: Any, ms: Any, h: float) -> int:
     """Whether velocities or accelerations would have predicted the newest row better: for stiff components, whose
-    accelerations are large and noisy, it is the velocities. Accelerations that would move the mechanism by more than
-    its size in one step come from stiff components too: then neither."""
+    accelerations are large and noisy, it is the velocities."""
+    if rows_available(ms) < 3:
+        return BY_ACCELERATIONS
     n = ws.n_ext
-    newest, scale = history_row(ws, ms, 0), vec(ws.scale, ws.n)
-    of_v, of_a = np.inf, 0.0
-    if rows_available(ms) > 2:
-        of_v = 0.0
-        count = _weights(ws, ms, 1, history_time(ms, 0), h)
-        weights, weight_v = vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS), vec(ws.weight_v, n)
-        for l in range(ws.n):
-            v, a = newest[n + l], newest[2 * n + l]
-            for j in range(count):
-                old = history_row(ws, ms, 1 + j)
-                v -= weights[j] * old[n + l]
-                a -= weights[j] * old[2 * n + l]
-            of_v += (v / weight_v[l]) ** 2
-            of_a += (h * a / weight_v[l]) ** 2
-    if of_v < of_a:
-        return BY_VELOCITIES
+    newest = history_row(ws, ms, 0)
+    count = _weights(ws, ms, 1, history_time(ms, 0), h)
+    weights, weight_v = vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS), vec(ws.weight_v, n)
+    of_v, of_a = 0.0, 0.0
     for l in range(ws.n):
-        if h * h * abs(newest[2 * n + l]) > scale[l]:
-            return AT_REST
-    return BY_ACCELERATIONS
+        v, a = newest[n + l], newest[2 * n + l]
+        for j in range(count):
+            old = history_row(ws, ms, 1 + j)
+            v -= weights[j] * old[n + l]
+            a -= weights[j] * old[2 * n + l]
+        of_v += (v / weight_v[l]) ** 2
+        of_a += (h * a / weight_v[l]) ** 2
+    return BY_VELOCITIES if of_v < of_a else BY_ACCELERATIONS
 
 
 @internal
-def predict_stages(ws: Any, ms: Any, t: float, h: float, guess: int) -> None:
+def _predict(ws: Any, ms: Any, t: float, h: float, guess: int) -> bool:
     """Accelerations and multipliers of the stages by extrapolation through the history; q and v that belong to them.
 
     BY_VELOCITIES: a = A^-1 (V - v_n) / h with extrapolated velocities V of the stages. AT_REST: a = 0, so that the
-    stages stay near the newest row whatever its accelerations are.
+    stages stay near the newest row whatever its accelerations are. Returns whether the guess is plausible.
     """
     n = ws.n_ext
     stages = stage_count(ms)
     table, rows = weight_rows(ms), stage_rows(ws)
     weights = vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS)
     newest = history_row(ws, ms, 0)
+    scale, plausible = vec(ws.scale, ws.n), True
     source = n if guess == BY_VELOCITIES else 2 * n
     for i in range(stages):
         row = rows[i]
@@ -104,5 +100,15 @@ def predict_stages(ws: Any, ms: Any, t: float, h: float, guess: int) -> None:
                 a = rows[j, 2 * n + l]
                 move_q += table[A2, COUPLED_STAGES * i + j] * a
                 move_v += table[A, COUPLED_STAGES * i + j] * a
+            if abs(h * h * move_q) > LONGEST_MOVE * scale[l]:
+                plausible = False
             rows[i, l] = newest[l] + h * (table[VECTORS, NODES + i] * newest[n + l] + h * move_q)
             rows[i, n + l] = newest[n + l] + h * move_v
+    return plausible
+
+
+@internal
+def guess_stages(ws: Any, ms: Any, t: float, h: float, guess: int) -> None:
+    """Starting values of all stages, by `guess` if that is plausible."""
+    if not _predict(ws, ms, t, h, guess):
+        _predict(ws, ms, t, h, AT_REST)

@@ -67,11 +67,11 @@ class Tableau:
         conditions = np.vander(c, p, increasing=True).T
         if self.start_weight is not None:
             right[0] -= self.start_weight
-            return self.start_weight, np.linalg.solve(conditions, right)
+            return self.start_weight, np.asarray(np.linalg.solve(conditions, right), dtype=np.float64)
         at_start = np.zeros((p, 1))
         at_start[0, 0] = 1.0
         weights = np.linalg.solve(np.hstack([at_start, conditions]), right)
-        return float(weights[0]), weights[1:]
+        return float(weights[0]), np.asarray(weights[1:], dtype=np.float64)
 
     def sweep_error(self, d: Floats, k: Floats) -> Floats:
         """E(d, k) of the module's docstring for damping d >= 0 (N,) and stiffness k >= 0 (N,), as (N, s, s)."""

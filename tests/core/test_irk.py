@@ -133,17 +133,18 @@ def test_order_survives_full_turns_and_the_new_partitions_that_they_need(tableau
     assert turns > 2.0 and run.stats["partitions"] >= 4.0 * turns - 1.0
 
 
-@pytest.mark.parametrize("tableau, bound", [("radau3", 10.0), ("gauss2", 50.0), ("gauss3", 10.0)])
+@pytest.mark.parametrize("tableau, bound", [("radau3", 1.0), ("gauss2", 50.0), ("gauss3", 1.0)])
 def test_error_control_follows_the_tolerance(tableau, bound):
-    """h goes as rtol^(1/(estimate's order + 1)), the global error as h^order."""
+    """h goes as rtol^(1/(estimate's order + 1)), the error of the formula as h^order; of a step the sweeps may leave
+    a hundredth of rtol."""
     exponent = TABLEAUS[tableau].order / (TABLEAUS[tableau].order_of_estimate + 1)
-    tolerances = (1e-5, 1e-7, 1e-9)
-    ratios = []
-    for rtol in tolerances:
+    errors = []
+    for rtol in (1e-5, 1e-7, 1e-9):
         run = simulate(point_pendulum(ANGLE, RATE), 1.0, "irk", rtol, rtol * 1e-2, record=False, tableau=tableau)
-        error = np.abs(np.concatenate([run.q[-1], run.v[-1]]) - exact(1.0)).max()
-        ratios.append(error / rtol**exponent)
-    assert max(ratios) < bound and min(ratios) > 1e-2
+        errors.append(np.abs(np.concatenate([run.q[-1], run.v[-1]]) - exact(1.0)).max())
+        assert errors[-1] < bound * rtol
+        assert errors[-1] > 1e-2 * rtol**exponent
+    assert errors[0] > errors[1] > errors[2]
 
 
 def test_higher_orders_take_fewer_steps_than_the_diagonal_method():
@@ -243,7 +244,8 @@ def test_vibration_of_a_thousand_radians_a_step(tableau):
         assert energy[1] < 1e-4 * energy[0] and energy[-1] < 1e-8 * energy[0]
     else:
         assert energy == pytest.approx(energy[0], rel=1e-5)
-    assert run.stats["outer_iterations"] <= 20 * run.stats["stages"]
+    # 0.315 a sweep from an error as large as the motion to 1e-12 of it, and a few sweeps until that rate shows
+    assert run.stats["outer_iterations"] <= 28 * run.stats["stages"]
     assert run.stats["rejected"] == 0
 
 
