@@ -50,7 +50,9 @@ def _data(method: Any) -> dict[str, Any]:
         "description": method.description,
         "family": method.family,
         "options": [
-            {
+            {"name": name, "default": o.default, "choices": list(o.choices), "description": o.description}
+            if o.choices
+            else {
                 "name": name,
                 "default": _value(o, o.default),
                 "minimum": _value(o, o.minimum) if o.numeric else None,

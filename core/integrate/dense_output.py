@@ -14,14 +14,13 @@ from ..compiled.views import ivec, mat, vec
 from ..linalg import factor, lu_at, solve
 from ..methods.history import history_row, history_time, recall
 from ..methods.multistep import rows_available
+from ..stage.accelerations import solve_accelerations
 from ..stage.inner import rounding_level
-from ..stage.solver import solve_increment
 from ..system.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..system.records import (
     CONTROL_SIZE,
     INNER_DIVERGED,
     OK,
-    OUTER_SLOW,
     POSITION_TOLERANCE,
     REANALYZE,
     SINGULAR,
@@ -92,41 +91,6 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     for i in range(ws.m_ext):
         lam[i] = newest[4 * n + i] + s * (newest[4 * n + i] - older[4 * n + i])
     vec(ws.t, 1)[0] = t
-
-
-@internal
-def _largest(x: Any, n: int) -> float:
-    """Largest magnitude of the first n entries."""
-    largest = 0.0
-    for i in range(n):
-        largest = max(largest, abs(x[i]))
-    return largest
-
-
-@compiled
-def solve_accelerations(ws: Any) -> int:
-    """(a, lambda) of the current (q, v) from the augmented system [M, Phi_q^T; Phi_q, 0], with matrices of its own."""
-    n = ws.n
-    a, lam = vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext)
-    active = ivec(ws.active, ws.m_act)
-    increment = vec(ws.rhs, n + ws.m_act)
-    evaluate_tangent(ws, 0.0, 0.0)
-    if factor(lu_at(ws.kkt_query), ws.values) != 0:
-        return REANALYZE
-    previous = np.inf
-    for _ in range(10):
-        evaluate_residuals(ws)
-        solve_increment(ws, ws.kkt_query)
-        for i in range(n):
-            a[i] += increment[i]
-        for i in range(ws.m_act):
-            lam[active[i]] += increment[n + i]
-        norm, size = _largest(increment, n), _largest(a, n)
-        if norm <= 1e-14 * (1.0 + size) or norm >= previous:
-            evaluate_residuals(ws)
-            return OK if norm <= 1e-8 * (1.0 + size) else OUTER_SLOW
-        previous = norm
-    return OUTER_SLOW
 
 
 @internal

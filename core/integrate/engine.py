@@ -21,17 +21,18 @@ from ..errors import CallbackError, ConsistencyError, ModelError, SimulationErro
 from ..events import Event, Fallback
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
-from ..methods.records import CHOICE_SIZE, METHOD, K, step_address
+from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, K, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
 from ..stage import OUTER_LOOPS
+from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
-from ..system.records import FACTOR_AGE, MAX_OUTER, OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
+from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.workspace import Workspace
 from .controllers import CONTROLLERS
-from .dense_output import query, solve_accelerations
+from .dense_output import query
 from .output import ChannelTable
 from .records import (
     A2,
@@ -134,12 +135,16 @@ class Engine:
         formula, length = self.formula, self.workspace.row_length
         parameters = np.zeros(8)
         parameters[: len(formula.parameters)] = formula.parameters
+        parameters[ESTIMATE] = 1.0 if self.settings.step is None else 0.0
+        weights = np.zeros((8, MAX_NODES))
+        for row, values in zip(weights, formula.weights, strict=False):
+            row[: len(values)] = values
         self.method_arrays: dict[str, NDArray[Any]] = {
             "history": np.zeros((HISTORY_ROWS, length)),
             "times": np.zeros(HISTORY_ROWS),
             "ring": np.zeros(2, dtype=np.int64),
             "parameters": parameters,
-            "weights": np.zeros((8, 12)),
+            "weights": weights,
             "error": np.zeros(2),
             "choice": np.zeros(CHOICE_SIZE),
         }
@@ -153,17 +158,19 @@ class Engine:
         ------
         ModelError : if the method has a stage solver of its own and knows no other outer loop than newton.
         """
-        own = self.formula.stage
-        if own is not None and name != "newton":
+        if name not in self.formula.outer_loops or (
+            self.settings.acceleration != "none" and "jfnk" not in self.formula.outer_loops
+        ):
             raise ModelError(
-                f"method '{self.settings.method}' has its own Newton iteration: outer = '{name}' belongs to the "
-                "TLISMNI methods"
+                f"method '{self.settings.method}' with these options solves its stages in its own way and knows only "
+                f"outer = {' or '.join(repr(loop) for loop in self.formula.outer_loops)}, without acceleration"
             )
         loop = OUTER_LOOPS[name]
         self.outer = name
         self.workspace.make_basis(loop.basis_rows)
-        self.workspace.use_stage(address_of(own or loop.stage, STAGE_SIGNATURE))
-        self.workspace.arrays["control"][MAX_OUTER] = loop.most_iterations
+        self.workspace.use_stage(address_of(self.formula.stage or loop.stage, STAGE_SIGNATURE))
+        control = self.workspace.arrays["control"]
+        control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, float(name == "simple")
         self.workspace.arrays["rate"][FACTOR_AGE] = -1.0
 
     def _build_loop(self, record: bool, step_records: bool) -> None:

@@ -8,15 +8,17 @@ from ..errors import ModelError
 from .adams import adams_step
 from .bdf import bdf_step
 from .ebdf import ebdf_step
+from .irk import irk_step
 from .newmark import newmark_step
 from .order_selection import select_k
 from .park import park_step
 from .sdirk import sdirk_fine_step, sdirk_step
+from .tableaus import TABLEAUS
 
 
 @dataclass(frozen=True)
 class Option:
-    """One option of a method."""
+    """One option of a method: a number from `minimum` to `maximum`, or one of the words in `choices`."""
 
     default: float | str
     minimum: float
@@ -70,8 +72,12 @@ class Formula:
     """Chooses the number of steps after an accepted step (a function of STEP_SIGNATURE); None: it is fixed."""
     stage: Any = None
     """The stage solver of a comparison method; None: that of TLISMNI with the chosen outer loop."""
+    outer_loops: tuple[str, ...] = ("newton", "simple", "jfnk")
+    """Outer loops that can solve its stages."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
+    weights: tuple[tuple[float, ...], ...] = ()
+    """First content of the method record's `weights`, row by row."""
 
 
 @dataclass(frozen=True)
@@ -112,6 +118,14 @@ def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: t
     most = max(i + 1 for i, alpha in enumerate(ANGLES[name][: MOST_AUTOMATIC[name]]) if alpha >= angle)
     first = min(FIRST_AUTOMATIC, most)
     return Formula(step, first, (*parameters, 1.0, float(most)), first + 1, select=select_k)
+
+
+def _irk(name: str) -> Formula:
+    if name == "sdirk4":
+        return Formula(sdirk_step)
+    tableau = TABLEAUS[name]
+    parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_estimate)
+    return Formula(irk_step, 0, parameters, weights=tableau.data(), outer_loops=("newton", "simple"))
 
 
 def _hht(values: Mapping[str, Any]) -> Formula:
@@ -178,9 +192,11 @@ METHODS = {
         ),
         Method(
             "irk",
-            "TLISMNI with the implicit Runge-Kutta method SDIRK of order 4, L-stable, self-starting",
-            {},
-            lambda o: Formula(sdirk_step),
+            "TLISMNI with an implicit Runge-Kutta method, self-starting: "
+            + "; ".join(f"{name}: {tableau.description}" for name, tableau in TABLEAUS.items())
+            + "; sdirk4: SDIRK with 5 stages one after the other, order 4, L-stable",
+            {"tableau": Option.word("radau3", (*TABLEAUS, "sdirk4"), "the Runge-Kutta coefficients")},
+            lambda o: _irk(o["tableau"]),
         ),
     )
 }

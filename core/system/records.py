@@ -20,8 +20,8 @@ WORKSPACE = np.dtype(
             # structure (changes with the set of engaged contacts)
             "active", "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
             # stage solver
-            "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
-            "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
+            "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "stage_rows", "rhs",
+            "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
             # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
             "basis", "n_basis",
         )
@@ -35,6 +35,9 @@ STAGE_SIGNATURE = types.int64(WORKSPACE_TYPE, types.float64, types.float64, type
 call_evaluate = caller(EVALUATE_SIGNATURE)
 call_stage = caller(STAGE_SIGNATURE)
 
+COUPLED_STAGES = 3
+"""Rows of `stage_rows`: the most stages that are solved together."""
+
 # columns of `control` (float64)
 NEWTON_TOLERANCE = 0
 POSITION_TOLERANCE = 1
@@ -47,7 +50,8 @@ RTOL = 7
 ATOL = 8  # of the work accounts
 STAGE_ALPHA = 9  # parameters of the stage functions of comparison methods
 STAGE_BETA = 10
-CONTROL_SIZE = 11
+OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, for formulas that solve coupled stages themselves
+CONTROL_SIZE = 12
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0

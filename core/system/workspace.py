@@ -15,6 +15,7 @@ from .evaluate import all_kernels
 from .records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
+    COUPLED_STAGES,
     EVALUATE_SIGNATURE,
     FACTOR_AGE,
     RATE_SIZE,
@@ -64,6 +65,7 @@ class Workspace:
             **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot")},
             "stage_v": np.zeros(8 * n_ext),
             "stage_a": np.zeros(8 * n_ext + m_ext),
+            "stage_rows": np.zeros(COUPLED_STAGES * row_length),
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),
             "scratch": np.zeros(64),

@@ -60,7 +60,7 @@ def slope(steps, errors):
         ("ebdf", {"k": 4}, 5, (120, 240)),
         ("ebdf", {"k": 5}, 6, (120, 240)),
         *(("mebdf", {"k": k}, k + 1, (160 if k == 1 else 120, 320 if k == 1 else 240)) for k in range(1, 6)),
-        ("irk", {}, 4, (80, 160)),
+        ("irk", {"tableau": "sdirk4"}, 4, (80, 160)),
     ],
 )
 def test_observed_order(method, options, expected, steps):
@@ -104,7 +104,7 @@ def test_elements_and_user_written_equations_give_the_same_numbers():
     [
         ("ebdf", {"k": 4}, 5, (400, 600, 900, 1350)),
         ("bdf", {"order": 3}, 3, (400, 600, 900, 1350)),
-        ("irk", {}, 4, (400, 600, 900, 1350)),
+        ("irk", {"tableau": "sdirk4"}, 4, (400, 600, 900, 1350)),
         ("hht", {}, 2, (1000, 2000, 4000)),
     ],
 )
@@ -125,7 +125,7 @@ def test_order_survives_full_turns_and_the_new_partitions_that_they_need(method,
     "method, options, tolerances, exponent, bound",
     [
         ("ebdf", {}, (1e-6, 1e-8, 1e-10), 1.0, 10.0),
-        ("irk", {}, (1e-6, 1e-8, 1e-10), 1.0, 10.0),
+        ("irk", {"tableau": "sdirk4"}, (1e-6, 1e-8, 1e-10), 1.0, 10.0),
         ("bdf", {"order": 5}, (1e-6, 1e-8, 1e-10), 1.0, 50.0),
         ("hht", {}, (1e-5, 1e-6, 1e-7), 2.0 / 3.0, 20.0),
     ],

@@ -11,6 +11,7 @@ from tlismni.core import Model, ModelError, PointMass2D, Simulation, SimulationE
 from tlismni.models import load
 
 STEP = 0.01
+METHOD_NAMES = {"sdirk4": ("irk", {"tableau": "sdirk4"})}
 ACCELERATED = ({"acceleration": "aitken"}, {"acceleration": "anderson"}, {"acceleration": "anderson", "depth": 1})
 
 
@@ -19,12 +20,13 @@ def stiffness(contraction):
     return 4.0 * contraction / STEP**2
 
 
-@pytest.mark.parametrize("method", ["newmark", "hht", "bdf", "ebdf", "adams", "irk"])
+@pytest.mark.parametrize("method", ["newmark", "hht", "bdf", "ebdf", "adams", "sdirk4"])
 @pytest.mark.parametrize("options", [{"outer": "jfnk"}, *({"outer": "simple", **o} for o in ACCELERATED)])
 def test_every_outer_loop_finds_the_same_solution(method, options):
     system = load("chain", links=3).model
+    method, own = METHOD_NAMES.get(method, (method, {}))
     runs = [
-        simulate(system, 0.2, method, step=0.004, newton_tolerance=1e-12, **chosen)
+        simulate(system, 0.2, method, step=0.004, newton_tolerance=1e-12, **chosen, **own)
         for chosen in ({"outer": "newton"}, options)
     ]
     assert np.array_equal(runs[0].t, runs[1].t)
@@ -63,11 +65,12 @@ def spring_pendulum(stiff):
 
 
 @pytest.mark.parametrize("stiff", [1e4, 1e6, 1e9])
-@pytest.mark.parametrize("method", ["newmark", "ebdf", "bdf", "irk"])
+@pytest.mark.parametrize("method", ["newmark", "ebdf", "bdf", "sdirk4"])
 def test_jfnk_does_not_mind_stiffness(method, stiff):
     """Steps beyond 2/omega, up to 150 times; the result is that of newton."""
     system = spring_pendulum(stiff)
-    newton, jfnk = (simulate(system, 0.3, method, step=STEP, outer=outer) for outer in ("newton", "jfnk"))
+    method, own = METHOD_NAMES.get(method, (method, {}))
+    newton, jfnk = (simulate(system, 0.3, method, step=STEP, outer=outer, **own) for outer in ("newton", "jfnk"))
     assert STEP > 0.99 / math.sqrt(stiff)
     assert newton.t[-1] == jfnk.t[-1] == 0.3
     assert np.abs(newton.q - jfnk.q).max() < 3e-8
@@ -129,6 +132,12 @@ class TestFallBack:
 def test_the_limit_is_named_when_the_simple_iteration_is_refused():
     with pytest.raises(SimulationError, match=r"omega\^2 < 1.*the largest step here is about 0.0002 s"):
         simulate(oscillator(1e8), 0.2, "newmark", step=STEP, outer="simple")
+
+
+@pytest.mark.parametrize("options", [{"outer": "jfnk"}, {"outer": "simple", "acceleration": "aitken"}])
+def test_coupled_stages_say_which_outer_loops_they_know(options):
+    with pytest.raises(ModelError, match="'irk' with these options .* knows only outer = 'newton' or 'simple'"):
+        simulate(rod_pendulum(), 0.1, "irk", **options)
 
 
 @pytest.mark.parametrize(

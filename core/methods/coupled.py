@@ -1,0 +1,233 @@
+"""Coupled stages of a fully implicit Runge-Kutta method, by sweeps with one matrix for all of them.
+
+Unknowns are the accelerations a_i of all stages (independent coordinates; the inner loop gives the dependent ones):
+  V_i = v_n + h sum_j A_ij a_j,  Q_i = q_n + c_i h v_n + h^2 sum_j (A A)_ij a_j,  M a_i + Phi_q^T lambda_i = Q(Q_i, V_i)
+A sweep goes through the stages in turn: the point of stage i is shifted by the corrections that stages j < i have
+found (v by h S_ij da_j, q by h^2 (S S)_ij da_j; S of `tableaus.py`), the inner loop brings it onto the constraints,
+and the matrix M + h gamma D + (h gamma)^2 K, bordered by Phi_q, gives (da_i, dlambda_i). Then all points move as the
+tableau says. The fixed point is the solution, whatever the matrices are.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..stage.inner import inner_loop
+from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, refactor, solve_increment
+from ..system.evaluate import evaluate_residuals
+from ..system.records import (
+    CONTROL_SIZE,
+    COUNTERS_SIZE,
+    COUPLED_STAGES,
+    FACTOR_AGE,
+    FACTOR_CV,
+    FAILED_NORM,
+    INNER,
+    MAX_OUTER,
+    NEWTON_TOLERANCE,
+    NOT_FINITE,
+    OK,
+    OUTER,
+    OUTER_DIVERGED,
+    OUTER_LOOP,
+    OUTER_SLOW,
+    POSITION_TOLERANCE,
+    RATE_SIZE,
+    REANALYZE,
+    RTOL,
+    STAGES,
+)
+from .guess import AT_REST, best_guess, guess_stages
+from .multistep import weight_rows
+from .stages import (
+    A2,
+    EMBEDDED,
+    GAMMA,
+    INNER_EACH,
+    LAST_STEP,
+    LAST_SWEEPS,
+    MEMORY,
+    SHIFT,
+    SHIFT2,
+    SWEEP_RATE,
+    A,
+    load_stage,
+    stage_count,
+    stage_rows,
+)
+
+# Sweeps allowed, times the most iterations of a single stage: with the exact tangent too a sweep leaves up to 0.4.
+SWEEPS = 3
+# Beyond this the matrices are renewed at the next step: a factorisation costs less than a sweep.
+MOST_SWEEPS = 3
+# A relative change of the step by this much calls for new matrices if the sweeps contract no faster than STIFF_RATE.
+STEP_CHANGE, STIFF_RATE = 0.2, 0.1
+# Contractions that the tableau alone does not cause: once the first sweeps are over, and ever.
+SLOW_SWEEP, EXPLODING = 0.5, 5.0
+
+
+@internal
+def _refactor(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
+    """New matrices at the stage in the middle."""
+    table = weight_rows(ms)
+    load_stage(ws, ms, stage_count(ms) // 2, t, h)
+    c_v = 0.0 if simple else h * table[EMBEDDED, GAMMA]
+    table[MEMORY, SWEEP_RATE] = 1.0
+    return refactor(ws, c_v * c_v, c_v)
+
+
+@internal
+def _sweep(ws: Any, ms: Any, t: float, h: float, slack: float, simple: bool) -> int:
+    """One pass over the stages: corrections of their accelerations and multipliers."""
+    n, m_act = ws.n_ext, ws.m_act
+    table, rows = weight_rows(ms), stage_rows(ws)
+    q, v, active = vec(ws.q, n), vec(ws.v, n), ivec(ws.active, m_act)
+    increment = vec(ws.rhs, ws.n + m_act)
+    counters = ivec(ws.counters, COUNTERS_SIZE)
+    for i in range(stage_count(ms)):
+        load_stage(ws, ms, i, t, h)
+        for j in range(i):
+            shift_q = h * h * table[SHIFT2, COUPLED_STAGES * i + j]
+            shift_v = h * table[SHIFT, COUPLED_STAGES * i + j]
+            for l in range(ws.n):
+                q[l] += shift_q * rows[j, 3 * n + l]
+                v[l] += shift_v * rows[j, 3 * n + l]
+        evaluate_residuals(ws)
+        status = inner_loop(ws, ws.lu_d, slack, np.inf)
+        if status == OK and simple:
+            status = refactor(ws, 0.0, 0.0)
+        if status != OK:
+            return status
+        solve_increment(ws, ws.kkt)
+        counters[OUTER] += 1
+        row = rows[i]
+        for l in range(ws.n):
+            # with what the inner loop has corrected: the next sweep need not find it again
+            row[l] = q[l]
+            row[n + l] = v[l]
+            row[2 * n + l] += increment[l]
+            row[3 * n + l] = increment[l]
+        for l in range(m_act):
+            row[4 * n + active[l]] += increment[ws.n + l]
+    return OK
+
+
+@internal
+def _move(ws: Any, ms: Any, h: float) -> float:
+    """Move the stages' points by the corrections of their accelerations. Returns the largest weighted norm of a move.
+
+    Independent coordinates are then those of the tableau; for the dependent ones it is a prediction.
+    """
+    n = ws.n_ext
+    stages = stage_count(ms)
+    table, rows = weight_rows(ms), stage_rows(ws)
+    weight_q, weight_v = vec(ws.weight_q, n), vec(ws.weight_v, n)
+    largest = 0.0
+    for i in range(stages):
+        row, of_q, of_v = rows[i], 0.0, 0.0
+        for l in range(ws.n):
+            move_q, move_v, moved_q, moved_v = 0.0, 0.0, 0.0, 0.0
+            for j in range(stages):
+                correction, e = rows[j, 3 * n + l], COUPLED_STAGES * i + j
+                move_q += table[A2, e] * correction
+                move_v += table[A, e] * correction
+                moved_q += table[SHIFT2, e] * correction
+                moved_v += table[SHIFT, e] * correction
+            row[l] += h * h * (move_q - moved_q)
+            row[n + l] += h * (move_v - moved_v)
+            of_q += (h * h * move_q / weight_q[l]) ** 2
+            of_v += (h * move_v / weight_v[l]) ** 2
+        if not of_q + of_v < np.inf:  # NaN, which `max` could lose
+            return np.inf
+        largest = max(largest, of_q, of_v)
+    return np.sqrt(largest / max(ws.n, 1))
+
+
+@internal
+def _iterate(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
+    """Sweeps until the stages have converged."""
+    control, memory = vec(ws.control, CONTROL_SIZE), weight_rows(ms)[MEMORY]
+    counters = ivec(ws.counters, COUNTERS_SIZE)
+    stages = stage_count(ms)
+    tolerance = control[NEWTON_TOLERANCE]
+    # before the sweeps have converged, the constraints need to hold only a hundred times better than they do
+    slack = max(1.0, min(1e4, 0.01 * tolerance * control[RTOL] / control[POSITION_TOLERANCE]))
+    start_inner = counters[INNER]
+    previous, before = np.inf, np.inf
+    renewed = 0
+    for k in range(int(control[MAX_OUTER]) * (1 if simple else SWEEPS)):
+        status = _sweep(ws, ms, t, h, slack, simple)
+        if status != OK:
+            return status
+        norm = _move(ws, ms, h)
+        if not np.isfinite(norm):
+            return NOT_FINITE
+        renew = False
+        if k > 0:
+            # S is far from normal: over two sweeps the contraction is seen better than over one
+            contraction = max(norm / previous, np.sqrt(norm / before))
+            memory[SWEEP_RATE] = max(0.3 * memory[SWEEP_RATE], contraction)
+            if norm > tolerance:
+                stalled = norm > 0.8 * before
+                if (simple and contraction > 0.9) or (stalled and renewed > 0):
+                    memory[SWEEP_RATE] = 1.0
+                    vec(ws.rate, RATE_SIZE)[FAILED_NORM] = contraction
+                    return OUTER_DIVERGED
+                slow = contraction > SLOW_SWEEP and k > 1
+                renew = not simple and renewed < 2 and (slow or contraction > EXPLODING)
+        known = min(max(memory[SWEEP_RATE], LEAST_RATE), 0.99)
+        if norm * known / (1.0 - known) <= tolerance:
+            if k == 0:
+                # a contraction of earlier steps is trusted less and less
+                memory[SWEEP_RATE] = known * RATE_GROWTH
+            memory[LAST_SWEEPS] = k + 1
+            memory[INNER_EACH] = (counters[INNER] - start_inner) / stages
+            memory[LAST_STEP] = h
+            return OK
+        before, previous = previous, norm
+        if renew:
+            # the matrix of the predicted points is not good enough: that of the present ones is
+            renewed += 1
+            before = np.inf
+            status = _refactor(ws, ms, t, h, simple)
+            if status != OK:
+                return status
+    return OUTER_SLOW
+
+
+@internal
+def solve_coupled(ws: Any, ms: Any, t: float, h: float) -> int:
+    """Solve all stages of a step of size h from t, into `stage_rows`. Returns OK or what went wrong.
+
+    On failure with old matrices it tries once more with new ones, then once more from stages at rest.
+    """
+    rate, memory = vec(ws.rate, RATE_SIZE), weight_rows(ms)[MEMORY]
+    stages = stage_count(ms)
+    simple = vec(ws.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0
+    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += stages
+    if h > memory[LAST_STEP] > 0.0:
+        memory[SWEEP_RATE] *= (h / memory[LAST_STEP]) ** 2
+    other_step = abs(h * weight_rows(ms)[EMBEDDED, GAMMA] / rate[FACTOR_CV] - 1.0) > STEP_CHANGE
+    fresh = (
+        rate[FACTOR_AGE] < 0.0
+        or memory[LAST_SWEEPS] > MOST_SWEEPS
+        or memory[INNER_EACH] > MOST_INNER
+        or (other_step and memory[SWEEP_RATE] > STIFF_RATE)
+        or simple
+    )
+    guess = best_guess(ws, ms, h)
+    for attempt in range(3):
+        if attempt == 1 and fresh:
+            continue
+        guess_stages(ws, ms, t, h, AT_REST if attempt == 2 else guess)
+        if attempt > 0 or fresh:
+            status = _refactor(ws, ms, t, h, simple)
+            if status != OK:
+                return status
+        rate[FACTOR_AGE] += stages
+        status = _iterate(ws, ms, t, h, simple)
+        if status == OK or status == REANALYZE:
+            break
+    return status

@@ -1,0 +1,114 @@
+"""Starting values of the stages of a fully implicit Runge-Kutta method: a pure function of the history."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import vec
+from ..system.records import COUPLED_STAGES
+from .coefficients import extrapolation_weights
+from .history import history_row, history_time
+from .multistep import rows_available, weight_rows
+from .stages import A2, INVERSE, NODES, VECTORS, A, stage_count, stage_rows
+
+MOST_ROWS = 5
+# Sum of the magnitudes of the weights: beyond, extrapolation amplifies errors more than it predicts.
+LARGEST_EXTRAPOLATION = 40.0
+# Accelerations that would move a coordinate by more of its scale in one step are those of stiff components.
+LONGEST_MOVE = 0.25
+# how the stages are predicted
+BY_ACCELERATIONS, BY_VELOCITIES, AT_REST = range(3)
+
+
+@internal
+def _weights(ws: Any, ms: Any, first: int, t: float, h: float) -> int:
+    """Weights in `scratch` that extrapolate rows first, first + 1 ... of the history to t. Returns their number."""
+    nodes, weights = vec(ws.scratch, MOST_ROWS), vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS)
+    count = min(rows_available(ms) - first, MOST_ROWS)
+    for j in range(count):
+        nodes[j] = (history_time(ms, first + j) - t) / h
+    while True:
+        extrapolation_weights(nodes, count, weights)
+        size = 0.0
+        for j in range(count):
+            size += abs(weights[j])
+        if count == 1 or size <= LARGEST_EXTRAPOLATION:
+            return count
+        count -= 1
+
+
+@internal
+def best_guess(ws: Any, ms: Any, h: float) -> int:
+    """Whether velocities or accelerations would have predicted the newest row better: for stiff components, whose
+    accelerations are large and noisy, it is the velocities."""
+    if rows_available(ms) < 3:
+        return BY_ACCELERATIONS
+    n = ws.n_ext
+    newest = history_row(ws, ms, 0)
+    count = _weights(ws, ms, 1, history_time(ms, 0), h)
+    weights, weight_v = vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS), vec(ws.weight_v, n)
+    of_v, of_a = 0.0, 0.0
+    for l in range(ws.n):
+        v, a = newest[n + l], newest[2 * n + l]
+        for j in range(count):
+            old = history_row(ws, ms, 1 + j)
+            v -= weights[j] * old[n + l]
+            a -= weights[j] * old[2 * n + l]
+        of_v += (v / weight_v[l]) ** 2
+        of_a += (h * a / weight_v[l]) ** 2
+    return BY_VELOCITIES if of_v < of_a else BY_ACCELERATIONS
+
+
+@internal
+def _predict(ws: Any, ms: Any, t: float, h: float, guess: int) -> bool:
+    """Accelerations and multipliers of the stages by extrapolation through the history; q and v that belong to them.
+
+    BY_VELOCITIES: a = A^-1 (V - v_n) / h with extrapolated velocities V of the stages. AT_REST: a = 0, so that the
+    stages stay near the newest row whatever its accelerations are. Returns whether the guess is plausible.
+    """
+    n = ws.n_ext
+    stages = stage_count(ms)
+    table, rows = weight_rows(ms), stage_rows(ws)
+    weights = vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS)
+    newest = history_row(ws, ms, 0)
+    scale, plausible = vec(ws.scale, ws.n), True
+    source = n if guess == BY_VELOCITIES else 2 * n
+    for i in range(stages):
+        row = rows[i]
+        count = _weights(ws, ms, 0, t + table[VECTORS, NODES + i] * h, h)
+        for l in range(ws.n):
+            found = 0.0
+            if guess != AT_REST:
+                for j in range(count):
+                    found += weights[j] * history_row(ws, ms, j)[source + l]
+            row[3 * n + l] = found
+        for l in range(ws.m_ext):
+            found = 0.0
+            for j in range(count):
+                found += weights[j] * history_row(ws, ms, j)[4 * n + l]
+            row[4 * n + l] = found
+    for l in range(ws.n):
+        for i in range(stages):
+            a = rows[i, 3 * n + l]
+            if guess == BY_VELOCITIES:
+                a = 0.0
+                for j in range(stages):
+                    a += table[INVERSE, COUPLED_STAGES * i + j] * (rows[j, 3 * n + l] - newest[n + l]) / h
+            rows[i, 2 * n + l] = a
+        for i in range(stages):
+            move_q, move_v = 0.0, 0.0
+            for j in range(stages):
+                a = rows[j, 2 * n + l]
+                move_q += table[A2, COUPLED_STAGES * i + j] * a
+                move_v += table[A, COUPLED_STAGES * i + j] * a
+            if abs(h * h * move_q) > LONGEST_MOVE * scale[l]:
+                plausible = False
+            rows[i, l] = newest[l] + h * (table[VECTORS, NODES + i] * newest[n + l] + h * move_q)
+            rows[i, n + l] = newest[n + l] + h * move_v
+    return plausible
+
+
+@internal
+def guess_stages(ws: Any, ms: Any, t: float, h: float, guess: int) -> None:
+    """Starting values of all stages, by `guess` if that is plausible."""
+    if not _predict(ws, ms, t, h, guess):
+        _predict(ws, ms, t, h, AT_REST)

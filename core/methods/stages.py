@@ -1,0 +1,48 @@
+"""Where a fully implicit Runge-Kutta method keeps its tableau and its stages.
+
+The method record's `weights` hold the tableau, as `Tableau.data` writes it, and what the convergence test remembers.
+The workspace's `stage_rows` hold the stages.
+"""
+
+from typing import Any
+
+from ..compiled.jit import inlined, internal
+from ..compiled.views import mat, vec
+from ..system.records import COUPLED_STAGES
+from .multistep import weight_rows
+
+# rows of `weights`; matrices are stored row by row, COUPLED_STAGES wide
+A, A2, SHIFT, SHIFT2, VECTORS, EMBEDDED, INVERSE, MEMORY = range(8)
+# parts of VECTORS: nodes c, b, b^T A, extrapolation of the stages to the end
+NODES, B, BA, END = 0, COUPLED_STAGES, 2 * COUPLED_STAGES, 3 * COUPLED_STAGES
+# parts of EMBEDDED after the weights of the stages: weight of the start, gamma
+START, GAMMA = COUPLED_STAGES, COUPLED_STAGES + 1
+# columns of MEMORY: contraction of the sweeps; sweeps, inner iterations for each stage and size of the last step
+SWEEP_RATE, LAST_SWEEPS, INNER_EACH, LAST_STEP = range(4)
+STAGE_COUNT = 0  # parameter
+
+
+@inlined
+def stage_rows(ws: Any) -> Any:
+    """The stages as rows like those of the history: q, v, a, correction of a (each n_ext), lam (m_ext)."""
+    return mat(ws.stage_rows, COUPLED_STAGES, ws.row_length)
+
+
+@internal
+def load_stage(ws: Any, ms: Any, i: int, t: float, h: float) -> None:
+    """Stage i becomes the current point of the workspace."""
+    n, row = ws.n_ext, stage_rows(ws)[i]
+    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    for l in range(ws.n):
+        q[l] = row[l]
+        v[l] = row[n + l]
+        a[l] = row[2 * n + l]
+    for l in range(ws.m_ext):
+        lam[l] = row[4 * n + l]
+    vec(ws.t, 1)[0] = t + weight_rows(ms)[VECTORS, NODES + i] * h
+
+
+@inlined
+def stage_count(ms: Any) -> int:
+    """Number of stages."""
+    return int(vec(ms.parameters, 8)[STAGE_COUNT])

@@ -1,0 +1,154 @@
+"""Tableaus of fully implicit Runge-Kutta methods, and how their coupled stages are solved with one matrix.
+
+Each tableau comes with a lower triangular matrix S with equal diagonal gamma that takes the place of A in the iteration
+matrix ("triangular iteration": van der Houwen and de Swart 1997; equal diagonal, "single Newton": Gonzalez-Pinto,
+Montijano and Randez 1995), so that every stage has the matrix M + h gamma D + (h gamma)^2 K. For the linear equation
+a + d v + k q = 0 (d, k with h and h^2 in them) one sweep over the stages multiplies the error of the stage
+accelerations by
+
+  E(d, k) = I - (I + d S + k S^2)^-1 (I + d A + k A^2).
+
+S was found by minimising the largest spectral radius of E over all d, k >= 0 (`benchmarks/irk_sweeps.py`); a
+similarity transformation of A before would win little (0.33 for 0.39 with Radau IIA) and cost products with D and K.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..system.records import COUPLED_STAGES
+
+Floats = NDArray[np.float64]
+
+_R3, _R6, _R15 = np.sqrt(3.0), np.sqrt(6.0), np.sqrt(15.0)
+
+
+@dataclass(frozen=True)
+class Tableau:
+    """A collocation method with s stages.
+
+    Attributes
+    ----------
+    description : one line.
+    c, a, b : nodes (s,), coefficients (s, s), weights (s,).
+    sweep : S, (s, s) lower triangular with equal diagonal.
+    order : classical order; order_of_estimate : order of the embedded formula.
+    start_weight : weight of f_n in the embedded formula where its order leaves it free; None: its order gives it.
+    """
+
+    description: str
+    c: tuple[float, ...]
+    a: tuple[tuple[float, ...], ...]
+    b: tuple[float, ...]
+    sweep: tuple[tuple[float, ...], ...]
+    order: int
+    order_of_estimate: int
+    start_weight: float | None = None
+
+    @property
+    def gamma(self) -> float:
+        """Diagonal of the sweep matrix, and the implicit weight of the embedded formula."""
+        return self.sweep[0][0]
+
+    @property
+    def stiffly_accurate(self) -> bool:
+        """The last stage is the end of the step."""
+        return self.c[-1] == 1.0
+
+    def embedded(self) -> tuple[float, Floats]:
+        """Weights (b0, bhat (s,)) of yhat = y_n + h (b0 f_n + sum_i bhat_i f_i + gamma f(t_n + h, yhat)).
+
+        The implicit term, with the matrix of the stages, bounds the estimate for stiff components (de Swart and
+        Soederlind 1997); the rest follows from the quadrature conditions up to `order_of_estimate`.
+        """
+        p, c = self.order_of_estimate, np.array(self.c)
+        right = 1.0 / np.arange(1, p + 1) - self.gamma
+        conditions = np.vander(c, p, increasing=True).T
+        if self.start_weight is not None:
+            right[0] -= self.start_weight
+            return self.start_weight, np.asarray(np.linalg.solve(conditions, right), dtype=np.float64)
+        at_start = np.zeros((p, 1))
+        at_start[0, 0] = 1.0
+        weights = np.linalg.solve(np.hstack([at_start, conditions]), right)
+        return float(weights[0]), np.asarray(weights[1:], dtype=np.float64)
+
+    def sweep_error(self, d: Floats, k: Floats) -> Floats:
+        """E(d, k) of the module's docstring for damping d >= 0 (N,) and stiffness k >= 0 (N,), as (N, s, s)."""
+        scale = (1.0 + d + k)[:, None, None]
+        d, k = d[:, None, None] / scale, k[:, None, None] / scale
+        one = np.eye(len(self.b))
+        a, sweep = np.array(self.a), np.array(self.sweep)
+        return one - np.linalg.solve(one / scale + d * sweep + k * sweep @ sweep, one / scale + d * a + k * a @ a)
+
+    def end_extrapolation(self) -> Floats:
+        """Weights (s,) of the stages' accelerations that extrapolate them to the end of the step (Lagrange)."""
+        c = np.array(self.c)
+        return np.array([np.prod([(1.0 - y) / (x - y) for y in c if y != x]) for x in c])
+
+    def data(self) -> tuple[tuple[float, ...], ...]:
+        """All that a step needs, in the rows that `stages.py` names (the method record's `weights`)."""
+        a, sweep, b = np.array(self.a), np.array(self.sweep), np.array(self.b)
+        shift = np.tril(sweep, -1)
+        shift2 = np.tril(sweep @ sweep, -1)
+        start, embedded = self.embedded()
+
+        def block(x: Floats) -> tuple[float, ...]:
+            padded = np.zeros((COUPLED_STAGES, COUPLED_STAGES))
+            padded[: x.shape[0], : x.shape[-1]] = x
+            return tuple(padded.ravel())
+
+        vectors = np.zeros((4, COUPLED_STAGES))
+        vectors[:, : len(b)] = self.c, b, b @ a, self.end_extrapolation()
+        tail = np.zeros(COUPLED_STAGES + 2)
+        tail[: len(b)] = embedded
+        tail[COUPLED_STAGES:] = start, self.gamma
+        return (
+            block(a),
+            block(a @ a),
+            block(shift),
+            block(shift2),
+            tuple(vectors.ravel()),
+            tuple(tail),
+            block(np.linalg.inv(a)),
+        )
+
+
+TABLEAUS = {
+    "radau3": Tableau(  # Hairer and Wanner, Solving ODEs II, table IV.5.6
+        "Radau IIA with 3 stages, order 5, L-stable",
+        ((4.0 - _R6) / 10.0, (4.0 + _R6) / 10.0, 1.0),
+        (
+            ((88.0 - 7.0 * _R6) / 360.0, (296.0 - 169.0 * _R6) / 1800.0, (-2.0 + 3.0 * _R6) / 225.0),
+            ((296.0 + 169.0 * _R6) / 1800.0, (88.0 + 7.0 * _R6) / 360.0, (-2.0 - 3.0 * _R6) / 225.0),
+            ((16.0 - _R6) / 36.0, (16.0 + _R6) / 36.0, 1.0 / 9.0),
+        ),
+        ((16.0 - _R6) / 36.0, (16.0 + _R6) / 36.0, 1.0 / 9.0),
+        ((0.26472, 0.0, 0.0), (0.44237, 0.26472, 0.0), (0.25941, 0.34042, 0.26472)),
+        order=5,
+        order_of_estimate=3,
+        start_weight=0.26472,
+    ),
+    "gauss2": Tableau(  # Hammer and Hollingsworth 1955
+        "Gauss with 2 stages, order 4, symmetric",
+        (0.5 - _R3 / 6.0, 0.5 + _R3 / 6.0),
+        ((0.25, 0.25 - _R3 / 6.0), (0.25 + _R3 / 6.0, 0.25)),
+        (0.5, 0.5),
+        ((0.27826, 0.0), (0.58668, 0.27826)),
+        order=4,
+        order_of_estimate=3,
+    ),
+    "gauss3": Tableau(  # Kuntzmann 1961, Butcher 1964
+        "Gauss with 3 stages, order 6, symmetric",
+        (0.5 - _R15 / 10.0, 0.5, 0.5 + _R15 / 10.0),
+        (
+            (5.0 / 36.0, 2.0 / 9.0 - _R15 / 15.0, 5.0 / 36.0 - _R15 / 30.0),
+            (5.0 / 36.0 + _R15 / 24.0, 2.0 / 9.0, 5.0 / 36.0 - _R15 / 24.0),
+            (5.0 / 36.0 + _R15 / 30.0, 2.0 / 9.0 + _R15 / 15.0, 5.0 / 36.0),
+        ),
+        (5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0),
+        ((0.20222, 0.0, 0.0), (0.23620, 0.20222, 0.0), (0.05584, 0.49162, 0.20222)),
+        order=6,
+        order_of_estimate=4,
+    ),
+}
