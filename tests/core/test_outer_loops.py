@@ -136,7 +136,7 @@ def test_the_limit_is_named_when_the_simple_iteration_is_refused():
 
 @pytest.mark.parametrize("options", [{"outer": "jfnk"}, {"outer": "simple", "acceleration": "aitken"}])
 def test_coupled_stages_say_which_outer_loops_they_know(options):
-    with pytest.raises(ModelError, match="'irk' with these options .* knows only outer = 'newton' or 'simple'"):
+    with pytest.raises(ModelError, match=r"'irk' with these options .* knows only outer = 'newton' or 'simple'"):
         simulate(rod_pendulum(), 0.1, "irk", **options)
 
 
