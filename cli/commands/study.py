@@ -148,8 +148,9 @@ def _print_runs(title: str, runs: list[dict[str, Any]]) -> None:
     ]  # fmt: skip
     columns = ("method", "steps", "outer iterations", "a step", "evaluations", "factorisations", "time, ms", "error")
     print_table(f"{title}: rtol {tolerance:.0e}", columns, rows)
-    for label, failure in dict.fromkeys((run["label"], run["failure"]) for run in runs if not run["ok"]):
-        stdout().print(f"no run of {label}: {failure}", markup=False)
+    for run in runs:
+        if not run["ok"]:
+            stdout().print(f"no run of {run['label']} with rtol {run['tolerance']:.0e}: {run['failure']}", markup=False)
 
 
 def _print_equal_error(table: list[dict[str, Any]]) -> None:

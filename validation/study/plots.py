@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..plots import RESOLUTION, STYLE, _matplotlib
+from ..plots import STYLE, _matplotlib
 from .claims import EBDF, HHT
 from .iterations import IterationStudy
 from .orders import QUANTITIES, OrderRow
 from .runs import LOOPS
 
+RESOLUTION = 110
 COLOURS = {
     "hht": "#d1495b", "newmark": "#e79aa3", "trapezoidal": "#b58463", "park": "#8a8d91", "bdf": "#5a8f29",
     "ebdf": "#0b3c5d", "mebdf": "#3f88c5", "adams": "#7b2d8b", "irk": "#e58b3a", "hht_i3": "#b8b042",
