@@ -1,0 +1,94 @@
+"""`tlismni study`."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tlismni.core import METHODS
+from tlismni.validation.study import order_cases
+
+Command = Callable[..., Any]
+PNG = b"\x89PNG"
+
+
+def test_orders_as_a_table(tlismni: Command) -> None:
+    done = tlismni("study", "orders", "--method", "hht", "--method", "park", "--quick")
+    assert done.code == 0
+    for case in order_cases(["hht", "park"]):
+        (line,) = [line for line in done.out.splitlines() if line.startswith(f" {case.setting.label} ")]
+        assert line.split()[-1] == "agree"
+
+
+def test_orders_as_json_and_figure(tlismni: Command, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    done = tlismni("study", "orders", "-m", "adams", "--quick", "--json", "--plot", tmp_path / "orders.png")
+    assert done.code == 0
+    figures = done.json
+    assert [row["options"]["order"] for row in figures["rows"]] == [2, 3, 4, 5, 6]
+    for row in figures["rows"]:
+        assert row["observed"]["multiplier"] == pytest.approx(row["theory"]["multiplier"], abs=0.2)
+        assert len(row["steps"]) == len(row["errors"]["velocity"]) >= 5
+    assert figures["files"] == [str(tmp_path / "orders.png")]
+    assert (tmp_path / "orders.png").read_bytes().startswith(PNG)
+
+
+def test_an_order_off_its_theory_is_exit_code_1(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`park` put in the place of a method that is said to have order 3."""
+    monkeypatch.setitem(METHODS, "adams", METHODS["park"])
+    monkeypatch.setattr("tlismni.validation.study.cases.ORDER_CASES", _claiming_order_3())
+    done = tlismni("study", "orders", "-m", "adams", "--quick")
+    assert done.code == 1
+    assert "differ" in done.out
+    assert done.err.splitlines()[-1] == "tlismni: 1 of 1 orders are off their theory: adams"
+
+
+def _claiming_order_3() -> Any:
+    from tlismni.validation.study.cases import OrderCase, Setting
+
+    return (OrderCase(Setting("adams"), 3),)
+
+
+def test_iterations(tlismni: Command, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    arguments = ("study", "iterations", "--quick", "-s", "chain", "-m", "hht", "-m", "ebdf")
+    done = tlismni(*arguments, "--json", "--plot", tmp_path / "iterations.png")
+    assert done.code == 0
+    figures = done.json
+    assert [claim["name"] for claim in figures["claims"]] == ["C1", "C2", "C3"]
+    assert {run["outer"] for run in figures["runs"]} == {"newton", "simple"}
+    assert (tmp_path / "iterations.png").read_bytes().startswith(PNG)
+    printed = tlismni(*arguments)
+    assert printed.code == 0
+    text = printed.out
+    for run in figures["runs"]:
+        if run["tolerance"] == 1e-7 and run["label"] == "hht":
+            assert str(run["outer_iterations"]) in text and f"{run['error']:.1e}" in text
+    for claim in figures["claims"]:
+        assert f"{claim['name']}: {claim['claim']}" in " ".join(text.split())
+        assert claim["verdict"].upper() in text
+
+
+@pytest.mark.parametrize(
+    "arguments, cause",
+    [
+        (("orders", "--method", "nope"), "unknown method ['nope']"),
+        (("iterations", "--method", "nope", "--quick"), "unknown method ['nope']"),
+        (("iterations", "--scenario", "nope", "--quick"), "unknown scenario 'nope'"),
+    ],
+)
+def test_unknown_names_are_one_line(tlismni: Command, arguments: tuple[str, ...], cause: str) -> None:
+    done = tlismni("study", *arguments)
+    assert done.code == 1 and not done.out
+    assert cause in done.cause
+
+
+@pytest.mark.parametrize("command", ["orders", "iterations"])
+def test_an_unknown_kind_of_figure_is_refused_before_any_work(tlismni: Command, command: str) -> None:
+    done = tlismni("study", command, "--plot", "figure.gif")
+    assert done.code == 2 and "must end in .png or .pdf or .svg" in " ".join(done.err.split())
+
+
+def test_help_names_both_parts(tlismni: Command) -> None:
+    done = tlismni("study", "--help")
+    assert done.code == 0 and "orders" in done.out and "iterations" in done.out
