@@ -3,7 +3,8 @@
 Phi'' + 2 alpha Phi' + beta^2 Phi = 0 in place of Phi'' = 0; all coordinates are integrated as an ODE. The violation
 of an exact solution decays as two exponentials with rates alpha -+ sqrt(alpha^2 - beta^2); that of a numerical one
 settles where the local errors feed it. rule "step": alpha = 1/h, beta = sqrt(2)/h, from the Taylor expansion of Phi
-over a step; the violation is then asked to vanish after each.
+over a step; the violation is then asked to vanish after each. With error-controlled steps that ends in ever smaller
+ones: the smaller the step, the more suddenly the violation is to vanish.
 """
 
 from typing import Any

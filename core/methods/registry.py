@@ -130,7 +130,7 @@ def _hht(values: Mapping[str, Any]) -> Formula:
 
 
 IMPLICIT_BAUMGARTE = {"sdirk4": baumgarte_sdirk_step, "trapezoidal": baumgarte_trapezoidal_step}
-FORMS = {"index2": solve_index2_stage, "index3": solve_index3_stage}
+FORMS = {"index2": (2.0, solve_index2_stage), "index3": (3.0, solve_index3_stage)}
 _EXPLICIT = "explicit Runge-Kutta formula and error estimate, as in scipy"
 _RATE = "1/s: rate of decay of the violation; equal: critically damped. Above about 2/h explicit schemes are unstable"
 
@@ -151,8 +151,9 @@ def _generalized_alpha(values: Mapping[str, Any]) -> Formula:
     r = values["rho"]
     am, af = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
     gamma = 0.5 + af - am
-    parameters = (am, af, 0.25 * (gamma + 0.5) ** 2, gamma, float(values["start"] == "shifted"))
-    return Formula(generalized_alpha_step, 0, parameters, stage=FORMS[values["form"]], exact=False)
+    index, stage = FORMS[values["form"]]
+    parameters = (am, af, 0.25 * (gamma + 0.5) ** 2, gamma, float(values["start"] == "shifted"), index)
+    return Formula(generalized_alpha_step, 0, parameters, stage=stage, exact=False)
 
 
 METHODS = {
@@ -225,7 +226,7 @@ METHODS = {
                 "scheme": Option.word("rk45", (*SCHEMES, *IMPLICIT_BAUMGARTE), f"{_EXPLICIT}, or an implicit one"),
                 "alpha": Option(5.0, 0.0, 1e6, _RATE),
                 "beta": Option(5.0, 0.0, 1e6, "1/s: frequency of the violation; alpha = beta = 0: not stabilised"),
-                "rule": Option.word("given", ("given", "step"), "step: alpha = 1/h, beta = sqrt(2)/h"),
+                "rule": Option.word("given", ("given", "step"), "step: alpha = 1/h, beta = sqrt(2)/h; for fixed steps"),
             },
             _baumgarte,
             "comparison",
@@ -259,7 +260,11 @@ METHODS = {
             {
                 "rho": Option(0.9, 0.0, 1.0, "spectral radius for infinite frequency: 1 no damping, 0 most"),
                 "form": Option.word("index2", tuple(FORMS), "position and velocity constraints, or positions only"),
-                "start": Option.word("shifted", ("shifted", "plain"), "first algorithmic acceleration; plain: a_0"),
+                "start": Option.word(
+                    "shifted",
+                    ("shifted", "plain"),
+                    "first algorithmic acceleration (index3: and velocity); plain: the true",
+                ),
             },
             _generalized_alpha,
             "comparison",

@@ -65,30 +65,24 @@ _USED = 1.0  # age of a factorisation that has been used; there is no partition 
 
 
 @internal
-def _factored(lu_address: int, values_address: int) -> int:
-    status = factor(lu_at(lu_address), values_address)
+def _factored(ws: Any, lu_address: int, c_q: float, c_v: float) -> int:
+    """Factor [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] of the current point."""
+    evaluate_tangent(ws, c_q, c_v)
+    status = factor(lu_at(lu_address), ws.values)
     if status == 2:
         return REANALYZE
+    ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     return OK if status == 0 else SINGULAR
 
 
 @internal
-def refactor_absolute(ws: Any, c_q: float, c_v: float, index: int) -> int:
-    """New matrices at the current point; for index 2 also [M, Phi_q^T; Phi_q, 0], which projects the coordinates."""
+def refactor_absolute(ws: Any, c_q: float, c_v: float) -> int:
+    """New matrix at the current point."""
     rate = vec(ws.rate, RATE_SIZE)
-    counters = ivec(ws.counters, COUNTERS_SIZE)
     rate[FACTOR_AGE] = -1.0
-    if index == 2 and ws.m_act > 0:
-        evaluate_tangent(ws, 0.0, 0.0)
-        status = _factored(ws.kkt_query, ws.values)
-        if status != OK:
-            return status
-        counters[FACTORIZATIONS] += 1
-    evaluate_tangent(ws, c_q, c_v)
-    status = _factored(ws.kkt, ws.values)
+    status = _factored(ws, ws.kkt, c_q, c_v)
     if status != OK:
         return status
-    counters[FACTORIZATIONS] += 1
     rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
     rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER], rate[SENSITIVITY] = 1.0, 0.0, 0.0, 0.0
     return OK
@@ -191,7 +185,7 @@ def _iterate(ws: Any, c_q: float, c_v: float, index: int) -> int:
                 return OUTER_DIVERGED
             if contraction > SLOW and norm > tolerance and renewed < 2:
                 renewed += 1
-                status = refactor_absolute(ws, c_q, c_v, index)
+                status = refactor_absolute(ws, c_q, c_v)
                 if status != OK:
                     return status
         previous = norm
@@ -215,8 +209,13 @@ def solve_absolute(ws: Any, t: float, c_q: float, c_v: float, index: int) -> int
     ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
     set_from_accelerations(ws, c_q, c_v)
     evaluate_residuals(ws)
+    if index == 2 and ws.m_act > 0:
+        # its direction is part of the formula: always that of the predicted point, however old the other matrix is
+        status = _factored(ws, ws.kkt_query, 0.0, 0.0)
+        if status != OK:
+            return status
     if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > MOST_OUTER:
-        status = refactor_absolute(ws, c_q, c_v, index)
+        status = refactor_absolute(ws, c_q, c_v)
         if status != OK:
             return status
     fresh = rate[FACTOR_AGE] == 0.0
@@ -225,7 +224,7 @@ def solve_absolute(ws: Any, t: float, c_q: float, c_v: float, index: int) -> int
     if status != OK and not fresh:
         set_from_accelerations(ws, c_q, c_v)
         evaluate_residuals(ws)
-        status = refactor_absolute(ws, c_q, c_v, index)
+        status = refactor_absolute(ws, c_q, c_v)
         if status != OK:
             return status
         status = _iterate(ws, c_q, c_v, index)

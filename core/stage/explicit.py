@@ -21,7 +21,7 @@ def solve_explicit_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
     set_from_accelerations(ws, c_q, c_v)
     evaluate_residuals(ws)
-    status = refactor_absolute(ws, c_q, c_v, 1)
+    status = refactor_absolute(ws, c_q, c_v)
     # no later stage takes these factors
     vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
     if status != OK:

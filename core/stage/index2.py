@@ -3,7 +3,7 @@
   q = q* + c_q a - h M^-1 Phi_q^T mu,  v = v* + c_v a,  M a + Phi_q^T lambda - Q = offset,  Phi = 0,  Phi_q v = -Phi_t.
 The term with mu is what M q' = M v - Phi_q^T mu gives: weighted by M, it moves coordinates of different units in a way
 that does not depend on the units, which q' = v - Phi_q^T mu does. mu vanishes in the exact solution.
-Its matrix [M, Phi_q^T; Phi_q, 0] is taken at the same point as that of the accelerations, and kept as long.
+M and Phi_q in it are those of the point that the stage predicts, one further factorisation a stage.
 """
 
 from typing import Any
