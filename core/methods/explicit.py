@@ -16,9 +16,10 @@ from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import OK, call_stage
 from ..system.workspace import MOST_STAGES
 from .history import history_row, history_time
+from .schemes import EXPLICIT_SCHEMES
 
-SCHEMES = ("rk23", "rk45", "dop853")
-_FORMULAS = (RK23, RK45, DOP853)
+_BY_NAME = {"rk23": RK23, "rk45": RK45, "dop853": DOP853}
+_FORMULAS = tuple(_BY_NAME[name] for name in EXPLICIT_SCHEMES)
 
 
 def _table() -> tuple[np.ndarray, ...]:

@@ -1,98 +1,18 @@
 """The methods by name: their step, their options and how much history they need."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
 from typing import Any
 
 from ..errors import ModelError
-from ..stage.explicit import solve_explicit_stage
-from ..stage.index1 import solve_index1_stage
-from ..stage.index2 import solve_index2_stage
-from ..stage.index3 import solve_index3_stage
 from .adams import adams_step
-from .baumgarte import baumgarte_explicit_step, baumgarte_sdirk_step, baumgarte_trapezoidal_step
 from .bdf import bdf_step
+from .comparison import COMPARISON_METHODS
 from .ebdf import ebdf_step
-from .explicit import SCHEMES
-from .generalized_alpha import generalized_alpha_step
-from .hht_dae import hht_dae_step
+from .method import Formula, Method, Option
 from .newmark import newmark_step
 from .order_selection import select_k
 from .park import park_step
-from .projection import projection_step
 from .sdirk import sdirk_fine_step, sdirk_step
-
-
-@dataclass(frozen=True)
-class Option:
-    """One option of a method."""
-
-    default: float | str
-    minimum: float
-    maximum: float
-    description: str
-    integer: bool = False
-    choices: tuple[str, ...] = ()
-    """Words that it may be; with minimum > maximum it must be one of them."""
-
-    @property
-    def numeric(self) -> bool:
-        """True if it may be a number."""
-        return self.minimum <= self.maximum
-
-    @classmethod
-    def word(cls, default: str, choices: tuple[str, ...], description: str) -> "Option":
-        """An option that is one of `choices`."""
-        return cls(default, 1.0, 0.0, description, choices=choices)
-
-    def allowed(self) -> str:
-        """What it may be, in words."""
-        whole = "a whole number " if self.integer else ""
-        numbers = [f"{whole}from {self.minimum:g} to {self.maximum:g}"] if self.numeric else []
-        return " or ".join([*numbers, *(f"'{choice}'" for choice in self.choices)])
-
-    def read(self, value: Any, name: str) -> float | str:
-        """The value, checked. Raises ModelError naming the option."""
-        if isinstance(value, str) and value in self.choices:
-            return value
-        number = not isinstance(value, bool) and isinstance(value, int | float)
-        if not (self.numeric and number and self.minimum <= value <= self.maximum):
-            raise ModelError(f"{name} must be {self.allowed()}, not {value!r}")
-        if self.integer and int(value) != value:
-            raise ModelError(f"{name} must be {self.allowed()}, not {value!r}")
-        return float(value)
-
-
-@dataclass(frozen=True)
-class Formula:
-    """An integration formula ready to run."""
-
-    step: Any
-    k: int = 0
-    """Number of steps of a multistep formula that has several; 0: its order is its own."""
-    parameters: tuple[float, ...] = ()
-    rows: int = 1
-    """Rows of history that a step needs; below that the starter works."""
-    growth: float = 2.0
-    """Largest factor by which error control lets a multistep step grow, each time after `rows` equal steps."""
-    select: Any = None
-    """Chooses the number of steps after an accepted step (a function of STEP_SIGNATURE); None: it is fixed."""
-    stage: Any = None
-    """The stage solver of a comparison method; None: that of TLISMNI with the chosen outer loop."""
-    exact: bool = True
-    """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
-
-
-@dataclass(frozen=True)
-class Method:
-    """A method as users know it."""
-
-    name: str
-    description: str
-    options: Mapping[str, Option]
-    formula: Callable[[Mapping[str, Any]], Formula] = field(repr=False)
-    family: str = "TLISMNI"
-
 
 # With growth by 2 after k + 1 equal steps the variable-step formulas are zero-stable up to k = 6; beyond, these are.
 EBDF_GROWTH = {7: 1.5, 8: 1.2}
@@ -108,7 +28,6 @@ FIRST_AUTOMATIC = 3
 _ANGLE = Option(
     0.0, 0.0, 90.0, "automatic choice only: least angle of A(alpha)-stability, degrees; 90 keeps to A-stable formulas"
 )
-_DAMPING = Option(-0.05, -1.0 / 3.0, 0.0, "numerical damping: 0 none, -1/3 most")
 
 
 def _steps(default: int, most: int, description: str) -> Option:
@@ -129,33 +48,6 @@ def _hht(values: Mapping[str, Any]) -> Formula:
     return Formula(newmark_step, 0, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha))
 
 
-IMPLICIT_BAUMGARTE = {"sdirk4": baumgarte_sdirk_step, "trapezoidal": baumgarte_trapezoidal_step}
-FORMS = {"index2": (2.0, solve_index2_stage), "index3": (3.0, solve_index3_stage)}
-_EXPLICIT = "explicit Runge-Kutta formula and error estimate, as in scipy"
-_RATE = "1/s: rate of decay of the violation; equal: critically damped. Above about 2/h explicit schemes are unstable"
-
-
-def _baumgarte(values: Mapping[str, Any]) -> Formula:
-    scheme, by_step = values["scheme"], float(values["rule"] == "step")
-    implicit = IMPLICIT_BAUMGARTE.get(scheme)
-    number = 0.0 if implicit else float(SCHEMES.index(scheme))
-    step, stage = (implicit, solve_index1_stage) if implicit else (baumgarte_explicit_step, solve_explicit_stage)
-    return Formula(step, 0, (values["alpha"], values["beta"], by_step, number), stage=stage, exact=False)
-
-
-def _hht_dae(values: Mapping[str, Any], stage: Any) -> Formula:
-    return replace(_hht(values), step=hht_dae_step, stage=stage, exact=False)
-
-
-def _generalized_alpha(values: Mapping[str, Any]) -> Formula:
-    r = values["rho"]
-    am, af = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
-    gamma = 0.5 + af - am
-    index, stage = FORMS[values["form"]]
-    parameters = (am, af, 0.25 * (gamma + 0.5) ** 2, gamma, float(values["start"] == "shifted"), index)
-    return Formula(generalized_alpha_step, 0, parameters, stage=stage, exact=False)
-
-
 METHODS = {
     method.name: method
     for method in (
@@ -171,7 +63,7 @@ METHODS = {
         Method(
             "hht",
             "TLISMNI with the HHT-alpha formula, accelerations as unknowns; order 2",
-            {"alpha": _DAMPING},
+            {"alpha": Option(-0.05, -1.0 / 3.0, 0.0, "numerical damping: 0 none, -1/3 most")},
             _hht,
         ),
         Method(
@@ -219,56 +111,7 @@ METHODS = {
             {},
             lambda o: Formula(sdirk_step),
         ),
-        Method(
-            "baumgarte",
-            "all coordinates by an ODE formula, constraints by Baumgarte's stabilised accelerations",
-            {
-                "scheme": Option.word("rk45", (*SCHEMES, *IMPLICIT_BAUMGARTE), f"{_EXPLICIT}, or an implicit one"),
-                "alpha": Option(5.0, 0.0, 1e6, _RATE),
-                "beta": Option(5.0, 0.0, 1e6, "1/s: frequency of the violation; alpha = beta = 0: not stabilised"),
-                "rule": Option.word("given", ("given", "step"), "step: alpha = 1/h, beta = sqrt(2)/h; for fixed steps"),
-            },
-            _baumgarte,
-            "comparison",
-        ),
-        Method(
-            "projection",
-            "explicit Runge-Kutta steps, each projected onto position and velocity constraints by the least M-norm",
-            {"scheme": Option.word("rk45", SCHEMES, _EXPLICIT)},
-            lambda o: Formula(
-                projection_step, 0, (float(SCHEMES.index(o["scheme"])),), stage=solve_explicit_stage, exact=False
-            ),
-            "comparison",
-        ),
-        Method(
-            "hht_i3",
-            "HHT-alpha on the index-3 equations: position constraints only; order 2",
-            {"alpha": _DAMPING},
-            lambda o: _hht_dae(o, solve_index3_stage),
-            "comparison",
-        ),
-        Method(
-            "hht_ggl",
-            "HHT-alpha on the stabilised index-2 equations: position and velocity constraints; order 2",
-            {"alpha": _DAMPING},
-            lambda o: _hht_dae(o, solve_index2_stage),
-            "comparison",
-        ),
-        Method(
-            "generalized_alpha",
-            "generalized-alpha on the stabilised index-2 or the index-3 equations; order 2",
-            {
-                "rho": Option(0.9, 0.0, 1.0, "spectral radius for infinite frequency: 1 no damping, 0 most"),
-                "form": Option.word("index2", tuple(FORMS), "position and velocity constraints, or positions only"),
-                "start": Option.word(
-                    "shifted",
-                    ("shifted", "plain"),
-                    "first algorithmic acceleration (index3: and velocity); plain: the true",
-                ),
-            },
-            _generalized_alpha,
-            "comparison",
-        ),
+        *COMPARISON_METHODS,
     )
 }
 

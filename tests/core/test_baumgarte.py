@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from helpers import G, point_pendulum
+from helpers import G, point_pendulum, rod_pendulum
 from scipy.integrate import DOP853, RK23, RK45
-from tlismni.core import Simulation, SimulationError, simulate
+from tlismni.core import AppliedTorque2D, Simulation, SimulationError, Step, simulate
 
 SOLVERS = {"rk23": RK23, "rk45": RK45, "dop853": DOP853}
 ANGLE, RATE = -0.4, 1.5
@@ -130,3 +130,17 @@ def test_implicit_and_explicit_schemes_solve_the_same_equation():
     ]
     assert np.abs(runs[0].q[-1] - runs[1].q[-1]).max() < 1e-8
     assert runs[0].multipliers[-1] == pytest.approx(runs[1].multipliers[-1], rel=1e-6)
+
+
+@pytest.mark.parametrize("method, options", [("baumgarte", {"alpha": 0.0, "beta": 0.0}), ("hht_i3", {})])
+def test_velocities_that_miss_their_constraint_are_no_jump_where_a_force_jumps(method, options):
+    """A breakpoint begins a new history; it must not repair what the method has left, or book it as work."""
+    system = rod_pendulum(
+        ANGLE, RATE, forces=[AppliedTorque2D(name="T", body="rod", torque=Step(time=0.5, before=0.0, after=2.0))]
+    )
+    result = simulate(system, 1.0, method, 1e-4, 1e-6, **options)
+    (at,) = np.flatnonzero(np.diff(result.t) < 1e-12)
+    assert result.t[at + 1] == 0.5
+    assert result["residual.velocity"][at] > 1e-7
+    assert np.array_equal(result.v[at], result.v[at + 1])
+    assert result["rod.angular_acceleration"][at + 1] - result["rod.angular_acceleration"][at] > 3.0
