@@ -158,12 +158,11 @@ class Engine:
         ------
         ModelError : if the method has a stage solver of its own and knows no other outer loop than newton.
         """
-        if name not in self.formula.outer_loops or (
-            self.settings.acceleration != "none" and "jfnk" not in self.formula.outer_loops
-        ):
+        known = self.formula.outer_loops if self.formula.stage is None else ("newton",)
+        if name not in known or (self.settings.acceleration != "none" and "jfnk" not in known):
             raise ModelError(
                 f"method '{self.settings.method}' with these options solves its stages in its own way and knows only "
-                f"outer = {' or '.join(repr(loop) for loop in self.formula.outer_loops)}, without acceleration"
+                f"outer = {' or '.join(repr(loop) for loop in known)}, without acceleration"
             )
         loop = OUTER_LOOPS[name]
         self.outer = name

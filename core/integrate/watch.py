@@ -56,8 +56,10 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
     watch = mat(lc.watch, ws.n_contacts, 3)
     if mode == OPEN:
         if g < 0.0:
-            # shapes that touch and neither part nor press drift by rounding only
-            return rate < -RATE_ROUNDING or g < -GAP_ROUNDING * rounding_level(ws, ws.q)
+            # shapes that touch and neither part nor press drift by rounding only; those that a method without position
+            # constraints has let overlap before they opened may come apart
+            overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
+            return rate < -RATE_ROUNDING or (g < -overlap and watch[k, 0] >= -overlap)
         if watch[k, 1] < 0.0 and rate > 0.0 and watch[k, 0] > 0.0:
             lowest, _ = lowest_inside(watch[k, 0], watch[k, 1], g, rate, h)
             return lowest < 0.0

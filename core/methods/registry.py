@@ -1,95 +1,20 @@
 """The methods by name: their step, their options and how much history they need."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from typing import Any
 
 from ..errors import ModelError
 from .adams import adams_step
 from .bdf import bdf_step
+from .comparison import COMPARISON_METHODS
 from .ebdf import ebdf_step
 from .irk import irk_step
+from .method import Formula, Method, Option
 from .newmark import newmark_step
 from .order_selection import select_k
 from .park import park_step
 from .sdirk import sdirk_fine_step, sdirk_step
 from .tableaus import TABLEAUS
-
-
-@dataclass(frozen=True)
-class Option:
-    """One option of a method: a number from `minimum` to `maximum`, or one of the words in `choices`."""
-
-    default: float | str
-    minimum: float
-    maximum: float
-    description: str
-    integer: bool = False
-    choices: tuple[str, ...] = ()
-    """Words that it may be; with minimum > maximum it must be one of them."""
-
-    @property
-    def numeric(self) -> bool:
-        """True if it may be a number."""
-        return self.minimum <= self.maximum
-
-    @classmethod
-    def word(cls, default: str, choices: tuple[str, ...], description: str) -> "Option":
-        """An option that is one of `choices`."""
-        return cls(default, 1.0, 0.0, description, choices=choices)
-
-    def allowed(self) -> str:
-        """What it may be, in words."""
-        whole = "a whole number " if self.integer else ""
-        numbers = [f"{whole}from {self.minimum:g} to {self.maximum:g}"] if self.numeric else []
-        return " or ".join([*numbers, *(f"'{choice}'" for choice in self.choices)])
-
-    def read(self, value: Any, name: str) -> float | str:
-        """The value, checked. Raises ModelError naming the option."""
-        if isinstance(value, str) and value in self.choices:
-            return value
-        number = not isinstance(value, bool) and isinstance(value, int | float)
-        if not (self.numeric and number and self.minimum <= value <= self.maximum):
-            raise ModelError(f"{name} must be {self.allowed()}, not {value!r}")
-        if self.integer and int(value) != value:
-            raise ModelError(f"{name} must be {self.allowed()}, not {value!r}")
-        return float(value)
-
-
-@dataclass(frozen=True)
-class Formula:
-    """An integration formula ready to run."""
-
-    step: Any
-    k: int = 0
-    """Number of steps of a multistep formula that has several; 0: its order is its own."""
-    parameters: tuple[float, ...] = ()
-    rows: int = 1
-    """Rows of history that a step needs; below that the starter works."""
-    growth: float = 2.0
-    """Largest factor by which error control lets a multistep step grow, each time after `rows` equal steps."""
-    select: Any = None
-    """Chooses the number of steps after an accepted step (a function of STEP_SIGNATURE); None: it is fixed."""
-    stage: Any = None
-    """The stage solver of a comparison method; None: that of TLISMNI with the chosen outer loop."""
-    outer_loops: tuple[str, ...] = ("newton", "simple", "jfnk")
-    """Outer loops that can solve its stages."""
-    exact: bool = True
-    """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
-    weights: tuple[tuple[float, ...], ...] = ()
-    """First content of the method record's `weights`, row by row."""
-
-
-@dataclass(frozen=True)
-class Method:
-    """A method as users know it."""
-
-    name: str
-    description: str
-    options: Mapping[str, Option]
-    formula: Callable[[Mapping[str, Any]], Formula] = field(repr=False)
-    family: str = "TLISMNI"
-
 
 # With growth by 2 after k + 1 equal steps the variable-step formulas are zero-stable up to k = 6; beyond, these are.
 EBDF_GROWTH = {7: 1.5, 8: 1.2}
@@ -198,6 +123,7 @@ METHODS = {
             {"tableau": Option.word("radau3", (*TABLEAUS, "sdirk4"), "the Runge-Kutta coefficients")},
             lambda o: _irk(o["tableau"]),
         ),
+        *COMPARISON_METHODS,
     )
 }
 

@@ -24,6 +24,8 @@ WORKSPACE = np.dtype(
             "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
             # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
             "basis", "n_basis",
+            # force that the stages of comparison methods subtract from r: (n_ext,)
+            "offset",
         )
     ]
 )  # fmt: skip
@@ -63,7 +65,8 @@ LAST_INNER = 5
 FAILED_NORM = 6
 SENSITIVITY = 7  # |dq_d/dq_i| at the last factorisation, scaled
 FIRST_SENSITIVITY = 8  # the same when the partition was chosen; < 0: not known yet
-RATE_SIZE = 9
+CORRECTION = 9  # of the stabilised index-2 form: |h M^-1 Phi_q^T mu| of the last stage, scaled
+RATE_SIZE = 10
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)

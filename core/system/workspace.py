@@ -27,6 +27,9 @@ _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
 )  # fmt: skip
 
+MOST_STAGES = 13
+"""Stages of a Runge-Kutta formula that there is room for."""
+
 
 class Workspace:
     """Arrays of one running system. Nothing is shared between two workspaces.
@@ -45,6 +48,7 @@ class Workspace:
         row_length = 4 * n_ext + m_ext
         arrays: dict[str, NDArray[Any]] = {name: np.zeros(n_ext) for name in (
             "q", "v", "a", "aux", "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v",
+            "offset",
         )}  # fmt: skip
         arrays |= {name: np.zeros(m_ext) for name in ("lam", "phi", "phid", "phidd")}
         arrays |= {
@@ -63,8 +67,8 @@ class Workspace:
             "active": np.zeros(0, dtype=np.int64),
             "dependent": np.zeros(0, dtype=np.int64),
             **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot")},
-            "stage_v": np.zeros(8 * n_ext),
-            "stage_a": np.zeros(8 * n_ext + m_ext),
+            "stage_v": np.zeros(MOST_STAGES * n_ext),
+            "stage_a": np.zeros(MOST_STAGES * n_ext + m_ext),
             "stage_rows": np.zeros(COUPLED_STAGES * row_length),
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),

@@ -1,0 +1,81 @@
+"""Baumgarte's stabilised equations (Baumgarte 1972), by explicit Runge-Kutta formulas or implicitly.
+
+Phi'' + 2 alpha Phi' + beta^2 Phi = 0 in place of Phi'' = 0; all coordinates are integrated as an ODE. The violation
+of an exact solution decays as two exponentials with rates alpha -+ sqrt(alpha^2 - beta^2); that of a numerical one
+settles where the local errors feed it. rule "step": alpha = 1/h, beta = sqrt(2)/h, from the Taylor expansion of Phi
+over a step; the violation is then asked to vanish after each. With error-controlled steps that ends in ever smaller
+ones: the smaller the step, the more suddenly the violation is to vanish.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import inlined, internal
+from ..compiled.views import vec
+from ..stage.solver import weighted_norm
+from ..system.evaluate import evaluate_power
+from ..system.records import CONTROL_SIZE, OK, STAGE_ALPHA, STAGE_BETA, call_stage
+from .explicit import explicit_step
+from .history import history_row, history_time
+from .multistep import rows_available
+from .one_stage import finish_work, predict_linearly
+from .sdirk import sdirk_step
+
+# columns of `parameters`
+ALPHA, BETA, BY_STEP, SCHEME = 0, 1, 2, 3
+
+
+@inlined
+def _set_stabilisation(ws: Any, parameters: Any, h: float) -> None:
+    control = vec(ws.control, CONTROL_SIZE)
+    if parameters[BY_STEP] != 0.0:
+        control[STAGE_ALPHA], control[STAGE_BETA] = 1.0 / h, np.sqrt(2.0) / h
+    else:
+        control[STAGE_ALPHA], control[STAGE_BETA] = parameters[ALPHA], parameters[BETA]
+
+
+@internal
+def baumgarte_explicit_step(ws: Any, ms: Any, h: float) -> int:
+    """A step of an explicit formula.
+
+    The newest row has the accelerations of the first stage unless it begins a history (they are then those of the
+    constraints themselves) or alpha and beta have changed with h.
+    """
+    parameters = vec(ms.parameters, 8)
+    _set_stabilisation(ws, parameters, h)
+    reuse = rows_available(ms) > 1 and parameters[BY_STEP] == 0.0
+    return explicit_step(ws, ms, h, int(parameters[SCHEME]), reuse)
+
+
+@internal
+def baumgarte_sdirk_step(ws: Any, ms: Any, h: float) -> int:
+    """A step of the SDIRK formula of order 4, over all coordinates."""
+    _set_stabilisation(ws, vec(ms.parameters, 8), h)
+    return sdirk_step(ws, ms, h)
+
+
+@internal
+def baumgarte_trapezoidal_step(ws: Any, ms: Any, h: float) -> int:
+    """A step of the trapezoidal rule, over all coordinates; error estimate h^2 (a_{n+1} - a_n) / 12."""
+    _set_stabilisation(ws, vec(ms.parameters, 8), h)
+    n = ws.n_ext
+    row = history_row(ws, ms, 0)
+    q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
+    for i in range(n):
+        q_star[i] = row[i] + h * row[n + i] + 0.25 * h * h * row[2 * n + i]
+        v_star[i] = row[n + i] + 0.5 * h * row[2 * n + i]
+    predict_linearly(ws, ms, h, 1.0)
+    status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, 0.25 * h * h, 0.5 * h)
+    if status != OK:
+        return status
+    evaluate_power(ws)
+    finish_work(ws, row, h)
+    error, aux = vec(ws.rhs, ws.n), vec(ws.aux, n)
+    for i in range(ws.n):
+        error[i] = h * h / 12.0 * (a[i] - row[2 * n + i])
+    for i in range(n):
+        aux[i] = a[i]
+    vec(ms.error, 2)[0] = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    vec(ms.error, 2)[1] = 2.0
+    return OK

@@ -1,0 +1,80 @@
+"""HHT-alpha on all coordinates, with the forces of two times in one equilibrium.
+
+  q_{n+1} = q_n + h v_n + h^2 [(1/2 - beta) a_n + beta a_{n+1}],  v_{n+1} = v_n + h [(1 - gamma) a_n + gamma a_{n+1}]
+  M_{n+1} a_{n+1} + (1 + alpha) F_{n+1} - alpha F_n = 0,  F = Phi_q^T lambda - Q,  gamma = 1/2 - alpha,
+  beta = (1 - alpha)^2 / 4.
+hht_i3: with Phi(q_{n+1}) = 0 (Negrut, Rampalli, Ottarsson and Sajdak 2007).
+hht_ggl: on the form of Gear, Gupta and Leimkuhler, with the velocity constraints too (after Yen, Petzold and Raha
+1998; the correction of the coordinates is weighted by M, see `stage/index2.py`).
+
+a_{n+1} is the method's only acceleration: it stands for the time t_{n+1} + alpha h, so that as the acceleration at
+t_{n+1} it is of order 1. It starts from the accelerations of the constraints, as published: for alpha < 0 that excites
+an error O(h) in lambda, which decays by (1 + alpha)/(1 - alpha) a step, and so does each change of the step.
+
+The stage solves for b = a_{n+1} / (1 + alpha): M b + F_{n+1} = alpha / (1 + alpha) F_n.
+Error estimate (Negrut et al. 2007): (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n), of order 2: the step follows
+Theta^(-1/6), Theta the square of its norm.
+"""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import vec
+from ..stage.solver import weighted_norm
+from ..system.evaluate import evaluate_power, evaluate_residuals
+from ..system.records import OK, call_stage
+from .history import history_row, history_time, recall
+from .one_stage import finish_work, predict_linearly
+
+ALPHA, BETA, GAMMA = 0, 1, 2
+
+
+@internal
+def carry_force(ws: Any, ms: Any, factor: float) -> None:
+    """offset = factor F_n, with F_n = Phi_q^T lambda - Q at the newest row."""
+    n = ws.n_ext
+    offset = vec(ws.offset, n)
+    if factor == 0.0:
+        for i in range(ws.n):
+            offset[i] = 0.0
+        return
+    recall(ws, ms, 0)
+    a, r = vec(ws.a, n), vec(ws.r, n)
+    for i in range(ws.n):
+        a[i] = 0.0
+    evaluate_residuals(ws)
+    for i in range(ws.n):
+        offset[i] = factor * r[i]
+
+
+@internal
+def hht_dae_step(ws: Any, ms: Any, h: float) -> int:
+    parameters = vec(ms.parameters, 8)
+    alpha, beta, gamma = parameters[ALPHA], parameters[BETA], parameters[GAMMA]
+    share = 1.0 + alpha
+    n = ws.n_ext
+    row = history_row(ws, ms, 0)
+    carry_force(ws, ms, alpha / share)
+    q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
+    for i in range(n):
+        q_star[i] = row[i] + h * row[n + i] + h * h * (0.5 - beta) * row[2 * n + i]
+        v_star[i] = row[n + i] + h * (1.0 - gamma) * row[2 * n + i]
+    predict_linearly(ws, ms, h, share)
+    status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, share * beta * h * h, share * gamma * h)
+    if status != OK:
+        return status
+    for i in range(ws.n):
+        a[i] *= share
+    if alpha != 0.0:
+        evaluate_residuals(ws)
+    evaluate_power(ws)
+    finish_work(ws, row, h)
+    error, aux = vec(ws.rhs, ws.n), vec(ws.aux, n)
+    factor = (beta - 1.0 / (6.0 * share)) * h * h
+    for i in range(ws.n):
+        error[i] = factor * (a[i] - row[2 * n + i])
+    for i in range(n):
+        aux[i] = a[i]
+    vec(ms.error, 2)[0] = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    vec(ms.error, 2)[1] = 2.0
+    return OK

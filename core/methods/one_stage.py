@@ -1,0 +1,33 @@
+"""What the one-stage formulas of the comparison methods share: the prediction, and the work accounts."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import vec
+from .history import history_row, history_time
+from .multistep import rows_available
+
+
+@internal
+def predict_linearly(ws: Any, ms: Any, h: float, factor: float) -> None:
+    """Extrapolate a and lambda through the newest two rows (or keep those of the only one); a is divided by `factor`,
+    what the stage's unknown is less than the acceleration."""
+    n = ws.n_ext
+    newest, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
+    ahead = 0.0
+    if rows_available(ms) > 1:
+        ahead = h / (history_time(ms, 0) - history_time(ms, 1))
+    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    for i in range(ws.n):
+        a[i] = (newest[2 * n + i] + ahead * (newest[2 * n + i] - older[2 * n + i])) / factor
+    for i in range(ws.m_ext):
+        lam[i] = newest[4 * n + i] + ahead * (newest[4 * n + i] - older[4 * n + i])
+
+
+@internal
+def finish_work(ws: Any, row: Any, h: float) -> None:
+    """Work accounts by the trapezoidal rule, from the powers at both ends of the step."""
+    n = ws.n_ext
+    v, a = vec(ws.v, n), vec(ws.a, n)
+    for i in range(n - ws.n_work, n):
+        v[i] = row[n + i] + 0.5 * h * (row[2 * n + i] + a[i])

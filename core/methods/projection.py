@@ -1,0 +1,26 @@
+"""Explicit Runge-Kutta steps of the unstabilised equations, each followed by a projection onto the constraints.
+
+Coordinates, then velocities are moved by the least M-norm (Eich 1993; Hairer and Wanner, Solving ODEs II, VII.2), and
+accelerations and multipliers are solved for anew. The error estimate is that of the step before its projection.
+"""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import vec
+from ..integrate.dense_output import project
+from ..system.records import OK
+from .explicit import explicit_step
+
+
+@internal
+def projection_step(ws: Any, ms: Any, h: float) -> int:
+    """One step; the newest row's accelerations are always those of the first stage."""
+    status = explicit_step(ws, ms, h, int(vec(ms.parameters, 8)[0]), True)
+    if status != OK:
+        return status
+    status = project(ws)
+    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
+    for i in range(ws.n_ext):
+        aux[i] = a[i]
+    return status

@@ -1,0 +1,31 @@
+"""The stage of an explicit formula: accelerations and multipliers at a known point.
+
+[M, Phi_q^T; Phi_q, 0] (a, lambda) = (Q, gamma - 2 alpha Phi' - beta^2 Phi), factored anew at each stage. The equations
+are linear in (a, lambda): one increment from any guess solves them.
+"""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..system.evaluate import evaluate_residuals
+from ..system.records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, STAGES
+from .absolute import refactor_absolute, solve_rows
+from .solver import add_increment, set_from_accelerations
+
+
+@internal
+def solve_explicit_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+    """(a, lambda) at t, q*, v*; alpha and beta (1/s) stand in `control`, c_q and c_v are zero."""
+    vec(ws.t, 1)[0] = t
+    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
+    set_from_accelerations(ws, c_q, c_v)
+    evaluate_residuals(ws)
+    status = refactor_absolute(ws, c_q, c_v)
+    # no later stage takes these factors
+    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    if status != OK:
+        return status
+    solve_rows(ws, c_q, c_v, 1)
+    add_increment(ws, c_q, c_v)
+    return OK
