@@ -185,7 +185,7 @@ def test_what_a_method_refuses_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> 
     assert Setting("newcomer") in contenders()
     study = iteration_study(["chain"], ["newcomer"], tolerances=(1e-3,), quick=True)
     (run,) = (run for run in study.runs if run.loop == "simple")
-    assert not run.ok and "has its own Newton iteration" in run.failure
+    assert not run.ok and "knows only outer = 'newton'" in run.failure
     assert study.select(CHAIN, "simple") == {}
 
 

@@ -54,6 +54,9 @@ def _case(method: str, theory: int, /, **options: Any) -> OrderCase:
     return OrderCase(Setting(method, options), theory)
 
 
+SCHEMES = {"rk23": 3, "rk45": 5, "dop853": 8, "sdirk4": 4, "trapezoidal": 2}
+IMPLICIT = ("sdirk4", "trapezoidal")
+
 ORDER_CASES = (
     _case("newmark", 2),
     _case("newmark", 1, gamma=0.6, beta=0.3025),
@@ -73,6 +76,13 @@ ORDER_CASES = (
     _case("hht_i3", 2),
     _case("hht_ggl", 2),
     _case("generalized_alpha", 2),
+    _case("generalized_alpha", 2, form="index3"),
+    _case("generalized_alpha", 2, rho=0.5),
+    # all coordinates by an ODE formula: the violation, and with it every error, is of the order of the formula
+    *(_case("baumgarte", order, scheme=scheme) for scheme, order in SCHEMES.items() if scheme != "rk45"),
+    # alpha = 5 1/s takes the violation away faster than h^5 builds it up in these steps: an order above 5 would show
+    _case("baumgarte", SCHEMES["rk45"], scheme="rk45", alpha=1.0, beta=1.0),
+    *(_case("projection", order, scheme=scheme) for scheme, order in SCHEMES.items() if scheme not in IMPLICIT),
 )
 
 IRK_WITHOUT_TABLEAUS = _case("irk", 4)

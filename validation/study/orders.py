@@ -21,8 +21,8 @@ QUANTITIES = ("position", "velocity", "multiplier")
 NEWTON_TOLERANCE = 1e-13
 MARGIN = 0.2
 """How far an observed order may lie from the theory."""
-COUNTS = tuple(round(48 * 2.0 ** (0.25 * j)) for j in range(28))
-QUICK_COUNTS = COUNTS[:22]
+COUNTS = tuple(round(34 * 2.0 ** (0.25 * j)) for j in range(30))
+QUICK_COUNTS = COUNTS[:24]
 """Coarser: the errors of the lowest orders stay large, but every order shows."""
 OCTAVE, POINTS = 2.0, 3
 """An order is taken from the runs whose step is at most OCTAVE times the finest one, if they are at least POINTS."""
