@@ -121,6 +121,10 @@ ResultFile = Annotated[
     Path | None,
     typer.Option("--output", "-o", help="Write all channels: .csv, .json or .npz.", rich_help_panel=_OUTPUT),
 ]
+StepsFile = Annotated[
+    Path | None,
+    typer.Option("--steps", help="Write size, error and iterations of every step: .csv.", rich_help_panel=_OUTPUT),
+]
 PlotFile = Annotated[
     Path | None,
     typer.Option("--plot", help="Draw the main channels: .png, .pdf or .svg.", rich_help_panel=_OUTPUT),

@@ -15,6 +15,7 @@ from ..options import (
     Set,
     Source,
     Step,
+    StepsFile,
     check_samples,
     check_suffix,
 )
@@ -41,13 +42,15 @@ def run(
     every: Every = None,
     output: ResultFile = None,
     plot: PlotFile = None,
+    steps: StepsFile = None,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Run a scenario or a model file, and print events, constraint residuals, energy balance and statistics."""
     check_suffix(output, (".csv", ".json", ".npz"), "--output")
     check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
-    for path in (output, plot):
+    check_suffix(steps, (".csv",), "--steps")
+    for path in (output, plot, steps):
         check_file(path)
 
     from ...core import simulate
@@ -65,6 +68,7 @@ def run(
             scenario.atol,
             t_eval=times,
             progress=progress,
+            step_records=steps is not None,
             **scenario.options,
         )
     files = []
@@ -76,6 +80,10 @@ def run(
         from ..plots import plot_result
 
         files.append(plot_result(result, scenario, plot))
+    if steps is not None:
+        from ..result_files import write_csv
+
+        files.append(write_csv(steps, result.steps))
     figures = {**summarise(scenario, result), "files": [str(path) for path in files]}
     if json:
         print_json(figures)

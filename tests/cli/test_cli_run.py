@@ -25,6 +25,18 @@ def ball() -> Result:
     return simulate(s.model, s.t_end, s.method, s.rtol, s.atol)
 
 
+def test_step_records_as_a_file(tlismni: Command, tmp_path: Path) -> None:
+    target = tmp_path / "steps.csv"
+    done = tlismni("run", "chain", "--set", "links=2", "--t-end", "0.5", "--steps", str(target), "--json")
+    with target.open() as stream:
+        rows = list(csv.DictReader(stream))
+    statistics = done.json["statistics"]
+    assert len(rows) == statistics["steps"]
+    assert sum(float(row["h"]) for row in rows) == pytest.approx(0.5, rel=1e-12)
+    assert sum(float(row["outer"]) for row in rows) == statistics["outer_iterations"]
+    assert tlismni("run", "chain", "--steps", "steps.txt").code == 2
+
+
 def test_json_figures_of_a_bouncing_ball(tlismni: Command) -> None:
     done = tlismni("run", "bouncing_ball", "--set", "height=2", "--set", "restitution=0.5", "--json")
     assert done.code == 0
