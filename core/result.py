@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .events import Event
 from .integrate.output import ChannelTable
 from .model.channels import Channel
+from .system.redundancy import RedundantRow
 
 
 class Result:
@@ -24,6 +25,7 @@ class Result:
         table: ChannelTable,
         events: Sequence[Event],
         stats: Mapping[str, float],
+        redundant: Sequence[RedundantRow] = (),
     ) -> None:
         self._samples = samples
         self._table = table
@@ -31,6 +33,9 @@ class Result:
         """What happened at contacts (`Event`)."""
         self.stats = dict(stats)
         """steps, rejected, outer_iterations, inner_iterations, factorizations, partitions, wall_time ..."""
+        self.redundant = tuple(redundant)
+        """Constraint rows that others imply (`RedundantRow`): left out of the equations but checked. Multipliers of
+        these joints and of those they repeat are not unique; those of the rows left out are zero."""
 
     @property
     def t(self) -> NDArray[np.float64]:

@@ -45,7 +45,8 @@ def simulate(
     progress : called with the time reached, now and then.
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
-        `outer`, `newton_tolerance`, `start_tolerance`.
+        `outer`, `newton_tolerance`, `start_tolerance`, `redundant` ("drop": constraints that repeat others are left
+        out of the equations and checked; "refuse": they are an error).
 
     Returns
     -------
@@ -93,7 +94,7 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
     sim.flush()
     blocks = sim.samples if sim.samples else [row[None, :] for row in rows]
     samples = np.concatenate(blocks) if blocks else np.zeros((0, sim.buffer.shape[1]))
-    return Result(samples, sim.table, sim.events, {**sim.stats, "wall_time": wall_time})
+    return Result(samples, sim.table, sim.events, {**sim.stats, "wall_time": wall_time}, sim.redundant)
 
 
 def _check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:

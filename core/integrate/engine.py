@@ -29,8 +29,10 @@ from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
 from ..system.records import OK, REANALYZE, SINGULAR, STAGE_SIGNATURE
+from ..system.redundancy import RedundantRow, choose_rows, describe
 from ..system.workspace import Workspace
 from .dense_output import query, solve_accelerations
+from .near_singular import smooth_query, strained
 from .output import ChannelTable
 from .records import BREAK_TIME, CLOCK_SIZE, FIXED_STEP, GROWTH, HOLD, LOOP, MAX_STEP, STEP_SIZE, STOP_TIME
 from .sample import empty_buffer, sample_length, write_sample
@@ -71,13 +73,14 @@ class Engine:
         outer: str = "newton",
         newton_tolerance: float | None = None,
         start_tolerance: float = START_TOLERANCE,
+        redundant: str = "drop",
         record: bool = False,
         **method_options: Any,
     ) -> None:
         self.settings = Settings(
             method=method, rtol=rtol, atol=atol, step=step, max_step=max_step, first_step=first_step, t0=t0,
             outer=outer, newton_tolerance=newton_tolerance, start_tolerance=start_tolerance,
-            method_options=dict(method_options),
+            redundant=redundant, method_options=dict(method_options),
         )  # fmt: skip
         self.formula: Formula = get_formula(method, method_options)
         if not isinstance(system, Model | EquationSystem):
@@ -91,6 +94,7 @@ class Engine:
         self.open_accounts: dict[int, tuple[float, float]] = {}
         self.pending: list[int] = []
         self.t = float(t0)
+        self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
         self._build_method()
         self._build_loop(record)
@@ -148,7 +152,8 @@ class Engine:
         arrays["q"][: a.n] = a.q0
         arrays["v"][: a.n] = a.v0
         arrays["t"][0] = self.settings.t0
-        make_consistent(self.workspace, self.settings.start_tolerance)
+        refuse = self.settings.redundant == "refuse"
+        self.redundant = make_consistent(self.workspace, self.settings.start_tolerance, refuse)
         gap_tolerance = 1e-9 * float(np.max(a.coordinate_scale, initial=1.0))
         touching = []
         for k, contact in enumerate(a.contacts):
@@ -259,9 +264,17 @@ class Engine:
         engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
         if self.workspace.key != (closed, engaged):
             self.workspace.engage(closed, frozenset(engaged))
+        if choose_rows(self.workspace):
+            self.note_redundant()
         prepare(self.workspace)
         if accelerations:
             self._solve_accelerations()
+
+    def note_redundant(self) -> None:
+        """Other rows are left out than before: add them to what the result tells."""
+        found = describe(self.workspace)
+        logger.info("at t = %.9g s other redundant rows are left out of the equations: %s", self.t_internal, found)
+        self.redundant += tuple(row for row in found if row not in self.redundant)
 
     def _solve_accelerations(self) -> None:
         arrays = self.workspace.arrays
@@ -365,6 +378,8 @@ class Engine:
             status = query(ws, self._method.record, self.t)
             if status == REANALYZE:
                 status = self._query_with_other_pivots()
+            if strained(self):
+                status = smooth_query(self, status)
         if status != OK:
             raise SimulationError(
                 f"the state at t = {self.t:.9g} s between two steps cannot be projected onto the constraints "

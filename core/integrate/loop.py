@@ -9,12 +9,16 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import call_step
+from ..stage.inner import rounding_level
 from ..system.records import (
     ATOL,
+    CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     FACTOR_AGE,
     FIRST_SENSITIVITY,
+    LEAST_CONDITION,
+    MOST_CONDITION,
     NOT_FINITE,
     OK,
     RATE_SIZE,
@@ -23,6 +27,7 @@ from ..system.records import (
     RTOL,
     SENSITIVITY,
     STEPS,
+    WORST_CONDITION,
 )
 from .records import (
     BREAK_TIME,
@@ -36,6 +41,7 @@ from .records import (
     HELD,
     HOLD,
     MAX_STEP,
+    NEAR_SINGULAR,
     REACHED,
     REPARTITION,
     STEP_SIZE,
@@ -43,6 +49,7 @@ from .records import (
     STOP_TIME,
     TARGET_TIME,
     TRIAL_STEP,
+    VIOLATED,
 )
 from .sample import write_sample
 from .watch import any_crossed, remember
@@ -52,6 +59,7 @@ MIN_FACTOR = 0.2
 MAX_FACTOR = 5.0  # of one-step formulas; multistep ones have their own
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
 LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
+REDUNDANT_TOLERANCE = 1e-8  # violation of a redundant row that shows that it is not; absolute up to 1, then relative
 DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more
 
 
@@ -87,6 +95,8 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     blind = lc.rows > 1 and history_time(ms, 0) + 2.000001 * h > vec(lc.clock, CLOCK_SIZE)[BREAK_TIME]
     starting = rows_available(ms) < lc.rows or blind
     set_weights(ws, ms)
+    rate = vec(ws.rate, RATE_SIZE)
+    rate[WORST_CONDITION] = rate[CONDITION]
     status = call_step(lc.starter if starting else lc.step, ws, ms, h)
     if status == OK and not all_finite(ws):
         return NOT_FINITE
@@ -168,11 +178,23 @@ def _leap(ws: Any, ms: Any, lc: Any) -> float:
 
 
 @compiled
+def violates_redundant(ws: Any) -> bool:
+    """True if the motion breaks a row that was taken for redundant."""
+    phi, redundant = vec(ws.phi, ws.m_ext), ivec(ws.redundant, ws.n_redundant)
+    most = REDUNDANT_TOLERANCE * rounding_level(ws, ws.q)
+    for i in range(ws.n_redundant):
+        if not abs(phi[redundant[i]]) <= most:
+            return True
+    return False
+
+
+@compiled
 def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
     """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
     clock = vec(lc.clock, CLOCK_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
     error = vec(ms.error, 2)
+    control, rate = vec(ws.control, CONTROL_SIZE), vec(ws.rate, RATE_SIZE)
     for _ in range(chunk):
         t = history_time(ms, 0)
         stop = clock[STOP_TIME]
@@ -191,6 +213,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         clock[TRIAL_STEP] = h
         multistep = lc.rows > 1 and rows_available(ms) >= lc.rows
         status = trial_step(ws, ms, lc, h)
+        if not fixed and rate[WORST_CONDITION] > control[MOST_CONDITION] * rate[LEAST_CONDITION]:
+            return NEAR_SINGULAR
         if status == REANALYZE:
             return status
         if status != OK or (not fixed and not error[0] <= 1.0):
@@ -213,6 +237,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 counters[REJECTED] += 1
                 continue
         clock[FAILURES] = 0.0
+        if ws.n_redundant > 0 and violates_redundant(ws):
+            return VIOLATED
         if ws.n_contacts > 0 and any_crossed(ws, lc, h):
             return EVENT
         if h == remaining:

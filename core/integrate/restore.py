@@ -33,6 +33,7 @@ def get_state(sim: "Simulation") -> State:
     if structure.dependent is None or structure.lu_d is None:
         raise RuntimeError("a simulation always has a partition once it is built")
     arrays["dependent"] = structure.dependent.copy()
+    arrays["probe"] = workspace.arrays["probe"].copy()
     for name in ("kkt", "lu_d", "kkt_query"):
         factorization = getattr(structure, name)
         perm_r, perm_c = factorization.analysis()
@@ -43,6 +44,7 @@ def get_state(sim: "Simulation") -> State:
     facts = {
         "t": sim.t,
         "closed": sorted(closed),
+        "dropped": sorted(workspace.dropped),
         "engaged": sorted(engaged),
         "pending": list(sim.pending),
         "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
@@ -63,8 +65,10 @@ def set_state(sim: "Simulation", state: State) -> None:
             f"has {expected[:12]}): restore it into a simulation built the same way"
         )
     workspace, facts, arrays = sim.workspace, state.facts, state.arrays
+    workspace.drop(frozenset(facts["dropped"]))
     workspace.engage(frozenset(facts["closed"]), frozenset(facts["engaged"]))
     workspace.set_partition(arrays["dependent"])
+    workspace.set_probe(arrays["probe"].copy())
     structure = workspace.structure
     for name in ("kkt", "lu_d", "kkt_query"):
         factorization = getattr(structure, name)

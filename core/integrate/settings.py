@@ -12,6 +12,7 @@ from ..system.records import (
     ATOL,
     MAX_INNER,
     MAX_OUTER,
+    MOST_CONDITION,
     NEWTON_TOLERANCE,
     OUTER_LOOP,
     POSITION_TOLERANCE,
@@ -20,8 +21,13 @@ from ..system.records import (
 )
 
 OUTER_LOOPS = ("newton", "simple")
+REDUNDANT = ("drop", "refuse")
+"""What is done with constraints that repeat others."""
 CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
 """At position, velocity and acceleration level: absolute below 1, relative to the largest entry above."""
+SINGULAR_NOISE = 2.5e13
+"""A hundredth of the inverse of rounding, since the outer loop stops at a hundredth of the tolerance; and a tenth for
+coordinates of ten."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +44,7 @@ class Settings:
     outer: str
     newton_tolerance: float | None
     start_tolerance: float
+    redundant: str = "drop"
     method_options: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -55,6 +62,8 @@ class Settings:
             raise ModelError(f"t0 must be a finite number, not {self.t0!r}")
         if self.outer not in OUTER_LOOPS:
             raise ModelError(f"outer loop '{self.outer}' is unknown; there are {list(OUTER_LOOPS)}")
+        if self.redundant not in REDUNDANT:
+            raise ModelError(f"redundant must be one of {list(REDUNDANT)}, not {self.redundant!r}")
 
 
 def set_control(settings: Settings, control: NDArray[Any]) -> None:
@@ -72,3 +81,5 @@ def set_control(settings: Settings, control: NDArray[Any]) -> None:
     control[OUTER_LOOP] = float(OUTER_LOOPS.index(settings.outer))
     control[MAX_OUTER] = 10.0 if settings.outer == "newton" else 60.0
     control[MAX_INNER] = 12.0
+    # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
+    control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

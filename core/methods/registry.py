@@ -8,7 +8,7 @@ from ..errors import ModelError
 from .bdf import bdf_step
 from .ebdf import ebdf_step
 from .newmark import newmark_step
-from .sdirk import sdirk_fine_step, sdirk_step
+from .sdirk import C, sdirk_fine_step, sdirk_step
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,8 @@ class Formula:
     parameters: tuple[float, ...] = ()
     rows: int = 1
     """Rows of history that a step needs; below that the starter works."""
+    stages: tuple[float, ...] = (1.0,)
+    """Times of the stages in units of the step: none of them should fall on a singular position."""
     growth: float = 2.0
     """Largest factor by which error control lets a multistep step grow, each time after `rows` equal steps."""
 
@@ -45,12 +47,14 @@ class Method:
     formula: Callable[[Mapping[str, float]], Formula] = field(repr=False)
 
 
+STARTER_STAGES = tuple(float(c) for c in C)
+
 # With growth by 2 after k + 1 equal steps the variable-step formulas are zero-stable up to k = 6; beyond, these are.
 EBDF_GROWTH = {7: 1.5, 8: 1.2}
 
 
 def _extended(k: int, modified: float) -> Formula:
-    return Formula(ebdf_step, k, (modified,), k + 1, EBDF_GROWTH.get(k, 2.0))
+    return Formula(ebdf_step, k, (modified,), k + 1, (1.0, 2.0), EBDF_GROWTH.get(k, 2.0))
 
 
 def _hht(values: Mapping[str, float]) -> Formula:
@@ -98,7 +102,7 @@ METHODS = {
             "irk",
             "TLISMNI with the implicit Runge-Kutta method SDIRK of order 4, L-stable, self-starting",
             {},
-            lambda o: Formula(sdirk_step, 4),
+            lambda o: Formula(sdirk_step, 4, stages=STARTER_STAGES),
         ),
     )
 }

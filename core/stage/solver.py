@@ -19,6 +19,7 @@ from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..system.evaluate import evaluate_residuals, evaluate_tangent
 from ..system.records import (
+    CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     FACTOR_AGE,
@@ -30,6 +31,7 @@ from ..system.records import (
     INNER,
     LAST_INNER,
     LAST_OUTER,
+    LEAST_CONDITION,
     MAX_OUTER,
     NEWTON_TOLERANCE,
     NOT_FINITE,
@@ -46,6 +48,7 @@ from ..system.records import (
     SENSITIVITY,
     SINGULAR,
     STAGES,
+    WORST_CONDITION,
 )
 from .inner import inner_loop
 
@@ -74,6 +77,7 @@ def refactor(ws: Any, c_q: float, c_v: float) -> int:
         if status != 0:
             return SINGULAR
     _measure_sensitivity(ws)
+    _measure_condition(ws)
     ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
     rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
@@ -104,6 +108,29 @@ def _measure_sensitivity(ws: Any) -> None:
     rate[SENSITIVITY] = largest
     if rate[FIRST_SENSITIVITY] < 0.0:
         rate[FIRST_SENSITIVITY] = largest
+
+
+@internal
+def _measure_condition(ws: Any) -> None:
+    """How far (scaled) the coordinates must move, at least, to mend one pseudo-random violation of size 1 of all rows:
+    about the inverse of the distance to a singular position, whatever the partition."""
+    if ws.m_act == 0:
+        return
+    rate = vec(ws.rate, RATE_SIZE)
+    rhs = vec(ws.rhs, ws.n + ws.m_act)
+    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
+    for i in range(ws.n):
+        rhs[i] = 0.0
+    for i in range(ws.m_act):
+        rhs[ws.n + i] = probe[i]
+    solve(lu_at(ws.kkt), ws.rhs)
+    largest = 0.0
+    for i in range(ws.n):
+        largest = max(largest, abs(rhs[i]) / scale[i])
+    rate[CONDITION] = largest
+    rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
+    if rate[LEAST_CONDITION] == 0.0 or largest < rate[LEAST_CONDITION]:
+        rate[LEAST_CONDITION] = largest
 
 
 @compiled

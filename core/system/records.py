@@ -18,7 +18,8 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
             # structure (changes with the set of engaged contacts)
-            "active", "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
+            "active", "redundant", "n_redundant", "probe",
+            "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "rhs", "weight_q", "weight_v",
             "control", "counters", "rate", "scale", "scratch",
@@ -43,7 +44,8 @@ MAX_INNER = 5
 OUTER_LOOP = 6  # 0 newton, 1 simple
 RTOL = 7
 ATOL = 8
-CONTROL_SIZE = 9
+MOST_CONDITION = 9  # growth of the condition of the constraints beyond which a position counts as nearly singular
+CONTROL_SIZE = 10
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
@@ -55,7 +57,10 @@ LAST_INNER = 5
 FAILED_NORM = 6
 SENSITIVITY = 7  # |dq_d/dq_i| at the last factorisation, scaled
 FIRST_SENSITIVITY = 8  # the same when the partition was chosen; < 0: not known yet
-RATE_SIZE = 9
+CONDITION = 9  # of the constraints at the last factorisation: size of the motion that a unit violation asks for
+LEAST_CONDITION = 10  # the least of them in this structure; 0: none yet
+WORST_CONDITION = 11  # the largest of them in the present step
+RATE_SIZE = 12
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES = range(9)
