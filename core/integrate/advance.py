@@ -102,7 +102,9 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
         elif code == NEAR_SINGULAR:
             _pass_singular(sim)
         elif code == VIOLATED:
-            _violated(sim)
+            h = float(sim.clock[TRIAL_STEP])
+            if not repair(sim) and not _pass_singular(sim):
+                _violated(sim, h)
         elif code in _REPAIRABLE and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
             repair(sim)
@@ -119,8 +121,9 @@ def _shrink(sim: "Simulation") -> bool:
     return bool(h > 1e-13 * max(abs(sim.t_internal), 1e-6))
 
 
-def _violated(sim: "Simulation") -> None:
-    """A row that was taken for redundant does not hold any more."""
+def _violated(sim: "Simulation", h: float) -> None:
+    """A row that was taken for redundant does not hold any more, at the end of a step of size h."""
+    trial_step(sim.workspace.record, sim._method.record, sim._loop.record, h)
     arrays, assembly = sim.workspace.arrays, sim.assembly
     rows = sim.workspace.structure.redundant
     worst = int(rows[np.argmax(np.abs(arrays["phi"][rows]))])
@@ -134,17 +137,18 @@ def _violated(sim: "Simulation") -> None:
     )
 
 
-def _pass_singular(sim: "Simulation") -> None:
-    """The constraints are nearly dependent where the step was to end: step over that position."""
-    if sim.workspace.dropped:
-        repair(sim)
+def _pass_singular(sim: "Simulation") -> bool:
+    """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
+    changed = bool(sim.workspace.dropped) and repair(sim)
     code = pass_singular(sim)
     if code == EVENT:
         _locate(sim)
-    elif code != OK:
+    elif code != OK and not changed:
         # nothing near: go on, and look again when it has become twice as bad
         rate = sim.workspace.arrays["rate"]
         rate[LEAST_CONDITION] = 2.0 * rate[WORST_CONDITION] / sim.workspace.arrays["control"][MOST_CONDITION]
+        return False
+    return True
 
 
 def _fail(sim: "Simulation", code: int) -> None:

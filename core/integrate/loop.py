@@ -10,8 +10,10 @@ from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import call_step
 from ..stage.inner import rounding_level
+from ..stage.solver import CHOICE_GROWTH
 from ..system.records import (
     ATOL,
+    CHOICE_CONDITION,
     CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
@@ -123,6 +125,8 @@ def partition_strained(ws: Any) -> bool:
     rate = vec(ws.rate, RATE_SIZE)
     if rate[SENSITIVITY] > STRAIN * max(rate[FIRST_SENSITIVITY], 1.0):
         return True
+    if ws.n_redundant > 0 and rate[CONDITION] > CHOICE_GROWTH * rate[CHOICE_CONDITION] > 0.0:
+        return True
     if ws.m_act == 0 or ws.m_act == ws.n or rate[FACTOR_AGE] < LOOK_AGAIN:
         return False
     # the sensitivity is known from the last factorisation; dependent coordinates that now move faster than the
@@ -178,10 +182,10 @@ def _leap(ws: Any, ms: Any, lc: Any) -> float:
 
 
 @compiled
-def violates_redundant(ws: Any) -> bool:
+def violates_redundant(ws: Any, relaxed: float) -> bool:
     """True if the motion breaks a row that was taken for redundant."""
     phi, redundant = vec(ws.phi, ws.m_ext), ivec(ws.redundant, ws.n_redundant)
-    most = REDUNDANT_TOLERANCE * rounding_level(ws, ws.q)
+    most = relaxed * REDUNDANT_TOLERANCE * rounding_level(ws, ws.q)
     for i in range(ws.n_redundant):
         if not abs(phi[redundant[i]]) <= most:
             return True
@@ -237,7 +241,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 counters[REJECTED] += 1
                 continue
         clock[FAILURES] = 0.0
-        if ws.n_redundant > 0 and violates_redundant(ws):
+        if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
             return VIOLATED
         if ws.n_contacts > 0 and any_crossed(ws, lc, h):
             return EVENT

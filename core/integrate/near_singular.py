@@ -8,7 +8,6 @@ though, and the steps keep a distance: so they are interpolated through the newe
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import BarycentricInterpolator, KroghInterpolator
 
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import LEAST_CONDITION, OK, WORST_CONDITION
@@ -38,6 +37,9 @@ def strained(sim: "Engine") -> bool:
 
 def smooth_query(sim: "Engine", status: int) -> int:
     """Replace what the query at `t` gave, and its `status`, if the point is too near a singular position."""
+    # importing scipy costs more than most runs: only who needs it pays
+    from scipy.interpolate import BarycentricInterpolator, KroghInterpolator
+
     workspace, n, n_ext = sim.workspace, sim.assembly.n, sim.assembly.n_extended
     arrays = workspace.arrays
     if status != OK:

@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import KroghInterpolator
 
 from ..errors import SimulationError
 from ..methods.history import recall
 from ..methods.registry import STARTER_STAGES
 from ..system.records import ATOL, FACTOR_AGE, NEWTON_TOLERANCE, OK, REANALYZE, RTOL
 from ..system.redundancy import least_singular_value
-from .loop import accept, trial_step
+from .loop import accept, trial_step, violates_redundant
 from .records import EVENT, FAILURES, HELD, STEP_SIZE, STOP_TIME, TRIAL_STEP
 from .repair import repair
 from .watch import crossed
@@ -115,6 +114,9 @@ class _Path:
     """Extrapolation of the motion beyond the newest row: the quintic through (q, v, a) of the newest two."""
 
     def __init__(self, sim: "Simulation") -> None:
+        # importing scipy costs more than most runs: only who needs it pays
+        from scipy.interpolate import KroghInterpolator
+
         n, n_ext = sim.assembly.n, sim.assembly.n_extended
         ring, times = sim.method_arrays["ring"], sim.method_arrays["times"]
         rows = [int(ring[0] - back) % len(times) for back in range(min(int(ring[1]), 2))]
@@ -178,6 +180,8 @@ def _try(sim: "Simulation", path: _Path, steps: tuple[list[float], ...], natural
                 rate[FACTOR_AGE] = -1.0
                 status = _trial(sim, h)
                 if status != OK or not sim.method_arrays["error"][0] <= 1.0:
+                    continue
+                if violates_redundant(ws, of_error):
                     continue
                 if _leaves_branch(sim, path, h):
                     turned = True

@@ -6,31 +6,38 @@ from ..errors import ConsistencyError, SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
 from ..system.partition import prepare
+from ..system.records import CHOICE_CONDITION, CONDITION
 from ..system.redundancy import choose_rows
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
 
-def repair(sim: "Simulation") -> None:
-    """New partition and orderings at the newest row, which becomes the workspace's point.
+def repair(sim: "Simulation") -> bool:
+    """New partition and orderings at the newest row, which becomes the workspace's point; True if other redundant rows
+    are left out than before.
 
     Raises
     ------
     SimulationError : if the constraints depend on one another there.
     """
     recall(sim.workspace.record, sim._method.record, 0)
+    rate = sim.workspace.arrays["rate"]
+    condition = float(rate[CONDITION])
     try:
         changed = choose_rows(sim.workspace)
         prepare(sim.workspace)
         if changed:
             _move_multipliers(sim)
+        else:
+            rate[CHOICE_CONDITION] = condition
     except (ConsistencyError, SingularMatrixError) as error:
         raise SimulationError(
             f"at t = {sim.t_internal:.9g} s the constraints cannot be partitioned: {error}",
             t=sim.t_internal,
             loop="inner",
         ) from error
+    return changed
 
 
 def _move_multipliers(sim: "Simulation") -> None:

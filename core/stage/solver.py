@@ -19,6 +19,7 @@ from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..system.evaluate import evaluate_residuals, evaluate_tangent
 from ..system.records import (
+    CHOICE_CONDITION,
     CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
@@ -60,6 +61,8 @@ LEAST_RATE = 0.02
 RATE_GROWTH = 1.5
 # A contraction above this costs more iterations than a factorisation.
 SLOW = 0.2
+# Growth of the condition after which other redundant rows may be the better ones to leave out.
+CHOICE_GROWTH = 3.0
 
 
 @compiled
@@ -129,6 +132,8 @@ def _measure_condition(ws: Any) -> None:
         largest = max(largest, abs(rhs[i]) / scale[i])
     rate[CONDITION] = largest
     rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
+    if rate[CHOICE_CONDITION] == 0.0 or CHOICE_GROWTH * largest < rate[CHOICE_CONDITION]:
+        rate[CHOICE_CONDITION] = largest
     if rate[LEAST_CONDITION] == 0.0 or largest < rate[LEAST_CONDITION]:
         rate[LEAST_CONDITION] = largest
 

@@ -60,7 +60,8 @@ FIRST_SENSITIVITY = 8  # the same when the partition was chosen; < 0: not known 
 CONDITION = 9  # of the constraints at the last factorisation: size of the motion that a unit violation asks for
 LEAST_CONDITION = 10  # the least of them in this structure; 0: none yet
 WORST_CONDITION = 11  # the largest of them in the present step
-RATE_SIZE = 12
+CHOICE_CONDITION = 12  # when the redundant rows were last chosen, or the least since; 0: not known yet
+RATE_SIZE = 13
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES = range(9)

@@ -13,13 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr
 
 from ..errors import ConsistencyError
 from .evaluate import evaluate_residuals, evaluate_tangent
-from .partition import CONTRADICTION, RANK_TOLERANCE, pivots_of, prepare, redundancy_error
+from .partition import CONTRADICTION, pivots_of, prepare, redundancy_error
 from .projection import bring_to_rest
-from .records import FACTOR_AGE
+from .records import FACTOR_AGE, LEAST_CONDITION
 from .workspace import Workspace
 
 logger = logging.getLogger(__name__)
@@ -28,7 +27,10 @@ MOVES = 5
 """Pseudo-random motions that a redundant row must survive."""
 MOVE_SIZES = (2e-2, 2e-3, 2e-4)
 """Their size relative to the coordinates' scales: the next smaller if the constraints cannot be met there."""
-WORSE = 0.1
+START_RANK = 1e-6
+"""A row whose remainder after elimination is smaller than this (relative) makes a start singular if it is not redundant:
+rounding in the accelerations is multiplied by its inverse cube."""
+WORSE = 0.5
 """Rows are chosen anew when the least singular value of those kept is so much smaller than it could be."""
 LARGEST_CHOICE = 4_000_000
 """Entries of the dense Jacobian up to which rows are chosen anew during a run."""
@@ -63,7 +65,7 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
     scaled = _Scaled(workspace)
     violation = float(np.max(np.abs(phi) / scaled.row_size, initial=0.0))
     # off the constraints, rows that repeat others seem to be independent, by about as much as they are violated
-    doubtful = pivots_of(workspace, min(max(RANK_TOLERANCE, 30.0 * violation), 0.03)).redundant
+    doubtful = pivots_of(workspace, min(max(START_RANK, 30.0 * violation), 0.03)).redundant
     if len(doubtful) == 0:
         return ()
     start = arrays["q"][:n].copy()
@@ -75,7 +77,7 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
         if not met:
             return ()
         _evaluate(workspace)
-        pivots = pivots_of(workspace)
+        pivots = pivots_of(workspace, START_RANK)
         if len(pivots.redundant) == 0:
             return ()
         residual = np.abs(arrays["phi"][active[pivots.redundant]])
@@ -120,14 +122,13 @@ def describe(workspace: Workspace) -> tuple[RedundantRow, ...]:
         rows = workspace.structure.active
         kept = np.flatnonzero(~np.isin(rows, dropped))
         factors, *_ = np.linalg.lstsq(scaled.matrix[kept].T, scaled.matrix[np.isin(rows, dropped)].T, rcond=None)
-        return tuple(
-            RedundantRow(
-                names[row],
-                int(row - names.index(names[row])),
-                tuple(sorted({names[rows[k]] for k in kept[np.abs(factors[:, j]) > 1e-7]})),
-            )
-            for j, row in enumerate(dropped)
-        )
+        found = []
+        for j, row in enumerate(dropped):
+            repeated = {names[rows[k]] for k in kept[np.abs(factors[:, j]) > 1e-7]}
+            # its other rows may take part, but what matters are the other joints
+            repeated = (repeated - {names[row]}) or repeated
+            found.append(RedundantRow(names[row], int(row - names.index(names[row])), tuple(sorted(repeated))))
+        return tuple(found)
 
 
 def choose_rows(workspace: Workspace) -> bool:
@@ -136,6 +137,9 @@ def choose_rows(workspace: Workspace) -> bool:
     dropped = workspace.dropped
     if not dropped or workspace.assembly.m_joints * workspace.assembly.n > LARGEST_CHOICE:
         return False
+    # importing scipy costs more than most runs: only who needs it pays
+    from scipy.linalg import qr
+
     with _AllRows(workspace) as scaled:
         joints = np.flatnonzero(workspace.structure.active < workspace.assembly.m_joints)
         rows, matrix = workspace.structure.active[joints], scaled.matrix[joints]
@@ -144,14 +148,23 @@ def choose_rows(workspace: Workspace) -> bool:
         kept = np.flatnonzero(~np.isin(rows, sorted(dropped)))
         worse = _least_singular_value(matrix[kept]) < WORSE * _least_singular_value(matrix[order])
     if worse:
+        least = float(workspace.arrays["rate"][LEAST_CONDITION])
         workspace.drop(frozenset(int(row) for row in np.delete(rows, order)))
+        # the same constraints, said by other rows: how far they are from a singular position is judged as before
+        workspace.arrays["rate"][LEAST_CONDITION] = least
         evaluate_residuals(workspace.record)
         evaluate_tangent(workspace.record, 0.0, 0.0)
     return worse
 
 
 def least_singular_value(workspace: Workspace) -> float:
-    """Of the active rows of Phi_q at the current point, rows and columns scaled; 1 without constraints."""
+    """Least singular value of Phi_q at the current point, rows and columns scaled, that is zero at singular positions
+    only: not one of those that redundant rows make zero. 1 without constraints."""
+    left_out = len(workspace.dropped)
+    if left_out:
+        with _AllRows(workspace) as scaled:
+            values = np.linalg.svd(scaled.matrix, compute_uv=False)
+            return float(values[len(scaled.matrix) - left_out - 1])
     _evaluate(workspace)
     return _least_singular_value(_Scaled(workspace).matrix)
 
@@ -205,7 +218,7 @@ def _only_here(workspace: Workspace, redundant: NDArray[np.int64]) -> list[int]:
     size = scaled.row_size[redundant]
     kept = np.delete(scaled.matrix, redundant, axis=0)
     _, values, directions = np.linalg.svd(kept, full_matrices=True)
-    free = directions[int(np.sum(values > RANK_TOLERANCE)) :]
+    free = directions[int(np.sum(values > START_RANK)) :]
     if len(free) == 0:
         return []
     here = arrays["q"][:n].copy()

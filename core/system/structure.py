@@ -33,6 +33,8 @@ class Structure:
     kkt_query: Factorization
     lu_d: Factorization | None = None
     dependent: NDArray[np.int64] | None = None
+    probe: NDArray[np.float64] | None = None
+    """Right-hand side (m_act,) with which the condition of the constraints is measured."""
     free: tuple[NDArray[np.int64], ...] = ()
     """Row, column and slot of the entries of Phi_q in independent columns."""
 

@@ -13,6 +13,7 @@ from ..contact.modes import MEMORY_SIZE
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .records import (
+    CHOICE_CONDITION,
     CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
@@ -21,6 +22,7 @@ from .records import (
     LEAST_CONDITION,
     RATE_SIZE,
     WORKSPACE,
+    WORST_CONDITION,
 )
 from .structure import Structure, build_structure
 
@@ -148,7 +150,7 @@ class Workspace:
         self._set("values", values, n_values=len(values))
         self._set("active", structure.active, m_act=len(structure.active))
         self._set("redundant", structure.redundant, n_redundant=len(structure.redundant))
-        self._set("probe", np.zeros(len(structure.active)))
+        self._set("probe", np.zeros(len(structure.active)) if structure.probe is None else structure.probe)
         for k, batch in enumerate(self._batches):
             for name, table in (
                 ("slot_s", structure.slot_s[k]),
@@ -161,7 +163,7 @@ class Workspace:
         self._record.table["kkt"] = structure.kkt.address
         self._record.table["kkt_query"] = structure.kkt_query.address
         self.arrays["rate"][FACTOR_AGE] = -1.0
-        self.arrays["rate"][CONDITION] = self.arrays["rate"][LEAST_CONDITION] = 0.0
+        self.arrays["rate"][[CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION]] = 0.0
         if structure.dependent is not None:
             self._use_partition()
 
@@ -175,7 +177,8 @@ class Workspace:
 
     def set_probe(self, probe: NDArray[np.float64]) -> None:
         """Right-hand side (m_act,) with which the condition of the constraints is measured."""
-        self._set("probe", np.ascontiguousarray(probe))
+        self.structure.probe = np.ascontiguousarray(probe)
+        self._set("probe", self.structure.probe)
 
     def set_partition(self, dependent: NDArray[np.int64]) -> None:
         """Choose the dependent coordinates of the present structure."""

@@ -188,7 +188,7 @@ def test_spring_of_length_zero_is_refused_or_reported():
 def test_second_identical_joint_is_named_as_redundant():
     again = Revolute2D(name="again", a=GROUND, b=on("rod", -0.5))
     with pytest.raises(ConsistencyError, match=r"'(again|pin)' is redundant: it repeats what (pin|again)"):
-        simulate(rod_pendulum(joints=[again]), 1.0)
+        simulate(rod_pendulum(joints=[again]), 1.0, redundant="refuse")
 
 
 def test_contradictory_joints_are_named():
@@ -349,7 +349,7 @@ def test_user_equations_with_redundant_constraints_are_reported():
         v0=[0.0, 1.0],
     )
     with pytest.raises(ConsistencyError, match=r"constraint\[[01]\]"):
-        simulate(system, 1.0)
+        simulate(system, 1.0, redundant="refuse")
 
 
 def test_user_equations_far_off_their_constraint_are_refused():
