@@ -13,8 +13,7 @@ from ..system.projection import bring_to_rest
 from ..system.records import (
     FAILED_NORM,
     INNER_DIVERGED,
-    LEAST_CONDITION,
-    MOST_CONDITION,
+    LOOKED_CONDITION,
     NOT_FINITE,
     OK,
     OUTER_DIVERGED,
@@ -139,14 +138,15 @@ def _violated(sim: "Simulation", h: float) -> None:
 
 def _pass_singular(sim: "Simulation") -> bool:
     """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
-    changed = bool(sim.workspace.dropped) and repair(sim)
+    if sim.workspace.dropped:
+        repair(sim)
     code = pass_singular(sim)
     if code == EVENT:
         _locate(sim)
-    elif code != OK and not changed:
+    elif code != OK:
         # nothing near: go on, and look again when it has become twice as bad
         rate = sim.workspace.arrays["rate"]
-        rate[LEAST_CONDITION] = 2.0 * rate[WORST_CONDITION] / sim.workspace.arrays["control"][MOST_CONDITION]
+        rate[LOOKED_CONDITION] = 2.0 * rate[WORST_CONDITION]
         return False
     return True
 

@@ -20,6 +20,7 @@ from ..system.records import (
     FACTOR_AGE,
     FIRST_SENSITIVITY,
     LEAST_CONDITION,
+    LOOKED_CONDITION,
     MOST_CONDITION,
     NOT_FINITE,
     OK,
@@ -217,7 +218,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         clock[TRIAL_STEP] = h
         multistep = lc.rows > 1 and rows_available(ms) >= lc.rows
         status = trial_step(ws, ms, lc, h)
-        if not fixed and rate[WORST_CONDITION] > control[MOST_CONDITION] * rate[LEAST_CONDITION]:
+        near = max(control[MOST_CONDITION] * rate[LEAST_CONDITION], rate[LOOKED_CONDITION])
+        if not fixed and rate[WORST_CONDITION] > near:
             return NEAR_SINGULAR
         if status == REANALYZE:
             return status

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 REACH = 12.0
+FARTHEST = 60.0
+RECENT = 7
 """How far ahead a singular position matters, in steps."""
 LOOKS = 25
 """Places where it is looked for."""
@@ -101,13 +103,11 @@ def near_singular(sim: "Simulation") -> float | None:
 
 
 def _natural_step(sim: "Simulation") -> float:
-    """The step that the smooth motion allows: that of the trial, or the last one if trials have shrunk since."""
-    h = float(sim.clock[TRIAL_STEP])
-    if sim.clock[FAILURES] > 0.0 and sim.method_arrays["ring"][1] > 1:
-        newest = int(sim.method_arrays["ring"][0])
-        times = sim.method_arrays["times"]
-        h = max(h, float(times[newest] - times[newest - 1]))
-    return h
+    """The step that the smooth motion allows: that of the trial, or the usual one of late if trials have shrunk."""
+    ring, times = sim.method_arrays["ring"], sim.method_arrays["times"]
+    rows = [int(ring[0] - back) % len(times) for back in range(min(int(ring[1]), RECENT))]
+    gaps = -np.diff(times[rows])
+    return max(float(sim.clock[TRIAL_STEP]), float(np.median(gaps)) if len(gaps) else 0.0)
 
 
 class _Path:
@@ -146,6 +146,10 @@ def _singular_position(sim: "Simulation", path: _Path, reach: float, natural: fl
         return least_singular_value(workspace)
 
     recall(workspace.record, sim._method.record, 0)
+    here, next_one = distance(0.0), distance(natural)
+    if next_one < here:
+        # where it would be zero if it went on like this
+        reach = min(max(reach, 1.5 * natural * here / (here - next_one)), FARTHEST * natural)
     times = np.linspace(-reach if path.known > 0.0 else 0.0, reach, LOOKS)
     values = np.array([distance(s) for s in times])
     for k in range(1, LOOKS - 1):

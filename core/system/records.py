@@ -61,7 +61,9 @@ CONDITION = 9  # of the constraints at the last factorisation: size of the motio
 LEAST_CONDITION = 10  # the least of them in this structure; 0: none yet
 WORST_CONDITION = 11  # the largest of them in the present step
 CHOICE_CONDITION = 12  # when the redundant rows were last chosen, or the least since; 0: not known yet
-RATE_SIZE = 13
+LOOKED_CONDITION = 13  # up to here it has been looked for a singular position in vain
+CONDITIONS = (CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION, LOOKED_CONDITION)
+RATE_SIZE = 14
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES = range(9)

@@ -28,8 +28,8 @@ MOVES = 5
 MOVE_SIZES = (2e-2, 2e-3, 2e-4)
 """Their size relative to the coordinates' scales: the next smaller if the constraints cannot be met there."""
 START_RANK = 1e-6
-"""A row whose remainder after elimination is smaller than this (relative) makes a start singular if it is not redundant:
-rounding in the accelerations is multiplied by its inverse cube."""
+"""A row whose remainder after elimination is smaller than this (relative) makes a start singular if it is not
+redundant: rounding in the accelerations is multiplied by its inverse cube."""
 WORSE = 0.5
 """Rows are chosen anew when the least singular value of those kept is so much smaller than it could be."""
 LARGEST_CHOICE = 4_000_000

@@ -13,16 +13,13 @@ from ..contact.modes import MEMORY_SIZE
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .records import (
-    CHOICE_CONDITION,
-    CONDITION,
+    CONDITIONS,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     EVALUATE_SIGNATURE,
     FACTOR_AGE,
-    LEAST_CONDITION,
     RATE_SIZE,
     WORKSPACE,
-    WORST_CONDITION,
 )
 from .structure import Structure, build_structure
 
@@ -163,7 +160,7 @@ class Workspace:
         self._record.table["kkt"] = structure.kkt.address
         self._record.table["kkt_query"] = structure.kkt_query.address
         self.arrays["rate"][FACTOR_AGE] = -1.0
-        self.arrays["rate"][[CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION]] = 0.0
+        self.arrays["rate"][[*CONDITIONS]] = 0.0
         if structure.dependent is not None:
             self._use_partition()
 

@@ -24,7 +24,7 @@ def passages(angles, every=math.pi, offset=0.0):
 
 @pytest.mark.parametrize("theta", [0.0, 1e-9, 1e-7, math.pi])
 def test_start_in_a_singular_position_is_refused(theta):
-    with pytest.raises(ConsistencyError, match="singular position: only here, .*'b0'.*'c0'.*Start a little before"):
+    with pytest.raises(ConsistencyError, match=r"singular position: only here, .*'b0'.*'c0'.*Start a little before"):
         simulate(four_bar(1, theta), 1.0)
 
 
@@ -90,7 +90,7 @@ def test_steps_of_any_size_pass():
 def test_slider_crank_with_rod_as_long_as_its_crank(method):
     """Singular with the slider on the pin (theta = +-90 degrees): it must go through, x = 2 r cos(theta), and not stay
     there while crank and rod turn together. Energy gives the rate: T = I(theta) theta'^2 / 2."""
-    result = simulate(slider_crank(0.3, 4.0, 0.5, 0.5), 12.0, method, 1e-8, 1e-10)
+    result = simulate(slider_crank(0.3, 4.0, 0.5, 0.5), 14.0, method, 1e-8, 1e-10)
     theta = result["crank.angle"]
     assert passages(theta, math.pi, math.pi / 2) >= 10
     assert result["slider.x"] == pytest.approx(np.cos(theta), abs=1e-8)
@@ -146,8 +146,8 @@ def test_state_near_a_singular_position_goes_on_bit_for_bit():
 
 
 def test_linkage_that_only_comes_near_is_not_mistaken():
-    """A four-bar whose output crank is 2 % longer than its input: it never has all bars in line; all residuals and the
-    energy hold, and the input turns about at the limit that the lengths set, or follows its own circuit."""
+    """A four-bar whose coupler is 2 % longer than its base: it never has all bars in line; all residuals and the
+    energy hold, and two methods with different steps agree."""
     model = four_bar(1, 1.1, -6.0)
     bodies = list(model.bodies)
     # longer coupler: q0 from the loop's closure by Newton on the two angles
@@ -184,19 +184,17 @@ def test_linkage_that_only_comes_near_is_not_mistaken():
         j.model_copy(update={"b": on("h0", math.copysign(0.5 * length, j.b.point[0]))}) if j.b.body == "h0" else j
         for j in model.joints
     ]
-    result = simulate(
-        model.model_copy(update={"bodies": tuple(bodies), "joints": tuple(joints)}), 3.0, rtol=1e-8, atol=1e-10
-    )
-    assert residuals(result)[0] < 1e-10
-    assert np.abs(result["energy.balance"]).max() < 1e-5
-    # on its own circuit the transmission never degenerates: the sign of the loop's determinant stays
-    determinant = np.sin(result["h0.angle"] - result["v1.angle"])
-    assert np.all(determinant * determinant[0] > 0.0)
+    near = model.model_copy(update={"bodies": tuple(bodies), "joints": tuple(joints)})
+    runs = [simulate(near, 3.0, method, 1e-9, 1e-11) for method in ("ebdf", "irk")]
+    for result in runs:
+        assert residuals(result)[0] < 1e-10
+        assert np.abs(result["energy.balance"]).max() < 1e-6
+    assert runs[0].q[-1] == pytest.approx(runs[1].q[-1], abs=1e-5)
 
 
 def test_fixed_steps_that_cannot_pass_say_why():
     """A grid that meets the position exactly: the end of a step is singular."""
     angle, rate = 0.05, -1.0
     system = four_bar(1, angle, rate, gravity=0.0)
-    with pytest.raises(SimulationError, match="singular position.*step=None"):
+    with pytest.raises(SimulationError, match=r"singular position.*step=None"):
         simulate(system, 0.1, "hht", step=0.05 / 4)
