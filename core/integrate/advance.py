@@ -138,6 +138,8 @@ def _violated(sim: "Simulation", h: float) -> None:
 
 def _pass_singular(sim: "Simulation") -> bool:
     """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
+    rate = sim.workspace.arrays["rate"]
+    worst = float(rate[WORST_CONDITION])
     if sim.workspace.dropped:
         repair(sim)
     code = pass_singular(sim)
@@ -145,8 +147,7 @@ def _pass_singular(sim: "Simulation") -> bool:
         _locate(sim)
     elif code != OK:
         # nothing near: go on, and look again when it has become twice as bad
-        rate = sim.workspace.arrays["rate"]
-        rate[LOOKED_CONDITION] = 2.0 * rate[WORST_CONDITION]
+        rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
         return False
     return True
 

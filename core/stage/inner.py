@@ -71,12 +71,13 @@ def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float
     enough_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
     enough_v = slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
     enough_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a)
-    # near a singular position a violation of Phi moves q by condition, v by condition^2 times as much: ask for more
-    # than enough there, as far as rounding allows
+    # near a singular position a violation of Phi moves q by condition, v by condition^2 times as much: there the
+    # constraints are solved down to rounding, whatever the units
     rate = vec(ws.rate, RATE_SIZE)
-    ordinary = STRAINED * rate[LEAST_CONDITION]
-    tight = (ordinary / rate[CONDITION]) ** 2 if rate[CONDITION] > ordinary else 1.0
+    tight = 0.0 if rate[CONDITION] > STRAINED * rate[LEAST_CONDITION] else 1.0
     tol_p, tol_v, tol_a = tight * enough_p, tight * enough_v, tight * enough_a
+    if acceleration_slack == np.inf:
+        tol_a = np.inf
     last_p, last_v, last_a = np.inf, np.inf, np.inf
     for _ in range(int(control[MAX_INNER])):
         p = constraint_norm(ws, ws.phi)
@@ -108,4 +109,7 @@ def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float
         if correct_a:
             correct_dependent(ws, lu_address, ws.phidd, ws.a)
         evaluate_residuals(ws)
+    met = constraint_norm(ws, ws.phi) <= enough_p and constraint_norm(ws, ws.phid) <= enough_v
+    if met and constraint_norm(ws, ws.phidd) <= enough_a:
+        return OK
     return INNER_DIVERGED
