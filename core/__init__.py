@@ -27,6 +27,7 @@ from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, 
 from .result import Result
 from .simulate import simulate
 from .state import State
+from .system.redundancy import RedundantRow
 
 __all__ = [
     "METHODS",
@@ -63,6 +64,7 @@ __all__ = [
     "Polynomial",
     "Prismatic2D",
     "Ramp",
+    "RedundantRow",
     "Result",
     "Revolute2D",
     "RigidBody2D",

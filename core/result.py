@@ -12,6 +12,7 @@ from .events import Event, Fallback
 from .integrate.output import ChannelTable
 from .integrate.records import LOG_COLUMNS
 from .model.channels import Channel
+from .system.redundancy import RedundantRow
 
 
 class Result:
@@ -28,6 +29,7 @@ class Result:
         stats: Mapping[str, float],
         fallbacks: Sequence[Fallback] = (),
         step_log: NDArray[np.float64] | None = None,
+        redundant: Sequence[RedundantRow] = (),
     ) -> None:
         self._samples = samples
         self._table = table
@@ -38,6 +40,9 @@ class Result:
         self.fallbacks = tuple(fallbacks)
         """Where another outer loop took over (only with fallback=True)."""
         self._step_log = step_log
+        self.redundant = tuple(redundant)
+        """Constraint rows that others imply (`RedundantRow`): left out of the equations but checked. Multipliers of
+        these joints and of those they repeat are not unique; those of the rows left out are zero."""
 
     @property
     def t(self) -> NDArray[np.float64]:

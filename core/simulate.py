@@ -46,7 +46,8 @@ def simulate(
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
         `outer`, `acceleration`, `depth`, `fallback`, `controller`, `newton_tolerance`, `start_tolerance`,
-        `step_records`.
+        `step_records`, `redundant` ("drop": constraints that repeat others are left out of the equations and checked;
+        "refuse": they are an error).
 
     Returns
     -------
@@ -95,7 +96,8 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
     blocks = sim.samples if sim.samples else [row[None, :] for row in rows]
     samples = np.concatenate(blocks) if blocks else np.zeros((0, sim.buffer.shape[1]))
     steps = np.concatenate(sim.step_logs) if sim.step_logs else None
-    return Result(samples, sim.table, sim.events, {**sim.stats, "wall_time": wall_time}, sim.fallbacks, steps)
+    stats = {**sim.stats, "wall_time": wall_time}
+    return Result(samples, sim.table, sim.events, stats, sim.fallbacks, steps, sim.redundant)
 
 
 def _check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:

@@ -7,31 +7,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..contact.modes import ACTIVE, CLOSED, MODE, OPEN
-from ..errors import ConsistencyError, SimulationError
+from ..errors import SimulationError
 from ..events import Fallback
-from ..linalg import SingularMatrixError
 from ..methods.history import recall
-from ..system.consistent import bring_to_rest
 from ..system.evaluate import evaluate_residuals
-from ..system.partition import prepare
+from ..system.projection import bring_to_rest
 from ..system.records import (
     FAILED_NORM,
     INNER_DIVERGED,
+    LOOKED_CONDITION,
     NOT_FINITE,
     OK,
     OUTER_DIVERGED,
     OUTER_SLOW,
     REANALYZE,
     SINGULAR,
+    WORST_CONDITION,
 )
 from .locate import find_root, first_crossing
 from .loop import accept, run, trial_step
+from .passage import near_singular, pass_singular
 from .records import (
     BREAK_TIME,
     CHUNK,
     EVENT,
     FIXED_STEP,
     FULL,
+    NEAR_SINGULAR,
     REACHED,
     REPARTITION,
     STEP_SIZE,
@@ -39,7 +41,9 @@ from .records import (
     STOP_TIME,
     TARGET_TIME,
     TRIAL_STEP,
+    VIOLATED,
 )
+from .repair import repair
 from .watch import crossed
 
 if TYPE_CHECKING:
@@ -100,12 +104,18 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
         elif code == EVENT:
             _locate(sim)
         elif code == REPARTITION:
-            _repair(sim)
+            repair(sim)
         elif code in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":
             _fall_back(sim, code)
+        elif code == NEAR_SINGULAR:
+            _pass_singular(sim)
+        elif code == VIOLATED:
+            h = float(sim.clock[TRIAL_STEP])
+            if not repair(sim) and not _pass_singular(sim):
+                _violated(sim, h)
         elif code in _REPAIRABLE and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
-            _repair(sim)
+            repair(sim)
         elif code in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
             continue
         else:
@@ -137,17 +147,36 @@ def _limit(sim: "Simulation", h: float) -> str:
     return f" (contraction {rate:.3g}; it goes with h^2, so the limit is about {h / math.sqrt(rate):.3g} s)"
 
 
-def _repair(sim: "Simulation") -> None:
-    """New partition and orderings at the newest row."""
-    recall(sim.workspace.record, sim._method.record, 0)
-    try:
-        prepare(sim.workspace)
-    except (ConsistencyError, SingularMatrixError) as error:
-        raise SimulationError(
-            f"at t = {sim.t_internal:.9g} s the constraints cannot be partitioned: {error}",
-            t=sim.t_internal,
-            loop="inner",
-        ) from error
+def _violated(sim: "Simulation", h: float) -> None:
+    """A row that was taken for redundant does not hold any more, at the end of a step of size h."""
+    trial_step(sim.workspace.record, sim._method.record, sim._loop.record, h)
+    arrays, assembly = sim.workspace.arrays, sim.assembly
+    rows = sim.workspace.structure.redundant
+    worst = int(rows[np.argmax(np.abs(arrays["phi"][rows]))])
+    name, t = assembly.row_names[worst], float(arrays["t"][0])
+    raise SimulationError(
+        f"constraint '{name}' (row {worst - assembly.row_names.index(name)}) repeated others at the start, but at "
+        f"t = {t:.9g} s the motion that those allow violates it by {arrays['phi'][worst]:.3g}: the constraints "
+        "contradict each other from there on. Remove the joint, or make its dimensions (or its driver) fit the others.",
+        t=sim.t_internal,
+        loop="inner",
+    )
+
+
+def _pass_singular(sim: "Simulation") -> bool:
+    """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
+    rate = sim.workspace.arrays["rate"]
+    worst = float(rate[WORST_CONDITION])
+    if sim.workspace.dropped:
+        repair(sim)
+    code = pass_singular(sim)
+    if code == EVENT:
+        _locate(sim)
+    elif code != OK:
+        # nothing near: go on, and look again when it has become twice as bad
+        rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
+        return False
+    return True
 
 
 def _fail(sim: "Simulation", code: int) -> None:
@@ -161,10 +190,16 @@ def _fail(sim: "Simulation", code: int) -> None:
             f"(h b)^2), omega the highest frequency: the largest step here is about {h / math.sqrt(rate):.3g} s. Use "
             "outer='newton' or 'jfnk', fallback=True, or a smaller step"
         )
+    elif (singular := near_singular(sim)) is not None:
+        remedy = (
+            f"At t = {singular:.9g} s the mechanism is in a singular position (constraints depend on one another only "
+            "there, bars in line), which these steps do not get past: use error control (step=None), looser "
+            "tolerances, a method of higher order, or start behind that position"
+        )
     elif settings.step:
         remedy = "Use a smaller step, or error-controlled steps (step=None)"
     elif loop == "inner":
-        remedy = "The mechanism may be at a singular position; start elsewhere, or set a smaller max_step"
+        remedy = "Start elsewhere, or set a smaller max_step"
     elif code == STEP_TOO_SMALL:
         remedy = "Loosen rtol and atol, or look for a force that jumps or grows without bound near this time"
     else:
@@ -213,7 +248,7 @@ def _trial(sim: "Simulation", step: float, full: float) -> None:
             if status == OK:
                 return
             if attempt == 0:
-                _repair(sim)
+                repair(sim)
         _fail(sim, status)
     finally:
         table["starter"], table["rows"] = usual

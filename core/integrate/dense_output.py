@@ -7,25 +7,13 @@ It is a pure function of the history: asking does not change what comes after.
 
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import compiled, internal
-from ..compiled.views import ivec, mat, vec
-from ..linalg import factor, lu_at, solve
+from ..compiled.views import mat, vec
 from ..methods.history import history_row, history_time, recall
 from ..methods.multistep import rows_available
-from ..stage.accelerations import solve_accelerations
-from ..stage.inner import rounding_level
-from ..system.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
-from ..system.records import (
-    CONTROL_SIZE,
-    INNER_DIVERGED,
-    OK,
-    POSITION_TOLERANCE,
-    REANALYZE,
-    SINGULAR,
-    VELOCITY_TOLERANCE,
-)
+from ..stage.project import project
+from ..system.evaluate import evaluate_residuals
+from ..system.records import OK, SINGULAR
 
 
 @internal
@@ -91,54 +79,6 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     for i in range(ws.m_ext):
         lam[i] = newest[4 * n + i] + s * (newest[4 * n + i] - older[4 * n + i])
     vec(ws.t, 1)[0] = t
-
-
-@internal
-def _project_level(ws: Any, residual_address: int, x_address: int, tolerance: float) -> int:
-    """Bring one level of the constraints to rounding by corrections of least M-norm, with the factors of `kkt_query`.
-
-    All coordinates take part, so that no partition is needed: one that is strained at this point does no harm.
-    """
-    rhs = vec(ws.rhs, ws.n + ws.m_act)
-    residual, x = vec(residual_address, ws.m_ext), vec(x_address, ws.n_ext)
-    active = ivec(ws.active, ws.m_act)
-    previous = np.inf
-    for _ in range(12):
-        norm = constraint_norm(ws, residual_address)
-        if norm <= tolerance * rounding_level(ws, x_address):
-            return OK
-        if not norm < 0.5 * previous:
-            return INNER_DIVERGED
-        previous = norm
-        for i in range(ws.n):
-            rhs[i] = 0.0
-        for i in range(ws.m_act):
-            rhs[ws.n + i] = -residual[active[i]]
-        solve(lu_at(ws.kkt_query), ws.rhs)
-        for i in range(ws.n):
-            x[i] += rhs[i]
-        evaluate_residuals(ws)
-    return INNER_DIVERGED
-
-
-@internal
-def project(ws: Any) -> int:
-    """Coordinates and velocities of the current point onto the constraints, then accelerations and multipliers."""
-    control = vec(ws.control, CONTROL_SIZE)
-    evaluate_residuals(ws)
-    if ws.m_act > 0:
-        evaluate_tangent(ws, 0.0, 0.0)
-        if factor(lu_at(ws.kkt_query), ws.values) != 0:
-            return REANALYZE
-        status = _project_level(ws, ws.phi, ws.q, 0.1 * control[POSITION_TOLERANCE])
-        if status != OK:
-            return status
-        status = _project_level(ws, ws.phid, ws.v, 0.1 * control[VELOCITY_TOLERANCE])
-        if status != OK:
-            return status
-    status = solve_accelerations(ws)
-    evaluate_power(ws)
-    return status
 
 
 @compiled

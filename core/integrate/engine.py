@@ -30,9 +30,11 @@ from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
+from ..system.redundancy import RedundantRow, choose_rows, describe
 from ..system.workspace import Workspace
 from .controllers import CONTROLLERS
 from .dense_output import query
+from .near_singular import smooth_query, strained
 from .output import ChannelTable
 from .records import (
     A2,
@@ -96,6 +98,7 @@ class Engine:
         controller: str = "elementary",
         newton_tolerance: float | None = None,
         start_tolerance: float = START_TOLERANCE,
+        redundant: str = "drop",
         record: bool = False,
         step_records: bool = False,
         **method_options: Any,
@@ -103,7 +106,7 @@ class Engine:
         self.settings = Settings(
             method=method, rtol=rtol, atol=atol, step=step, max_step=max_step, first_step=first_step, t0=t0,
             outer=outer, acceleration=acceleration, depth=depth, fallback=fallback, controller=controller,
-            newton_tolerance=newton_tolerance, start_tolerance=start_tolerance,
+            newton_tolerance=newton_tolerance, start_tolerance=start_tolerance, redundant=redundant,
             method_options=dict(method_options),
         )  # fmt: skip
         self.formula: Formula = get_formula(method, method_options)
@@ -118,6 +121,7 @@ class Engine:
         self.open_accounts: dict[int, tuple[float, float]] = {}
         self.pending: list[int] = []
         self.t = float(t0)
+        self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
         self.fallbacks: list[Fallback] = []
         self._build_method()
@@ -220,7 +224,8 @@ class Engine:
         arrays["q"][: a.n] = a.q0
         arrays["v"][: a.n] = a.v0
         arrays["t"][0] = self.settings.t0
-        make_consistent(self.workspace, self.settings.start_tolerance)
+        refuse = self.settings.redundant == "refuse"
+        self.redundant = make_consistent(self.workspace, self.settings.start_tolerance, refuse)
         gap_tolerance = 1e-9 * float(np.max(a.coordinate_scale, initial=1.0))
         touching = []
         for k, contact in enumerate(a.contacts):
@@ -331,9 +336,17 @@ class Engine:
         engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
         if self.workspace.key != (closed, engaged):
             self.workspace.engage(closed, frozenset(engaged))
+        if choose_rows(self.workspace):
+            self.note_redundant()
         prepare(self.workspace)
         if accelerations:
             self._solve_accelerations()
+
+    def note_redundant(self) -> None:
+        """Other rows are left out than before: add them to what the result tells."""
+        found = describe(self.workspace)
+        logger.info("at t = %.9g s other redundant rows are left out of the equations: %s", self.t_internal, found)
+        self.redundant += tuple(row for row in found if row not in self.redundant)
 
     def _solve_accelerations(self) -> None:
         arrays = self.workspace.arrays
@@ -443,6 +456,8 @@ class Engine:
             status = query(ws, self._method.record, self.t)
             if status == REANALYZE:
                 status = self._query_with_other_pivots()
+            if strained(self):
+                status = smooth_query(self, status)
             if status == OK:
                 write_sample(ws, row)
         except CallbackError:

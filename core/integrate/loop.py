@@ -9,8 +9,12 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
+from ..stage.inner import rounding_level
+from ..stage.solver import CHOICE_GROWTH
 from ..system.records import (
     ATOL,
+    CHOICE_CONDITION,
+    CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     EVALUATIONS,
@@ -19,6 +23,9 @@ from ..system.records import (
     FIRST_SENSITIVITY,
     INNER,
     KRYLOV,
+    LEAST_CONDITION,
+    LOOKED_CONDITION,
+    MOST_CONDITION,
     NOT_FINITE,
     OK,
     OUTER,
@@ -30,6 +37,7 @@ from ..system.records import (
     RTOL,
     SENSITIVITY,
     STEPS,
+    WORST_CONDITION,
 )
 from .records import (
     A2,
@@ -48,6 +56,7 @@ from .records import (
     HOLD,
     LOG_COLUMNS,
     MAX_STEP,
+    NEAR_SINGULAR,
     PREVIOUS_NORM,
     PREVIOUS_RATIO,
     REACHED,
@@ -58,6 +67,7 @@ from .records import (
     STOP_TIME,
     TARGET_TIME,
     TRIAL_STEP,
+    VIOLATED,
 )
 from .sample import write_sample
 from .watch import any_crossed, remember
@@ -68,6 +78,7 @@ MIN_FACTOR = 0.2
 MAX_FACTOR = 5.0  # of one-step formulas; multistep ones have their own
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
 LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
+REDUNDANT_TOLERANCE = 1e-8  # violation of a redundant row that shows that it is not; absolute up to 1, then relative
 DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more
 
 
@@ -108,6 +119,8 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
         # a chosen order that the history cannot serve yet
         choice[K] = max(lc.rows, rows_available(ms)) - 1.0
     set_weights(ws, ms)
+    rate = vec(ws.rate, RATE_SIZE)
+    rate[WORST_CONDITION] = rate[CONDITION]
     status = call_step(lc.starter if starting else lc.step, ws, ms, h)
     if status == OK and not all_finite(ws):
         return NOT_FINITE
@@ -152,6 +165,8 @@ def partition_strained(ws: Any) -> bool:
     """
     rate = vec(ws.rate, RATE_SIZE)
     if rate[SENSITIVITY] > STRAIN * max(rate[FIRST_SENSITIVITY], 1.0):
+        return True
+    if ws.n_redundant > 0 and rate[CONDITION] > CHOICE_GROWTH * rate[CHOICE_CONDITION] > 0.0:
         return True
     if ws.m_act == 0 or ws.m_act == ws.n or rate[FACTOR_AGE] < LOOK_AGAIN:
         return False
@@ -227,11 +242,23 @@ def _leap(ws: Any, ms: Any, lc: Any) -> float:
 
 
 @compiled
+def violates_redundant(ws: Any, relaxed: float) -> bool:
+    """True if the motion breaks a row that was taken for redundant."""
+    phi, redundant = vec(ws.phi, ws.m_ext), ivec(ws.redundant, ws.n_redundant)
+    most = relaxed * REDUNDANT_TOLERANCE * rounding_level(ws, ws.q)
+    for i in range(ws.n_redundant):
+        if not abs(phi[redundant[i]]) <= most:
+            return True
+    return False
+
+
+@compiled
 def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
     """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
     clock = vec(lc.clock, CLOCK_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
     error = vec(ms.error, 2)
+    control, rate = vec(ws.control, CONTROL_SIZE), vec(ws.rate, RATE_SIZE)
     for _ in range(chunk):
         t = history_time(ms, 0)
         stop = clock[STOP_TIME]
@@ -252,6 +279,9 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         clock[TRIAL_STEP] = h
         multistep = lc.rows > 1 and rows_available(ms) >= lc.rows
         status = trial_step(ws, ms, lc, h)
+        near = max(control[MOST_CONDITION] * rate[LEAST_CONDITION], rate[LOOKED_CONDITION])
+        if not fixed and rate[WORST_CONDITION] > near:
+            return NEAR_SINGULAR
         if status == REANALYZE:
             return status
         if status != OK or (not fixed and not error[0] <= 1.0):
@@ -277,6 +307,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 clock[REJECTED_HERE] += 1.0
                 continue
         clock[FAILURES] = 0.0
+        if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
+            return VIOLATED
         if ws.n_contacts > 0 and any_crossed(ws, lc, h):
             return EVENT
         if h == remaining:

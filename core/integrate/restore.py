@@ -35,6 +35,7 @@ def get_state(sim: "Simulation") -> State:
     if structure.dependent is None or structure.lu_d is None:
         raise RuntimeError("a simulation always has a partition once it is built")
     arrays["dependent"] = structure.dependent.copy()
+    arrays["probe"] = workspace.arrays["probe"].copy()
     for name in ("kkt", "lu_d", "kkt_query"):
         factorization = getattr(structure, name)
         perm_r, perm_c = factorization.analysis()
@@ -47,6 +48,7 @@ def get_state(sim: "Simulation") -> State:
     facts = {
         "t": sim.t,
         "closed": sorted(closed),
+        "dropped": sorted(workspace.dropped),
         "engaged": sorted(engaged),
         "pending": list(sim.pending),
         "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
@@ -71,14 +73,16 @@ def set_state(sim: "Simulation", state: State) -> None:
     if sim.outer != facts["outer"]:
         sim.use_outer_loop(facts["outer"])
     sim.fallbacks = [Fallback(*entry) for entry in facts["fallbacks"]]
-    key = (frozenset(facts["closed"]), frozenset(facts["engaged"]))
-    if workspace.key != key:
+    key, dropped = (frozenset(facts["closed"]), frozenset(facts["engaged"])), frozenset(facts["dropped"])
+    if workspace.key != key or workspace.dropped != dropped:
+        workspace.drop(dropped)
         workspace.engage(*key)
     structure, dependent = workspace.structure, arrays["dependent"]
     # most ways back are short, and patterns are dear: what fits is kept
     analysed = structure.dependent is not None and np.array_equal(structure.dependent, dependent)
     if not analysed:
         workspace.set_partition(dependent)
+    workspace.set_probe(arrays["probe"].copy())
     for name in ("kkt", "lu_d", "kkt_query"):
         factorization = getattr(structure, name)
         wanted = arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"]

@@ -11,7 +11,7 @@ import numpy as np
 from ..compiled.jit import compiled
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE
-from ..system.evaluate import constraint_norm, evaluate_energy
+from ..system.evaluate import evaluate_energy, recorded_norm
 
 
 def sample_length(n: int, m: int, contacts: int, work: int) -> int:
@@ -59,9 +59,9 @@ def write_sample(ws: Any, out: Any) -> None:
     for i in range(ws.n_work):
         out[at + i] = v[ws.n_ext - ws.n_work + i]
     at += ws.n_work
-    out[at] = constraint_norm(ws, ws.phi)
-    out[at + 1] = constraint_norm(ws, ws.phid)
-    out[at + 2] = constraint_norm(ws, ws.phidd)
+    out[at] = recorded_norm(ws, ws.phi)
+    out[at + 1] = recorded_norm(ws, ws.phid)
+    out[at + 2] = recorded_norm(ws, ws.phidd)
 
 
 def empty_buffer(capacity: int, length: int) -> np.ndarray:

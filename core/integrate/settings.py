@@ -18,6 +18,7 @@ from ..system.records import (
     ATOL,
     MAX_INNER,
     MAX_OUTER,
+    MOST_CONDITION,
     NEWTON_TOLERANCE,
     POSITION_TOLERANCE,
     RTOL,
@@ -26,10 +27,15 @@ from ..system.records import (
 from .controllers import CONTROLLERS
 
 ACCELERATIONS = ("none", "aitken", "anderson")
+REDUNDANT = ("drop", "refuse")
+"""What is done with constraints that repeat others."""
 CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
 """At position, velocity and acceleration level: absolute below 1, relative to the largest entry above."""
 KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
+SINGULAR_NOISE = 2.5e13
+"""A hundredth of the inverse of rounding, since the outer loop stops at a hundredth of the tolerance; and a tenth for
+coordinates of ten."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,7 @@ class Settings:
     controller: str
     newton_tolerance: float | None
     start_tolerance: float
+    redundant: str = "drop"
     method_options: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -74,6 +81,7 @@ class Settings:
             ("outer", tuple(OUTER_LOOPS)),
             ("acceleration", ACCELERATIONS),
             ("controller", tuple(CONTROLLERS)),
+            ("redundant", REDUNDANT),
         ):
             if getattr(self, name) not in choices:
                 raise ModelError(f"{name} = {getattr(self, name)!r} is unknown; there are {list(choices)}")
@@ -123,3 +131,5 @@ def set_control(settings: Settings, assembly: Assembly, arrays: Mapping[str, NDA
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     control[MAX_OUTER] = OUTER_LOOPS[settings.outer].most_iterations
     control[MAX_INNER] = 12.0
+    # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
+    control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

@@ -41,6 +41,8 @@ class Simulation(Engine):
     newton_tolerance : where the outer loop stops; with `step` an absolute and relative tolerance on q and v
         (default 1e-10), else a fraction of the error weights (default 0.01).
     start_tolerance : how far q0 and v0 may be moved to meet the constraints (relative).
+    redundant : "drop": constraints that repeat others are left out of the equations but checked, and listed in the
+        attribute of this name; "refuse": they are an error.
     record : keep a sample at every step.
     step_records : keep size, error, order and iterations of every step (`step_logs`).
     method_options : see the method.

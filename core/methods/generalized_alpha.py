@@ -22,8 +22,8 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
-from ..integrate.dense_output import solve_accelerations
 from ..linalg import lu_at, solve
+from ..stage.accelerations import solve_accelerations
 from ..stage.solver import weighted_norm
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import OK, call_stage

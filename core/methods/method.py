@@ -57,6 +57,8 @@ class Formula:
     parameters: tuple[float, ...] = ()
     rows: int = 1
     """Rows of history that a step needs; below that the starter works."""
+    stages: tuple[float, ...] = (1.0,)
+    """Times of the stages in units of the step: none of them should fall on a singular position."""
     growth: float = 2.0
     """Largest factor by which error control lets a multistep step grow, each time after `rows` equal steps."""
     select: Any = None

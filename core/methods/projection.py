@@ -8,7 +8,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..integrate.dense_output import project
+from ..stage.project import project
 from ..system.records import OK
 from .explicit import explicit_step
 

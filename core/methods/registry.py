@@ -13,8 +13,10 @@ from .method import Formula, Method, Option
 from .newmark import newmark_step
 from .order_selection import select_k
 from .park import park_step
-from .sdirk import sdirk_fine_step, sdirk_step
+from .sdirk import C, sdirk_fine_step, sdirk_step
 from .tableaus import TABLEAUS
+
+STARTER_STAGES = tuple(float(c) for c in C)
 
 # With growth by 2 after k + 1 equal steps the variable-step formulas are zero-stable up to k = 6; beyond, these are.
 EBDF_GROWTH = {7: 1.5, 8: 1.2}
@@ -38,19 +40,22 @@ def _steps(default: int, most: int, description: str) -> Option:
 
 def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: tuple[float, ...]) -> Formula:
     """A formula of k steps; "auto": k is chosen as the run goes, among those that are stable enough."""
+    stages = (1.0,) if name == "bdf" else (1.0, 2.0)
     if k != "auto":
-        return Formula(step, int(k), parameters, int(k) + 1, EBDF_GROWTH.get(int(k), 2.0) if name != "bdf" else 2.0)
+        growth = 2.0 if name == "bdf" else EBDF_GROWTH.get(int(k), 2.0)
+        return Formula(step, int(k), parameters, int(k) + 1, stages, growth)
     most = max(i + 1 for i, alpha in enumerate(ANGLES[name][: MOST_AUTOMATIC[name]]) if alpha >= angle)
     first = min(FIRST_AUTOMATIC, most)
-    return Formula(step, first, (*parameters, 1.0, float(most)), first + 1, select=select_k)
+    return Formula(step, first, (*parameters, 1.0, float(most)), first + 1, stages, select=select_k)
 
 
 def _irk(name: str) -> Formula:
     if name == "sdirk4":
-        return Formula(sdirk_step)
+        return Formula(sdirk_step, stages=STARTER_STAGES)
     tableau = TABLEAUS[name]
     parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_estimate)
-    return Formula(irk_step, 0, parameters, weights=tableau.data(), outer_loops=("newton", "simple"))
+    stages = (*tableau.c, 1.0)
+    return Formula(irk_step, 0, parameters, 1, stages, weights=tableau.data(), outer_loops=("newton", "simple"))
 
 
 def _hht(values: Mapping[str, Any]) -> Formula:

@@ -13,15 +13,20 @@ from ..linalg import lu_at, solve
 from ..system.evaluate import constraint_norm, evaluate_residuals
 from ..system.records import (
     ACCELERATION_TOLERANCE,
+    CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     INNER,
     INNER_DIVERGED,
+    LEAST_CONDITION,
     MAX_INNER,
     OK,
     POSITION_TOLERANCE,
+    RATE_SIZE,
     VELOCITY_TOLERANCE,
 )
+
+STRAINED = 8.0  # growth of the condition beyond which the constraints are solved more exactly
 
 
 @internal
@@ -63,35 +68,48 @@ def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float
         return OK
     control = vec(ws.control, CONTROL_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
-    tol_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
-    tol_v = slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
-    tol_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a)
+    enough_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
+    enough_v = slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
+    enough_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a)
+    # near a singular position a violation of Phi moves q by condition, v by condition^2 times as much: there the
+    # constraints are solved down to rounding, whatever the units
+    rate = vec(ws.rate, RATE_SIZE)
+    tight = 0.0 if rate[CONDITION] > STRAINED * rate[LEAST_CONDITION] else 1.0
+    tol_p, tol_v, tol_a = tight * enough_p, tight * enough_v, tight * enough_a
+    if acceleration_slack == np.inf:
+        tol_a = np.inf
     last_p, last_v, last_a = np.inf, np.inf, np.inf
     for _ in range(int(control[MAX_INNER])):
         p = constraint_norm(ws, ws.phi)
         v = constraint_norm(ws, ws.phid)
         a = constraint_norm(ws, ws.phidd)
         # a level is judged once those above it hold: correcting q moves the residuals of v and a
-        if p > tol_p:
+        correct_p = p > tol_p and not enough_p >= p >= 0.5 * last_p
+        correct_v = v > tol_v and not enough_v >= v >= 0.5 * last_v
+        correct_a = a > tol_a and not enough_a >= a >= 0.5 * last_a
+        if correct_p:
             if not p < 0.5 * last_p:
                 return INNER_DIVERGED
             last_p, last_v, last_a = p, np.inf, np.inf
-        elif v > tol_v:
+        elif correct_v:
             if not v < 0.5 * last_v:
                 return INNER_DIVERGED
             last_v, last_a = v, np.inf
-        elif a > tol_a:
+        elif correct_a:
             if not a < 0.5 * last_a:
                 return INNER_DIVERGED
             last_a = a
         else:
             return OK
         counters[INNER] += 1
-        if p > tol_p:
+        if correct_p:
             correct_dependent(ws, lu_address, ws.phi, ws.q)
-        if v > tol_v:
+        if correct_v:
             correct_dependent(ws, lu_address, ws.phid, ws.v)
-        if a > tol_a:
+        if correct_a:
             correct_dependent(ws, lu_address, ws.phidd, ws.a)
         evaluate_residuals(ws)
+    met = constraint_norm(ws, ws.phi) <= enough_p and constraint_norm(ws, ws.phid) <= enough_v
+    if met and constraint_norm(ws, ws.phidd) <= enough_a:
+        return OK
     return INNER_DIVERGED

@@ -19,6 +19,8 @@ from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..system.evaluate import evaluate_residuals, evaluate_tangent
 from ..system.records import (
+    CHOICE_CONDITION,
+    CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     FACTOR_AGE,
@@ -30,6 +32,8 @@ from ..system.records import (
     INNER,
     LAST_INNER,
     LAST_OUTER,
+    LEAST_CONDITION,
+    LOOKED_CONDITION,
     MAX_OUTER,
     NEWTON_TOLERANCE,
     NOT_FINITE,
@@ -45,6 +49,7 @@ from ..system.records import (
     SENSITIVITY,
     SINGULAR,
     STAGES,
+    WORST_CONDITION,
 )
 from .inner import inner_loop
 
@@ -56,6 +61,10 @@ LEAST_RATE = 0.02
 RATE_GROWTH = 1.5
 # A contraction above this costs more iterations than a factorisation.
 SLOW = 0.2
+# Growth of the condition after which other redundant rows may be the better ones to leave out.
+CHOICE_GROWTH = 3.0
+# Decrease of the condition after which a singular position is looked for anew.
+AWAY = 8.0
 
 
 @compiled
@@ -73,6 +82,7 @@ def refactor(ws: Any, c_q: float, c_v: float) -> int:
         if status != 0:
             return SINGULAR
     _measure_sensitivity(ws)
+    _measure_condition(ws)
     ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
     rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
@@ -103,6 +113,33 @@ def _measure_sensitivity(ws: Any) -> None:
     rate[SENSITIVITY] = largest
     if rate[FIRST_SENSITIVITY] < 0.0:
         rate[FIRST_SENSITIVITY] = largest
+
+
+@internal
+def _measure_condition(ws: Any) -> None:
+    """How far (scaled) the coordinates must move, at least, to mend one pseudo-random violation of size 1 of all rows:
+    about the inverse of the distance to a singular position, whatever the partition."""
+    if ws.m_act == 0:
+        return
+    rate = vec(ws.rate, RATE_SIZE)
+    rhs = vec(ws.rhs, ws.n + ws.m_act)
+    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
+    for i in range(ws.n):
+        rhs[i] = 0.0
+    for i in range(ws.m_act):
+        rhs[ws.n + i] = probe[i]
+    solve(lu_at(ws.kkt), ws.rhs)
+    largest = 0.0
+    for i in range(ws.n):
+        largest = max(largest, abs(rhs[i]) / scale[i])
+    rate[CONDITION] = largest
+    rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
+    if AWAY * largest < rate[LOOKED_CONDITION]:
+        rate[LOOKED_CONDITION] = 0.0
+    if rate[CHOICE_CONDITION] == 0.0 or CHOICE_GROWTH * largest < rate[CHOICE_CONDITION]:
+        rate[CHOICE_CONDITION] = largest
+    if rate[LEAST_CONDITION] == 0.0 or largest < rate[LEAST_CONDITION]:
+        rate[LEAST_CONDITION] = largest
 
 
 @compiled

@@ -61,6 +61,19 @@ def evaluate_energy(ws: Any) -> None:
 
 
 @compiled
+def recorded_norm(ws: Any, address: int) -> float:
+    """Largest magnitude among the active and the redundant rows of phi, phid or phidd; NaN counts as infinite."""
+    largest = constraint_norm(ws, address)
+    x = vec(address, ws.m_ext)
+    redundant = ivec(ws.redundant, ws.n_redundant)
+    for i in range(ws.n_redundant):
+        y = abs(x[redundant[i]])
+        if not y <= largest:
+            largest = y if y > largest else np.inf
+    return largest
+
+
+@compiled
 def constraint_norm(ws: Any, address: int) -> float:
     """Largest magnitude among the active rows of phi, phid or phidd; NaN counts as infinite."""
     x = vec(address, ws.m_ext)

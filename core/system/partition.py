@@ -4,51 +4,68 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
-from ..linalg import SingularMatrixError, pivot_rows
+from ..linalg import RowPivots, SingularMatrixError, pivot_rows
+from .assembly import Assembly
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
 from .workspace import Workspace
 
 RANK_TOLERANCE = 1e-9
 """A constraint row whose remainder after elimination is smaller than this (relative) repeats others."""
+CONTRADICTION = 1e-8
+"""Violation of a redundant row that makes it a contradiction; absolute for coordinates up to 1, else relative."""
 
 
-def choose_dependent(workspace: Workspace) -> NDArray[np.int64]:
-    """Dependent coordinates (m_act,) at the current point; Phi_q must have been evaluated.
+def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPivots:
+    """Independent columns and redundant rows among the active ones; Phi_q must have been evaluated.
 
     Columns are scaled by the size of their coordinates, so that units do not choose.
-
-    Raises
-    ------
-    ConsistencyError : if constraints are redundant; names them and what they repeat.
     """
     assembly, active = workspace.assembly, workspace.structure.active
     rows, cols, values = workspace.jacobian()
     order = np.lexsort((cols, rows))
     indptr = np.searchsorted(rows[order], np.arange(len(active) + 1))
-    pivots = pivot_rows(
-        len(active), assembly.n, indptr, cols[order], values[order], assembly.coordinate_scale, RANK_TOLERANCE
-    )
-    if len(pivots.redundant):
-        phi = workspace.arrays["phi"]
-        lines = []
-        for row, others in zip(pivots.redundant, pivots.depends_on, strict=True):
-            name = assembly.row_names[active[row]]
-            repeated = sorted({assembly.row_names[active[k]] for k in others})
-            because = f"repeats what {', '.join(repeated)} say" if repeated else "constrains nothing"
-            violated = abs(phi[active[row]]) > 1e-8
-            kind = "contradicts" if violated and repeated else "is redundant:"
-            lines.append(
-                f"'{name}' contradicts {', '.join(repeated)} (violation {phi[active[row]]:.3g})"
-                if kind == "contradicts"
-                else f"'{name}' is redundant: it {because}"
-            )
-        raise ConsistencyError(
-            f"the {len(active)} constraint equations have rank {pivots.rank} in this configuration: "
-            + "; ".join(dict.fromkeys(lines))
-            + ". Remove the redundant joint or free it in the repeated direction, or start elsewhere if the "
-            "position is singular."
+    return pivot_rows(len(active), assembly.n, indptr, cols[order], values[order], assembly.coordinate_scale, tolerance)
+
+
+def what_repeats(assembly: Assembly, active: NDArray[np.int64], pivots: RowPivots, phi: NDArray[np.float64]) -> str:
+    """Each redundant row, and what it repeats or contradicts."""
+    lines = []
+    for row, others in zip(pivots.redundant, pivots.depends_on, strict=True):
+        name = assembly.row_names[active[row]]
+        repeated = sorted({assembly.row_names[active[k]] for k in others})
+        because = f"repeats what {', '.join(repeated)} say" if repeated else "constrains nothing"
+        violated = abs(phi[active[row]]) > CONTRADICTION
+        lines.append(
+            f"'{name}' contradicts {', '.join(repeated)} (violation {phi[active[row]]:.3g})"
+            if violated and repeated
+            else f"'{name}' is redundant: it {because}"
         )
+    return "; ".join(dict.fromkeys(lines))
+
+
+def redundancy_error(
+    assembly: Assembly, active: NDArray[np.int64], pivots: RowPivots, phi: NDArray[np.float64]
+) -> ConsistencyError:
+    """The refusal of rows that repeat or contradict others."""
+    return ConsistencyError(
+        f"the {len(active)} constraint equations have rank {pivots.rank} in this configuration: "
+        + what_repeats(assembly, active, pivots, phi)
+        + ". Remove the redundant joint or free it in the repeated direction, or start elsewhere if the "
+        "position is singular."
+    )
+
+
+def choose_dependent(workspace: Workspace) -> NDArray[np.int64]:
+    """Dependent coordinates (m_act,) at the current point; Phi_q must have been evaluated.
+
+    Raises
+    ------
+    ConsistencyError : if active constraints are redundant; names them and what they repeat.
+    """
+    pivots = pivots_of(workspace)
+    if len(pivots.redundant):
+        raise redundancy_error(workspace.assembly, workspace.structure.active, pivots, workspace.arrays["phi"])
     return np.asarray(pivots.pivot_column, dtype=np.int64)
 
 
@@ -76,6 +93,18 @@ def prepare(workspace: Workspace) -> None:
                 f"the system matrix is singular in this configuration ({error}): some coordinate has neither mass "
                 "nor a constraint, or a value is not finite"
             ) from error
+    workspace.set_probe(_probe(workspace))
     workspace.arrays["rate"][FACTOR_AGE] = -1.0
     workspace.arrays["rate"][SENSITIVITY] = 0.0
     workspace.arrays["rate"][FIRST_SENSITIVITY] = -1.0
+
+
+def _probe(workspace: Workspace) -> NDArray[np.float64]:
+    """A violation of every row (m_act,) that a coordinate moved by its scale would cause, with weights from 1/2 to 3/2
+    and signs in no simple order."""
+    rows, cols, values = workspace.jacobian()
+    size = np.zeros(len(workspace.structure.active))
+    np.maximum.at(size, rows, np.abs(values) * workspace.assembly.coordinate_scale[cols])
+    golden = np.modf(0.6180339887498949 * np.arange(len(size)))[0]
+    silver = np.modf(0.4142135623730950 * np.arange(len(size)))[0]
+    return np.asarray(size * (0.5 + golden) * np.where(silver < 0.5, 1.0, -1.0))

@@ -18,7 +18,8 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
             # structure (changes with the set of engaged contacts)
-            "active", "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
+            "active", "redundant", "n_redundant", "probe",
+            "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "stage_rows", "rhs",
             "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
@@ -53,7 +54,8 @@ ATOL = 8  # of the work accounts
 STAGE_ALPHA = 9  # parameters of the stage functions of comparison methods
 STAGE_BETA = 10
 OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, for formulas that solve coupled stages themselves
-CONTROL_SIZE = 12
+MOST_CONDITION = 12  # growth of the condition of the constraints beyond which a position counts as nearly singular
+CONTROL_SIZE = 13
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
@@ -66,7 +68,13 @@ FAILED_NORM = 6
 SENSITIVITY = 7  # |dq_d/dq_i| at the last factorisation, scaled
 FIRST_SENSITIVITY = 8  # the same when the partition was chosen; < 0: not known yet
 CORRECTION = 9  # of the stabilised index-2 form: |h M^-1 Phi_q^T mu| of the last stage, scaled
-RATE_SIZE = 10
+CONDITION = 10  # of the constraints at the last factorisation: size of the motion that a unit violation asks for
+LEAST_CONDITION = 11  # the least of them in this structure; 0: none yet
+WORST_CONDITION = 12  # the largest of them in the present step
+CHOICE_CONDITION = 13  # when the redundant rows were last chosen, or the least since; 0: not known yet
+LOOKED_CONDITION = 14  # up to here it has been looked for a singular position in vain
+CONDITIONS = (CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION, LOOKED_CONDITION)
+RATE_SIZE = 15
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)

@@ -20,6 +20,8 @@ class Structure:
 
     active: NDArray[np.int64]
     """Rows of Phi that are constraints now, (m_act,)."""
+    redundant: NDArray[np.int64]
+    """Rows of joints that repeat active ones: not solved for, but checked."""
     rows: NDArray[np.int64]
     cols: NDArray[np.int64]
     """Coordinates of the entries of the matrix by slot, (nnz,)."""
@@ -31,6 +33,8 @@ class Structure:
     kkt_query: Factorization
     lu_d: Factorization | None = None
     dependent: NDArray[np.int64] | None = None
+    probe: NDArray[np.float64] | None = None
+    """Right-hand side (m_act,) with which the condition of the constraints is measured."""
     free: tuple[NDArray[np.int64], ...] = ()
     """Row, column and slot of the entries of Phi_q in independent columns."""
 
@@ -53,12 +57,16 @@ class Structure:
         self.lu_d = Factorization(len(self.active), rows, cols, slots, source_size=self.nnz + 1)
 
 
-def build_structure(assembly: Assembly, closed: frozenset[int], engaged: frozenset[int]) -> Structure:
-    """Structure with contacts `closed` as constraints and `engaged` (closed or acting) in the pattern of S."""
+def build_structure(
+    assembly: Assembly, closed: frozenset[int], engaged: frozenset[int], dropped: frozenset[int] = frozenset()
+) -> Structure:
+    """Structure with contacts `closed` as constraints and `engaged` (closed or acting) in the pattern of S, without the
+    redundant rows `dropped`."""
     n, ground = assembly.n, assembly.ground
     closed_rows = {assembly.contacts[k].row for k in closed}
     active = np.array(
-        [row for row in range(assembly.m) if row < assembly.m_joints or row in closed_rows], dtype=np.int64
+        [row for row in range(assembly.m) if (row < assembly.m_joints and row not in dropped) or row in closed_rows],
+        dtype=np.int64,
     )
     matrix_row = np.full(assembly.m + 1, -1, dtype=np.int64)
     matrix_row[active] = n + np.arange(len(active))
@@ -82,8 +90,17 @@ def build_structure(assembly: Assembly, closed: frozenset[int], engaged: frozens
     tables = [[slots(places) for places in batch] for batch in placed]
     everything = np.arange(len(unique))
     kkt, kkt_query = (Factorization(size, rows, cols, everything, source_size=len(unique) + 1) for _ in range(2))
+    redundant = np.array(sorted(dropped), dtype=np.int64)
     return Structure(
-        active, rows, cols, [t[0] for t in tables], [t[1] for t in tables], [t[2] for t in tables], kkt, kkt_query
+        active,
+        redundant,
+        rows,
+        cols,
+        [t[0] for t in tables],
+        [t[1] for t in tables],
+        [t[2] for t in tables],
+        kkt,
+        kkt_query,
     )
 
 

@@ -13,6 +13,7 @@ from ..contact.modes import MEMORY_SIZE
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .records import (
+    CONDITIONS,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     COUPLED_STAGES,
@@ -38,6 +39,7 @@ class Workspace:
     ----------
     assembly : what it was built from.
     arrays : the arrays by name; `record` is what compiled functions get.
+    dropped : redundant rows that are left out of the equations; `drop` changes it.
     structure : the present structure; `engage` changes it.
     """
 
@@ -65,6 +67,8 @@ class Workspace:
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
             "contact_release": np.array([_release(c.law) for c in a.contacts], dtype=np.int64),
             "active": np.zeros(0, dtype=np.int64),
+            "redundant": np.zeros(0, dtype=np.int64),
+            "probe": np.zeros(0),
             "dependent": np.zeros(0, dtype=np.int64),
             **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot")},
             "stage_v": np.zeros(MOST_STAGES * n_ext),
@@ -82,7 +86,8 @@ class Workspace:
         }
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
-        self._structures: dict[tuple[frozenset[int], frozenset[int]], Structure] = {}
+        self._structures: dict[tuple[frozenset[int], ...], Structure] = {}
+        self.dropped: frozenset[int] = frozenset()
         self.arrays = arrays
         self._batches = [self._batch(k) for k in range(len(a.batches))]
         arrays["batches"][:] = [batch.address for batch in self._batches]
@@ -91,8 +96,8 @@ class Workspace:
             WORKSPACE,
             record_arrays,
             {
-                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_free": 0, "n_kernels": len(a.batches),
-                "n_values": 1, "n_basis": 1, "n_contacts": contacts,
+                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0,
+                "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
                 "n_work": len(a.work_names), "row_length": row_length,
                 "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
@@ -146,14 +151,16 @@ class Workspace:
 
     def engage(self, closed: frozenset[int], engaged: frozenset[int]) -> None:
         """Make contacts `closed` constraints and give all `engaged` ones a place in the matrix."""
-        key = (closed, closed | engaged)
+        self.key = (closed, closed | engaged)
+        key = (*self.key, self.dropped)
         if key not in self._structures:
             self._structures[key] = build_structure(self.assembly, *key)
         self.structure = structure = self._structures[key]
-        self.key = key
         values = np.zeros(structure.nnz + 1)
         self._set("values", values, n_values=len(values))
         self._set("active", structure.active, m_act=len(structure.active))
+        self._set("redundant", structure.redundant, n_redundant=len(structure.redundant))
+        self._set("probe", np.zeros(len(structure.active)) if structure.probe is None else structure.probe)
         for k, batch in enumerate(self._batches):
             for name, table in (
                 ("slot_s", structure.slot_s[k]),
@@ -166,8 +173,22 @@ class Workspace:
         self._record.table["kkt"] = structure.kkt.address
         self._record.table["kkt_query"] = structure.kkt_query.address
         self.arrays["rate"][FACTOR_AGE] = -1.0
+        self.arrays["rate"][[*CONDITIONS]] = 0.0
         if structure.dependent is not None:
             self._use_partition()
+
+    def drop(self, rows: frozenset[int]) -> None:
+        """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
+        if rows == self.dropped:
+            return
+        self.dropped = rows
+        self.arrays["lam"][sorted(rows)] = 0.0
+        self.engage(*self.key)
+
+    def set_probe(self, probe: NDArray[np.float64]) -> None:
+        """Right-hand side (m_act,) with which the condition of the constraints is measured."""
+        self.structure.probe = np.ascontiguousarray(probe)
+        self._set("probe", self.structure.probe)
 
     def set_partition(self, dependent: NDArray[np.int64]) -> None:
         """Choose the dependent coordinates of the present structure."""

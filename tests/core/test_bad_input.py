@@ -250,7 +250,7 @@ def test_short_spring_is_no_spring_of_length_zero():
 def test_second_identical_joint_is_named_as_redundant():
     again = Revolute2D(name="again", a=GROUND, b=on("rod", -0.5))
     with pytest.raises(ConsistencyError, match=r"'(again|pin)' is redundant: it repeats what (pin|again)"):
-        simulate(rod_pendulum(joints=[again]), 1.0)
+        simulate(rod_pendulum(joints=[again]), 1.0, redundant="refuse")
 
 
 def test_contradictory_joints_are_named():
@@ -411,7 +411,7 @@ def test_user_equations_with_redundant_constraints_are_reported():
         v0=[0.0, 1.0],
     )
     with pytest.raises(ConsistencyError, match=r"constraint\[[01]\]"):
-        simulate(system, 1.0)
+        simulate(system, 1.0, redundant="refuse")
 
 
 def test_user_equations_far_off_their_constraint_are_refused():

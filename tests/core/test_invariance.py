@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from helpers import events
+from linkages import slider_crank
 from tlismni.core import (
     Disk2D,
     DiskOnDisk2D,
@@ -18,6 +19,7 @@ from tlismni.core import (
     PointMass2D,
     Revolute2D,
     RigidBody2D,
+    Simulation,
     SpringDamper2D,
     simulate,
 )
@@ -205,3 +207,25 @@ def test_motion_is_reversible(method):
     back = simulate(model(there.q[-1], -there.v[-1]), 0.8, **tight)
     assert np.abs(there.q[-1] - q0).max() > 0.3
     assert np.abs(back.q[-1] - q0).max() < (1e-4 if method == "bdf" else 1e-7)
+
+
+@pytest.mark.parametrize("scale", [1e3, 1e-3])
+def test_partition_and_steps_do_not_depend_on_the_unit_of_length(scale):
+    """Translations and angles mixed: a mechanism in millimetres takes the same dependent coordinates and the same steps
+    if its translations are under the same relative tolerance (atol plays no part here)."""
+
+    def sim(length):
+        return Simulation(
+            slider_crank(0.5, 9.0, 0.5, 1.2, gravity=9.81, scale=length), rtol=1e-7, atol=1e-30, record=True
+        )
+
+    plain, other = sim(1.0), sim(scale)
+    for k in range(1, 5):
+        plain.advance(0.3 * k)
+        other.advance(0.3 * k)
+        assert other.workspace.structure.dependent.tolist() == plain.workspace.structure.dependent.tolist()
+    for name in ("steps", "rejected", "partitions"):
+        assert other.stats[name] == pytest.approx(plain.stats[name], rel=0.01)
+    times = [np.concatenate(s.samples)[:, 0] for s in (plain, other)]
+    count = min(map(len, times))
+    assert times[1][:count] == pytest.approx(times[0][:count], rel=1e-6)

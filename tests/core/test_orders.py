@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from helpers import G, circle_pendulum, order, pendulum_angles, point_pendulum
+from linkages import slider_crank
 from tlismni.core import simulate
 
 ANGLE, RATE = -0.4, 1.5
@@ -147,3 +148,18 @@ def test_fixed_steps_end_exactly_at_t_end_even_if_they_do_not_divide_it():
     result = simulate(point_pendulum(ANGLE, RATE), 1.0, "irk", step=0.03)
     assert result.t[-1] == 1.0
     assert np.diff(result.t)[:-1] == pytest.approx(0.03, rel=1e-12)
+
+
+def test_order_of_a_closed_loop_survives_the_new_partitions_of_full_turns():
+    """A slider-crank that turns several times: which coordinates depend on which changes on the way, and the history of
+    all coordinates is kept."""
+    system, t_end = slider_crank(0.5, 9.0, 0.5, 1.2, gravity=G), 2.0
+    options = {"k": 4, "record": False, "newton_tolerance": 1e-13}
+    reference = simulate(system, t_end, "ebdf", step=t_end / 6400, **options)
+    assert reference["crank.angle"][-1] - 0.5 > 4.0 * math.pi
+    assert reference.stats["partitions"] >= 4
+    steps, errors = (400, 600, 900, 1350), []
+    for count in steps:
+        result = simulate(system, t_end, "ebdf", step=t_end / count, **options)
+        errors.append(np.abs(np.concatenate([result.q[-1] - reference.q[-1], result.v[-1] - reference.v[-1]])).max())
+    assert slope(steps, errors) > 4.7

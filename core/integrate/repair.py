@@ -1,0 +1,54 @@
+"""A new partition, new orderings and, if need be, other redundant rows at the newest row of the history."""
+
+from typing import TYPE_CHECKING
+
+from ..errors import ConsistencyError, SimulationError
+from ..linalg import SingularMatrixError
+from ..methods.history import recall
+from ..system.partition import prepare
+from ..system.records import CHOICE_CONDITION, CONDITION
+from ..system.redundancy import choose_rows
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+
+def repair(sim: "Simulation") -> bool:
+    """New partition and orderings at the newest row, which becomes the workspace's point; True if other redundant rows
+    are left out than before.
+
+    Raises
+    ------
+    SimulationError : if the constraints depend on one another there.
+    """
+    recall(sim.workspace.record, sim._method.record, 0)
+    rate = sim.workspace.arrays["rate"]
+    condition = float(rate[CONDITION])
+    try:
+        changed = choose_rows(sim.workspace)
+        prepare(sim.workspace)
+        if changed:
+            _move_multipliers(sim)
+        else:
+            rate[CHOICE_CONDITION] = condition
+    except (ConsistencyError, SingularMatrixError) as error:
+        raise SimulationError(
+            f"at t = {sim.t_internal:.9g} s the constraints cannot be partitioned: {error}",
+            t=sim.t_internal,
+            loop="inner",
+        ) from error
+    return changed
+
+
+def _move_multipliers(sim: "Simulation") -> None:
+    """Other rows carry the forces now: those left out get the multiplier zero in the whole history, and the newest row
+    the multipliers that belong to the new choice."""
+    sim.note_redundant()
+    sim._solve_accelerations()
+    recorded = sim.workspace.arrays["lam"].copy()
+    recall(sim.workspace.record, sim._method.record, 0)
+    start = 4 * sim.assembly.n_extended
+    history = sim.method_arrays["history"]
+    history[:, [start + row for row in sorted(sim.workspace.dropped)]] = 0.0
+    history[sim.method_arrays["ring"][0], start:] = recorded
+    sim.workspace.arrays["lam"][:] = recorded

@@ -1,0 +1,50 @@
+"""Corrections of least M-norm that bring positions or velocities onto the constraints."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.views import ivec, vec
+from ..linalg import factor, lu_at, solve
+from .evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
+from .workspace import Workspace
+
+
+@compiled
+def _least_correction(ws: Any, residual_address: int, x_address: int) -> int:
+    """x += the correction of least M-norm that removes the residual to first order."""
+    evaluate_tangent(ws, 0.0, 0.0)
+    if factor(lu_at(ws.kkt_query), ws.values) != 0:
+        return 1
+    rhs = vec(ws.rhs, ws.n + ws.m_act)
+    residual = vec(residual_address, ws.m_ext)
+    active = ivec(ws.active, ws.m_act)
+    for i in range(ws.n):
+        rhs[i] = 0.0
+    for i in range(ws.m_act):
+        rhs[ws.n + i] = -residual[active[i]]
+    solve(lu_at(ws.kkt_query), ws.rhs)
+    x = vec(x_address, ws.n_ext)
+    for i in range(ws.n):
+        x[i] += rhs[i]
+    evaluate_residuals(ws)
+    return 0
+
+
+def bring_to_rest(workspace: Workspace, residual: str, x: str) -> bool:
+    """Newton on one level; True when it holds to rounding."""
+    ws, arrays = workspace.record, workspace.arrays
+    table = workspace._record.table
+    previous = np.inf
+    for _ in range(25):
+        norm = constraint_norm(ws, int(table[residual][0]))
+        size = max(1.0, float(np.max(np.abs(arrays[x][: workspace.assembly.n]), initial=0.0)))
+        if norm <= 1e-15 * size or (norm >= 0.5 * previous and norm <= 1e-11 * size):
+            return True
+        if not np.isfinite(norm) or norm > 1e3 * previous:
+            return False
+        previous = norm
+        if _least_correction(ws, int(table[residual][0]), int(table[x][0])) != 0:
+            return False
+    return False
