@@ -9,7 +9,7 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
-from ..stage.inner import rounding_level
+from ..stage.inner import STRAINED, rounding_level
 from ..stage.solver import CHOICE_GROWTH
 from ..system.records import (
     ATOL,
@@ -279,7 +279,9 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         clock[TRIAL_STEP] = h
         multistep = lc.rows > 1 and rows_available(ms) >= lc.rows
         status = trial_step(ws, ms, lc, h)
-        near = max(control[MOST_CONDITION] * rate[LEAST_CONDITION], rate[LOOKED_CONDITION])
+        # a step that fails may have met the position with a stage at which no matrix was measured
+        growth = control[MOST_CONDITION] if status == OK else min(control[MOST_CONDITION], STRAINED)
+        near = max(growth * rate[LEAST_CONDITION], rate[LOOKED_CONDITION])
         if not fixed and rate[WORST_CONDITION] > near:
             return NEAR_SINGULAR
         if status == REANALYZE:
