@@ -9,7 +9,7 @@ are smooth, which keeps the inner loop on the branch on which the mechanism arri
 import itertools
 import logging
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,16 +171,16 @@ def _singular_position(sim: "Simulation", path: _Path, reach: float, natural: fl
 
 def _try(sim: "Simulation", path: _Path, steps: tuple[list[float], ...], natural: float, singular: float) -> int:
     """Accept the first of the steps that converges, keeps the tolerances (relaxed if need be) and the branch."""
-    control, rate = sim.workspace.arrays["control"], sim.workspace.arrays["rate"]
+    rate = sim.workspace.arrays["rate"]
     ws, lc = sim.workspace.record, sim._loop.record
     turned = False
-    before = control[[NEWTON_TOLERANCE, RTOL, ATOL]].copy()
-    relaxations = [r for r in RELAXATIONS if r[1] == 1.0 or before[1] * r[1] <= LARGEST_TOLERANCE]
+    before = _tolerances(sim)
+    relaxations = [r for r in RELAXATIONS if r[1] == 1.0 or sim.settings.rtol * r[1] <= LARGEST_TOLERANCE]
     try:
         # tolerances are relaxed before the step is made much smaller: that would lead nearer without getting past
         for some in steps:
             for (of_newton, of_error), h in itertools.product(relaxations, some):
-                control[[NEWTON_TOLERANCE, RTOL, ATOL]] = before * (of_newton, of_error, of_error)
+                _set_tolerances(sim, before, of_newton, of_error)
                 rate[FACTOR_AGE] = -1.0
                 status = _trial(sim, h)
                 if status != OK or not sim.method_arrays["error"][0] <= 1.0:
@@ -198,7 +198,7 @@ def _try(sim: "Simulation", path: _Path, steps: tuple[list[float], ...], natural
                 _accept(sim, h)
                 return OK
     finally:
-        control[[NEWTON_TOLERANCE, RTOL, ATOL]] = before
+        _set_tolerances(sim, before)
     if turned:
         t = sim.t_internal
         raise SimulationError(
@@ -209,6 +209,18 @@ def _try(sim: "Simulation", path: _Path, steps: tuple[list[float], ...], natural
             loop="inner",
         )
     return REANALYZE
+
+
+def _tolerances(sim: "Simulation") -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Tolerances of the outer loop and of the error control, absolute ones of coordinates and of velocities."""
+    arrays = sim.workspace.arrays
+    return arrays["control"][[NEWTON_TOLERANCE, RTOL, ATOL]].copy(), arrays["atol_q"].copy(), arrays["atol_v"].copy()
+
+
+def _set_tolerances(sim: "Simulation", given: Any, of_newton: float = 1.0, of_error: float = 1.0) -> None:
+    arrays = sim.workspace.arrays
+    arrays["control"][[NEWTON_TOLERANCE, RTOL, ATOL]] = given[0] * (of_newton, of_error, of_error)
+    arrays["atol_q"][:], arrays["atol_v"][:] = given[1] * of_error, given[2] * of_error
 
 
 def _trial(sim: "Simulation", h: float) -> int:
