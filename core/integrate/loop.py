@@ -74,6 +74,8 @@ from .watch import any_crossed, remember
 
 LOG_SIZE = len(LOG_COLUMNS)
 SAFETY = 0.9
+# Rounding of a coordinate, relative to the largest, that differences over several steps make of 2e-16.
+ROUNDING = 2e-13
 MIN_FACTOR = 0.2
 MAX_FACTOR = 5.0  # of one-step formulas; multistep ones have their own
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
@@ -89,9 +91,15 @@ def set_weights(ws: Any, ms: Any) -> None:
     row = history_row(ws, ms, 0)
     weight_q, weight_v = vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)
     atol_q, atol_v = vec(ws.atol_q, ws.n_ext), vec(ws.atol_v, ws.n_ext)
+    scale = vec(ws.scale, ws.n)
+    level_q, level_v = 0.0, 0.0
     for i in range(ws.n):
-        weight_q[i] = atol_q[i] + control[RTOL] * abs(row[i])
-        weight_v[i] = atol_v[i] + control[RTOL] * abs(row[ws.n_ext + i])
+        level_q = max(level_q, abs(row[i]) / scale[i])
+        level_v = max(level_v, abs(row[ws.n_ext + i]) / scale[i])
+    for i in range(ws.n):
+        # a coordinate near zero has the rounding of the large ones that it is tied to by the constraints
+        weight_q[i] = max(atol_q[i], ROUNDING * level_q * scale[i]) + control[RTOL] * abs(row[i])
+        weight_v[i] = max(atol_v[i], ROUNDING * level_v * scale[i]) + control[RTOL] * abs(row[ws.n_ext + i])
     # work accounts: relative to what they hold, or to 1 J (N s)
     for i in range(ws.n_ext - ws.n_work, ws.n_ext):
         weight_v[i] = control[ATOL] + control[RTOL] * max(1.0, abs(row[ws.n_ext + i]))

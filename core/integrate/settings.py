@@ -16,6 +16,7 @@ from ..system.records import (
     ACCELERATION,
     ACCELERATION_TOLERANCE,
     ATOL,
+    EXACTNESS,
     MAX_INNER,
     MAX_OUTER,
     MOST_CONDITION,
@@ -33,6 +34,8 @@ CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
 """At position, velocity and acceleration level: absolute below 1, relative to the largest entry above."""
 KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
+FINEST = 1e-13
+"""Relative tolerance of the outer loop that rounding allows; a formula does not ask for less by itself."""
 SINGULAR_NOISE = 2.5e13
 """A hundredth of the inverse of rounding, since the outer loop stops at a hundredth of the tolerance; and a tenth for
 coordinates of ten."""
@@ -108,9 +111,11 @@ DEFAULT_ATOL = 1e-9
 """Of kinds that a mapping leaves out."""
 
 
-def set_control(settings: Settings, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Fill the workspace's control numbers and absolute tolerances."""
-    control = arrays["control"]
+def set_control(
+    settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]
+) -> None:
+    """Fill the workspace's control numbers and absolute tolerances; `newton_tolerance` is the formula's own."""
+    control, n = arrays["control"], assembly.n
     fixed = settings.step is not None
     if fixed:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
@@ -120,14 +125,19 @@ def set_control(settings: Settings, assembly: Assembly, arrays: Mapping[str, NDA
         arrays["atol_q"][:] = arrays["atol_v"][:] = tolerance
     else:
         control[RTOL] = settings.rtol
-        control[NEWTON_TOLERANCE] = settings.newton_tolerance or 0.01
+        control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
+            newton_tolerance, min(0.01, FINEST / settings.rtol)
+        )
         given = settings.atol if isinstance(settings.atol, Mapping) else dict.fromkeys(KINDS, settings.atol)
         atol = {kind: float(given.get(kind, DEFAULT_ATOL)) for kind in KINDS}
         control[ATOL] = min(atol.values())
-        n, angles = assembly.n, assembly.is_angle
+        angles = assembly.is_angle
         arrays["atol_q"][:n] = np.where(angles, atol["angle"], atol["length"])
         arrays["atol_v"][:n] = np.where(angles, atol["angular_speed"], atol["speed"])
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
+    # differences over several steps see what the constraints leave open: it has to be small against the tolerances
+    finest = (settings.newton_tolerance or 1.0) if fixed else float(min(arrays["atol_q"][:n], default=1.0))
+    control[EXACTNESS] = min(1.0, max(1e-3, 0.02 * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     control[MAX_OUTER] = OUTER_LOOPS[settings.outer].most_iterations
     control[MAX_INNER] = 12.0

@@ -65,6 +65,8 @@ class Formula:
     """Chooses the number of steps after an accepted step (a function of STEP_SIGNATURE); None: it is fixed."""
     stage: Any = None
     """The stage solver of a comparison method; None: that of TLISMNI with the chosen outer loop."""
+    newton_tolerance: float = 0.01
+    """Where the outer loop stops with error control, as a fraction of the error weights."""
     outer_loops: tuple[str, ...] = ("newton", "simple", "jfnk")
     """Outer loops that can solve its stages; a stage solver of its own knows newton alone."""
     weights: tuple[tuple[float, ...], ...] = ()

@@ -16,6 +16,7 @@ from ..system.records import (
     CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
+    EXACTNESS,
     INNER,
     INNER_DIVERGED,
     LEAST_CONDITION,
@@ -74,7 +75,9 @@ def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float
     # near a singular position a violation of Phi moves q by condition, v by condition^2 times as much: there the
     # constraints are solved down to rounding, whatever the units
     rate = vec(ws.rate, RATE_SIZE)
-    tight = 0.0 if rate[CONDITION] > STRAINED * rate[LEAST_CONDITION] else 1.0
+    tight = control[EXACTNESS] if slack == 1.0 else 1.0
+    if rate[CONDITION] > STRAINED * rate[LEAST_CONDITION]:
+        tight = 0.0
     tol_p, tol_v, tol_a = tight * enough_p, tight * enough_v, tight * enough_a
     if acceleration_slack == np.inf:
         tol_a = np.inf

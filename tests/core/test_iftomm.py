@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from helpers import G, integrate
-from tlismni.core import SimulationError, simulate
+from tlismni.core import simulate
 from tlismni.models import load
 
 METHODS = ["ebdf", "mebdf", "irk"]
@@ -60,11 +60,6 @@ def test_a02_up_to_its_singular_position(method):
     assert np.abs(result["energy.balance"]).max() < 1e-8 * result["energy.kinetic"].max()
 
 
-@pytest.mark.xfail(
-    raises=(SimulationError, AssertionError),
-    strict=True,
-    reason="the run stops, or leaves the branch of level couplers, where the cranks first lie level (t = 0.7144 s)",
-)
 @pytest.mark.parametrize("method", METHODS)
 def test_a02_four_bar_through_its_singular_positions(method):
     scenario = load("four_bar")
