@@ -12,7 +12,7 @@ from tlismni.models import load
 
 G, R, L = 9.81, 0.15, 0.3
 CRANK, ROD, SLIDER = 0.36, 0.15, 0.075
-TIGHT = {"rtol": 1e-11, "atol": 1e-13}
+TIGHT = {"rtol": 1e-11, "atol": 1e-12}
 
 
 def integrate(rhs: Callable, times: np.ndarray, y0: list[float], method: str = "DOP853") -> np.ndarray:
