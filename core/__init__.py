@@ -6,6 +6,7 @@ from .description import Model
 from .elements import (
     AppliedForce2D,
     AppliedTorque2D,
+    Bushing2D,
     CoordinateDriver,
     Distance2D,
     PointMass2D,
@@ -31,6 +32,7 @@ __all__ = [
     "METHODS",
     "AppliedForce2D",
     "AppliedTorque2D",
+    "Bushing2D",
     "Channel",
     "ConsistencyError",
     "Constant",

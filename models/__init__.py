@@ -3,7 +3,14 @@
 A new scenario is one file with its parameter table and its builder, and its import here.
 """
 
-from . import bouncing_ball, chain, pendulum_stop  # noqa: F401  (importing a scenario's file puts it in the catalogue)
+from . import (  # noqa: F401  (importing a scenario's file puts it in the catalogue)
+    bouncing_ball,
+    chain,
+    four_bar,
+    pendulum,
+    pendulum_stop,
+    slider_crank,
+)
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import Entry, catalogue, load, names
 from .scenario import Scenario

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from .applied_load2d import AppliedForce2D, AppliedTorque2D
 from .base import Element
+from .bushing2d import Bushing2D
 from .coordinate_driver import CoordinateDriver
 from .distance2d import Distance2D
 from .planar_body import PlanarBody, PointMass2D, RigidBody2D
@@ -15,12 +16,13 @@ from .spring_damper2d import SpringDamper2D
 
 Body = Annotated[PointMass2D | RigidBody2D, Field(discriminator="type")]
 Joint = Annotated[Revolute2D | Prismatic2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
-Force = Annotated[SpringDamper2D | AppliedForce2D | AppliedTorque2D, Field(discriminator="type")]
+Force = Annotated[SpringDamper2D | Bushing2D | AppliedForce2D | AppliedTorque2D, Field(discriminator="type")]
 
 __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
     "Body",
+    "Bushing2D",
     "CoordinateDriver",
     "Distance2D",
     "Element",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from helpers import GROUND, ball_over_floor, circle_pendulum, floor_contact, on, point_pendulum, rod_pendulum
 from tlismni.core import (
+    Bushing2D,
     AppliedForce2D,
     ConsistencyError,
     Constant,
@@ -118,6 +119,9 @@ def test_no_time_at_all_gives_the_start():
             lambda: SpringDamper2D(name="s", a=GROUND, b=on("p"), stiffness=1.0, natural_length=1.0, damping=-1.0),
             "damping",
         ),
+        (lambda: Bushing2D(name="s", a=GROUND, b=on("p"), stiffness=-1.0), "stiffness"),
+        (lambda: Bushing2D(name="s", a=GROUND, b=on("p"), stiffness=1.0, damping=-1.0), "damping"),
+        (lambda: Bushing2D(name="s", a=GROUND, b=on("p"), stiffness=1.0, rotational_damping=NAN), "rotational_damping"),
         (lambda: NewtonImpact(restitution=1.1), "restitution"),
         (lambda: NewtonImpact(restitution=-0.1), "restitution"),
         (lambda: NewtonImpact(restitution=NAN), "restitution"),

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
+    Bushing2D,
     Constant,
     CoordinateDriver,
     Disk2D,
@@ -92,6 +93,10 @@ ELEMENTS = {
             natural_length=positive,
         ),
         st.builds(
+            Bushing2D, name=st.just("x"), a=marker, b=marker, stiffness=positive, damping=positive,
+            rotational_stiffness=positive, rotational_damping=positive,
+        ),
+        st.builds(
             AppliedForce2D, name=st.just("x"), marker=marker, force_x=signal, force_y=signal, follower=st.booleans()
         ),
         st.builds(AppliedTorque2D, name=st.just("x"), body=st.just("b"), torque=signal),
@@ -139,7 +144,7 @@ def test_the_list_of_elements_above_is_complete():
     }
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
-        "AppliedForce2D", "AppliedTorque2D", "DiskOnHalfPlane2D", "DiskOnDisk2D",
+        "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "DiskOnHalfPlane2D", "DiskOnDisk2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
+    Bushing2D,
     Constant,
     CoordinateDriver,
     Disk2D,
@@ -91,6 +92,23 @@ CASES = {
             )
         ]
     },
+    "bushing": {
+        "forces": [
+            Bushing2D(
+                name="f", a=on("a", 0.3, -0.2, 0.4), b=on("b", -0.4, 0.1, -0.3), stiffness=3.0, damping=0.7,
+                rotational_stiffness=1.1, rotational_damping=0.3,
+            )
+        ]
+    },
+    "bushing to ground": {
+        "forces": [
+            Bushing2D(
+                name="f", a=on("ground", 0.0, -1.0, 0.2), b=RIGHT, stiffness=3.0, damping=0.7,
+                rotational_stiffness=1.1, rotational_damping=0.3,
+            )
+        ]
+    },
+    "bushing with a point mass": {"forces": [Bushing2D(name="f", a=LEFT, b=on("p"), stiffness=3.0, damping=0.7)]},
     "force": {"forces": [AppliedForce2D(name="f", marker=RIGHT, force_x=SINE, force_y=Constant(value=1.4))]},
     "follower": {
         "forces": [AppliedForce2D(name="f", marker=RIGHT, force_x=SINE, force_y=Constant(value=1.4), follower=True)]

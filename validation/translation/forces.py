@@ -1,8 +1,9 @@
 """Springs and applied loads."""
 
+import math
 from typing import Any
 
-from ...core.elements import AppliedForce2D, AppliedTorque2D, SpringDamper2D
+from ...core.elements import AppliedForce2D, AppliedTorque2D, Bushing2D, SpringDamper2D
 from ...core.model.markers import GROUND, Marker2D
 from .registry import Build, translates
 from .signals import TimeFunction, time_function
@@ -18,6 +19,36 @@ def spring_damper(record: SpringDamper2D, build: Build) -> None:
         stiffness=record.stiffness,
         damping=record.damping,
     )
+
+
+@translates(Bushing2D)
+def bushing(record: Bushing2D, build: Build) -> None:
+    """ObjectConnectorCartesianSpringDamper, and ObjectConnectorTorsionalSpringDamper for the rotational part."""
+    build.add(
+        "ObjectConnectorCartesianSpringDamper",
+        markerNumbers=[build.point(record.a), build.point(record.b)],
+        stiffness=[record.stiffness, record.stiffness, 0.0],
+        damping=[record.damping, record.damping, 0.0],
+    )
+    if not (record.rotational_stiffness or record.rotational_damping):
+        return
+    # exudyn measures the angle within one turn only; the data node carries it on beyond
+    start = build.start_angle(record.b.body) + record.b.angle - build.start_angle(record.a.body) - record.a.angle
+    turns = build.add("NodeGenericData", numberOfDataCoordinates=1, initialCoordinates=[start])
+    build.add(
+        "ObjectConnectorTorsionalSpringDamper",
+        markerNumbers=[build.frame(record.a, record.name), build.frame(record.b, record.name)],
+        nodeNumber=turns,
+        stiffness=record.rotational_stiffness,
+        damping=record.rotational_damping,
+        rotationMarker0=_about_z(record.a.angle),
+        rotationMarker1=_about_z(record.b.angle),
+    )
+
+
+def _about_z(angle: float) -> list[list[float]]:
+    c, s = math.cos(angle), math.sin(angle)
+    return [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
 
 
 @translates(AppliedForce2D)

@@ -32,7 +32,7 @@ def prismatic(record: Prismatic2D, build: Build) -> None:
     """ObjectJointPrismatic2D: axis in a's frame, normal in b's frame at the kept relative angle."""
     relative = record.relative_angle
     if relative is None:
-        relative = _start_angle(build, record.b.body) - _start_angle(build, record.a.body)
+        relative = build.start_angle(record.b.body) - build.start_angle(record.a.body)
     axis = record.a.angle
     normal = axis + 0.5 * math.pi - relative
     build.add(
@@ -81,7 +81,3 @@ def driver(record: CoordinateDriver, build: Build) -> None:
         "ObjectConnectorCoordinate", markerNumbers=markers, offset=motion.value(0.0) - reference, **functions
     )
     _force_columns(record, build, item, "Force", (1.0,))
-
-
-def _start_angle(build: Build, body: str) -> float:
-    return next((getattr(b, "angle", 0.0) for b in build.model.bodies if b.name == body), 0.0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...core.contact.contact2d import Disk2D, HalfPlane2D
 from ...core.description import Model
+from ...core.elements import RigidBody2D
 from ...core.model.markers import GROUND, Marker2D
 from ..errors import NotTranslatable
 from ..exudyn_import import Exudyn
@@ -119,6 +120,10 @@ class Build:
         output_type = getattr(self.exudyn.core.OutputVariableType, output)
         make = getattr(self.exudyn.items, kind)
         return self.mbs.AddSensor(make(**target, outputVariableType=output_type, storeInternal=True, writeToFile=False))
+
+    def start_angle(self, body: str) -> float:
+        """Angle of a body at the start, rad; 0 for the ground and for point masses."""
+        return next((b.angle for b in self.model.bodies if b.name == body and isinstance(b, RigidBody2D)), 0.0)
 
     def _item(self, body: str) -> int:
         return self.ground if body == GROUND else self.bodies[body].item
