@@ -117,7 +117,7 @@ class Engine:
         self.fallbacks: list[Fallback] = []
         self._build_method()
         self._build_loop(record, step_records)
-        set_control(self.settings, self.assembly, self.workspace.arrays)
+        set_control(self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays)
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
         with user_errors(self.assembly):

@@ -100,8 +100,10 @@ DEFAULT_ATOL = 1e-9
 """Of kinds that a mapping leaves out."""
 
 
-def set_control(settings: Settings, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Fill the workspace's control numbers and absolute tolerances."""
+def set_control(
+    settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]
+) -> None:
+    """Fill the workspace's control numbers and absolute tolerances; `newton_tolerance` is the formula's own."""
     control = arrays["control"]
     fixed = settings.step is not None
     if fixed:
@@ -112,7 +114,7 @@ def set_control(settings: Settings, assembly: Assembly, arrays: Mapping[str, NDA
         arrays["atol_q"][:] = arrays["atol_v"][:] = tolerance
     else:
         control[RTOL] = settings.rtol
-        control[NEWTON_TOLERANCE] = settings.newton_tolerance or 0.01
+        control[NEWTON_TOLERANCE] = settings.newton_tolerance or newton_tolerance
         given = settings.atol if isinstance(settings.atol, Mapping) else dict.fromkeys(KINDS, settings.atol)
         atol = {kind: float(given.get(kind, DEFAULT_ATOL)) for kind in KINDS}
         control[ATOL] = min(atol.values())

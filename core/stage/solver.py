@@ -17,7 +17,7 @@ import numpy as np
 from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..system.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
 from ..system.records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
@@ -45,8 +45,9 @@ from ..system.records import (
     SENSITIVITY,
     SINGULAR,
     STAGES,
+    VELOCITY_TOLERANCE,
 )
-from .inner import inner_loop
+from .inner import correct_dependent, inner_loop, rounding_level
 
 # Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
 MOST_OUTER = 3
@@ -200,6 +201,24 @@ def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     return _iterate(ws, c_q, c_v)
 
 
+# Residual of the constraints (of positions, relative) up to which one correction is as good as the inner loop.
+NEAR = 1e-3
+# Iterations in which that is tried; a stage that needs more has the constraints met first.
+MOST_AT_ONCE = 3
+
+
+@internal
+def _correction_size(ws: Any, weight_address: int) -> float:
+    """Size of the last correction of dependent coordinates or velocities, in error weights."""
+    rhs, dependent = vec(ws.rhs, ws.m_act), ivec(ws.dependent, ws.m_act)
+    weight = vec(weight_address, ws.n_ext)
+    total = 0.0
+    for i in range(ws.m_act):
+        y = rhs[i] / weight[dependent[i]]
+        total += y * y
+    return np.sqrt(total / max(ws.m_act, 1))
+
+
 @internal
 def _iterate(ws: Any, c_q: float, c_v: float) -> int:
     """The outer loop."""
@@ -207,15 +226,30 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
     counters = ivec(ws.counters, COUNTERS_SIZE)
     rate = vec(ws.rate, RATE_SIZE)
     tolerance = control[NEWTON_TOLERANCE]
-    start_inner = counters[INNER]
+    most_inner = 0
     previous = np.inf
     renewed = 0
     slack = inner_slack(control)
+    # where the accelerations shall be finer than the constraints, these have to come first
+    near = NEAR if tolerance * control[RTOL] > control[POSITION_TOLERANCE] else 0.0
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
-        status = inner_loop(ws, ws.lu_d, slack, np.inf)
-        if status != OK:
-            return status
+        of_q, of_v = 0.0, 0.0
+        position, size = constraint_norm(ws, ws.phi), rounding_level(ws, ws.q)
+        if k < MOST_AT_ONCE and position <= near * size:
+            # The residual stays that of the uncorrected point: what it misses, the next iteration makes good.
+            if position > slack * control[POSITION_TOLERANCE] * size:
+                correct_dependent(ws, ws.lu_d, ws.phi, ws.q)
+                of_q = _correction_size(ws, ws.weight_q)
+            if constraint_norm(ws, ws.phid) > slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v):
+                correct_dependent(ws, ws.lu_d, ws.phid, ws.v)
+                of_v = _correction_size(ws, ws.weight_v)
+        else:
+            start_inner = counters[INNER]
+            status = inner_loop(ws, ws.lu_d, slack, np.inf)
+            most_inner = max(most_inner, counters[INNER] - start_inner)
+            if status != OK:
+                return status
         solve_increment(ws, ws.kkt)
         counters[OUTER] += 1
         norm = increment_norm(ws, c_q, c_v)
@@ -235,9 +269,10 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
                 status = refactor(ws, c_q, c_v)
                 if status != OK:
                     return status
-        previous = norm
+        # what has been corrected acts on the accelerations through the next residual, as the increment does
+        previous = max(norm, of_q, of_v)
         known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
-        if norm * known / (1.0 - known) <= tolerance:
+        if previous * known / (1.0 - known) <= tolerance and of_q <= tolerance:
             status = OK
             rate[LAST_OUTER] = k + 1
             if k == 0:
@@ -246,6 +281,7 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         status = OUTER_SLOW
     if status != OK:
         return status
+    start_inner = counters[INNER]
     status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
-    rate[LAST_INNER] = counters[INNER] - start_inner
+    rate[LAST_INNER] = max(most_inner, counters[INNER] - start_inner)
     return status
