@@ -1,9 +1,11 @@
-"""exudyn's side of the benchmarks: the `chain` scenario with a choice of settings, timed without recording."""
+"""exudyn's side of the benchmarks: a model with a choice of settings, timed without recording."""
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+from tlismni.core import Model
 from tlismni.models import load
 from tlismni.validation.exudyn_model import build_exudyn_model
 from tlismni.validation.exudyn_run import ExudynSettings, solve
@@ -39,15 +41,17 @@ def settings_for(links: int, *integrators: str, rtol: float = 1e-8, atol: float 
     return found
 
 
-def run(links: int, t_end: float, step: float, settings: ExudynSettings) -> tuple[float, tuple[float, float]]:
-    """(wall time of exudyn's solver in s, position of the free end in m)."""
-    build = build_exudyn_model(load("chain", links=links).model, sensors=False)
+def run_model(model: Model, t_end: float, step: float, settings: ExudynSettings) -> tuple[float, NDArray[np.float64]]:
+    """(wall time of exudyn's solver in s, coordinates of all bodies at the end)."""
+    build = build_exudyn_model(model, sensors=False)
     wall_time, _ = solve(build, t_end, step, settings)
-    return wall_time, _tip(build, links)
+    # exudyn's coordinates are displacements from the start
+    start = np.concatenate([body.initial_state()[0] for body in model.bodies])
+    return wall_time, start + np.array(build.mbs.systemData.GetODE2Coordinates())
 
 
-def _tip(build: Any, links: int) -> tuple[float, float]:
-    q = build.mbs.systemData.GetODE2Coordinates()
+def run(links: int, t_end: float, step: float, settings: ExudynSettings) -> tuple[float, tuple[float, float]]:
+    """(wall time of exudyn's solver in s, position of the free end of the chain in m)."""
+    wall_time, q = run_model(load("chain", links=links).model, t_end, step, settings)
     x, y, angle = (float(value) for value in q[-3:])
-    x += links - 0.5  # exudyn's coordinates are displacements from the start
-    return x + 0.5 * math.cos(angle), y + 0.5 * math.sin(angle)
+    return wall_time, (x + 0.5 * math.cos(angle), y + 0.5 * math.sin(angle))

@@ -12,7 +12,7 @@ from tlismni.models import load
 
 G, R, L = 9.81, 0.15, 0.3
 CRANK, ROD, SLIDER = 0.36, 0.15, 0.075
-TIGHT = {"rtol": 1e-11, "atol": 1e-12}
+TIGHT = {"rtol": 1e-11, "atol": 1e-13}
 
 
 def integrate(rhs: Callable, times: np.ndarray, y0: list[float], method: str = "DOP853") -> np.ndarray:
@@ -146,7 +146,7 @@ def deflection(result: Result) -> np.ndarray:
 def test_rigid_slider_crank_follows_its_crank_angle(angle: float, rate: float) -> None:
     times = np.linspace(0.0, 1.0, 51)
     exact = rigid_reference(times, angle, rate)
-    result = simulate(load("slider_crank", crank_angle=angle, crank_speed=rate).model, 1.0, t_eval=times, **TIGHT)
+    result = simulate(load("slider_crank", crank_angle=angle, crank_speed=rate).model, 1.0, t_eval=times, k=6, **TIGHT)
     assert abs(exact[0, -1] - angle) > 8.0 * math.pi  # it turns
     assert np.abs(result["crank.angle"] - exact[0]).max() < 1e-8
     assert np.abs(result["crank.angular_velocity"] - exact[1]).max() < 1e-7
