@@ -22,4 +22,7 @@ def at_error(runs: Sequence[Run], level: float, quantity: str = "outer_iteration
     a, b = good[missed[-1]], good[missed[-1] + 1]
     low, high = float(getattr(a, quantity)), float(getattr(b, quantity))
     share = math.log(a.error / level) / math.log(a.error / b.error)
+    if low <= 0.0 or high <= 0.0:
+        # explicit formulas have no outer iterations
+        return low + (high - low) * share
     return low * (high / low) ** share
