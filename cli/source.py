@@ -23,6 +23,7 @@ RUN_OPTIONS: Mapping[str, tuple[str, str]] = {
         "",
         "where the outer loop stops: with --step absolute and relative (1e-10), else in error weights (0.01)",
     ),
+    "redundant": ("drop", "constraints that repeat others: drop (left out, but checked) or refuse"),
     "start_tolerance": ("0.001", "how far the start may be moved to meet the constraints, relative"),
 }
 """Options of a run that belong to every method: default and meaning."""

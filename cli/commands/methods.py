@@ -16,8 +16,8 @@ def methods(json: Json = False, debug: Debug = False) -> None:
     from ..source import RUN_OPTIONS
 
     if json:
-        shared = [{"name": n, "default": d, "description": text} for n, (d, text) in RUN_OPTIONS.items()]
-        print_json({"methods": [_data(method) for method in METHODS.values()], "run_options": shared})
+        of_runs = [{"name": n, "default": d, "description": text} for n, (d, text) in RUN_OPTIONS.items()]
+        print_json({"methods": [_data(method) for method in METHODS.values()], "run_options": of_runs})
         return
     for method in METHODS.values():
         stdout().print(f"[bold]{method.name}[/bold]: {method.description}")
@@ -25,8 +25,8 @@ def methods(json: Json = False, debug: Debug = False) -> None:
         if rows:
             print_table("", ("option", "default", "range", "meaning"), rows, left=4)
     stdout().print()
-    rows = [(name, default, meaning) for name, (default, meaning) in RUN_OPTIONS.items()]
-    print_table("options of every run", ("option", "default", "meaning"), rows, left=3)
+    shared = [(name, default, meaning) for name, (default, meaning) in RUN_OPTIONS.items()]
+    print_table("options of every run", ("option", "default", "meaning"), shared, left=3)
 
 
 def _value(option: Any, value: float | str) -> float | int | str:
