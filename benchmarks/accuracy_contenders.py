@@ -51,6 +51,7 @@ def decades(first: float, last: float, per_decade: int = 2) -> tuple[float, ...]
 SMOOTH: dict[str, tuple[str, dict[str, Any]]] = {
     "adams 4": ("adams", {"order": 4}),
     "adams 6": ("adams", {"order": 6}),
+    "adams 8": ("adams", {"order": 8}),
     "bdf auto": ("bdf", {"order": "auto"}),
     "ebdf 4": ("ebdf", {"k": 4}),
     "ebdf auto": ("ebdf", {"k": "auto"}),
@@ -73,7 +74,7 @@ def ours(problem: Problem, limit: float, quick: bool) -> list[Contender]:
     """Our methods with error control."""
     methods = STIFF if problem.stiff else SMOOTH
     if quick:
-        wanted = ("ebdf 3", "irk") if problem.stiff else ("adams 6", "bdf auto", "ebdf auto")
+        wanted = ("ebdf 3", "irk") if problem.stiff else ("adams 8", "bdf auto", "ebdf auto")
         methods = {name: methods[name] for name in wanted}
     settings = decades(1, 13, 1 if quick else 2)
 

@@ -1,4 +1,4 @@
-"""Implicit Adams formulas inside TLISMNI, order p = 2 (trapezoidal rule) to 6, on the actual grid.
+"""Implicit Adams formulas inside TLISMNI, order p = 2 (trapezoidal rule) to 8, on the actual grid.
 
 y_{n+1} = y_n + h (b y'_{n+1} + sum_j b_j y'_{n-j}), j = 0 ... p - 2: the integral of the interpolant of y'.
 Error estimate: Milne's device with the explicit formula of the same order, whose error is C_AB, against C_AM of this
@@ -19,8 +19,8 @@ from .multistep import clear, finish_stage, nodes, predict, weight_rows
 from .records import CHOICE_SIZE, K
 
 NODES, IMPLICIT, EXPLICIT, EXTRAPOLATION, CONSTANTS = range(5)
-# Gauss-Legendre nodes and weights of [-1, 0], exact for degree 7
-_X, _W = np.polynomial.legendre.leggauss(4)
+# Gauss-Legendre nodes and weights of [-1, 0], exact for degree 9
+_X, _W = np.polynomial.legendre.leggauss(5)
 POINTS = 0.5 * (_X - 1.0)
 POINT_WEIGHTS = 0.5 * _W
 
@@ -36,7 +36,7 @@ def adams_coefficients(s: Any, p: int, implicit: Any, explicit: Any, constants: 
         implicit[j] = 0.0
         explicit[j] = 0.0
     constants[0], constants[1] = 0.0, 0.0
-    for g in range(4):
+    for g in range(len(POINTS)):
         x, w = POINTS[g], POINT_WEIGHTS[g]
         product = 1.0
         for j in range(p - 1):

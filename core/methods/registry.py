@@ -122,7 +122,7 @@ METHODS = {
         Method(
             "adams",
             "TLISMNI with implicit Adams formulas on the actual grid, Milne's error estimate; not for stiff systems",
-            {"order": Option(4, 2, 6, "order", integer=True)},
+            {"order": Option(4, 2, 8, "order; high ones for smooth, soft systems and tight tolerances", integer=True)},
             lambda o: Formula(adams_step, int(o["order"]), (), int(o["order"])),
         ),
         Method(

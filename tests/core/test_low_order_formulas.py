@@ -22,7 +22,7 @@ def adams(past, p):
 
 
 @settings(max_examples=50, deadline=None)
-@given(st.lists(steps, min_size=5, max_size=5), st.integers(2, 6))
+@given(st.lists(steps, min_size=7, max_size=7), st.integers(2, 8))
 def test_adams_is_exact_for_polynomials_and_its_constants_are_its_errors(past, p):
     s, implicit, explicit, constants = adams(past, p)
     for degree in range(p + 1):

@@ -66,7 +66,7 @@ ORDER_CASES = (
     *(_case("bdf", k, order=k) for k in range(1, 7)),
     *(_case("ebdf", k + 1, k=k) for k in range(1, 9)),
     *(_case("mebdf", k + 1, k=k) for k in range(1, 9)),
-    *(_case("adams", order, order=order) for order in range(2, 7)),
+    *(_case("adams", order, order=order) for order in range(2, 9)),
     # stages of the state-space equation: no order is lost to the constraints (Hairer and Wanner II, IV.5 and VII)
     _case("irk", 4, tableau="sdirk4"),
     _case("irk", 4, tableau="gauss2"),
