@@ -25,7 +25,7 @@ def test_orders_as_json_and_figure(tlismni: Command, tmp_path: Path) -> None:
     done = tlismni("study", "orders", "-m", "adams", "--quick", "--json", "--plot", tmp_path / "orders.png")
     assert done.code == 0
     figures = done.json
-    assert [row["options"]["order"] for row in figures["rows"]] == [2, 3, 4, 5, 6]
+    assert [row["options"]["order"] for row in figures["rows"]] == [2, 3, 4, 5, 6, 7, 8]
     for row in figures["rows"]:
         assert row["observed"]["multiplier"] == pytest.approx(row["theory"]["multiplier"], abs=0.2)
         assert len(row["steps"]) == len(row["errors"]["velocity"]) >= 5
