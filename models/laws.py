@@ -2,8 +2,6 @@
 
 import math
 
-from scipy.optimize import brentq
-
 from ..core.contact.laws import (
     ContactLaw,
     Flores,
@@ -91,6 +89,9 @@ def kelvin_voigt_damping_ratio(restitution: float) -> float:
             f"law 'kelvin_voigt' reaches restitution {restitution:g} only with extreme damping: "
             "give restitution >= 0.01, or damping"
         )
+    # importing scipy.optimize costs more than most runs: only who needs a root pays
+    from scipy.optimize import brentq
+
     return float(brentq(lambda zeta: kelvin_voigt_restitution(zeta) - restitution, 0.0, 60.0, xtol=1e-15))
 
 

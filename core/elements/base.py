@@ -50,12 +50,24 @@ class Row:
     extra: Sequence[int] = ()
 
 
+@dataclass(frozen=True)
+class Form:
+    """What an element looks like to the assembly; elements of one kernel and one size share a batch."""
+
+    kernel: Any
+    """numba function of KERNEL_SIGNATURE."""
+    constraint_rows: int
+    """Number of rows of Phi."""
+    tangent_pattern: Sequence[tuple[int, int]]
+    """Local (i, j) pairs where d r_i / d q_j may be nonzero."""
+    jacobian_pattern: Sequence[tuple[int, int]]
+    """Local (row, j) pairs where Phi_q may be nonzero."""
+
+
 class Element(Record):
     """Base of everything in a model that has a kernel.
 
-    Class attributes: `kernel` (numba function of KERNEL_SIGNATURE), `constraint_rows` (number of rows of Phi),
-    `tangent_pattern` (local (i, j) pairs where d r_i / d q_j may be nonzero), `jacobian_pattern` (local (row, j)
-    pairs where Phi_q may be nonzero).
+    Class attributes: those of `Form`, for elements of which all look alike; the others define `form`.
     """
 
     kernel: ClassVar[Any]
@@ -64,6 +76,11 @@ class Element(Record):
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ()
 
     name: Name
+
+    def form(self) -> Form:
+        """Kernel, number of constraint rows and patterns of this element."""
+        kind = type(self)
+        return Form(kind.kernel, kind.constraint_rows, kind.tangent_pattern, kind.jacobian_pattern)
 
     def row(self, numbering: Numbering) -> Row:
         """This element's row in the tables of its kernel."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..compiled.kernels import kernel_address
 from ..contact.laws import ForceLaw, NewtonImpact, law_address
 from ..description import Model
-from ..elements.base import Element, Row
+from ..elements.base import Element, Form, Row
 from ..errors import ModelError
 from ..model.channels import Channel
 from ..model.markers import GROUND
@@ -173,34 +173,33 @@ def assemble(model: Model) -> Assembly:
                 "give it shapes on two bodies"
             )
     numbering = _Numbering(model)
-    grouped: dict[int, list[tuple[Element, Row, tuple[int, ...]]]] = {}
-    kernels: dict[int, type[Element]] = {}
+    grouped: dict[tuple[int, int], list[tuple[Element, Row, tuple[int, ...]]]] = {}
+    forms: dict[tuple[int, int], Form] = {}
     row_names: list[str] = []
     multipliers: list[Channel] = []
-    contact_rows: dict[str, int] = {}
+    contact_rows: dict[str, tuple[int, ...]] = {}
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
-        kind = type(element)
-        rows = tuple(range(len(row_names), len(row_names) + kind.constraint_rows))
-        row_names += [element.name] * kind.constraint_rows
+        form, row = element.form(), element.row(numbering)
+        rows = tuple(range(len(row_names), len(row_names) + form.constraint_rows))
+        row_names += [element.name] * form.constraint_rows
         if element.name in contact_names:
-            contact_rows[element.name] = rows[0]
+            contact_rows[element.name] = rows
         multipliers += element.multiplier_channels()
-        address = kernel_address(kind.kernel)
-        kernels[address] = kind
-        grouped.setdefault(address, []).append((element, element.row(numbering), rows))
+        key = (kernel_address(form.kernel), len(row.coordinates))
+        forms[key] = form
+        grouped.setdefault(key, []).append((element, row, rows))
     batches = []
-    for address, members in grouped.items():
-        kind = kernels[address]
+    for key, members in grouped.items():
         batches.append(
             Batch(
-                address,
+                key[0],
                 _table([row.parameters for _, row, _ in members], np.float64),
                 _table([row.coordinates for _, row, _ in members], np.int64),
                 _table([rows for _, _, rows in members], np.int64),
                 _table([row.extra for _, row, _ in members], np.int64),
-                kind.tangent_pattern,
-                kind.jacobian_pattern,
+                forms[key].tangent_pattern,
+                forms[key].jacobian_pattern,
                 np.array([numbering.contact_numbers.get(e.name, -1) for e, _, _ in members], dtype=np.int64),
             )
         )
@@ -211,7 +210,7 @@ def assemble(model: Model) -> Assembly:
             columns.append((body.name, coordinate, index))
             names.append(f"{body.name}.{coordinate}")
     q0 = np.array([x for q, _ in states for x in q], dtype=np.float64)
-    m_joints = len(row_names) - len(model.contacts)
+    m_joints = len(row_names) - sum(len(rows) for rows in contact_rows.values())
     return Assembly(
         n=numbering.n,
         m=len(row_names),
@@ -224,7 +223,7 @@ def assemble(model: Model) -> Assembly:
         contacts=[
             ContactInfo(
                 c.name,
-                contact_rows[c.name],
+                contact_rows[c.name][0],
                 c.law,
                 numbering.work(f"{c.name}.impulse"),
                 numbering.work(f"{c.name}.dissipation"),
