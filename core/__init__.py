@@ -1,7 +1,17 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from .contact.laws import Flores, Gonthier, Hertz, HuntCrossley, KelvinVoigt, LankaraniNikravesh, NewtonImpact
+from .contact.friction import CoulombFriction, TanhFriction
+from .contact.laws import (
+    Flores,
+    Gonthier,
+    Hertz,
+    HuntCrossley,
+    KelvinVoigt,
+    LankaraniNikravesh,
+    NewtonImpact,
+    PoissonImpact,
+)
 from .description import Model
 from .elements import (
     AppliedForce2D,
@@ -38,6 +48,7 @@ __all__ = [
     "ConsistencyError",
     "Constant",
     "CoordinateDriver",
+    "CoulombFriction",
     "Disk2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
@@ -61,6 +72,7 @@ __all__ = [
     "NewtonImpact",
     "Parameter",
     "PointMass2D",
+    "PoissonImpact",
     "Polynomial",
     "Prismatic2D",
     "Ramp",
@@ -75,6 +87,7 @@ __all__ = [
     "State",
     "Step",
     "Table",
+    "TanhFriction",
     "TlismniError",
     "simulate",
 ]

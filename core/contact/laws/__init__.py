@@ -8,12 +8,12 @@ from .base import LAW_SIGNATURE, ForceLaw, call_law, law_address
 from .hertz import Hertz
 from .hunt_crossley import Flores, Gonthier, HuntCrossley, LankaraniNikravesh
 from .kelvin_voigt import KelvinVoigt
-from .restitution import NewtonImpact
+from .restitution import ImpactLaw, NewtonImpact, PoissonImpact
 
-LAWS = (NewtonImpact, Hertz, KelvinVoigt, HuntCrossley, LankaraniNikravesh, Flores, Gonthier)
+LAWS = (NewtonImpact, PoissonImpact, Hertz, KelvinVoigt, HuntCrossley, LankaraniNikravesh, Flores, Gonthier)
 
 ContactLaw = Annotated[
-    NewtonImpact | Hertz | KelvinVoigt | HuntCrossley | LankaraniNikravesh | Flores | Gonthier,
+    NewtonImpact | PoissonImpact | Hertz | KelvinVoigt | HuntCrossley | LankaraniNikravesh | Flores | Gonthier,
     Field(discriminator="type"),
 ]
 
@@ -26,9 +26,11 @@ __all__ = [
     "Gonthier",
     "Hertz",
     "HuntCrossley",
+    "ImpactLaw",
     "KelvinVoigt",
     "LankaraniNikravesh",
     "NewtonImpact",
+    "PoissonImpact",
     "call_law",
     "law_address",
 ]
