@@ -10,7 +10,7 @@ from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
 from ..stage.inner import STRAINED, rounding_level
-from ..stage.solver import CHOICE_GROWTH
+from ..stage.matrices import CHOICE_GROWTH
 from ..system.records import (
     ATOL,
     CHOICE_CONDITION,

@@ -43,7 +43,6 @@ from ..system.records import (
     SINGULAR,
     STAGE_ALPHA,
     STAGE_BETA,
-    STAGES,
     VELOCITY_TOLERANCE,
 )
 from .inner import rounding_level
@@ -53,8 +52,9 @@ from .solver import (
     RATE_GROWTH,
     SLOW,
     add_increment,
+    begin_stage,
+    evaluate_prediction,
     increment_norm,
-    set_from_accelerations,
     weighted_norm,
 )
 
@@ -205,10 +205,7 @@ def solve_absolute(ws: Any, t: float, c_q: float, c_v: float, index: int) -> int
     `index` says which constraints: 1 Baumgarte's combination, 2 positions and velocities, 3 positions.
     """
     rate = vec(ws.rate, RATE_SIZE)
-    vec(ws.t, 1)[0] = t
-    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
+    begin_stage(ws, t, c_q, c_v)
     if index == 2 and ws.m_act > 0:
         # its direction is part of the formula: always that of the predicted point, however old the other matrix is
         status = _factored(ws, ws.kkt_query, 0.0, 0.0)
@@ -222,8 +219,7 @@ def solve_absolute(ws: Any, t: float, c_q: float, c_v: float, index: int) -> int
     rate[FACTOR_AGE] = _USED
     status = _iterate(ws, c_q, c_v, index)
     if status != OK and not fresh:
-        set_from_accelerations(ws, c_q, c_v)
-        evaluate_residuals(ws)
+        evaluate_prediction(ws, c_q, c_v)
         status = refactor_absolute(ws, c_q, c_v)
         if status != OK:
             return status
