@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..system.evaluate import evaluate_tangent
@@ -37,7 +37,7 @@ CHOICE_GROWTH = 3.0
 AWAY = 8.0
 
 
-@compiled
+@internal
 def refactor(ws: Any, c_q: float, c_v: float) -> int:
     """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd."""
     rate = vec(ws.rate, RATE_SIZE)

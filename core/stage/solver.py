@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, inlined, internal
+from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
 from ..system.evaluate import evaluate_residuals
@@ -52,7 +52,7 @@ RATE_GROWTH = 1.5
 SLOW = 0.2
 
 
-@compiled
+@internal
 def solve_increment(ws: Any, lu_address: int) -> None:
     """rhs = -matrix^-1 (r, phidd)."""
     rhs = vec(ws.rhs, ws.n + ws.m_act)
