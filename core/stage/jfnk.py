@@ -234,7 +234,6 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         status = inner_loop(ws, ws.lu_d, slack, np.inf)
         if status != OK:
             return status
-        _remember(ws)
         solve_increment(ws, ws.kkt)
         counters[OUTER] += 1
         norm = increment_norm(ws, c_q, c_v)
