@@ -48,7 +48,6 @@ from .records import (
     CLOCK_SIZE,
     EAGER,
     EVENT,
-    FAILURES,
     FIXED_STEP,
     FULL,
     GROWTH,
@@ -297,7 +296,6 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         if status != OK or (not fixed and not error[0] <= 1.0):
             counters[REJECTED] += 1
             clock[REJECTED_HERE] += 1.0
-            clock[FAILURES] += 1.0
             clock[PREVIOUS_NORM] = 0.0
             if fixed or (clock[EAGER] > 0.0 and (status == OUTER_DIVERGED or status == OUTER_SLOW)):
                 return status
@@ -316,7 +314,6 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 counters[REJECTED] += 1
                 clock[REJECTED_HERE] += 1.0
                 continue
-        clock[FAILURES] = 0.0
         if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
             return VIOLATED
         if ws.n_contacts > 0 and any_crossed(ws, lc, h):

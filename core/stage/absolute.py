@@ -22,8 +22,6 @@ from ..system.records import (
     CORRECTION,
     COUNTERS_SIZE,
     FACTOR_AGE,
-    FACTOR_CQ,
-    FACTOR_CV,
     FACTORIZATIONS,
     FAILED_NORM,
     LAST_INNER,
@@ -83,8 +81,8 @@ def refactor_absolute(ws: Any, c_q: float, c_v: float) -> int:
     status = _factored(ws, ws.kkt, c_q, c_v)
     if status != OK:
         return status
-    rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
-    rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER], rate[SENSITIVITY] = 1.0, 0.0, 0.0, 0.0
+    rate[FACTOR_AGE], rate[OUTER_RATE] = 0.0, 1.0
+    rate[LAST_OUTER], rate[LAST_INNER], rate[SENSITIVITY] = 0.0, 0.0, 0.0
     return OK
 
 

@@ -14,7 +14,6 @@ from ..system.records import (
     CONDITION,
     COUNTERS_SIZE,
     FACTOR_AGE,
-    FACTOR_CQ,
     FACTOR_CV,
     FACTORIZATIONS,
     FIRST_SENSITIVITY,
@@ -54,7 +53,7 @@ def refactor(ws: Any, c_q: float, c_v: float) -> int:
     _measure_sensitivity(ws)
     _measure_condition(ws)
     ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
-    rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
+    rate[FACTOR_AGE], rate[FACTOR_CV] = 0.0, c_v
     rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
     return OK
 
