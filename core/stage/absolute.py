@@ -23,7 +23,6 @@ from ..system.records import (
     COUNTERS_SIZE,
     FACTOR_AGE,
     FACTORIZATIONS,
-    FAILED_NORM,
     LAST_INNER,
     LAST_OUTER,
     MAX_OUTER,
@@ -31,7 +30,6 @@ from ..system.records import (
     NOT_FINITE,
     OK,
     OUTER,
-    OUTER_DIVERGED,
     OUTER_RATE,
     OUTER_SLOW,
     POSITION_TOLERANCE,
@@ -48,11 +46,11 @@ from .solver import (
     LEAST_RATE,
     MOST_OUTER,
     RATE_GROWTH,
-    SLOW,
     add_increment,
     begin_stage,
     evaluate_prediction,
     increment_norm,
+    judge_contraction,
     weighted_norm,
 )
 
@@ -176,16 +174,12 @@ def _iterate(ws: Any, c_q: float, c_v: float, index: int) -> int:
             rate[LAST_OUTER] = k + 1
             return OK
         if k > 0:
-            contraction = norm / previous
-            rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
-            if contraction > 0.9 and norm > tolerance and (renewed > 0 or contraction > 2.0):
-                rate[FAILED_NORM] = contraction
-                return OUTER_DIVERGED
-            if contraction > SLOW and norm > tolerance and renewed < 2:
+            status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
+            if status == OUTER_SLOW:
                 renewed += 1
                 status = refactor_absolute(ws, c_q, c_v)
-                if status != OK:
-                    return status
+            if status != OK:
+                return status
         previous = norm
         known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance and _holds(ws, index):

@@ -142,6 +142,17 @@ def inner_slack(control: Any) -> float:
     return max(1.0, min(1e4, 0.01 * control[NEWTON_TOLERANCE] * control[RTOL] / control[POSITION_TOLERANCE]))
 
 
+@inlined
+def judge_contraction(rate: Any, contraction: float, wanting: bool, renewed: int) -> int:
+    """OK, OUTER_DIVERGED, or OUTER_SLOW: the matrix of the predicted point is not good enough, that of the present one
+    is. `wanting`: the tolerance is not met; `renewed`: how often the matrix has been renewed in this iteration."""
+    rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
+    if contraction > 0.9 and wanting and (renewed > 0 or contraction > 2.0):
+        rate[FAILED_NORM] = contraction
+        return OUTER_DIVERGED
+    return OUTER_SLOW if contraction > SLOW and wanting and renewed < 2 else OK
+
+
 @internal
 def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage from the predicted a, lambda in the workspace. Returns OK or what went wrong.
@@ -185,17 +196,12 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         add_increment(ws, c_q, c_v)
         evaluate_residuals(ws)
         if k > 0:
-            contraction = norm / previous
-            rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
-            if contraction > 0.9 and norm > tolerance and (renewed > 0 or contraction > 2.0):
-                rate[FAILED_NORM] = contraction
-                return OUTER_DIVERGED
-            if contraction > SLOW and norm > tolerance and renewed < 2:
-                # the matrix of the predicted point is not good enough: that of the present one is
+            status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
+            if status == OUTER_SLOW:
                 renewed += 1
                 status = refactor(ws, c_q, c_v)
-                if status != OK:
-                    return status
+            if status != OK:
+                return status
         previous = norm
         known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance:
