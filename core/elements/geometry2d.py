@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import imat, vec
 
@@ -28,7 +28,7 @@ def place(point: tuple[float, float], body: tuple[float, float, float]) -> tuple
     return x + c * point[0] - s * point[1], y + s * point[0] + c * point[1]
 
 
-@compiled
+@internal
 def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
     """Height of point b (offset w) over the line through point a (offset u) with normal at `angle` in a's frame.
 
@@ -57,7 +57,7 @@ def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: fl
     return g, gradient, hessian
 
 
-@compiled
+@internal
 def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
     """Half the squared distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21)."""
     ta, tb = q[coord[2]], q[coord[5]]
@@ -80,7 +80,7 @@ def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy
     return 0.5 * (dx * dx + dy * dy), gradient, hessian
 
 
-@compiled
+@internal
 def distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
     """Distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21); 1/0 where they meet."""
     half, gradient, hessian = half_square_distance(q, coord, ux, uy, wx, wy)
@@ -108,7 +108,7 @@ def distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> 
     return d, (g0, g1, g2, g3, g4, g5), scaled
 
 
-@compiled
+@internal
 def along(gradient: Any, x: Any, coord: Any) -> float:
     """gradient . x at the six coordinates."""
     total = 0.0
@@ -117,7 +117,7 @@ def along(gradient: Any, x: Any, coord: Any) -> float:
     return total
 
 
-@compiled
+@internal
 def curvature(hessian: Any, v: Any, coord: Any) -> float:
     """v^T H v at the six coordinates."""
     total = 0.0

@@ -34,7 +34,7 @@ def remember(ws: Any, lc: Any) -> None:
         watch[k, 2] = vec(ws.phidd, ws.m_ext)[rows[k]]
 
 
-@compiled
+@internal
 def lowest_inside(g0: float, d0: float, g1: float, d1: float, h: float) -> Any:
     """Minimum of the cubic through (g, g') at both ends, and its place in (0, 1); g' must change from - to +."""
     low, high = 0.0, 1.0
