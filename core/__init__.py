@@ -1,7 +1,25 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from .contact.laws import Flores, Gonthier, Hertz, HuntCrossley, KelvinVoigt, LankaraniNikravesh, NewtonImpact
+from .contact.laws import (
+    CarvalhoMartins,
+    Flores,
+    ForceLaw,
+    Gonthier,
+    HerbertMcWhannell,
+    Hertz,
+    HuGuo,
+    HuntCrossley,
+    KelvinVoigt,
+    KuwabaraKono,
+    LankaraniNikravesh,
+    LeeWang,
+    NewtonImpact,
+    Tsuji,
+    ZhiyingQishao,
+    force_formula,
+)
+from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .description import Model
 from .elements import (
     AppliedForce2D,
@@ -34,6 +52,7 @@ __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
     "Bushing2D",
+    "CarvalhoMartins",
     "Channel",
     "ConsistencyError",
     "Constant",
@@ -46,16 +65,22 @@ __all__ = [
     "EquationSystem",
     "Event",
     "Flores",
+    "ForceLaw",
     "GapContact",
     "Gonthier",
     "HalfPlane2D",
+    "HerbertMcWhannell",
     "Hertz",
+    "HuGuo",
     "HuntCrossley",
     "Input",
     "InputSignal",
     "KelvinVoigt",
+    "KuwabaraKono",
     "LankaraniNikravesh",
+    "LeeWang",
     "Marker2D",
+    "Material",
     "Model",
     "ModelError",
     "NewtonImpact",
@@ -76,5 +101,10 @@ __all__ = [
     "Step",
     "Table",
     "TlismniError",
+    "Tsuji",
+    "ZhiyingQishao",
+    "force_formula",
     "simulate",
+    "sphere_on_plane",
+    "sphere_on_sphere",
 ]

@@ -151,7 +151,7 @@ class _Contact2D(Element):
 
     def _row(self, numbering: Numbering, a: Marker2D, b: Marker2D, angle: float, radius: float) -> Row:
         if isinstance(self.law, ForceLaw):
-            parameters = self.law.parameters()
+            parameters = self.law.formula_parameters()
             address = numbering.law_address(self.law)
         else:
             parameters, address = (0.0, 0.0, 0.0, 0.0), 0

@@ -29,6 +29,9 @@ logger = logging.getLogger(__name__)
 MOST_EVENTS_AT_ONCE = 50
 """Events without progress in time before a run is given up."""
 
+DEEPEST = 1e12
+"""m; no spring that holds a weight needs a deeper penetration."""
+
 
 def handle(sim: "Engine", k: int) -> None:
     """Contact k has an event at the workspace's current point (the newest row of the history)."""
@@ -156,7 +159,8 @@ def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) 
     """Speed with which shapes that are laid on each other settle: sqrt(g d), with g the acceleration that presses them
     and d the static penetration under it, m/s.
 
-    Laws that divide by the approach speed would hold a contact that begins without one like glue.
+    Laws that divide by the approach speed would hold a contact that begins without one like glue. 0 for a law whose
+    spring holds nothing.
     """
     pressing = -float(sim.workspace.arrays["phidd"][contact.row])
     if pressing <= 0.0:
@@ -165,6 +169,8 @@ def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) 
     low, high = 0.0, 1e-12
     while law.evaluate(high, 0.0, 1.0)[3] < weight:
         low, high = high, 2.0 * high
+        if high > DEEPEST:
+            return 0.0
     for _ in range(50):
         middle = 0.5 * (low + high)
         if law.evaluate(middle, 0.0, 1.0)[3] < weight:

@@ -1,12 +1,11 @@
-"""Friction laws. A new one is a file with its parameters and formula, and its name in FRICTION_LAWS and Friction.
+"""Friction laws. A new one is a file with its parameters and formula, and its name in FRICTION_LAWS.
 
 LuGre friction has a state and therefore a signature of its own: `lugre.py`; it is not in `Friction`.
 """
 
 from typing import Annotated
 
-from pydantic import Field
-
+from ...model.open_union import OpenUnion
 from .ambrosio import AmbrosioFriction
 from .base import FRICTION_SIGNATURE, FrictionLaw, call_friction, friction_address
 from .brown_mcphee import BrownMcPheeFriction
@@ -24,10 +23,7 @@ FRICTION_LAWS = (
     BrownMcPheeFriction,
 )
 
-Friction = Annotated[
-    CoulombFriction | TanhFriction | ThrelfallFriction | AmbrosioFriction | StepFriction | BrownMcPheeFriction,
-    Field(discriminator="type"),
-]
+Friction = Annotated[CoulombFriction | FrictionLaw, OpenUnion(FRICTION_LAWS, FrictionLaw)]
 
 __all__ = [
     "FRICTION_LAWS",
