@@ -27,7 +27,7 @@ from numba.extending import (
 )
 
 
-class DualType(types.Type):  # type: ignore[misc]
+class DualType(types.Type):
     """numba's type of x + a e1 + b e2, e1 e1 = e1 e2 = e2 e2 = 0."""
 
     def __init__(self) -> None:
@@ -45,7 +45,7 @@ DUAL = DualType()
 
 
 @register_model(DualType)
-class _DualModel(models.StructModel):  # type: ignore[misc]
+class _DualModel(models.StructModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, [(name, types.float64) for name in ("x", "a", "b")])
 
@@ -105,7 +105,7 @@ def _teach_operator(function: Any, result: Any, code: Callable[..., Any]) -> Non
     Written as machine instructions, not as compiled Python: a formula is made of these, and compiles twice as fast.
     """
 
-    class Typed(AbstractTemplate):  # type: ignore[misc]
+    class Typed(AbstractTemplate):
         def generic(self, args: Any, keywords: Any) -> Any:
             return signature(result, DUAL, DUAL) if len(args) == 2 and _mixed(*args) else None
 

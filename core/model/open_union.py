@@ -1,8 +1,10 @@
 """Unions that a user can extend: the records that this library knows, and a user's own subclasses of their base."""
 
 from collections.abc import Iterator, Mapping
+from functools import reduce
 from inspect import get_annotations
-from typing import Annotated, Any, Literal, Union
+from operator import or_
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic.fields import FieldInfo
@@ -19,7 +21,7 @@ class OpenRecord(Record):
         super().__pydantic_init_subclass__(**kwargs)
         if "type" not in get_annotations(cls):
             # as if the class had said: type: Literal["Name"] = "Name"
-            cls.model_fields["type"] = FieldInfo(annotation=Literal[cls.__name__], default=cls.__name__)  # type: ignore[arg-type,valid-type]
+            cls.model_fields["type"] = FieldInfo(annotation=Literal[cls.__name__], default=cls.__name__)  # type: ignore[arg-type]
             cls.model_rebuild(force=True)
 
 
@@ -35,7 +37,7 @@ class OpenUnion:
         self.names = {record.model_fields["type"].default: record for record in known}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        union = Annotated[Union[self.known], Field(discriminator="type")]  # type: ignore[valid-type]  # noqa: UP007
+        union: Any = Annotated[reduce(or_, self.known), Field(discriminator="type")]
         return core_schema.no_info_wrap_validator_function(
             self._own_first,
             handler.generate_schema(union),
