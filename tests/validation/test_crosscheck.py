@@ -41,22 +41,13 @@ def test_pendulum_stop_with_hunt_crossley_meets_the_agreed_tolerances() -> None:
 @needs_exudyn
 @pytest.mark.parametrize(
     "law",
-    [
-        "hertz",
-        "kelvin_voigt",
-        "kelvin_voigt_gap",
-        "hunt_crossley",
-        "carvalho_martins",
-        "lankarani_nikravesh",
-        "flores",
-        "gonthier",
-    ],
+    ["hertz", "kelvin_voigt", "hunt_crossley", "carvalho_martins", "lankarani_nikravesh", "flores", "gonthier"],
 )
 def test_every_force_law_agrees(law: str) -> None:
     found = crosscheck("bouncing_ball", law=law, stiffness=1e5, height=0.3, t_end=0.9)
     assert found.ok, verdicts(found)
     # the force of Kelvin-Voigt jumps at first touch, which limits what exudyn's fixed steps can decide
-    assert law.startswith("kelvin_voigt") or not found.undecided, verdicts(found)
+    assert law == "kelvin_voigt" or not found.undecided, verdicts(found)
 
 
 @needs_exudyn
