@@ -1,6 +1,7 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+<<<<<<< HEAD
 from .contact.friction import CoulombFriction, TanhFriction
 from .contact.laws import (
     Flores,
@@ -12,6 +13,27 @@ from .contact.laws import (
     NewtonImpact,
     PoissonImpact,
 )
+=======
+from .contact.laws import (
+    CarvalhoMartins,
+    Flores,
+    ForceLaw,
+    Gonthier,
+    HerbertMcWhannell,
+    Hertz,
+    HuGuo,
+    HuntCrossley,
+    KelvinVoigt,
+    KuwabaraKono,
+    LankaraniNikravesh,
+    LeeWang,
+    NewtonImpact,
+    Tsuji,
+    ZhiyingQishao,
+    force_formula,
+)
+from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
+>>>>>>> laws
 from .description import Model
 from .elements import (
     AppliedForce2D,
@@ -44,6 +66,7 @@ __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
     "Bushing2D",
+    "CarvalhoMartins",
     "Channel",
     "ConsistencyError",
     "Constant",
@@ -57,16 +80,22 @@ __all__ = [
     "EquationSystem",
     "Event",
     "Flores",
+    "ForceLaw",
     "GapContact",
     "Gonthier",
     "HalfPlane2D",
+    "HerbertMcWhannell",
     "Hertz",
+    "HuGuo",
     "HuntCrossley",
     "Input",
     "InputSignal",
     "KelvinVoigt",
+    "KuwabaraKono",
     "LankaraniNikravesh",
+    "LeeWang",
     "Marker2D",
+    "Material",
     "Model",
     "ModelError",
     "NewtonImpact",
@@ -89,5 +118,10 @@ __all__ = [
     "Table",
     "TanhFriction",
     "TlismniError",
+    "Tsuji",
+    "ZhiyingQishao",
+    "force_formula",
     "simulate",
+    "sphere_on_plane",
+    "sphere_on_sphere",
 ]

@@ -89,7 +89,7 @@ class Contact2D(Element):
     def _law_columns(self, numbering: Numbering) -> Row:
         """What every contact's row has: columns 7 to 15 of the parameters, and the extra indices."""
         if isinstance(self.law, ForceLaw):
-            parameters = self.law.parameters()
+            parameters = self.law.formula_parameters()
             address = numbering.law_address(self.law)
         else:
             parameters, address = (0.0, 0.0, 0.0, 0.0), 0
