@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
-from ..compiled.records import ArrayRecord
 from ..contact import machine
 from ..contact.impact import unit_impulse
 from ..contact.laws import ForceLaw
@@ -21,8 +20,8 @@ from ..errors import CallbackError, ConsistencyError, ModelError, SimulationErro
 from ..events import Event, Fallback
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
-from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, K, step_address
-from ..methods.registry import FINE_STARTER, STARTER, Formula, get_formula
+from ..methods.records import step_address
+from ..methods.registry import FINE_STARTER, Formula, get_formula
 from ..stage import OUTER_LOOPS
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
@@ -32,33 +31,17 @@ from ..system.partition import prepare
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.redundancy import RedundantRow, choose_rows, describe
 from ..system.workspace import Workspace
-from .controllers import CONTROLLERS
 from .dense_output import query
 from .near_singular import smooth_query, strained
 from .output import ChannelTable
-from .records import (
-    A2,
-    B1,
-    B2,
-    BREAK_TIME,
-    CLOCK_SIZE,
-    EAGER,
-    FIXED_STEP,
-    GROWTH,
-    HOLD,
-    LOG_COLUMNS,
-    LOOP,
-    MAX_STEP,
-    STEP_SIZE,
-    STOP_TIME,
-)
-from .sample import empty_buffer, sample_length, write_sample
+from .records import MAX_STEP, STEP_SIZE
+from .sample import write_sample
 from .settings import Settings, set_control
+from .setup import build_loop, build_method
 from .watch import FORCE_ROUNDING, remember
 
 logger = logging.getLogger(__name__)
 
-HISTORY_ROWS = 12
 FIRST_TOUCH = 1e-8
 
 
@@ -124,8 +107,14 @@ class Engine:
         self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
         self.fallbacks: list[Fallback] = []
-        self._build_method()
-        self._build_loop(record, step_records)
+        self.use_outer_loop(outer)
+        self._method = build_method(self.formula, self.settings, self.workspace.row_length)
+        self.method_arrays: dict[str, NDArray[Any]] = self._method.arrays
+        self._loop = build_loop(self.assembly, self.formula, self.settings, record, step_records)
+        self.clock, self.watch = self._loop.arrays["clock"], self._loop.arrays["watch"]
+        self.buffer, self.cursor = self._loop.arrays["samples"], self._loop.arrays["cursor"]
+        self.log_buffer, self.log_cursor = self._loop.arrays["log"], self._loop.arrays["log_cursor"]
+        self.fine_starter = step_address(FINE_STARTER)
         set_control(self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays)
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
@@ -133,27 +122,6 @@ class Engine:
             self._start()
 
     # ---- set-up -------------------------------------------------------------------------------------------------
-
-    def _build_method(self) -> None:
-        self.use_outer_loop(self.settings.outer)
-        formula, length = self.formula, self.workspace.row_length
-        parameters = np.zeros(8)
-        parameters[: len(formula.parameters)] = formula.parameters
-        parameters[ESTIMATE] = 1.0 if self.settings.step is None else 0.0
-        weights = np.zeros((8, MAX_NODES))
-        for row, values in zip(weights, formula.weights, strict=False):
-            row[: len(values)] = values
-        self.method_arrays: dict[str, NDArray[Any]] = {
-            "history": np.zeros((HISTORY_ROWS, length)),
-            "times": np.zeros(HISTORY_ROWS),
-            "ring": np.zeros(2, dtype=np.int64),
-            "parameters": parameters,
-            "weights": weights,
-            "error": np.zeros(2),
-            "choice": np.zeros(CHOICE_SIZE),
-        }
-        self.method_arrays["choice"][K] = formula.k
-        self._method = ArrayRecord(METHOD, self.method_arrays, {"capacity": HISTORY_ROWS, "exact": int(formula.exact)})
 
     def use_outer_loop(self, name: str) -> None:
         """Solve stages with the outer loop `name` from now on.
@@ -175,49 +143,6 @@ class Engine:
         control = self.workspace.arrays["control"]
         control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, float(name == "simple")
         self.workspace.arrays["rate"][FACTOR_AGE] = -1.0
-
-    def _build_loop(self, record: bool, step_records: bool) -> None:
-        a = self.assembly
-        length = sample_length(a.n, a.m, len(a.contacts), len(a.work_names))
-        capacity = max(16, min(4096, 4_000_000 // length)) if record else 0
-        self.buffer = empty_buffer(max(capacity, 1), length)
-        self.clock = np.zeros(CLOCK_SIZE)
-        self.clock[FIXED_STEP] = self.settings.step or 0.0
-        self.clock[GROWTH], self.clock[HOLD] = self.formula.growth, float(self.formula.rows)
-        controller = CONTROLLERS[self.settings.controller]
-        self.clock[B1], self.clock[B2], self.clock[A2] = controller.b1, controller.b2, controller.a2
-        self.clock[EAGER] = float(self.settings.fallback)
-        self.clock[MAX_STEP] = min(self.settings.max_step or math.inf, a.longest_step)
-        self.clock[STOP_TIME] = self.clock[BREAK_TIME] = math.inf
-        fixed = self.settings.step is not None
-        self.starter = step_address(FINE_STARTER if fixed else STARTER)
-        self.fine_starter = step_address(FINE_STARTER)
-        self.cursor = np.zeros(1, dtype=np.int64)
-        self.watch = np.zeros((max(len(a.contacts), 1), 3))
-        log_capacity = 4096 if step_records else 0
-        self.log_buffer = empty_buffer(max(log_capacity, 1), len(LOG_COLUMNS))
-        self.log_cursor = np.zeros(1, dtype=np.int64)
-        self._loop = ArrayRecord(
-            LOOP,
-            {
-                "clock": self.clock,
-                "watch": self.watch,
-                "leap": a.leap,
-                "samples": self.buffer,
-                "cursor": self.cursor,
-                "log": self.log_buffer,
-                "log_cursor": self.log_cursor,
-            },
-            {
-                "select": 0 if self.formula.select is None else step_address(self.formula.select),
-                "log_capacity": log_capacity,
-                "step": step_address(self.formula.step),
-                "starter": self.starter,
-                "rows": self.formula.rows,
-                "capacity": capacity,
-                "sample_length": length,
-            },
-        )
 
     def _start(self) -> None:
         arrays, a = self.workspace.arrays, self.assembly
