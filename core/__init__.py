@@ -1,19 +1,8 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-<<<<<<< HEAD
+from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
 from .contact.friction import CoulombFriction, TanhFriction
-from .contact.laws import (
-    Flores,
-    Gonthier,
-    Hertz,
-    HuntCrossley,
-    KelvinVoigt,
-    LankaraniNikravesh,
-    NewtonImpact,
-    PoissonImpact,
-)
-=======
 from .contact.laws import (
     CarvalhoMartins,
     Flores,
@@ -28,19 +17,21 @@ from .contact.laws import (
     LankaraniNikravesh,
     LeeWang,
     NewtonImpact,
+    PoissonImpact,
     Tsuji,
     ZhiyingQishao,
     force_formula,
 )
 from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
->>>>>>> laws
 from .description import Model
 from .elements import (
     AppliedForce2D,
     AppliedTorque2D,
     Bushing2D,
     CoordinateDriver,
+    CoordinateLoad,
     Distance2D,
+    LinearSystem,
     PointMass2D,
     Prismatic2D,
     Revolute2D,
@@ -70,7 +61,10 @@ __all__ = [
     "Channel",
     "ConsistencyError",
     "Constant",
+    "CoordinateContact",
     "CoordinateDriver",
+    "CoordinateLoad",
+    "CoordinateTerm",
     "CoulombFriction",
     "Disk2D",
     "DiskOnDisk2D",
@@ -94,6 +88,7 @@ __all__ = [
     "KuwabaraKono",
     "LankaraniNikravesh",
     "LeeWang",
+    "LinearSystem",
     "Marker2D",
     "Material",
     "Model",

@@ -10,6 +10,9 @@ from .modes import ACTIVE, APPROACH_SPEED, LARGEST_APPROACH, LOSS_JUMP, MODE, OP
 if TYPE_CHECKING:
     from ..integrate.engine import Engine
 
+DEEPEST = 1e12
+"""m; a penetration at which every spring that holds anything does."""
+
 
 def handle_force(sim: "Engine", k: int, law: ForceLaw) -> None:
     """Contact k with a force law has an event at the workspace's current point."""
@@ -36,7 +39,8 @@ def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) 
     """Speed with which shapes that are laid on each other settle: sqrt(g d), with g the acceleration that presses them
     and d the static penetration under it, m/s.
 
-    Laws that divide by the approach speed would hold a contact that begins without one like glue.
+    Laws that divide by the approach speed would hold a contact that begins without one like glue. 0 for a law whose
+    spring holds nothing.
     """
     pressing = -float(sim.workspace.arrays["phidd"][contact.row])
     if pressing <= 0.0:
@@ -45,6 +49,8 @@ def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) 
     low, high = 0.0, 1e-12
     while law.evaluate(high, 0.0, 1.0)[3] < weight:
         low, high = high, 2.0 * high
+        if high > DEEPEST:
+            return 0.0
     for _ in range(50):
         middle = 0.5 * (low + high)
         if law.evaluate(middle, 0.0, 1.0)[3] < weight:

@@ -144,62 +144,10 @@ def _impact(sim: "Engine", touching: Touching, now: _Settling, rounding: float) 
     if np.any(low):
         bounced, velocities = impact, sim.workspace.arrays["v"].copy()
         sim.workspace.arrays["v"][:] = before
-<<<<<<< HEAD
         impact = _strike(sim, touching, np.where(low, 0.0, restitution), rounding)
         stay = _solve_forces(sim, touching, now, rounding)[0].normal > 0.0
         if np.all(stay[low]):
             now.rests = {k for k, rest in zip(contacts, low, strict=True) if rest}
-=======
-        for j in pulling:
-            sim.memory[j, MODE] = OPEN
-        released += pulling
-
-
-def _close(sim: "Engine", k: int, kind: str, approach: float) -> None:
-    sim.memory[k, MODE] = CLOSED
-    sim.use_modes()
-    sim.add_event(Event(sim.t_internal, kind, sim.assembly.contacts[k].name, approach_speed=max(approach, 0.0)))
-
-
-def _open(sim: "Engine", k: int, contact: ContactInfo) -> None:
-    sim.memory[k, MODE] = OPEN
-    sim.use_modes()
-    sim.add_event(Event(sim.t_internal, "open", contact.name, separation_speed=max(sim.gap_rate(k), 0.0)))
-
-
-def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> None:
-    memory = sim.memory[k]
-    approach = -sim.gap_rate(k)
-    memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed, _settling_speed(sim, k, contact, law))
-    memory[MODE] = ACTIVE
-    memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
-    sim.open_accounts[k] = sim.contact_accounts(k)
-    sim.use_modes()
-    sim.start_small(memory[APPROACH_SPEED])
-    sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
-
-
-def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> float:
-    """Speed with which shapes that are laid on each other settle: sqrt(g d), with g the acceleration that presses them
-    and d the static penetration under it, m/s.
-
-    Laws that divide by the approach speed would hold a contact that begins without one like glue. 0 for a law whose
-    spring holds nothing.
-    """
-    pressing = -float(sim.workspace.arrays["phidd"][contact.row])
-    if pressing <= 0.0:
-        return 0.0
-    weight = pressing * sim.effective_mass(k)
-    low, high = 0.0, 1e-12
-    while law.evaluate(high, 0.0, 1.0)[3] < weight:
-        low, high = high, 2.0 * high
-        if high > DEEPEST:
-            return 0.0
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        if law.evaluate(middle, 0.0, 1.0)[3] < weight:
-            low = middle
->>>>>>> laws
         else:
             sim.workspace.arrays["v"][:] = velocities
             impact = bounced

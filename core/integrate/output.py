@@ -11,10 +11,6 @@ from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel
 from ..system.assembly import Assembly
 
-_RATES = {"x": ("vx", "m/s"), "y": ("vy", "m/s"), "angle": ("angular_velocity", "rad/s")}
-_ACCELERATIONS = {"x": ("ax", "m/s2"), "y": ("ay", "m/s2"), "angle": ("angular_acceleration", "rad/s2")}
-_UNITS = {"x": "m", "y": "m", "angle": "rad"}
-
 
 class SampleLayout:
     """Where things stand in a sample (see `sample.py`)."""
@@ -178,22 +174,17 @@ class ChannelTable:
         return float(sample[layout.kinetic] + sample[layout.potential] + sample[layout.strain])
 
 
-def planar_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, int]]:
+def body_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, int]]:
     """Position, velocity and acceleration of every body coordinate, with their columns in a sample."""
-    columns: list[tuple[Channel, int]] = []
-
-    def add(name: str, unit: str, description: str, at: int) -> None:
-        columns.append((Channel(name, unit, description), at))
-
+    columns = []
     for body, coordinate, index in assembly.body_columns:
-        rate, rate_unit = _RATES[coordinate]
-        acceleration, acceleration_unit = _ACCELERATIONS[coordinate]
-        add(f"{body}.{coordinate}", _UNITS[coordinate], f"{coordinate} of {body}", layout.q.start + index)
-        add(f"{body}.{rate}", rate_unit, f"rate of {coordinate} of {body}", layout.v.start + index)
-        add(
-            f"{body}.{acceleration}", acceleration_unit, f"second rate of {coordinate} of {body}",
-            layout.a.start + index,
-        )  # fmt: skip
+        for level, (name, what, part) in enumerate((
+            (coordinate.name, "", layout.q),
+            (coordinate.rate, "rate of ", layout.v),
+            (coordinate.acceleration, "second rate of ", layout.a),
+        )):  # fmt: skip
+            channel = Channel(f"{body}.{name}", coordinate.unit_of(level), f"{what}{coordinate.name} of {body}")
+            columns.append((channel, part.start + index))
     return columns
 
 

@@ -8,15 +8,9 @@ from helpers import G, ball_over_floor, events
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
-<<<<<<< HEAD
-from scipy.special import gamma
-from tlismni.core import Flores, Gonthier, Hertz, HuntCrossley, KelvinVoigt, LankaraniNikravesh, simulate
-from tlismni.core.contact.laws import LAWS, ForceLaw, NewtonImpact
-=======
 from strikes import hertz_contact, ratio, rebound, strike
 from tlismni.core import Flores, Gonthier, Hertz, HuntCrossley, KelvinVoigt, LankaraniNikravesh, Tsuji, simulate
-from tlismni.core.contact.laws import LAWS, NewtonImpact
->>>>>>> laws
+from tlismni.core.contact.laws import LAWS, ForceLaw
 
 quick = settings(deadline=None, max_examples=12, derandomize=True)
 

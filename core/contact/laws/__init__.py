@@ -20,18 +20,8 @@ from .hunt_crossley import (
     ZhiyingQishao,
 )
 from .kelvin_voigt import KelvinVoigt
-<<<<<<< HEAD
-from .restitution import ImpactLaw, NewtonImpact, PoissonImpact
-
-LAWS = (NewtonImpact, PoissonImpact, Hertz, KelvinVoigt, HuntCrossley, LankaraniNikravesh, Flores, Gonthier)
-
-ContactLaw = Annotated[
-    NewtonImpact | PoissonImpact | Hertz | KelvinVoigt | HuntCrossley | LankaraniNikravesh | Flores | Gonthier,
-    Field(discriminator="type"),
-]
-=======
 from .own import force_formula
-from .restitution import NewtonImpact
+from .restitution import ImpactLaw, NewtonImpact, PoissonImpact
 from .viscoelastic import KuwabaraKono, Tsuji
 
 FORCE_LAWS = (
@@ -49,10 +39,9 @@ FORCE_LAWS = (
     HuGuo,
     CarvalhoMartins,
 )
-LAWS = (NewtonImpact, *FORCE_LAWS)
+LAWS = (NewtonImpact, PoissonImpact, *FORCE_LAWS)
 
-ContactLaw = Annotated[NewtonImpact | ForceLaw, OpenUnion(LAWS, ForceLaw)]
->>>>>>> laws
+ContactLaw = Annotated[ImpactLaw | ForceLaw, OpenUnion(LAWS, ForceLaw)]
 
 __all__ = [
     "FORCE_LAWS",
@@ -73,12 +62,9 @@ __all__ = [
     "LankaraniNikravesh",
     "LeeWang",
     "NewtonImpact",
-<<<<<<< HEAD
     "PoissonImpact",
-=======
     "Tsuji",
     "ZhiyingQishao",
->>>>>>> laws
     "call_law",
     "force_formula",
     "law_address",
