@@ -227,6 +227,8 @@ def _solve_forces(
     size = np.max(np.abs(touching.normal), axis=1)
     none = NO_ACCELERATION * level
     b_n = np.where(np.abs(b_n) <= none * size, 0.0, b_n)
+    along = np.max(np.abs(touching.tangential), axis=1)
+    b_t = np.where(np.abs(b_t) <= none * along, 0.0, b_t)
     mu = np.array(
         [
             0.0 if c.coulomb is None else c.coulomb.coefficient if d else c.coulomb.sticking_coefficient
@@ -253,8 +255,7 @@ def _for(
 ) -> ContactSolution:  # fmt: skip
     """The solution with the contacts `takes`; the others get no force."""
     a, some = touching.a, np.flatnonzero(takes)
-    part = type(a)(a.nn[np.ix_(some, some)], a.nt[np.ix_(some, some)], a.tt[np.ix_(some, some)])
-    found = solve_contacts(part, b_n[some], b_t[some], mu[some], direction[some])
+    found = solve_contacts(a.among(some), b_n[some], b_t[some], mu[some], direction[some])
     normal, tangential = np.zeros(len(b_n)), np.zeros(len(b_n))
     normal[some], tangential[some] = found.normal, found.tangential
     return ContactSolution(
