@@ -1,6 +1,8 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
+from .contact.friction import CoulombFriction, TanhFriction
 from .contact.laws import (
     CarvalhoMartins,
     Flores,
@@ -15,6 +17,7 @@ from .contact.laws import (
     LankaraniNikravesh,
     LeeWang,
     NewtonImpact,
+    PoissonImpact,
     Tsuji,
     ZhiyingQishao,
     force_formula,
@@ -26,7 +29,9 @@ from .elements import (
     AppliedTorque2D,
     Bushing2D,
     CoordinateDriver,
+    CoordinateLoad,
     Distance2D,
+    LinearSystem,
     PointMass2D,
     Prismatic2D,
     Revolute2D,
@@ -56,7 +61,11 @@ __all__ = [
     "Channel",
     "ConsistencyError",
     "Constant",
+    "CoordinateContact",
     "CoordinateDriver",
+    "CoordinateLoad",
+    "CoordinateTerm",
+    "CoulombFriction",
     "Disk2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
@@ -79,6 +88,7 @@ __all__ = [
     "KuwabaraKono",
     "LankaraniNikravesh",
     "LeeWang",
+    "LinearSystem",
     "Marker2D",
     "Material",
     "Model",
@@ -86,6 +96,7 @@ __all__ = [
     "NewtonImpact",
     "Parameter",
     "PointMass2D",
+    "PoissonImpact",
     "Polynomial",
     "Prismatic2D",
     "Ramp",
@@ -100,6 +111,7 @@ __all__ = [
     "State",
     "Step",
     "Table",
+    "TanhFriction",
     "TlismniError",
     "Tsuji",
     "ZhiyingQishao",

@@ -9,7 +9,7 @@ approximated.
 
 import math
 
-from ...core.contact.laws import CarvalhoMartins, Hertz, HuntCrossley, KelvinVoigt, NewtonImpact
+from ...core.contact.laws import CarvalhoMartins, Hertz, HuntCrossley, ImpactLaw, KelvinVoigt
 from ...core.contact.laws.hunt_crossley import HuntCrossleyFamily
 from ..errors import NotTranslatable
 
@@ -26,9 +26,9 @@ def contact_parameters(law: object, contact: str) -> dict[str, float | int]:
     ------
     NotTranslatable : for constraint contact and for laws that are not of exudyn's form.
     """
-    if isinstance(law, NewtonImpact):
+    if isinstance(law, ImpactLaw):
         raise NotTranslatable(
-            f"contact '{contact}' is a constraint (NewtonImpact), and exudyn has contact by force only. "
+            f"contact '{contact}' is a constraint ({type(law).__name__}), and exudyn has contact by force only. "
             "`crosscheck` compares it with the limit of three force laws of growing stiffness instead"
         )
     # a subclass may have a formula of its own: only the family's members are known by more than their type

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from ...core.contact.laws import KelvinVoigt
+from ...core.elements import PlanarBody
 from ...core.model.markers import GROUND, Marker2D
 from .contact_laws import contact_parameters
 from .kinematics import BodyStates, States, gap_motion
@@ -117,6 +118,8 @@ def _data_node(build: Build, shapes: Shapes) -> Any:
     """Node of the contact's memory, with the gap at the start: exudyn's active set begins with it."""
     bodies = {}
     for b in build.model.bodies:
+        if not isinstance(b, PlanarBody):
+            continue
         q, v = b.initial_state()
         bodies[b.name] = BodyStates(*(np.atleast_1d(x) for x in (*(*q, 0.0)[:3], *(*v, 0.0)[:3])))
     gap = float(gap_motion(shapes, States(1, bodies)).gap[0])
@@ -129,5 +132,6 @@ def _size(build: Build) -> float:
     for element in build.model.elements():
         lengths += [abs(x) for marker in element.markers() for x in marker.point]
     for body in build.model.bodies:
-        lengths += [abs(x) for x in body.position]
+        if isinstance(body, PlanarBody):
+            lengths += [abs(x) for x in body.position]
     return max(lengths)

@@ -21,7 +21,7 @@ from .hunt_crossley import (
 )
 from .kelvin_voigt import KelvinVoigt
 from .own import force_formula
-from .restitution import NewtonImpact
+from .restitution import ImpactLaw, NewtonImpact, PoissonImpact
 from .viscoelastic import KuwabaraKono, Tsuji
 
 FORCE_LAWS = (
@@ -39,9 +39,9 @@ FORCE_LAWS = (
     HuGuo,
     CarvalhoMartins,
 )
-LAWS = (NewtonImpact, *FORCE_LAWS)
+LAWS = (NewtonImpact, PoissonImpact, *FORCE_LAWS)
 
-ContactLaw = Annotated[NewtonImpact | ForceLaw, OpenUnion(LAWS, ForceLaw)]
+ContactLaw = Annotated[ImpactLaw | ForceLaw, OpenUnion(LAWS, ForceLaw)]
 
 __all__ = [
     "FORCE_LAWS",
@@ -56,11 +56,13 @@ __all__ = [
     "Hertz",
     "HuGuo",
     "HuntCrossley",
+    "ImpactLaw",
     "KelvinVoigt",
     "KuwabaraKono",
     "LankaraniNikravesh",
     "LeeWang",
     "NewtonImpact",
+    "PoissonImpact",
     "Tsuji",
     "ZhiyingQishao",
     "call_law",

@@ -1,0 +1,102 @@
+"""The records of one run: what its formula remembers, and what its time loop works with."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled.records import ArrayRecord
+from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, K, step_address
+from ..methods.registry import FINE_STARTER, STARTER, Formula
+from ..system.assembly import Assembly
+from .controllers import CONTROLLERS
+from .records import (
+    A2,
+    B1,
+    B2,
+    BREAK_TIME,
+    CLOCK_SIZE,
+    EAGER,
+    FIXED_STEP,
+    GROWTH,
+    HOLD,
+    LOG_COLUMNS,
+    LOOP,
+    MAX_STEP,
+    STOP_TIME,
+)
+from .sample import empty_buffer, sample_length
+from .settings import Settings
+
+HISTORY_ROWS = 12
+"""Rows of (q, v, a) that a multistep formula may look back on."""
+_LARGEST_BUFFER = 4_000_000
+_LOG_ROWS = 4096
+
+
+def build_method(formula: Formula, settings: Settings, row_length: int) -> ArrayRecord:
+    """The METHOD record of a formula: its coefficients and an empty history of rows of `row_length` numbers."""
+    parameters = np.zeros(8)
+    parameters[: len(formula.parameters)] = formula.parameters
+    parameters[ESTIMATE] = 1.0 if settings.step is None else 0.0
+    weights = np.zeros((8, MAX_NODES))
+    for row, values in zip(weights, formula.weights, strict=False):
+        row[: len(values)] = values
+    choice = np.zeros(CHOICE_SIZE)
+    choice[K] = formula.k
+    return ArrayRecord(
+        METHOD,
+        {
+            "history": np.zeros((HISTORY_ROWS, row_length)),
+            "times": np.zeros(HISTORY_ROWS),
+            "ring": np.zeros(2, dtype=np.int64),
+            "parameters": parameters,
+            "weights": weights,
+            "error": np.zeros(2),
+            "choice": choice,
+        },
+        {"capacity": HISTORY_ROWS, "exact": int(formula.exact)},
+    )
+
+
+def _clock(formula: Formula, settings: Settings, longest_step: float) -> NDArray[np.float64]:
+    """What the time loop knows about steps before the first one (`records.py`)."""
+    clock = np.zeros(CLOCK_SIZE)
+    clock[FIXED_STEP] = settings.step or 0.0
+    clock[GROWTH], clock[HOLD] = formula.growth, float(formula.rows)
+    controller = CONTROLLERS[settings.controller]
+    clock[B1], clock[B2], clock[A2] = controller.b1, controller.b2, controller.a2
+    clock[EAGER] = float(settings.fallback)
+    clock[MAX_STEP] = min(settings.max_step or math.inf, longest_step)
+    clock[STOP_TIME] = clock[BREAK_TIME] = math.inf
+    return clock
+
+
+def build_loop(
+    assembly: Assembly, formula: Formula, settings: Settings, record: bool, step_records: bool
+) -> ArrayRecord:
+    """The LOOP record of a run; buffers have room for one row only where nothing is to be recorded."""
+    length = sample_length(assembly.n, assembly.m, len(assembly.contacts), len(assembly.work_names))
+    capacity = max(16, min(4096, _LARGEST_BUFFER // length)) if record else 0
+    log_capacity = _LOG_ROWS if step_records else 0
+    return ArrayRecord(
+        LOOP,
+        {
+            "clock": _clock(formula, settings, assembly.longest_step),
+            "watch": np.zeros((max(len(assembly.contacts), 1), 3)),
+            "leap": assembly.leap,
+            "samples": empty_buffer(max(capacity, 1), length),
+            "cursor": np.zeros(1, dtype=np.int64),
+            "log": empty_buffer(max(log_capacity, 1), len(LOG_COLUMNS)),
+            "log_cursor": np.zeros(1, dtype=np.int64),
+        },
+        {
+            "select": 0 if formula.select is None else step_address(formula.select),
+            "log_capacity": log_capacity,
+            "step": step_address(formula.step),
+            "starter": step_address(STARTER if settings.step is None else FINE_STARTER),
+            "rows": formula.rows,
+            "capacity": capacity,
+            "sample_length": length,
+        },
+    )
