@@ -41,6 +41,7 @@ def newtons_cradle(
     stiffness: float,
     exponent: float,
     damping: float | None,
+    relaxation_time: float | None,
 ) -> Scenario:
     """Bodies `ball1` ... from left to right, joints `string1` ..., contacts `contact1` ... (ball k with ball k + 1).
 
@@ -52,7 +53,13 @@ def newtons_cradle(
     if released >= balls:
         raise ScenarioError(f"released = {released} must be below balls = {balls}: else nothing is struck")
     contact = contact_law(
-        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping, mass=0.5 * mass
+        law,
+        restitution=restitution,
+        stiffness=stiffness,
+        exponent=exponent,
+        damping=damping,
+        relaxation_time=relaxation_time,
+        mass=0.5 * mass,
     )
     spacing = 2.0 * radius + gap
     bodies, strings = [], []

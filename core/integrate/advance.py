@@ -259,16 +259,16 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     mode = float(sim.memory[k, MODE])
     arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
     by_force = mode == CLOSED or (mode == ACTIVE and end[0] <= 0.0) or (mode not in (OPEN, ACTIVE) and end[0] <= 0.0)
+    force_sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
+    slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
+
+    def margin(step: float) -> float:
+        _trial(sim, step, h)
+        force = force_sign * float(arrays["monitor"][k])
+        return min(force, friction_margin(sim.workspace.record, k)) if slides else force
+
     if by_force:
-        sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
-        slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
-
-        def value(step: float) -> float:
-            _trial(sim, step, h)
-            force = sign * float(arrays["monitor"][k])
-            return min(force, friction_margin(sim.workspace.record, k)) if slides else force
-
-        return find_root(value, 0.0, h, 0.5 * h, 0.0)
+        return find_root(margin, 0.0, h, 0.5 * h, 0.0)
     down = mode == OPEN
     sign = 1.0 if down else -1.0
     start = tuple(float(x) for x in sim.watch[k])
@@ -297,7 +297,11 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
             break
         low_step, high_step = 0.5 * low_step, low_step
     guess = 0.5 * (low_step + high_step)
-    return find_root(gap, low_step, high_step, guess, 2e-16 * size)
+    opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
+    if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
+        # the gap opens within this step, but the force has become tensile before
+        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0)
+    return opened
 
 
 def _warn_of_jump(sim: "Simulation", t: float) -> None:
