@@ -165,3 +165,32 @@ def constrain(
         for i in range(6):
             values[slot_j[6 * local_row + i]] += factor * gradient[i]
             values[slot_jt[6 * local_row + i]] += factor * gradient[i]
+
+
+@internal
+def bearing(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """Direction (rad) of the line from point a (offset u) to point b (offset w), with gradient(6) and Hessian(21).
+
+    With d = r_b - r_a: phi_i = (d x d_i)/D, phi_ij = (d_j x d_i + d x d_ij)/D - phi_i D_j/D, D = d . d.
+    """
+    ta, tb = q[coord[2]], q[coord[5]]
+    ca, sa = math.cos(ta), math.sin(ta)
+    ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
+    cb, sb = math.cos(tb), math.sin(tb)
+    bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    dx = q[coord[3]] + bx - q[coord[0]] - ax
+    dy = q[coord[4]] + by - q[coord[1]] - ay
+    square = dx * dx + dy * dy
+    x1, y1 = (-1.0, 0.0, ay, 1.0, 0.0, -by), (0.0, -1.0, -ax, 0.0, 1.0, bx)
+    # second derivatives exist only with respect to each angle
+    x2, y2 = (0.0, 0.0, ax, 0.0, 0.0, -bx), (0.0, 0.0, ay, 0.0, 0.0, -by)
+    gradient = np.empty(6)
+    hessian = np.empty(21)
+    for i in range(6):
+        gradient[i] = (dx * y1[i] - dy * x1[i]) / square
+    for k in range(21):
+        i, j = HESSIAN_PAIRS[k, 0], HESSIAN_PAIRS[k, 1]
+        second = dx * y2[i] - dy * x2[i] if i == j else 0.0
+        growth = 2.0 * (dx * x1[j] + dy * y1[j]) / square
+        hessian[k] = (x1[j] * y1[i] - y1[j] * x1[i] + second) / square - gradient[i] * growth
+    return math.atan2(dy, dx), gradient, hessian

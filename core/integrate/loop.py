@@ -70,6 +70,7 @@ from .watch import any_crossed, remember
 LOG_SIZE = len(LOG_COLUMNS)
 # Rounding of a coordinate, relative to the largest, that differences over several steps make of 2e-16.
 ROUNDING = 2e-13
+AWAY = 8.0  # decrease of the condition after which a singular position is looked for anew
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
 LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
 REDUNDANT_TOLERANCE = 1e-8  # violation of a redundant row that shows that it is not; absolute up to 1, then relative
@@ -267,6 +268,9 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             # the stop time itself, not t + h with its rounding
             vec(ws.t, 1)[0] = stop
         accept(ws, ms, lc)
+        if AWAY * rate[CONDITION] < rate[LOOKED_CONDITION]:
+            # not within a trial: a step that leads astray would be looked at again and again
+            rate[LOOKED_CONDITION] = 0.0
         strained = partition_strained(ws)
         if not fixed:
             norm, order, hold = error[0], error[1], clock[HOLD]

@@ -20,7 +20,6 @@ from ..system.records import (
     LAST_INNER,
     LAST_OUTER,
     LEAST_CONDITION,
-    LOOKED_CONDITION,
     OK,
     OUTER_RATE,
     RATE_SIZE,
@@ -32,8 +31,6 @@ from ..system.records import (
 
 # Growth of the condition after which other redundant rows may be the better ones to leave out.
 CHOICE_GROWTH = 3.0
-# Decrease of the condition after which a singular position is looked for anew.
-AWAY = 8.0
 
 
 @internal
@@ -103,8 +100,6 @@ def _measure_condition(ws: Any) -> None:
         largest = max(largest, abs(rhs[i]) / scale[i])
     rate[CONDITION] = largest
     rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
-    if AWAY * largest < rate[LOOKED_CONDITION]:
-        rate[LOOKED_CONDITION] = 0.0
     if rate[CHOICE_CONDITION] == 0.0 or CHOICE_GROWTH * largest < rate[CHOICE_CONDITION]:
         rate[CHOICE_CONDITION] = largest
     if rate[LEAST_CONDITION] == 0.0 or largest < rate[LEAST_CONDITION]:

@@ -17,6 +17,7 @@ WORKSPACE = np.dtype(
             "values", "coef", "energy", "monitor", "memory", "inputs",
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
+            "contact_slide_rows", "contact_sticking",
             # structure (changes with the set of engaged contacts)
             "active", "redundant", "n_redundant", "probe",
             "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",

@@ -12,6 +12,7 @@ from tlismni.core import (
     Bushing2D,
     Constant,
     CoordinateDriver,
+    CoordinateLoad,
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
@@ -25,6 +26,7 @@ from tlismni.core import (
     InputSignal,
     KelvinVoigt,
     LankaraniNikravesh,
+    LinearSystem,
     Marker2D,
     Model,
     ModelError,
@@ -77,6 +79,13 @@ ELEMENTS = {
             RigidBody2D, name=st.just("x"), mass=positive, inertia=positive, position=vector, velocity=vector,
             angle=number, angular_velocity=number,
         ),
+        st.builds(
+            LinearSystem, name=st.just("x"), coordinates=st.just(("u", "angle")),
+            mass=st.tuples(positive, positive).map(lambda d: ((d[0], 0.0), (0.0, d[1]))),
+            damping=st.none() | st.tuples(vector, vector), stiffness=st.none() | number.map(lambda k: ((k, k), (k, k))),
+            force=st.none() | vector, position=st.none() | vector, velocity=st.none() | vector,
+            units=st.none() | st.just(("m", "rad")), scales=st.none() | st.tuples(positive, positive),
+        ),
     ],
     "joints": [
         st.builds(Revolute2D, name=st.just("x"), a=marker, b=marker),
@@ -100,6 +109,10 @@ ELEMENTS = {
             AppliedForce2D, name=st.just("x"), marker=marker, force_x=signal, force_y=signal, follower=st.booleans()
         ),
         st.builds(AppliedTorque2D, name=st.just("x"), body=st.just("b"), torque=signal),
+        st.builds(
+            CoordinateLoad, name=st.just("x"), body=st.just("b"), coordinate=st.sampled_from(["x", "y", "angle"]),
+            load=signal,
+        ),
     ],
     "contacts": [
         st.builds(
@@ -144,7 +157,8 @@ def test_the_list_of_elements_above_is_complete():
     }
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
-        "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "DiskOnHalfPlane2D", "DiskOnDisk2D",
+        "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
+        "DiskOnDisk2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

@@ -13,7 +13,7 @@ from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio, kelvin_vo
 from tlismni.models.parameters import ScenarioParameter
 from tlismni.validation.translation.kinematics import BodyStates, States, gap_motion
 
-WITH_CONTACT = ("bouncing_ball", "pendulum_stop")
+WITH_CONTACT = ("bouncing_ball", "pendulum_stop", "double_pendulum_wall", "slider_crank_stop")
 
 
 def start_states(model: Model) -> States:
@@ -58,6 +58,17 @@ def test_every_law_starts_with_an_open_gap(name: str, law: str) -> None:
     (contact,) = model.contacts
     shapes = (contact.plane, contact.disk)
     assert gap_motion(shapes, start_states(model)).gap[0] > 0.1
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_every_law_reaches_all_contacts_of_the_cradle(law: str) -> None:
+    model = load("newtons_cradle", law=law, balls=4, gap=1e-3).model
+    states = start_states(model)
+    gaps = [gap_motion((c.a, c.b), states).gap[0] for c in model.contacts]
+    assert gaps[0] > 0.01 and gaps[1:] == pytest.approx([1e-3] * 2)
+    if law != "newton":
+        laws = [c.law for c in model.with_parameters({"stiffness": 5e6}).contacts]
+        assert [law.stiffness for law in laws] == [5e6] * 3
 
 
 def test_all_parameters_stand_in_the_scenario_with_their_values() -> None:
@@ -109,6 +120,10 @@ def test_the_stop_faces_the_pendulum_from_either_side(start: float, stop: float)
         (lambda: load("slider_crank", bushing_damping=1.0), "needs bushing_stiffness"),
         (lambda: load("slider_crank", bushing_stiffness=10.0), "too soft"),
         (lambda: load("four_bar", loops=0), "outside"),
+        (lambda: load("double_pendulum_wall", wall=0.9), "behind the touch with the wall"),
+        (lambda: load("slider_crank_stop", stop_angle=-3.0), "must lie below stop_angle"),
+        (lambda: load("slider_crank_stop", rod_length=0.15), "must exceed"),
+        (lambda: load("newtons_cradle", balls=3, released=3), "must be below balls"),
     ],
 )
 def test_wrong_names_and_values_are_refused_with_a_way_out(call, text: str) -> None:  # type: ignore[no-untyped-def]
