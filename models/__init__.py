@@ -7,6 +7,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     bouncing_ball,
     chain,
     four_bar,
+    impact_oscillator,
     pendulum,
     pendulum_stop,
     slider_crank,

@@ -55,7 +55,7 @@ def floquet_multipliers(
     sim = Simulation(system, method, rtol, atol, t0=t0, **options)
     n, arrays, end = sim.assembly.n, sim.workspace.arrays, t0 + period
     start = np.concatenate([arrays["q"][:n], arrays["v"][:n]])
-    variation = Variation(sim)
+    variation = Variation(sim, factors=True)
     first = np.vstack([variation.dq, variation.dv])
     product = np.eye(len(variation.exponents))
     while sim.t_internal < end:

@@ -8,13 +8,11 @@ from numpy.typing import NDArray
 
 from ..equations.system import EquationSystem
 from ..integrate.simulation import Simulation
+from .flight import VARYING
 from .linearise import colour_columns, matrix_at, tangent_rate
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-VARYING = 1e-13
-"""Relative change of the mass matrix within a step that is more than rounding."""
 
 
 @dataclass(frozen=True)

@@ -7,21 +7,26 @@ from numpy.typing import NDArray
 
 from ..contact.laws import NewtonImpact
 from ..errors import ModelError, SimulationError
+from ..integrate.advance import aim
 from ..integrate.engine import user_errors
+from ..integrate.records import CHUNK, EVENT, REACHED
 from ..integrate.simulation import Simulation
 from ..linalg import SingularMatrixError
-from .flow import NODES, Work, carry, make_work
+from .flight import STEP_LEFT, SUBSTEP, fly
+from .flow import NODES, STAGES, Work, carry, make_work
 from .layout import Layout, Layouts, mass_rates
 from .linearise import linearise
 from .saltation import cross, look
 
 Floats = NDArray[np.float64]
 
-SUBSTEP = 0.2
-"""Largest substep times the highest frequency: the relative error of Gauss' formula is then below 1e-9 a radian."""
 LOST = 1e-12
 """A variation that shrinks at an event by more than this, next to the longest one, has lost its direction."""
 MOST_SUBSTEPS = 20_000
+STEPS_AT_ONCE = 1000
+MOST_AT_ONCE = 8
+"""Substeps of one step without returning to Python, if LARGEST_ROOM numbers are room enough."""
+LARGEST_ROOM = 5_000_000
 
 
 class Variation:
@@ -31,6 +36,7 @@ class Variation:
     ----------
     sim : the run; `advance` steps it.
     columns : number of variations; None: as many as the state has dimensions.
+    factors : keep `last`, and so go step by step; else many steps at once.
 
     Attributes
     ----------
@@ -39,15 +45,15 @@ class Variation:
     growth : logarithms of the growth of the lengths (count,) since the start; -inf where the direction is lost.
     volume : what `growth` of all dimensions must add up to: integral of the divergence and 2 ln e of each impact.
     impacts : impacts so far.
-    last : R (columns, columns): the variations at the end of the last advance before they were made orthonormal are those
-        after times R.
+    last : R: the variations at the end of the last advance before they were made orthonormal are those after times R.
+        Only with `factors`.
 
     Raises
     ------
     ModelError : for a system whose contacts are forces, or a method that does not meet the constraints.
     """
 
-    def __init__(self, sim: Simulation, columns: int | None = None) -> None:
+    def __init__(self, sim: Simulation, columns: int | None = None, factors: bool = False) -> None:
         for contact in sim.assembly.contacts:
             if not isinstance(contact.law, NewtonImpact):
                 raise ModelError(
@@ -61,8 +67,9 @@ class Variation:
             )
         self.sim = sim
         self._layouts = Layouts(sim)
-        self._rooms: dict[tuple[int, int], Work] = {}
+        self._rooms: dict[tuple[int, int], tuple[Work, tuple[Floats, ...]]] = {}
         self._frequency = 0.0
+        self._step_by_step = factors
         size = 2 * self.freedom
         count = size if columns is None else columns
         if not 1 <= count <= size:
@@ -96,14 +103,20 @@ class Variation:
         basis[layout.dependent] = -np.linalg.solve(phi_q[:, layout.dependent], phi_q[:, layout.independent])
         return basis, np.linalg.cholesky(basis.T @ mass @ basis), mass
 
-    def _work(self, layout: Layout) -> Work:
-        key = layout.freedom, len(self.exponents)
-        if key not in self._rooms:
-            self._rooms[key] = make_work(layout.n, len(layout.active), len(self.exponents))
-        return self._rooms[key]
+    def _room(self, layout: Layout) -> tuple[Work, tuple[Floats, ...]]:
+        """Room for what `carry` and `fly` compute in the present structure."""
+        n, m, columns = layout.n, len(layout.active), len(self.exponents)
+        if (m, columns) not in self._rooms:
+            points = STAGES * max(1, min(MOST_AT_ONCE, LARGEST_ROOM // (STAGES * n * (3 * n + 2 * m)))) + 2
+            shapes = (
+                (points,), *[(points, n, n)] * 3, *[(points, m, n)] * 2, (points, 2 * n), (1, n, n), (columns, columns),
+                (n, columns), (n, columns),
+            )  # fmt: skip
+            self._rooms[m, columns] = make_work(n, m, columns), tuple(np.zeros(shape) for shape in shapes)
+        return self._rooms[m, columns]
 
     def advance(self, t_end: float) -> None:
-        """One step of the run, at most to t_end, or what happens at the end of the newest one.
+        """Some steps of the run, at most to t_end, or what happens at the end of the newest one.
 
         Raises
         ------
@@ -113,9 +126,30 @@ class Variation:
         with user_errors(sim.assembly):
             if sim.pending or sim.at_breakpoint:
                 self._event()
-            else:
+                return
+            code = EVENT
+            if not self._step_by_step and len(self.exponents):
+                code = self._fly(t_end)
+            if code not in (CHUNK, REACHED, STEP_LEFT):
                 sim.step(t_end)
+            if code not in (CHUNK, REACHED):
                 self._step()
+
+    def _fly(self, t_end: float) -> int:
+        sim, layout = self.sim, self._layouts.now()
+        aim(sim, t_end, t_end)
+        work, room = self._room(layout)
+        growth, totals = np.zeros(len(self.exponents)), np.array([self._frequency, 0.0])
+        places = layout.rows, layout.cols, layout.colours, layout.dependent, layout.independent
+        code = fly(
+            sim.workspace.record, sim._method.record, sim._loop.record, STEPS_AT_ONCE, places, room, work, self.dq, self.dv,
+            growth, totals,
+        )  # fmt: skip
+        sim.t = sim.t_internal
+        self._frequency = float(totals[0])
+        self.growth[self.exponents] += growth
+        self.volume += float(totals[1])
+        return int(code)
 
     def _step(self) -> None:
         """Carry the variations over the newest step."""
@@ -139,7 +173,7 @@ class Variation:
             mass, k, d, phi_q, rate, points = self._linearise(layout, nodes)
             dq, dv = self.dq.copy(), self.dv.copy()
             rates = mass_rates(sim, layout, nodes, points, mass)
-            last, work = np.zeros((len(self.exponents),) * 2), self._work(layout)
+            last, work = np.zeros((len(self.exponents),) * 2), self._room(layout)[0]
             frequency, divergence = carry(
                 h, mass, k, d, rates, phi_q, rate, layout.dependent, layout.independent, dq, dv, last, work
             )
