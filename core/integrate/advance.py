@@ -85,16 +85,11 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             continue
         if now >= t:
             return
-        # steps end just before a breakpoint, so that they see what holds to the left of it
-        next_break = min((b for b in sim.assembly.breakpoints if b > now), default=math.inf)
-        before_break = math.nextafter(next_break, -math.inf)
-        if now == before_break:
+        next_break = aim(sim, t, stop)
+        if now == math.nextafter(next_break, -math.inf):
             # only now: until the run goes on from here, samples before this time need the history
             restart_at(sim, next_break)
             continue
-        sim.clock[BREAK_TIME] = next_break
-        sim.clock[STOP_TIME] = min(stop, before_break)
-        sim.clock[TARGET_TIME] = t
         code = run(ws, ms, lc, CHUNK_STEPS)
         sim.flush()
         if code in (CHUNK, FULL):
@@ -120,6 +115,16 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             continue
         else:
             _fail(sim, code)
+
+
+def aim(sim: "Simulation", t: float, stop: float) -> float:
+    """Set the loop's clock: steps until `t` is reached, none beyond `stop`. Returns the next breakpoint."""
+    # steps end just before a breakpoint, so that they see what holds to the left of it
+    next_break = min((b for b in sim.assembly.breakpoints if b > sim.t_internal), default=math.inf)
+    sim.clock[BREAK_TIME] = next_break
+    sim.clock[STOP_TIME] = min(stop, math.nextafter(next_break, -math.inf))
+    sim.clock[TARGET_TIME] = t
+    return next_break
 
 
 def _shrink(sim: "Simulation") -> bool:
