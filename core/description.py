@@ -5,19 +5,17 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from numbers import Real
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from .contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from .contact import Contact
 from .elements import Body, BodyElement, Element, Force, Joint, PlanarBody, PointMass2D
 from .errors import ModelError
 from .model.base import Record, Vector2
 from .model.channels import Input, Parameter
 from .model.markers import GROUND
 from .model.signals import InputSignal
-
-Contact = Annotated[DiskOnHalfPlane2D | DiskOnDisk2D, Field(discriminator="type")]
 
 
 class Model(Record):

@@ -41,6 +41,10 @@ class Numbering(Protocol):
         """Machine address of a force law's formula."""
         ...
 
+    def friction_address(self, law: Any) -> int:
+        """Machine address of a regularised friction law's formula."""
+        ...
+
     def work(self, name: str) -> int:
         """Index of the work account `name` in the extended vectors."""
         ...

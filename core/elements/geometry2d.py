@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import imat, vec
 
@@ -28,7 +28,7 @@ def place(point: tuple[float, float], body: tuple[float, float, float]) -> tuple
     return x + c * point[0] - s * point[1], y + s * point[0] + c * point[1]
 
 
-@compiled
+@internal
 def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
     """Height of point b (offset w) over the line through point a (offset u) with normal at `angle` in a's frame.
 
@@ -57,7 +57,7 @@ def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: fl
     return g, gradient, hessian
 
 
-@compiled
+@internal
 def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
     """Half the squared distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21)."""
     ta, tb = q[coord[2]], q[coord[5]]
@@ -80,7 +80,7 @@ def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy
     return 0.5 * (dx * dx + dy * dy), gradient, hessian
 
 
-@compiled
+@internal
 def distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
     """Distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21); 1/0 where they meet."""
     half, gradient, hessian = half_square_distance(q, coord, ux, uy, wx, wy)
@@ -108,7 +108,7 @@ def distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> 
     return d, (g0, g1, g2, g3, g4, g5), scaled
 
 
-@compiled
+@internal
 def along(gradient: Any, x: Any, coord: Any) -> float:
     """gradient . x at the six coordinates."""
     total = 0.0
@@ -117,7 +117,7 @@ def along(gradient: Any, x: Any, coord: Any) -> float:
     return total
 
 
-@compiled
+@internal
 def curvature(hessian: Any, v: Any, coord: Any) -> float:
     """v^T H v at the six coordinates."""
     total = 0.0
@@ -165,3 +165,32 @@ def constrain(
         for i in range(6):
             values[slot_j[6 * local_row + i]] += factor * gradient[i]
             values[slot_jt[6 * local_row + i]] += factor * gradient[i]
+
+
+@internal
+def bearing(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """Direction (rad) of the line from point a (offset u) to point b (offset w), with gradient(6) and Hessian(21).
+
+    With d = r_b - r_a: phi_i = (d x d_i)/D, phi_ij = (d_j x d_i + d x d_ij)/D - phi_i D_j/D, D = d . d.
+    """
+    ta, tb = q[coord[2]], q[coord[5]]
+    ca, sa = math.cos(ta), math.sin(ta)
+    ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
+    cb, sb = math.cos(tb), math.sin(tb)
+    bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    dx = q[coord[3]] + bx - q[coord[0]] - ax
+    dy = q[coord[4]] + by - q[coord[1]] - ay
+    square = dx * dx + dy * dy
+    x1, y1 = (-1.0, 0.0, ay, 1.0, 0.0, -by), (0.0, -1.0, -ax, 0.0, 1.0, bx)
+    # second derivatives exist only with respect to each angle
+    x2, y2 = (0.0, 0.0, ax, 0.0, 0.0, -bx), (0.0, 0.0, ay, 0.0, 0.0, -by)
+    gradient = np.empty(6)
+    hessian = np.empty(21)
+    for i in range(6):
+        gradient[i] = (dx * y1[i] - dy * x1[i]) / square
+    for k in range(21):
+        i, j = HESSIAN_PAIRS[k, 0], HESSIAN_PAIRS[k, 1]
+        second = dx * y2[i] - dy * x2[i] if i == j else 0.0
+        growth = 2.0 * (dx * x1[j] + dy * y1[j]) / square
+        hessian[k] = (x1[j] * y1[i] - y1[j] * x1[i] + second) / square - gradient[i] * growth
+    return math.atan2(dy, dx), gradient, hessian

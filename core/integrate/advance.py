@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..contact.modes import ACTIVE, CLOSED, MODE, OPEN
+from ..contact.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
@@ -44,7 +44,7 @@ from .records import (
     VIOLATED,
 )
 from .repair import repair
-from .watch import crossed
+from .watch import crossed, friction_margin
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -261,10 +261,12 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     by_force = mode == CLOSED or (mode == ACTIVE and end[0] <= 0.0) or (mode not in (OPEN, ACTIVE) and end[0] <= 0.0)
     if by_force:
         sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
+        slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
 
         def value(step: float) -> float:
             _trial(sim, step, h)
-            return sign * float(arrays["monitor"][k])
+            force = sign * float(arrays["monitor"][k])
+            return min(force, friction_margin(sim.workspace.record, k)) if slides else force
 
         return find_root(value, 0.0, h, 0.5 * h, 0.0)
     down = mode == OPEN
@@ -334,6 +336,6 @@ def restart_at(sim: "Simulation", t: float) -> None:
         sim.add_input_work(sim.kinetic_energy() - kinetic)
     sim.use_modes()
     sim._new_history()
-    sim.pending = sim.pulling()
+    sim.pending = sim.unsettled()
     if not sim.pending:
         sim._sample_now()

@@ -21,10 +21,11 @@ class SampleLayout:
         at = 1 + 3 * n
         self.multipliers = slice(at, at + m)
         at += m
-        self.force, self.gap, self.gap_rate, self.mode, self.impulse_jump, self.loss_jump = (
-            at + k * c for k in range(6)
-        )
-        at += 6 * c
+        (
+            self.force, self.gap, self.gap_rate, self.mode, self.impulse_jump, self.loss_jump,
+            self.friction, self.sliding,
+        ) = (at + k * c for k in range(8))  # fmt: skip
+        at += 8 * c
         self.kinetic, self.potential, self.strain = at, at + 1, at + 2
         self.work = {name: at + 3 + k for k, name in enumerate(assembly.work_names)}
         at += 3 + len(assembly.work_names)
@@ -71,7 +72,7 @@ class ChannelTable:
         for k, channel in enumerate(assembly.multiplier_channels):
             self._formulas.append((channel, layout.multipliers.start + k))
         for k, contact in enumerate(assembly.contacts):
-            self._add_contact(k, contact.name)
+            self._add_contact(k, contact.name, contact.slide_row >= 0)
         self._add_energies(assembly)
         for column, level, unit in zip(
             layout.residuals, ("position", "velocity", "acceleration"), ("m", "m/s", "m/s2"), strict=True
@@ -96,7 +97,7 @@ class ChannelTable:
         self._terms = _pairs([(k, column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
 
-    def _add_contact(self, k: int, name: str) -> None:
+    def _add_contact(self, k: int, name: str, friction: bool) -> None:
         layout = self.layout
         impulse, dissipation = layout.work[f"{name}.impulse"], layout.work[f"{name}.dissipation"]
         self._formulas += [
@@ -117,6 +118,15 @@ class ChannelTable:
             ),
             (Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer"), layout.mode + k),
         ]
+
+        if friction:
+            self._formulas += [
+                (
+                    Channel(f"{name}.friction_force", "N", "along the tangent, against the sliding velocity"),
+                    layout.friction + k,
+                ),
+                (Channel(f"{name}.sliding_velocity", "m/s", "of the second shape on the first"), layout.sliding + k),
+            ]
 
     def _add_energies(self, assembly: Assembly) -> None:
         layout, contacts = self.layout, len(assembly.contacts)

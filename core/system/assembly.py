@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.kernels import kernel_address
-from ..contact.laws import ForceLaw, NewtonImpact, law_address
+from ..contact.friction import CoulombFriction, Friction, FrictionLaw, friction_address
+from ..contact.laws import ForceLaw, ImpactLaw, law_address
 from ..description import Model
 from ..elements.base import Coordinate, Element, Form, Row
 from ..elements.planar_body import PlanarBody
@@ -42,11 +43,19 @@ class ContactInfo:
 
     name: str
     row: int
-    law: NewtonImpact | ForceLaw
+    law: ImpactLaw | ForceLaw
     impulse_account: int
     dissipation_account: int
     extent: float = np.inf
     """Distance over which the shapes could pass through each other within a step, m."""
+    slide_row: int = -1
+    """Row of the sliding distance; -1: without friction."""
+    friction: Friction | None = None
+
+    @property
+    def coulomb(self) -> CoulombFriction | None:
+        """Its friction if the contact is a constraint."""
+        return self.friction if isinstance(self.friction, CoulombFriction) else None
 
 
 @dataclass
@@ -159,6 +168,9 @@ class _Numbering:
     def law_address(self, law: ForceLaw) -> int:
         return law_address(law)
 
+    def friction_address(self, law: FrictionLaw) -> int:
+        return friction_address(law)
+
     def work(self, name: str) -> int:
         if name not in self.work_names:
             self.work_names.append(name)
@@ -172,10 +184,10 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
 def assemble(model: Model) -> Assembly:
     """The model as flat tables. Raises ModelError for a contact of a body with itself."""
     for contact in model.contacts:
-        first, second = (marker.body for marker in contact.markers())
-        if first == second:
+        bodies = [marker.body for marker in contact.markers()]
+        if len(bodies) > 1 and len(set(bodies)) == 1:
             raise ModelError(
-                f"both shapes of contact '{contact.name}' are on '{first}': their gap never changes; "
+                f"both shapes of contact '{contact.name}' are on '{bodies[0]}': their gap never changes; "
                 "give it shapes on two bodies"
             )
     numbering = _Numbering(model)
@@ -234,6 +246,8 @@ def assemble(model: Model) -> Assembly:
                 numbering.work(f"{c.name}.impulse"),
                 numbering.work(f"{c.name}.dissipation"),
                 c.extent(),
+                contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
+                c.friction,
             )
             for c in model.contacts
         ],

@@ -24,6 +24,7 @@ from tlismni.core import (
     HalfPlane2D,
     Hertz,
     KelvinVoigt,
+    KuwabaraKono,
     LinearSystem,
     Model,
     NewtonImpact,
@@ -35,6 +36,7 @@ from tlismni.core import (
     Sine,
     SpringDamper2D,
     Table,
+    Tsuji,
 )
 from tlismni.core.contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
 from tlismni.core.system.evaluate import evaluate_residuals, evaluate_tangent
@@ -67,6 +69,8 @@ FORCE_LAWS = [
     Hertz(stiffness=5.0, exponent=2.0),
     KelvinVoigt(stiffness=4.0, damping=0.8),
     Flores(stiffness=6.0, restitution=0.5, exponent=2.0),
+    Tsuji(stiffness=5.0, damping=0.7),
+    KuwabaraKono(stiffness=5.0, relaxation_time=0.1),
 ]
 CASES = {
     "bodies": {},

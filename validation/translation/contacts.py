@@ -82,7 +82,7 @@ def _add(
     item = build.add(item_name, nodeNumber=memory, **fields, **law)
     if build.sensors:
         build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
-    if isinstance(record.law, KelvinVoigt):
+    if isinstance(record.law, KelvinVoigt) and record.law.release == "force":
         build.before_step.append(_release(build, item, memory, record.law, shapes))
         build.notes.append(f"{record.name}: switched off at the start of the step where its force would be tensile")
 
