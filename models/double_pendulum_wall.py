@@ -42,6 +42,7 @@ def double_pendulum_wall(
     stiffness: float,
     exponent: float,
     damping: float | None,
+    relaxation_time: float | None,
 ) -> Scenario:
     """Bodies `upper` and `lower`, joints `pin` at the origin and `elbow`, contact `wall`.
 
@@ -63,8 +64,9 @@ def double_pendulum_wall(
     )
     mass = (a * c - b * b) / (c * upper_length**2 - 2.0 * b * upper_length * lower_length + a * lower_length**2)
     contact = contact_law(
-        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping, mass=mass
-    )
+        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping,
+        relaxation_time=relaxation_time, mass=mass,
+    )  # fmt: skip
     model = Model(
         name="double_pendulum_wall",
         gravity=(0.0, -gravity),

@@ -51,6 +51,7 @@ def slider_crank_stop(
     stiffness: float,
     exponent: float,
     damping: float | None,
+    relaxation_time: float | None,
 ) -> Scenario:
     """Bodies `crank`, `rod`, `slider`; joints `main`, `crank_pin`, `wrist`, `guide`; force `drive`; contact `stop`.
 
@@ -70,7 +71,7 @@ def slider_crank_stop(
     d = Dimensions(crank_length, rod_length, crank_mass, rod_mass, slider_mass, gravity, flywheel_inertia)
     contact = contact_law(
         law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping,
-        mass=d.effective_mass(stop_angle),
+        relaxation_time=relaxation_time, mass=d.effective_mass(stop_angle),
     )  # fmt: skip
     face = 0.25 * crank_length  # from the wrist pin
     s = crank_length * math.sin(stop_angle)
