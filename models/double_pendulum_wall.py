@@ -64,14 +64,9 @@ def double_pendulum_wall(
     )
     mass = (a * c - b * b) / (c * upper_length**2 - 2.0 * b * upper_length * lower_length + a * lower_length**2)
     contact = contact_law(
-        law,
-        restitution=restitution,
-        stiffness=stiffness,
-        exponent=exponent,
-        damping=damping,
-        relaxation_time=relaxation_time,
-        mass=mass,
-    )
+        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping,
+        relaxation_time=relaxation_time, mass=mass,
+    )  # fmt: skip
     model = Model(
         name="double_pendulum_wall",
         gravity=(0.0, -gravity),

@@ -3,6 +3,7 @@
 import math
 
 from ..core.contact.contact2d import Disk2D, DiskOnDisk2D
+from ..core.contact.laws import NewtonImpact
 from ..core.description import Model
 from ..core.elements import Distance2D, PointMass2D
 from ..core.model.channels import Parameter
@@ -12,6 +13,7 @@ from .parameters import ScenarioError, ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario
 
+PROPAGATIONS = ("sequential", "simultaneous")
 PARAMETERS = (
     ScenarioParameter("balls", 5, "-", "number of balls", 2, 50),
     ScenarioParameter("released", 1, "-", "balls that are pulled aside to the left", 1),
@@ -19,7 +21,10 @@ PARAMETERS = (
     ScenarioParameter("length", 0.2, "m", "of the strings, to the centres of the balls", 0.0, exclusive=True),
     ScenarioParameter("radius", 0.01, "m", "of the balls", 0.0, exclusive=True),
     ScenarioParameter("mass", 0.03, "kg", "of each ball", 0.0, exclusive=True),
-    ScenarioParameter("gap", 1e-5, "m", "between balls that hang at rest; 0: they touch", 0.0),
+    ScenarioParameter("gap", 0.0, "m", "between balls that hang at rest; 0: they touch", 0.0),
+    ScenarioParameter(
+        "propagation", "sequential", "-", "of a blow along balls that touch, with law newton", choices=PROPAGATIONS
+    ),
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, downwards", 0.0, exclusive=True),
     *law_parameters(restitution=1.0, stiffness=1e9),
 )  # fmt: skip
@@ -35,6 +40,7 @@ def newtons_cradle(
     radius: float,
     mass: float,
     gap: float,
+    propagation: str,
     gravity: float,
     law: str,
     restitution: float,
@@ -45,22 +51,19 @@ def newtons_cradle(
 ) -> Scenario:
     """Bodies `ball1` ... from left to right, joints `string1` ..., contacts `contact1` ... (ball k with ball k + 1).
 
-    With law newton and a gap, the balls strike one pair after the other and as many fly off as were released. With
-    gap = 0 a blow meets a row of balls at once and Newton's law acts on all closing contacts together: then one ball
-    of speed v against two at rest gives (-1/3, 2/3, 2/3) v. Both conserve momentum and energy. A force law with gap =
-    0 passes the blow on as a wave.
+    With law newton and `propagation` sequential, or with a gap, the balls strike one pair after the other and as many
+    fly off as were released. Simultaneous, a blow on a row of balls that touch is one problem of all contacts: one
+    ball of speed v against two at rest gives (-1/3, 2/3, 2/3) v. Both conserve momentum and energy (restitution 1). A
+    force law passes the blow on as a wave.
     """
     if released >= balls:
         raise ScenarioError(f"released = {released} must be below balls = {balls}: else nothing is struck")
     contact = contact_law(
-        law,
-        restitution=restitution,
-        stiffness=stiffness,
-        exponent=exponent,
-        damping=damping,
-        relaxation_time=relaxation_time,
-        mass=0.5 * mass,
-    )
+        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping,
+        relaxation_time=relaxation_time, mass=0.5 * mass,
+    )  # fmt: skip
+    if isinstance(contact, NewtonImpact):
+        contact = contact.model_copy(update={"propagation": propagation})
     spacing = 2.0 * radius + gap
     bodies, strings = [], []
     for k in range(1, balls + 1):

@@ -201,4 +201,3 @@ def colour_columns(n: int, rows: Any, cols: Any) -> Any:
             taken.append(set())
         taken[colours[j]] |= mine
     return colours
-

@@ -144,7 +144,9 @@ def lyapunov_exponents(
     for i, mark in enumerate(marks):
         _run_to(variation, float(mark), progress)
         # directions lost in the transient are lost for good: no difference of infinities
-        totals[i] = np.where(np.isneginf(growth), -np.inf, variation.growth - np.where(np.isneginf(growth), 0.0, growth))
+        totals[i] = np.where(
+            np.isneginf(growth), -np.inf, variation.growth - np.where(np.isneginf(growth), 0.0, growth)
+        )
     return _result(variation, start, marks, totals, variation.volume - volume, variation.impacts - impacts, seen)
 
 

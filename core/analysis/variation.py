@@ -73,7 +73,9 @@ class Variation:
         size = 2 * self.freedom
         count = size if columns is None else columns
         if not 1 <= count <= size:
-            raise ModelError(f"{count} exponents are asked for; the state has {size} dimensions at the start: 1 to {size}")
+            raise ModelError(
+                f"{count} exponents are asked for; the state has {size} dimensions at the start: 1 to {size}"
+            )
         self.exponents = np.arange(count)
         self.growth = np.zeros(count)
         self.volume, self.impacts, self.complete = 0.0, 0, count == size

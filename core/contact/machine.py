@@ -312,7 +312,9 @@ def _refuse_jam(
         if left > NEARLY_SINGULAR * own:
             continue
         if found.normal[i] > 0.0 or now.was[i] == CLOSED:
-            raise SimulationError(_painleve(sim, contact.name, contact.coulomb.coefficient), sim.t_internal, "contact")
+            raise SimulationError(
+                _painleve(sim, contact.name, contact.coulomb.coefficient), t=sim.t_internal, loop="contact"
+            )
 
 
 def _painleve(sim: "Engine", name: str, mu: float) -> str:

@@ -2,6 +2,7 @@
 
 from .cases import Setting, contenders, order_cases
 from .claims import Claim
+from .impact_orders import ImpactOrderRow, impact_orders
 from .iterations import IterationStudy, iteration_study
 from .orders import OrderRow, order_table
 from .runs import Run
@@ -9,12 +10,14 @@ from .swing import Swing
 
 __all__ = [
     "Claim",
+    "ImpactOrderRow",
     "IterationStudy",
     "OrderRow",
     "Run",
     "Setting",
     "Swing",
     "contenders",
+    "impact_orders",
     "iteration_study",
     "order_cases",
     "order_table",
