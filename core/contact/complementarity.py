@@ -69,6 +69,11 @@ def solve_contacts(
     NoComplementarySolution : if there is none.
     """
     n = len(b_n)
+    if n == 1 and mu[0] == 0.0 and base is None:
+        # most impacts are of one contact: no pivoting is needed
+        alone = np.maximum(-b_n / a.nn[0], 0.0)
+        motion = np.maximum(b_n, 0.0)
+        return ContactSolution(alone, np.zeros(1), motion, b_t + a.nt[0] * alone, False)
     base = np.zeros(n) if base is None else base
     largest = max(float(np.max(np.diag(a.nn), initial=0.0)), float(np.max(np.diag(a.tt), initial=0.0)))
     free = np.flatnonzero((mu > 0.0) & (direction == 0.0) & (np.diag(a.tt) > IMMOVABLE * largest))

@@ -198,7 +198,7 @@ def _strike(sim: "Engine", touching: Touching, restitution: NDArray[np.float64],
 
 
 def _at_rest(
-    sim: "Engine", touching: Touching, now: _Settling, rounding: float
+    touching: Touching, now: _Settling, rounding: float
 ) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
     """Which of the touching contacts neither separate nor approach, and the direction in which friction is known."""
     gap_rate, slide_rate = touching.rates()
@@ -220,7 +220,7 @@ def _solve_forces(
     sim: "Engine", touching: Touching, now: _Settling, rounding: float, accelerations: float = 0.0
 ) -> tuple[ContactSolution, NDArray[np.float64], float]:
     """Forces of all touching contacts (zero where they separate), known directions, and what no acceleration is."""
-    resting, direction = _at_rest(sim, touching, now, rounding)
+    resting, direction = _at_rest(touching, now, rounding)
     b_n, b_t = touching.free_accelerations()
     arrays, n = sim.workspace.arrays, sim.assembly.n
     level = max(float(np.max(np.abs(arrays["a"][:n]), initial=0.0)), accelerations, 1e-300)
@@ -268,6 +268,8 @@ def _forces(
     sim: "Engine", touching: Touching, now: _Settling, rounding: float, accelerations: float
 ) -> dict[int, float]:
     """The contacts that stay closed, and how each moves along its tangent (a value of SLIDE)."""
+    if not np.any(_at_rest(touching, now, rounding)[0]):
+        return {}
     found, direction, none = _solve_forces(sim, touching, now, rounding, accelerations)
     _refuse_jam(sim, touching, now, found, direction)
     largest = float(np.max(found.normal, initial=0.0))
@@ -360,7 +362,7 @@ def _take(sim: "Engine", now: _Settling, chosen: dict[int, float], slide_values:
     sim.use_modes(accelerations=False)
     if changed and sim.formula.exact:
         sim.meet_constraints()
-    sim.use_modes()
+    sim.solve_accelerations()
 
 
 def _report(sim: "Engine", now: _Settling, pending: list[int]) -> None:
