@@ -25,7 +25,7 @@ from .modes import (
     SLIDE_START,
     STICKS,
 )
-from .resting import NO_FORCE, Resting, Settling, read
+from .resting import NO_FORCE, Resting, Settling, read, unresolved_speed
 from .touching import Touching
 
 if TYPE_CHECKING:
@@ -83,8 +83,8 @@ def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -
     impact = _strike(sim, touching, restitution, rounding)
     largest = np.maximum(memory[contacts, LARGEST_APPROACH], impact.approach)
     ratio = np.array([law.rest_ratio for law in laws])
-    low = (impact.impulse > 0.0) & (restitution > 0.0) & (impact.separation <= ratio * largest)
-    low &= impact.approach > rounding
+    low = impact.separation <= np.maximum(ratio * largest, unresolved_speed(sim, now.falls))
+    low &= (impact.impulse > 0.0) & (restitution > 0.0) & (impact.approach > rounding)
     if np.any(low):
         bounced, velocities = impact, sim.workspace.arrays["v"].copy()
         sim.workspace.arrays["v"][:] = before

@@ -33,6 +33,21 @@ AT_LIMIT = 1e-9
 """Friction within this part of its limit has reached it."""
 SPARE = 1e-6
 """Part of its limit that a new distribution of sticking friction must leave to each contact."""
+UNRESOLVED = 1e-14
+"""Of the largest coordinate (or of 1 m): bounces that are lower than this are not told from rest."""
+PERHAPS_REST = 1e-3
+"""Of the largest speed (or of 1 m/s): gaps that open faster than this are not at rest."""
+
+
+def speed(sim: "Engine") -> float:
+    """The largest of the present velocities."""
+    return float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
+
+
+def unresolved_speed(sim: "Engine", falls: Vector) -> Vector:
+    """Speed of separation below which a gap with the acceleration -falls (m/s^2) cannot be seen to open, m/s."""
+    size = max(1.0, float(np.max(np.abs(sim.workspace.arrays["q"][: sim.assembly.n]))))
+    return np.asarray(np.sqrt(2.0 * UNRESOLVED * size * np.maximum(falls, 0.0)))
 
 
 @dataclass
@@ -52,6 +67,8 @@ class Settling:
     """+-1 where the event is that a sticking contact reached its limit: the direction in which it goes; else 0."""
     stops: Flags
     """A sliding contact has come to a stop."""
+    falls: Vector
+    """Acceleration with which the gap closes before any impact, m/s^2."""
     struck: bool = False
     rests: set[int] = field(default_factory=set)
 
@@ -89,7 +106,8 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
                 slips[i] = -np.sign(friction)
         elif abs(slid[i]) == 1.0:
             stops[i] = True
-    return Settling(contacts, was, slid, memory[contacts, RATIO].copy(), leaves, slips, stops)
+    falls = -arrays["phidd"][[sim.assembly.contacts[k].row for k in contacts]]
+    return Settling(contacts, was, slid, memory[contacts, RATIO].copy(), leaves, slips, stops, falls)
 
 
 class Resting:
@@ -104,9 +122,12 @@ class Resting:
     def __init__(
         self, sim: "Engine", touching: Touching, now: Settling, rounding: float, accelerations: float = 0.0
     ) -> None:
-        self.sim, self.touching, self.now, self.accelerations = sim, touching, now, accelerations
+        self.sim, self.touching, self.now = sim, touching, now
         gap_rate, slide_rate = touching.rates()
         self.at_rest: Flags = np.abs(gap_rate) <= rounding
+        if np.any(np.abs(gap_rate) <= PERHAPS_REST * max(1.0, speed(sim))) or not now.struck:
+            self._prepare(accelerations)
+            self.at_rest |= (gap_rate > 0.0) & (gap_rate <= unresolved_speed(sim, -self.b_n))
         self.direction: Vector = np.where(np.abs(slide_rate) > rounding, np.sign(slide_rate), 0.0)
         laws = [c.coulomb for c in touching.infos]
         self.kinetic = np.array([law.coefficient if law else 0.0 for law in laws])
@@ -129,7 +150,6 @@ class Resting:
         ------
         SimulationError : if there are none (Painleve's paradox).
         """
-        self._prepare()
         slips, self.full = self.now.slips, np.zeros(len(self.direction), dtype=bool)
         if np.any(slips):
             found = self._held()
@@ -147,12 +167,12 @@ class Resting:
         self._refuse_jam(found)
         return found
 
-    def _prepare(self) -> None:
+    def _prepare(self, accelerations: float) -> None:
         """Free accelerations of gaps and sliding distances, with zero for what is rounding."""
         touching = self.touching
         b_n, b_t = touching.free_accelerations()
         arrays, n = self.sim.workspace.arrays, self.sim.assembly.n
-        level = max(float(np.max(np.abs(arrays["a"][:n]), initial=0.0)), self.accelerations, 1e-300)
+        level = max(float(np.max(np.abs(arrays["a"][:n]), initial=0.0)), accelerations, 1e-300)
         self.none = NO_ACCELERATION * level
         self.size = np.max(np.abs(touching.normal), axis=1)
         self.b_n = np.where(np.abs(b_n) <= self.none * self.size, 0.0, b_n)
