@@ -15,6 +15,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     slider_crank,
     slider_crank_stop,
     stick_slip,
+    woodpecker,
 )
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import Entry, catalogue, load, names

@@ -133,3 +133,56 @@ def test_regularised_friction_of_a_force_law_slips_back_at_nearly_the_same_times
     w = 10.0
     before = math.atan2(0.1 / w, 0.1 * G / 100.0) / w
     assert turns[: len(coulomb)] == pytest.approx(np.array(coulomb) - before, abs=0.02)
+
+
+# ---- woodpecker
+
+
+def test_woodpecker_pecks_with_the_period_and_drop_of_its_periodic_motion() -> None:
+    """0.1460 s and 19.5 mm from peck to peck (Glocker 1995; Leine, van Campen and Glocker 2003). The start is on it but
+    for rounded numbers; what is off changes its sign from peck to peck and dies away."""
+    result = simulate(load("woodpecker").model, 1.7, rtol=1e-8, atol=1e-11)
+    pecks = [e for e in result.events if e.kind == "impact" and e.contact == "beak"]
+    assert len(pecks) >= 11
+    periods = np.diff([e.t for e in pecks])
+    drops = -np.diff(np.interp([e.t for e in pecks], result.t, result["toy.y"]))
+    assert periods == pytest.approx([0.1460] * len(periods), abs=2e-4)
+    assert drops == pytest.approx([0.0195] * len(drops), abs=2.5e-4)
+    deviation = periods - np.mean(periods[-2:])
+    assert np.all(np.sign(deviation[1:6]) == -np.sign(deviation[:5]))
+    assert abs(deviation[6]) < 0.6 * abs(deviation[0])
+    assert np.abs(result["energy.balance"]).max() < 1e-8
+    # what gravity gives over a period, impacts and friction take
+    weight = 4.8e-3 * 9.81
+    kept = result["energy.kinetic"] + result["energy.strain"] + result["energy.potential"]
+    first, last = (int(np.searchsorted(result.t, e.t, side="right")) - 1 for e in (pecks[0], pecks[-1]))
+    assert kept[first] - kept[last] == pytest.approx(weight * float(np.sum(drops)), rel=2e-2)
+
+
+def test_woodpecker_hangs_on_its_jammed_sleeve_and_slips_when_friction_is_spent() -> None:
+    result = simulate(load("woodpecker").model, 0.6, rtol=1e-8, atol=1e-11)
+    kinds = [(e.kind, e.contact) for e in result.events]
+    assert {("stick", "lower"), ("slip", "lower"), ("impact", "upper"), ("impact", "beak"), ("impact", "lower")} <= set(
+        kinds
+    )
+    for name in ("beak", "lower", "upper"):
+        assert result[f"{name}.gap"].min() > -1e-10
+        normal, friction = result[f"{name}.normal_force"], result[f"{name}.friction_force"]
+        assert normal.min() > -1e-9
+        assert np.all(np.abs(friction) <= 0.3 * normal + 1e-9)
+    stick = next(e.t for e in result.events if e.kind == "stick" and e.t > 0.1)
+    slip = next(e.t for e in result.events if e.kind == "slip" and e.t > stick)
+    jammed = (result.t > stick) & (result.t < slip)
+    assert slip - stick > 0.03 and np.ptp(result["toy.y"][jammed]) < 1e-10
+    # the bird alone swings on its spring: c/(J + m l^2)
+    w = math.sqrt(5.6e-3 / (7e-7 + 4.5e-3 * 15e-3**2))
+    bird, t = result["toy.bird"][jammed], result.t[jammed]
+    design = np.stack([np.ones_like(t), np.cos(w * t), np.sin(w * t)], axis=1)
+    fit, *_ = np.linalg.lstsq(design, bird, rcond=None)
+    assert np.abs(design @ fit - bird).max() < 1e-7 * np.ptp(bird) + 1e-8
+
+
+def test_woodpecker_without_friction_falls_freely() -> None:
+    result = simulate(load("woodpecker", friction=0.0).model, 0.3, rtol=1e-8, atol=1e-11)
+    momentum = 4.8e-3 * result["toy.d_y"] + 4.5e-3 * (10e-3 * result["toy.d_sleeve"] + 15e-3 * result["toy.d_bird"])
+    assert momentum - momentum[0] == pytest.approx(-4.8e-3 * 9.81 * result.t, abs=1e-10)
