@@ -28,6 +28,11 @@ class Delassus:
     nt: Vector
     tt: Vector
 
+    def among(self, part: NDArray[np.intp]) -> "Delassus":
+        """The blocks of the contacts `part`."""
+        here = np.ix_(part, part)
+        return Delassus(self.nn[here], self.nt[here], self.tt[here])
+
     def rows(self, normal: NDArray[np.intp], tangential: NDArray[np.intp]) -> Vector:
         """The block of these normal and these tangential directions, in this order."""
         mixed = self.nt[np.ix_(normal, tangential)]
@@ -64,6 +69,11 @@ def solve_contacts(
     NoComplementarySolution : if there is none.
     """
     n = len(b_n)
+    if n == 1 and mu[0] == 0.0 and base is None:
+        # most impacts are of one contact: no pivoting is needed
+        alone = np.maximum(-b_n / a.nn[0], 0.0)
+        motion = np.maximum(b_n, 0.0)
+        return ContactSolution(alone, np.zeros(1), motion, b_t + a.nt[0] * alone, False)
     base = np.zeros(n) if base is None else base
     largest = max(float(np.max(np.diag(a.nn), initial=0.0)), float(np.max(np.diag(a.tt), initial=0.0)))
     free = np.flatnonzero((mu > 0.0) & (direction == 0.0) & (np.diag(a.tt) > IMMOVABLE * largest))
@@ -100,8 +110,13 @@ def _all_stick(
     """The solution in which no contact of `free` slides, with the least tangential forces; None if there is none."""
     inverse = np.linalg.pinv(a.tt[np.ix_(free, free)], rcond=RANK, hermitian=True)
     across = a.nt[:, free] @ inverse
+    m, q = nn - across @ tn[free], b_n - across @ b_t[free]
+    # where sticking leaves no motion along the normals, what is left is rounding
+    root = np.sqrt(np.diag(a.nn))
+    m = np.where(np.abs(m) <= RANK * np.outer(root, root), 0.0, m)
+    q = np.where(np.abs(q) <= RANK * (np.abs(b_n) + np.abs(across) @ np.abs(b_t[free])), 0.0, q)
     try:
-        normal = _scaled(nn - across @ tn[free], b_n - across @ b_t[free], np.diag(a.nn))
+        normal = _scaled(m, q, np.diag(a.nn))
     except NoComplementarySolution:
         return None
     wanted = b_t[free] + tn[free] @ normal
@@ -120,27 +135,31 @@ def _all_stick(
 def _with_limits(
     a: Delassus, nn: Vector, tn: Vector, b_n: Vector, b_t: Vector, mu: Vector, free: NDArray[np.intp], base: Vector
 ) -> tuple[Vector, Vector]:
-    """The problem with friction limits: unknown P_N, the distance of P_T from -mu P_N, and the sliding to one side."""
+    """The problem with friction limits: unknown P_N, the two signs of P_T, and the speed of sliding.
+
+    In this form (Stewart and Trinkle 1996) the matrix is copositive and Lemke's method ends with a solution for every
+    impact from b = G v^-.
+    """
     n, f = len(b_n), len(free)
-    pick = np.zeros((n, f))
-    pick[free, np.arange(f)] = mu[free]
-    # P_T = -mu (P_N + base) + distance for the free contacts
-    m = np.zeros((n + 2 * f, n + 2 * f))
-    m[:n, :n] = nn - a.nt[:, free] @ pick.T
-    m[:n, n : n + f] = a.nt[:, free]
-    m[n : n + f, :n] = tn[free] - a.tt[np.ix_(free, free)] @ pick.T
-    m[n : n + f, n : n + f] = a.tt[np.ix_(free, free)]
-    m[n : n + f, n + f :] = np.eye(f)
-    m[n + f :, :n] = 2.0 * pick.T
-    m[n + f :, n : n + f] = -np.eye(f)
-    limit = mu[free] * base[free]
-    q = np.concatenate([b_n - a.nt[:, free] @ limit, b_t[free] - a.tt[np.ix_(free, free)] @ limit, 2.0 * limit])
+    across, along = a.nt[:, free], a.tt[np.ix_(free, free)]
+    pick = np.zeros((f, n))
+    pick[np.arange(f), free] = mu[free]
+    one, none = np.eye(f), np.zeros((f, f))
+    m = np.block(
+        [
+            [nn, across, -across, np.zeros((n, f))],
+            [tn[free], along, -along, one],
+            [-tn[free], -along, along, one],
+            [pick, -one, -one, none],
+        ]
+    )
+    q = np.concatenate([b_n, b_t[free], -b_t[free], mu[free] * base[free]])
     root = np.sqrt(np.concatenate([np.diag(a.nn), np.diag(a.tt)[free]]))
-    d = 1.0 / np.where(root > 0.0, root, 1.0)
-    columns, rows = np.concatenate([d, 1.0 / d[n:]]), np.concatenate([d, 1.0 / d[n:]])
-    z = columns * solve_lcp(rows[:, None] * m * columns, rows * q)
+    force = 1.0 / np.where(root > 0.0, root, 1.0)
+    columns = np.concatenate([force, force[n:], 1.0 / force[n:]])
+    z = columns * solve_lcp(columns[:, None] * m * columns, columns * q)
     tangential = np.zeros(n)
-    tangential[free] = z[n : n + f] - mu[free] * (z[:n] + base)[free]
+    tangential[free] = z[n : n + f] - z[n + f : n + 2 * f]
     return z[:n], tangential
 
 

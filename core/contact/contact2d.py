@@ -113,7 +113,7 @@ class Contact2D(Element):
             return (0.0,) * 5, 0
         if isinstance(self.friction, CoulombFriction):
             return (self.friction.coefficient, 0.0, 0.0, 0.0, 0.0), 0
-        return self.friction.parameters(), numbering.friction_address(self.friction)
+        return self.friction.formula_parameters(), numbering.friction_address(self.friction)
 
 
 class DiskOnHalfPlane2D(Contact2D):

@@ -18,6 +18,10 @@ MOST_BLOWS = 100_000
 """Of a sequential impact, before it is given up."""
 
 
+MOST_ROUNDS = 2000
+"""Of impacts at one instant, each of the contacts that approach then."""
+
+
 class EndlessImpact(ArithmeticError):
     """A sequence of blows that does not end."""
 
@@ -33,7 +37,7 @@ class Impact:
     energy_loss: Vector
     """J; negative where the law puts energy in."""
     approach: Vector
-    """-g' before, m/s."""
+    """-g' before (of a contact that is struck later at the same instant: before that), m/s."""
     separation: Vector
     """g' after, m/s."""
     residual: float
@@ -43,69 +47,92 @@ class Impact:
 def strike(touching: Touching, restitution: Vector, rounding: float) -> Impact:
     """Change the current velocities by the laws of the touching contacts, with these coefficients of restitution.
 
-    Contacts whose gap closes by less than `rounding` (m/s) do not count as approaching.
+    Those that separate beforehand take no part, so that none can put energy in without friction; if they approach
+    afterwards they are struck in another round. Rates below `rounding` (m/s) are none.
 
     Raises
     ------
     NoComplementarySolution : if the laws have no solution.
-    EndlessImpact : if sequential blows do not end.
+    EndlessImpact : if the rounds, or sequential blows, do not end.
     """
     laws: list[ImpactLaw] = [c.law for c in touching.infos]  # type: ignore[misc]
     mu = np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in touching.infos])
     joints = touching.sim.workspace.structure.active
     arrays = touching.sim.workspace.arrays
-    gap_rate, slide_rate = touching.rates()
+    first, _ = touching.rates()
     before = arrays["phid"][joints].copy()
-    if any(isinstance(law, NewtonImpact) and law.propagation == "sequential" for law in laws):
-        normal, tangential = _sequence(touching, restitution, mu, rounding)
-        violation = 0.0
+    count, violation = len(laws), 0.0
+    normal, tangential, loss = np.zeros(count), np.zeros(count), np.zeros(count)
+    approach = np.maximum(-first, 0.0)
+    sequential = any(isinstance(law, NewtonImpact) and law.propagation == "sequential" for law in laws)
+    for _ in range(MOST_ROUNDS):
+        gap_rate, slide_rate = touching.rates()
+        if np.all(gap_rate >= -rounding):
+            break
+        approach = np.where(approach > rounding, approach, -gap_rate)
+        if sequential:
+            p_n, p_t = _sequence(touching, restitution, mu, rounding)
+        else:
+            part = np.flatnonzero(gap_rate <= rounding)
+            p_n, p_t, off = _at_once(touching, part, [laws[i] for i in part], restitution[part], mu[part], rounding)
+            violation = max(violation, off)
+        after_gap, after_slide = touching.rates()
+        loss -= 0.5 * (p_n * (gap_rate + after_gap) + p_t * (slide_rate + after_slide))
+        normal, tangential = normal + p_n, tangential + p_t
     else:
-        normal, tangential, violation = _at_once(touching, laws, restitution, mu)
-    after_gap, after_slide = touching.rates()
-    loss = -0.5 * (normal * (gap_rate + after_gap) + tangential * (slide_rate + after_slide))
-    # the driver's jump is no error: joints keep their rates
+        raise EndlessImpact(f"{MOST_ROUNDS} impacts of the touching contacts at one instant do not end")
+    # the joints keep their rates
     violation = max(violation, float(np.max(np.abs(arrays["phid"][joints] - before), initial=0.0)))
-    return Impact(normal, tangential, loss, -gap_rate, after_gap, violation)
+    return Impact(normal, tangential, loss, approach, touching.rates()[0], violation)
 
 
 def _at_once(
-    touching: Touching, laws: list[ImpactLaw], restitution: Vector, mu: Vector
+    touching: Touching,
+    part: NDArray[np.intp],
+    laws: list[ImpactLaw],
+    restitution: Vector,
+    mu: Vector,
+    rounding: float,
 ) -> tuple[Vector, Vector, float]:
-    """One complementarity problem, and a second one for the expansion of Poisson's contacts."""
+    """One complementarity problem of the contacts `part`, and a second one for the expansion of Poisson's contacts."""
     poisson = np.array([isinstance(law, PoissonImpact) for law in laws])
-    newton_part = np.where(poisson, 0.0, restitution)
-    free = np.zeros(len(laws))
-    gap_rate, slide_rate = touching.rates()
-    # a contact that separates already need only go on doing so
-    wanted = newton_part * np.minimum(gap_rate, 0.0)
-    found = solve_contacts(touching.a, gap_rate + wanted, slide_rate, mu, free)
-    touching.push(found.normal, found.tangential)
-    violation = _violation(found, *touching.rates(), wanted)
-    normal, tangential = found.normal, found.tangential
+    a, free = touching.a.among(part), np.zeros(len(part))
+    gap_rate, slide_rate = _clear_rates(touching, part, rounding)
+    wanted = np.where(poisson, 0.0, restitution) * gap_rate
+    found = solve_contacts(a, gap_rate + wanted, slide_rate, mu, free)
+    _push(touching, part, found)
+    violation = _violation(found, touching.rates()[0][part] + wanted)
+    normal, tangential = np.zeros(len(touching.infos)), np.zeros(len(touching.infos))
+    normal[part], tangential[part] = found.normal, found.tangential
     if np.any(poisson & (restitution > 0.0)):
-        gap_rate, slide_rate = touching.rates()
-        base = np.where(poisson, restitution * normal, 0.0)
-        back = solve_contacts(touching.a, gap_rate + wanted, slide_rate, mu, free, base)
-        touching.push(back.normal, back.tangential)
-        normal, tangential = normal + back.normal, tangential + back.tangential
+        gap_rate, slide_rate = _clear_rates(touching, part, rounding)
+        base = np.where(poisson, restitution * found.normal, 0.0)
+        back = solve_contacts(a, gap_rate + wanted, slide_rate, mu, free, base)
+        _push(touching, part, back)
+        normal[part] += back.normal
+        tangential[part] += back.tangential
         # of what is beyond the given expansion, complementarity is asked
-        left = ContactSolution(
-            back.normal - base, back.tangential, back.normal_motion, back.tangential_motion, back.sticks
-        )
-        violation = max(violation, _violation(left, *touching.rates(), wanted))
+        violation = max(violation, _violation(back, touching.rates()[0][part] + wanted, base))
     return normal, tangential, violation
 
 
-def _violation(found: ContactSolution, gap_rate: Vector, slide_rate: Vector, wanted: Vector) -> float:
-    """How far the velocities reached are from those of the solution, or below zero, m/s."""
-    motion = gap_rate + wanted
-    struck = found.normal > 1e-9 * float(np.max(found.normal, initial=0.0))
-    return float(
-        max(
-            np.max(-np.minimum(motion, 0.0), initial=0.0),
-            np.max(np.abs(motion[struck]), initial=0.0),
-        )
-    )
+def _clear_rates(touching: Touching, part: NDArray[np.intp], rounding: float) -> tuple[Vector, Vector]:
+    """The rates of the contacts `part`, with zero for what is rounding."""
+    gap_rate, slide_rate = (np.where(np.abs(x[part]) <= rounding, 0.0, x[part]) for x in touching.rates())
+    return gap_rate, slide_rate
+
+
+def _push(touching: Touching, part: NDArray[np.intp], found: ContactSolution) -> None:
+    normal, tangential = np.zeros(len(touching.infos)), np.zeros(len(touching.infos))
+    normal[part], tangential[part] = found.normal, found.tangential
+    touching.push(normal, tangential)
+
+
+def _violation(found: ContactSolution, motion: Vector, base: Vector | float = 0.0) -> float:
+    """How far the motion reached is below zero, or from zero where a contact was struck, m/s."""
+    free = found.normal - base
+    struck = free > 1e-9 * float(np.max(free, initial=0.0))
+    return max(float(np.max(-motion, initial=0.0)), float(np.max(np.abs(motion[struck]), initial=0.0)))
 
 
 def _sequence(touching: Touching, restitution: Vector, mu: Vector, rounding: float) -> tuple[Vector, Vector]:

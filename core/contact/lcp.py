@@ -10,8 +10,11 @@ from numpy.typing import NDArray
 
 PIVOT = 1e-11
 """An entry of a column below this, relative to the column's largest, is rounding."""
-NEGATIVE = 1e-13
-"""A right-hand side above minus this (relative to its largest) is not negative."""
+TIES = (1e-13, 1e-11, 1e-9)
+"""Right-hand sides and ratios nearer than this (relative) are equal; where rounding leads pivoting astray with the
+first, the next is tried."""
+VIOLATION = 1e-9
+"""Of the conditions, relative: beyond it a result is none."""
 
 
 class NoComplementarySolution(ArithmeticError):
@@ -27,12 +30,22 @@ def solve_lcp(m: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.floa
     """
     n = len(q)
     size = float(np.max(np.abs(q), initial=0.0))
-    if n == 0 or float(np.min(q)) >= -NEGATIVE * size:
+    if n == 0 or float(np.min(q)) >= -TIES[0] * size:
         return np.zeros(n)
+    for tie in TIES:
+        z = _lemke(m, q, size, tie)
+        if z is not None and float(np.min(m @ z + q)) >= -VIOLATION * size:
+            return z
+    raise NoComplementarySolution("Lemke's pivoting ends on a ray: the complementarity problem has no solution")
+
+
+def _lemke(m: NDArray[np.float64], q: NDArray[np.float64], size: float, tie: float) -> NDArray[np.float64] | None:
+    """The solution, or None if the pivoting ends on a ray or does not end."""
+    n = len(q)
     # columns: w (0 .. n-1), z (n .. 2n-1), the artificial variable (2n), the right-hand side
     table = np.hstack([np.eye(n), -m, -np.ones((n, 1)), q[:, None] / size])
     basis = np.arange(n)
-    row = _first_row(table)
+    row = _first_row(table, tie)
     entering = 2 * n
     for _ in range(60 * n + 100):
         leaving = int(basis[row])
@@ -41,21 +54,21 @@ def solve_lcp(m: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.floa
         if leaving == 2 * n:
             return _refined(m, q, basis)
         entering = leaving + n if leaving < n else leaving - n
-        row = _ratio_row(table, entering, basis)
+        row = _ratio_row(table, entering, basis, tie)
         if row < 0:
-            raise NoComplementarySolution("Lemke's pivoting ends on a ray: the complementarity problem has no solution")
-    raise NoComplementarySolution("Lemke's pivoting does not end")
+            return None
+    return None
 
 
-def _first_row(table: NDArray[np.float64]) -> int:
+def _first_row(table: NDArray[np.float64], tie: float) -> int:
     """Row of the most negative right-hand side; ties by the lexicographic order."""
     n = len(table)
     least = table[:, -1].min()
-    candidates = np.flatnonzero(table[:, -1] <= least + NEGATIVE)
+    candidates = np.flatnonzero(table[:, -1] <= least + tie)
     return _lexicographic(table[candidates][:, :n], candidates)
 
 
-def _ratio_row(table: NDArray[np.float64], entering: int, basis: NDArray[np.int64]) -> int:
+def _ratio_row(table: NDArray[np.float64], entering: int, basis: NDArray[np.int64], tie: float) -> int:
     """Row that leaves when column `entering` grows; -1 if nothing limits it."""
     n = len(table)
     column = table[:, entering]
@@ -64,7 +77,7 @@ def _ratio_row(table: NDArray[np.float64], entering: int, basis: NDArray[np.int6
         return -1
     ratio = table[rows, -1] / column[rows]
     least = ratio.min()
-    rows = rows[ratio <= least + NEGATIVE * max(1.0, abs(least))]
+    rows = rows[ratio <= least + tie * max(1.0, abs(least))]
     artificial = rows[basis[rows] == 2 * n]
     if len(artificial):
         return int(artificial[0])
@@ -91,5 +104,5 @@ def _refined(m: NDArray[np.float64], q: NDArray[np.float64], basis: NDArray[np.i
     z = np.zeros(n)
     if len(basic):
         block = m[np.ix_(basic, basic)]
-        z[basic] = np.linalg.solve(block, -q[basic])
+        z[basic] = np.linalg.lstsq(block, -q[basic], rcond=1e-13)[0]
     return np.maximum(z, 0.0)

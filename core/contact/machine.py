@@ -198,7 +198,7 @@ def _strike(sim: "Engine", touching: Touching, restitution: NDArray[np.float64],
 
 
 def _at_rest(
-    sim: "Engine", touching: Touching, now: _Settling, rounding: float
+    touching: Touching, now: _Settling, rounding: float
 ) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
     """Which of the touching contacts neither separate nor approach, and the direction in which friction is known."""
     gap_rate, slide_rate = touching.rates()
@@ -220,13 +220,15 @@ def _solve_forces(
     sim: "Engine", touching: Touching, now: _Settling, rounding: float, accelerations: float = 0.0
 ) -> tuple[ContactSolution, NDArray[np.float64], float]:
     """Forces of all touching contacts (zero where they separate), known directions, and what no acceleration is."""
-    resting, direction = _at_rest(sim, touching, now, rounding)
+    resting, direction = _at_rest(touching, now, rounding)
     b_n, b_t = touching.free_accelerations()
     arrays, n = sim.workspace.arrays, sim.assembly.n
     level = max(float(np.max(np.abs(arrays["a"][:n]), initial=0.0)), accelerations, 1e-300)
     size = np.max(np.abs(touching.normal), axis=1)
     none = NO_ACCELERATION * level
     b_n = np.where(np.abs(b_n) <= none * size, 0.0, b_n)
+    along = np.max(np.abs(touching.tangential), axis=1)
+    b_t = np.where(np.abs(b_t) <= none * along, 0.0, b_t)
     mu = np.array(
         [
             0.0 if c.coulomb is None else c.coulomb.coefficient if d else c.coulomb.sticking_coefficient
@@ -253,8 +255,7 @@ def _for(
 ) -> ContactSolution:  # fmt: skip
     """The solution with the contacts `takes`; the others get no force."""
     a, some = touching.a, np.flatnonzero(takes)
-    part = type(a)(a.nn[np.ix_(some, some)], a.nt[np.ix_(some, some)], a.tt[np.ix_(some, some)])
-    found = solve_contacts(part, b_n[some], b_t[some], mu[some], direction[some])
+    found = solve_contacts(a.among(some), b_n[some], b_t[some], mu[some], direction[some])
     normal, tangential = np.zeros(len(b_n)), np.zeros(len(b_n))
     normal[some], tangential[some] = found.normal, found.tangential
     return ContactSolution(
@@ -267,6 +268,8 @@ def _forces(
     sim: "Engine", touching: Touching, now: _Settling, rounding: float, accelerations: float
 ) -> dict[int, float]:
     """The contacts that stay closed, and how each moves along its tangent (a value of SLIDE)."""
+    if not np.any(_at_rest(touching, now, rounding)[0]):
+        return {}
     found, direction, none = _solve_forces(sim, touching, now, rounding, accelerations)
     _refuse_jam(sim, touching, now, found, direction)
     largest = float(np.max(found.normal, initial=0.0))
@@ -311,7 +314,9 @@ def _refuse_jam(
         if left > NEARLY_SINGULAR * own:
             continue
         if found.normal[i] > 0.0 or now.was[i] == CLOSED:
-            raise SimulationError(_painleve(sim, contact.name, contact.coulomb.coefficient), sim.t_internal, "contact")
+            raise SimulationError(
+                _painleve(sim, contact.name, contact.coulomb.coefficient), t=sim.t_internal, loop="contact"
+            )
 
 
 def _painleve(sim: "Engine", name: str, mu: float) -> str:
@@ -357,7 +362,7 @@ def _take(sim: "Engine", now: _Settling, chosen: dict[int, float], slide_values:
     sim.use_modes(accelerations=False)
     if changed and sim.formula.exact:
         sim.meet_constraints()
-    sim.use_modes()
+    sim.solve_accelerations()
 
 
 def _report(sim: "Engine", now: _Settling, pending: list[int]) -> None:

@@ -112,6 +112,21 @@ class Element(Record):
         return ()
 
 
+class PairElement2D(Element):
+    """Base of what acts between two markers of planar bodies: its coordinates are the six of their bodies."""
+
+    type: str
+    a: Marker2D
+    b: Marker2D
+
+    def markers(self) -> Sequence[Marker2D]:
+        return (self.a, self.b)
+
+    def coordinates(self, numbering: Numbering) -> Sequence[int]:
+        """Indices of (x, y, theta) of the body of `a`, then of that of `b`."""
+        return (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body))
+
+
 @dataclass(frozen=True)
 class Coordinate:
     """A coordinate of a body: its name, what its channels are called, and how large it typically is."""

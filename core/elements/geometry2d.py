@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import internal
+from ..compiled.jit import inlined, internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import imat, vec
 
@@ -57,14 +57,21 @@ def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: fl
     return g, gradient, hessian
 
 
-@internal
-def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
-    """Half the squared distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21)."""
+@inlined
+def arms(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """The offsets u on body a and w on body b in the directions of space: (a_x, a_y, b_x, b_y)."""
     ta, tb = q[coord[2]], q[coord[5]]
     ca, sa = math.cos(ta), math.sin(ta)
     ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
     cb, sb = math.cos(tb), math.sin(tb)
     bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    return ax, ay, bx, by
+
+
+@internal
+def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """Half the squared distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21)."""
+    ax, ay, bx, by = arms(q, coord, ux, uy, wx, wy)
     dx = q[coord[3]] + bx - q[coord[0]] - ax
     dy = q[coord[4]] + by - q[coord[1]] - ay
     gradient = (-dx, -dy, dx * ay - dy * ax, dx, dy, -dx * by + dy * bx)
@@ -173,11 +180,7 @@ def bearing(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> A
 
     With d = r_b - r_a: phi_i = (d x d_i)/D, phi_ij = (d_j x d_i + d x d_ij)/D - phi_i D_j/D, D = d . d.
     """
-    ta, tb = q[coord[2]], q[coord[5]]
-    ca, sa = math.cos(ta), math.sin(ta)
-    ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
-    cb, sb = math.cos(tb), math.sin(tb)
-    bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    ax, ay, bx, by = arms(q, coord, ux, uy, wx, wy)
     dx = q[coord[3]] + bx - q[coord[0]] - ax
     dy = q[coord[4]] + by - q[coord[1]] - ay
     square = dx * dx + dy * dy

@@ -9,8 +9,7 @@ from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
 from ..model.base import NonNegative, Positive
-from ..model.markers import Marker2D
-from .base import Element, Numbering, Row
+from .base import Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, HESSIAN_PAIRS, add_hessian, along, distance, place
 
 MEETING = 1e-12
@@ -55,15 +54,13 @@ def spring_damper2d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 0]] += c * rate * rate
 
 
-class SpringDamper2D(Element):
+class SpringDamper2D(PairElement2D):
     """Spring and damper between markers `a` and `b`."""
 
     type: Literal["SpringDamper2D"] = "SpringDamper2D"
     kernel: ClassVar[Any] = spring_damper2d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
 
-    a: Marker2D
-    b: Marker2D
     stiffness: NonNegative
     """N/m."""
     damping: NonNegative = 0.0
@@ -83,9 +80,6 @@ class SpringDamper2D(Element):
             )
         return Row(
             (*self.a.point, *self.b.point, self.stiffness, self.damping, self.natural_length),
-            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+            self.coordinates(numbering),
             (numbering.work("dampers"),),
         )
-
-    def markers(self) -> Sequence[Marker2D]:
-        return (self.a, self.b)

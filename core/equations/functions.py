@@ -75,6 +75,15 @@ class EquationFunctions:
         """M, (n, n)."""
         return self._mass.value(t, q)
 
+    def mass_rate(self, t: float, q: Array, v: Array) -> Array:
+        """dM/dt along the motion, M_q v + M_t, (n, n)."""
+        return self._mass.slope((t, q), (1.0, v))[1]
+
+    @property
+    def mass_is_constant(self) -> bool:
+        """Whether M was given as an array."""
+        return self._mass.constant is not None
+
     def force(self, t: float, q: Array, v: Array) -> Array:
         """Q, (n,)."""
         return self._force.value(t, q, v)

@@ -285,11 +285,13 @@ class _Binding:
         rows = np.zeros((m + len(self.system.gaps), n))
         rows[:m] = jacobian
         for k, gap in enumerate(self.system.gaps):
-            gradient = np.asarray(gap.jacobian(t, q)).reshape(-1)
             mode = arrays["memory"][k, MODE]
             if mode == CLOSED:
-                rows[m + k] = gradient
+                gradient, curvature = gap.jacobian_and_curvature(t, q, arrays["lam"][[m + k]])
+                rows[m + k] = gradient.reshape(-1)
+                stiffness = stiffness + c_q * curvature
             elif mode == ACTIVE:
+                gradient = np.asarray(gap.jacobian(t, q)).reshape(-1)
                 _, g, gd, _ = (np.asarray(x).reshape(-1) for x in gap.levels(t, q, v, a))
                 _, f_d, f_dd, _, _ = self._force(k, g[0], gd[0])
                 # the curvature of the gap is left out: it changes the rate of convergence, not the solution

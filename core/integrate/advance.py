@@ -85,16 +85,11 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             continue
         if now >= t:
             return
-        # steps end just before a breakpoint, so that they see what holds to the left of it
-        next_break = min((b for b in sim.assembly.breakpoints if b > now), default=math.inf)
-        before_break = math.nextafter(next_break, -math.inf)
-        if now == before_break:
+        next_break = aim(sim, t, stop)
+        if now == math.nextafter(next_break, -math.inf):
             # only now: until the run goes on from here, samples before this time need the history
             restart_at(sim, next_break)
             continue
-        sim.clock[BREAK_TIME] = next_break
-        sim.clock[STOP_TIME] = min(stop, before_break)
-        sim.clock[TARGET_TIME] = t
         code = run(ws, ms, lc, CHUNK_STEPS)
         sim.flush()
         if code in (CHUNK, FULL):
@@ -120,6 +115,16 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             continue
         else:
             _fail(sim, code)
+
+
+def aim(sim: "Simulation", t: float, stop: float) -> float:
+    """Set the loop's clock: steps until `t` is reached, none beyond `stop`. Returns the next breakpoint."""
+    # steps end just before a breakpoint, so that they see what holds to the left of it
+    next_break = min((b for b in sim.assembly.breakpoints if b > sim.t_internal), default=math.inf)
+    sim.clock[BREAK_TIME] = next_break
+    sim.clock[STOP_TIME] = min(stop, math.nextafter(next_break, -math.inf))
+    sim.clock[TARGET_TIME] = t
+    return next_break
 
 
 def _shrink(sim: "Simulation") -> bool:
@@ -259,16 +264,16 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     mode = float(sim.memory[k, MODE])
     arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
     by_force = mode == CLOSED or (mode == ACTIVE and end[0] <= 0.0) or (mode not in (OPEN, ACTIVE) and end[0] <= 0.0)
+    force_sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
+    slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
+
+    def margin(step: float) -> float:
+        _trial(sim, step, h)
+        force = force_sign * float(arrays["monitor"][k])
+        return min(force, friction_margin(sim.workspace.record, k)) if slides else force
+
     if by_force:
-        sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
-        slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
-
-        def value(step: float) -> float:
-            _trial(sim, step, h)
-            force = sign * float(arrays["monitor"][k])
-            return min(force, friction_margin(sim.workspace.record, k)) if slides else force
-
-        return find_root(value, 0.0, h, 0.5 * h, 0.0)
+        return find_root(margin, 0.0, h, 0.5 * h, 0.0)
     down = mode == OPEN
     sign = 1.0 if down else -1.0
     start = tuple(float(x) for x in sim.watch[k])
@@ -297,7 +302,11 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
             break
         low_step, high_step = 0.5 * low_step, low_step
     guess = 0.5 * (low_step + high_step)
-    return find_root(gap, low_step, high_step, guess, 2e-16 * size)
+    opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
+    if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
+        # the gap opens within this step, but the force has become tensile before
+        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0)
+    return opened
 
 
 def _warn_of_jump(sim: "Simulation", t: float) -> None:

@@ -272,7 +272,7 @@ class Engine:
             self.note_redundant()
         prepare(self.workspace)
         if accelerations:
-            self._solve_accelerations()
+            self.solve_accelerations()
 
     def note_redundant(self) -> None:
         """Other rows are left out than before: add them to what the result tells."""
@@ -280,7 +280,8 @@ class Engine:
         logger.info("at t = %.9g s other redundant rows are left out of the equations: %s", self.t_internal, found)
         self.redundant += tuple(row for row in found if row not in self.redundant)
 
-    def _solve_accelerations(self) -> None:
+    def solve_accelerations(self) -> None:
+        """Accelerations, multipliers and the rates of the work accounts at the workspace's point."""
         arrays = self.workspace.arrays
         if solve_accelerations(self.workspace.record) != OK:
             raise ConsistencyError(
@@ -357,7 +358,7 @@ class Engine:
 
     def presses(self, k: int) -> bool:
         """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""
-        self._solve_accelerations()
+        self.solve_accelerations()
         return bool(self.workspace.arrays["phidd"][self.assembly.contacts[k].row] < 0.0)
 
     # ---- at event rate ----------------------------------------

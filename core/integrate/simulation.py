@@ -1,7 +1,8 @@
 """Simulation: one run that can be stepped, asked, driven, stored and restored."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cached_property
 from numbers import Real
 from typing import Any
@@ -81,10 +82,41 @@ class Simulation(Engine):
         self._advance_to(target, float(t_end))
         self.t = target
 
+    def step(self, t_end: float) -> None:
+        """Make one step, at most to `t_end`; where the newest step ended at events or a breakpoint: let those happen.
+
+        Afterwards `t` is the time of the newest step. This is for analyses that look at every step of a run, and at
+        the states before and after what happens between two of them (`tlismni.core.analysis`).
+
+        Raises
+        ------
+        SimulationError : if the run fails; what was reached stays.
+        """
+        now = self.t_internal
+        with self._failures():
+            if self.pending:
+                self._handle_pending()
+            elif self.at_breakpoint:
+                advance.restart_at(self, math.nextafter(now, math.inf))
+            elif now < t_end:
+                advance.advance_to(self, math.nextafter(now, math.inf), float(t_end))
+        self.t = self.t_internal
+
+    @property
+    def at_breakpoint(self) -> bool:
+        """True if the newest step ended just before a time at which a force or a driver's rate jumps."""
+        return math.nextafter(self.t_internal, math.inf) in self.assembly.breakpoints
+
     def _advance_to(self, target: float, stop: float) -> None:
+        with self._failures():
+            advance.advance_to(self, target, stop)
+
+    @contextmanager
+    def _failures(self) -> Iterator[None]:
+        """What a run raises: a user function's own exception, or a SimulationError."""
         try:
             with user_errors(self.assembly):
-                advance.advance_to(self, target, stop)
+                yield
         except ConsistencyError as error:
             t = self.t_internal
             raise SimulationError(f"at t = {t:.9g} s: {error}", t=t, loop="event") from error

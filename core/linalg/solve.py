@@ -1,5 +1,6 @@
 """`factor` and `solve`: what compiled loops call, for every kind of factorisation."""
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,7 @@ def _no_solution(lu: Any, b_address: int) -> None:
     vec(b_address, 1)[0] = np.nan
 
 
+@cache
 def functions_of(kind: str) -> tuple[int, int]:
     """Addresses of factor and solve of a kind: "unready" (not analysed yet), "dense", "program" or "columns".
 

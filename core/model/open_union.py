@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from functools import reduce
 from inspect import get_annotations
 from operator import or_
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic.fields import FieldInfo
@@ -15,6 +15,9 @@ from .base import Record
 
 class OpenRecord(Record):
     """Base of records that are told apart by their field `type`, which is the class's name unless it says otherwise."""
+
+    if TYPE_CHECKING:
+        type: str
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:

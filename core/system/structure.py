@@ -45,6 +45,8 @@ class Structure:
 
     def partition(self, dependent: NDArray[np.int64]) -> None:
         """Choose the dependent coordinates (m_act,): builds the factorisations of Phi_qd."""
+        if self.dependent is not None and np.array_equal(self.dependent, dependent):
+            return  # most impacts come back to the same partition
         n = int(self.kkt.n) - len(self.active)
         position = np.full(n, -1, dtype=np.int64)
         position[dependent] = np.arange(len(dependent))

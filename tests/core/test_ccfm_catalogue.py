@@ -233,3 +233,13 @@ def test_tsuji_is_damped_in_exactly_one_way(fields):
 def test_laws_that_would_need_infinite_damping_refuse_restitution_0(law):
     with pytest.raises(ModelError, match="restitution"):
         law(stiffness=1.0, restitution=0.0)
+
+
+@pytest.mark.parametrize("damping", [1e-3, 0.0625])
+def test_release_is_found_in_the_step_in_which_the_gap_opens(damping):
+    """A weak damper lets go at d = c v/K, so shortly before the gap opens that one step passes both."""
+    result = strike(KelvinVoigt(stiffness=1e6, damping=damping), exponent=1.0)
+    (opened,) = events(result, "open")
+    released = result["floor.gap"][result.t == opened.t][0]
+    assert -released == pytest.approx(damping * 1.0 / 1e6, rel=1e-3)
+    assert result["floor.normal_force"].min() >= -1e-6 * damping

@@ -1,0 +1,111 @@
+"""Where things stand in the matrix of a run's present structure, and the rate of its mass matrix."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..equations.system import EquationSystem
+from ..integrate.simulation import Simulation
+from .flight import VARYING
+from .linearise import colour_columns, matrix_at, tangent_rate
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The present structure of a run and its partition, for dense matrices.
+
+    Attributes
+    ----------
+    active : rows of Phi that are constraints, (m_act,).
+    rows, cols : of the entries of [S, Phi_q^T; Phi_q, 0], in the order of the workspace's values.
+    colours : of the columns of Phi_q, (n,); see `colour_columns`.
+    dependent, independent : coordinates, (m_act,) and (f,).
+    """
+
+    active: Ints
+    rows: Ints
+    cols: Ints
+    colours: Ints
+    dependent: Ints
+    independent: Ints
+
+    @classmethod
+    def of(cls, sim: Simulation) -> "Layout":
+        """The layout of the structure that `sim` has now."""
+        structure, n = sim.workspace.structure, sim.assembly.n
+        dependent = structure.dependent
+        if dependent is None:
+            raise RuntimeError("a simulation always has a partition once it is built")
+        independent = np.setdiff1d(np.arange(n), dependent)
+        colours = colour_columns(n, structure.rows, structure.cols)
+        return cls(structure.active, structure.rows, structure.cols, colours, dependent, independent)
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.dependent) + len(self.independent)
+
+    @property
+    def freedom(self) -> int:
+        """Number of degrees of freedom f."""
+        return len(self.independent)
+
+    def matrices(self, sim: Simulation, c_q: float = 0.0) -> tuple[Floats, Floats]:
+        """M + c_q K (n, n) and Phi_q (m_act, n) at the workspace's point."""
+        s, phi_q = np.empty((self.n, self.n)), np.zeros((len(self.active), self.n))
+        matrix_at(sim.workspace.record, self.rows, self.cols, s, phi_q, c_q)
+        return s, phi_q
+
+
+class Layouts:
+    """The layouts of the structures that a run has had: the present one by `now`."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._known: dict[int, Layout] = {}
+
+    def now(self) -> Layout:
+        """The layout of the present structure."""
+        structure = self._sim.workspace.structure
+        # structures live as long as the run's workspace, so that an id stays one structure's
+        found = self._known.get(id(structure))
+        if found is None or found.dependent is not structure.dependent:
+            found = self._known[id(structure)] = Layout.of(self._sim)
+        return found
+
+
+def mass_rates(sim: Simulation, layout: Layout, times: Floats, points: Floats, mass: Floats) -> Floats:
+    """dM/dt along the motion at `times` (N,), whose states are `points` (N, 2n) and mass matrices `mass` (N, n, n).
+
+    Returns one matrix of zeros (1, n, n) if M does not vary, else (N, n, n).
+    """
+    n, system = layout.n, sim.system
+    if isinstance(system, EquationSystem):
+        if system.functions.mass_is_constant:
+            return np.zeros((1, n, n))
+        return np.array([
+            system.functions.mass_rate(float(t), x[:n], x[n:]) for t, x in zip(times, points, strict=True)
+        ])  # fmt: skip
+    if np.max(np.ptp(mass, axis=0), initial=0.0) <= VARYING * np.max(np.abs(mass), initial=0.0):
+        return np.zeros((1, n, n))
+    return rates_from_tangents(sim, layout, times)
+
+
+def rates_from_tangents(sim: Simulation, layout: Layout, times: Floats) -> Floats:
+    """dM/dt (N, n, n) along the motion, of a mass matrix that depends on the coordinates alone: (M e_k)_q v."""
+    found = np.empty((len(times), layout.n, layout.n))
+    tangent_rate(sim.workspace.record, sim._method.record, times, layout.rows, layout.cols, found)
+    return found
+
+
+def mass_by_time(sim: Simulation, t: float, q: Any) -> Floats:
+    """M_t (n, n): the part of dM/dt that is no motion's."""
+    n = sim.assembly.n
+    if isinstance(sim.system, EquationSystem) and not sim.system.functions.mass_is_constant:
+        return sim.system.functions.mass_rate(t, q, np.zeros(n))
+    return np.zeros((n, n))
