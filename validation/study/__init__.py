@@ -2,6 +2,8 @@
 
 from .cases import Setting, contenders, order_cases
 from .claims import Claim
+from .contact_claim import fourth_claim
+from .contact_failure import ContactRow, contact_study
 from .impact_orders import ImpactOrderRow, impact_orders
 from .iterations import IterationStudy, iteration_study
 from .orders import OrderRow, order_table
@@ -10,13 +12,16 @@ from .swing import Swing
 
 __all__ = [
     "Claim",
+    "ContactRow",
     "ImpactOrderRow",
     "IterationStudy",
     "OrderRow",
     "Run",
     "Setting",
     "Swing",
+    "contact_study",
     "contenders",
+    "fourth_claim",
     "impact_orders",
     "iteration_study",
     "order_cases",
