@@ -18,7 +18,6 @@ from tlismni.core import (
     DiskOnDisk2D,
     HalfPlane2D,
     LinearSystem,
-    Marker2D,
     Model,
     NewtonImpact,
     PointMass2D,
@@ -275,7 +274,7 @@ END = 1.2
 @pytest.mark.parametrize("units", [(1e3, 1e3, 1e3), (1e2, 1e3, 1.0), (1e-1, 1e-3, 1e-2), (1.0, 1e6, 1.0)])
 def test_units_do_not_matter(units):
     """m, kg, s against mm, g, ms and others; tolerances in the same units."""
-    length, mass, time = units
+    length, _, time = units
     options = {"rtol": 1e-10, "method": "irk"}
     names, times, ends = history(simulate(tumble(), END, atol=1e-12, **options))
     speed = length / time
