@@ -2,7 +2,15 @@
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
-from .contact.friction import CoulombFriction, TanhFriction
+from .contact.friction import (
+    AmbrosioFriction,
+    BrownMcPheeFriction,
+    CoulombFriction,
+    FrictionLaw,
+    StepFriction,
+    TanhFriction,
+    ThrelfallFriction,
+)
 from .contact.laws import (
     CarvalhoMartins,
     Flores,
@@ -54,8 +62,10 @@ from .system.redundancy import RedundantRow
 
 __all__ = [
     "METHODS",
+    "AmbrosioFriction",
     "AppliedForce2D",
     "AppliedTorque2D",
+    "BrownMcPheeFriction",
     "Bushing2D",
     "CarvalhoMartins",
     "Channel",
@@ -75,6 +85,7 @@ __all__ = [
     "Event",
     "Flores",
     "ForceLaw",
+    "FrictionLaw",
     "GapContact",
     "Gonthier",
     "HalfPlane2D",
@@ -110,8 +121,10 @@ __all__ = [
     "SpringDamper2D",
     "State",
     "Step",
+    "StepFriction",
     "Table",
     "TanhFriction",
+    "ThrelfallFriction",
     "TlismniError",
     "Tsuji",
     "ZhiyingQishao",

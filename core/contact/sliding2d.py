@@ -1,8 +1,8 @@
 """Planar contacts with friction: a second scalar function, the sliding distance, beside the gap.
 
 A closed contact that sticks has both as constraints. One that slides has the gap only, and its multiplier acts along
-grad g - mu s grad d, with s = +-1 the direction of sliding and d the sliding distance: F_T = -mu F_N s. A contact
-that acts as a force gets F_T from a regularised law.
+grad g - mu s grad d, with s = +-1 the direction of sliding and d the sliding distance: F_T = -mu F_N s (in general
+F_T = RATIO F_N). A contact that acts as a force gets F_T from a regularised law.
 """
 
 from typing import Any
@@ -23,11 +23,11 @@ from ..elements.geometry2d import (
     height_over_line,
 )
 from .friction import call_friction
-from .modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, SLIDE_START, STICKS
+from .modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
 from .normal2d import LAW_ADDRESS, act, evaluate_law
 
 FRICTION = 11
-"""First friction parameter in the table of parameters; of Coulomb's law: mu."""
+"""First friction parameter in the table of parameters."""
 FRICTION_ADDRESS = 5
 """Column of `extra` with the address of a regularised law's formula."""
 QUARTER_TURN = 0.5 * np.pi
@@ -55,7 +55,7 @@ def _slide_row(
 
 @internal
 def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -> None:
-    """Coulomb's friction of a closed contact that slides: F_T = slope lam, slope = mu s."""
+    """Friction of a closed contact in proportion to its normal force: F_T = slope lam; slope = mu s where it slides."""
     coord = imat(b.coord, b.count, 6)[e]
     lam = vec(b.lam, b.m_extended)[imat(b.row, b.count, 2)[e, 0]]
     if job == RESIDUAL:
@@ -137,8 +137,8 @@ def act_sliding(
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = -lam[imat(b.row, b.count, 2)[e, 1]] if sticks else 0.0
     if job == RESIDUAL or job == TANGENT:
         _slide_row(b, job, e, k, s, gradient, hessian, period, sticks)
-    if closed and abs(memory[SLIDE]) == 1.0:
-        _slip(b, job, e, mat(b.par, b.count, b.npar)[e, FRICTION] * memory[SLIDE], gradient, hessian)
+    if closed and memory[RATIO] != 0.0:
+        _slip(b, job, e, -memory[RATIO], gradient, hessian)
     elif memory[MODE] == ACTIVE and imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS] != 0:
         _regularised(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
 

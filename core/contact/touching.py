@@ -16,7 +16,7 @@ from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import evaluate_residuals, evaluate_tangent
 from ..system.records import OK
 from .complementarity import IMMOVABLE, Delassus
-from .modes import ACTIVE, CLOSED, MODE, OPEN, SLIDE, STICKS
+from .modes import ACTIVE, CLOSED, MODE, OPEN, RATIO, SLIDE, STICKS
 
 if TYPE_CHECKING:
     from ..integrate.engine import Engine
@@ -56,7 +56,7 @@ class Touching:
         acting = frozenset(int(k) for k in np.flatnonzero(modes == ACTIVE))
         closed = frozenset(contacts)
         sliding = frozenset(k for k, c in zip(contacts, self.infos, strict=True) if c.slide_row >= 0)
-        memory[contacts, MODE], memory[contacts, SLIDE] = CLOSED, STICKS
+        memory[contacts, MODE], memory[contacts, SLIDE], memory[contacts, RATIO] = CLOSED, STICKS, 0.0
         stuck = frozenset(
             k for k in held if sim.assembly.contacts[k].coulomb is not None and memory[k, SLIDE] == STICKS
         )

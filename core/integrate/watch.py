@@ -85,7 +85,8 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
             # constraints has let overlap before they opened may come apart
             overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
             return rate < -RATE_ROUNDING or (g < -overlap and watch[k, 0] >= -overlap)
-        if watch[k, 1] < 0.0 and rate > 0.0 and watch[k, 0] > 0.0:
+        # shapes that touch without a force turn round by rounding only
+        if watch[k, 1] < -RATE_ROUNDING and rate > RATE_ROUNDING and watch[k, 0] > 0.0:
             lowest, _ = lowest_inside(watch[k, 0], watch[k, 1], g, rate, h)
             return lowest < 0.0
         return False
@@ -96,8 +97,11 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
             largest = max(largest, abs(lam[i]))
         if force < -FORCE_ROUNDING * largest:
             return True
-        sliding = vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0
-        return sliding and friction_margin(ws, k) < -FORCE_ROUNDING * largest
+        if vec(ws.contact_sticking, ws.n_contacts)[k] == 0.0:
+            return False
+        sticks = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS
+        none = FORCE_ROUNDING * largest if sticks else RATE_ROUNDING * rounding_level(ws, ws.v)
+        return friction_margin(ws, k) < -none
     if mode == ACTIVE:
         return g > 0.0 or (release == 2 and force < 0.0)
     if mode == RELEASED:
