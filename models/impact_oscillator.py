@@ -43,8 +43,8 @@ def impact_oscillator(
     """
     if start_position > stop_position:
         raise ScenarioError(
-            f"start_position = {start_position:g} lies behind the stop at stop_position = {stop_position:g}: start left "
-            "of it"
+            f"start_position = {start_position:g} lies behind the stop at stop_position = {stop_position:g}: start "
+            "left of it"
         )
     contact = contact_law(
         law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping, mass=1.0
