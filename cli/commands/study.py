@@ -8,8 +8,7 @@ import typer
 from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
-from .study_contact import EXAMPLES as CONTACT_EXAMPLES
-from .study_contact import contact
+from .study_contact import CONTACT_EXAMPLES, STIFFNESS_EXAMPLES, contact, stiffness
 
 ORDERS_EXAMPLES = (
     "Examples:\n\n  tlismni study orders --plot orders.png\n\n"
@@ -32,6 +31,7 @@ app = typer.Typer(
 )
 
 app.command("contact", epilog=CONTACT_EXAMPLES)(contact)
+app.command("stiffness", epilog=STIFFNESS_EXAMPLES)(stiffness)
 
 Methods = Annotated[
     list[str] | None, typer.Option("--method", "-m", help="Only this method; may be repeated (see `tlismni methods`).")
