@@ -81,7 +81,7 @@ def impacts(method: Methods = None, quick: Quick = False, json: Json = False, de
 
     with compile_notice(), progress_bar("impacts", len(order_cases(method))) as progress:
         rows = impact_orders(method, quick=quick, progress=progress)
-    figures = {"rows": [row.to_dict() for row in rows], "quick": quick}
+    figures: dict[str, Any] = {"rows": [row.to_dict() for row in rows], "quick": quick}
     if json:
         print_json(figures)
     else:

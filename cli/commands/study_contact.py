@@ -59,7 +59,7 @@ def stiffness(
 
     with compile_notice(), progress_bar("stiffness", len(STIFFNESS_CASES)) as progress:
         rows = stiffness_study(quick=quick, progress=progress)
-    figures = {"rows": [row.to_dict() for row in rows], "quick": quick}
+    figures: dict[str, Any] = {"rows": [row.to_dict() for row in rows], "quick": quick}
     if json:
         print_json(figures)
     else:
