@@ -8,8 +8,7 @@ import typer
 from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
-from .study_contact import EXAMPLES as CONTACT_EXAMPLES
-from .study_contact import contact
+from .study_contact import CONTACT_EXAMPLES, STIFFNESS_EXAMPLES, contact, stiffness
 
 ORDERS_EXAMPLES = (
     "Examples:\n\n  tlismni study orders --plot orders.png\n\n"
@@ -32,6 +31,7 @@ app = typer.Typer(
 )
 
 app.command("contact", epilog=CONTACT_EXAMPLES)(contact)
+app.command("stiffness", epilog=STIFFNESS_EXAMPLES)(stiffness)
 
 Methods = Annotated[
     list[str] | None, typer.Option("--method", "-m", help="Only this method; may be repeated (see `tlismni methods`).")
@@ -81,7 +81,7 @@ def impacts(method: Methods = None, quick: Quick = False, json: Json = False, de
 
     with compile_notice(), progress_bar("impacts", len(order_cases(method))) as progress:
         rows = impact_orders(method, quick=quick, progress=progress)
-    figures = {"rows": [row.to_dict() for row in rows], "quick": quick}
+    figures: dict[str, Any] = {"rows": [row.to_dict() for row in rows], "quick": quick}
     if json:
         print_json(figures)
     else:

@@ -1,16 +1,17 @@
-"""`tlismni study contact`: what methods do at contact, with the velocity jump of an impact law and without."""
+"""`tlismni study contact` and `tlismni study stiffness`: impact laws against their absence, and against forces."""
 
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from ..errors import one_line_errors
+from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, print_json, print_table, progress_bar, say, stdout
 
-EXAMPLES = "Examples:\n\n  tlismni study contact --plot contact.png\n\n  tlismni study contact --json"
+CONTACT_EXAMPLES = "Examples:\n\n  tlismni study contact --plot contact.png\n\n  tlismni study contact --json"
 SUFFIXES = (".png", ".pdf", ".svg")
+STIFFNESS_EXAMPLES = "Examples:\n\n  tlismni study stiffness\n\n  tlismni study stiffness --quick --json"
 COLUMNS = ("method", "jump", "contacts", "restitution", "impulse", "energy", "release", "overlap", "velocity", "faults")
 LEGEND = """\
 impulse: relative error, until the first contact ends; energy: error right after it, relative to the kinetic energy
@@ -45,6 +46,35 @@ def contact(
     _print(figures)
     for path in files:
         say(f"wrote {path}")
+
+
+@one_line_errors
+def stiffness(
+    quick: Annotated[bool, typer.Option("--quick", help="Without the two largest stiffnesses.")] = False,
+    json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """How fast contact forces of growing stiffness K come to the impact of a constraint; exit code 1 if off theory."""
+    from ...validation.study import STIFFNESS_CASES, stiffness_study
+
+    with compile_notice(), progress_bar("stiffness", len(STIFFNESS_CASES)) as progress:
+        rows = stiffness_study(quick=quick, progress=progress)
+    figures: dict[str, Any] = {"rows": [row.to_dict() for row in rows], "quick": quick}
+    if json:
+        print_json(figures)
+    else:
+        table = [
+            (
+                row["label"], f"{row['theory']:.2f}", *(f"{rate:.4f}" for rate in row["observed"].values()),
+                f"{row['stiffness'][-1]:.0e}", *(f"{values[-1]:+.0e}" for values in row["differences"].values()),
+            )
+            for row in figures["rows"]
+        ]  # fmt: skip
+        columns = ("case", "theory", "duration", "position", "impulse", "at K", "duration, s", "position", "impulse")
+        print_table("Differences from the constraint's impact go as K to the power of", columns, table)
+    off = [row.case.label for row in rows if not row.ok]
+    if off:
+        raise Failure(f"{len(off)} of {len(rows)} cases are off their theory: {'; '.join(off)}")
 
 
 def _print(figures: dict[str, Any]) -> None:

@@ -117,6 +117,16 @@ def test_contact(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     assert figures["claims"][0]["name"] == "C4" and len(figures["rows"]) == 4
 
 
+def test_stiffness(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tlismni.validation.study import STIFFNESS_CASES
+
+    monkeypatch.setattr("tlismni.validation.study.stiffness.CASES", STIFFNESS_CASES[3:4])
+    done = tlismni("study", "stiffness", "--quick", "--json")
+    assert done.code == 0
+    (row,) = done.json["rows"]
+    assert row["observed"]["position"] == pytest.approx(row["theory"], abs=0.03)
+
+
 def _first_problem() -> Any:
     from tlismni.validation.study.contact_failure import PROBLEMS
 

@@ -8,9 +8,12 @@ from .impact_orders import ImpactOrderRow, impact_orders
 from .iterations import IterationStudy, iteration_study
 from .orders import OrderRow, order_table
 from .runs import Run
+from .stiffness import CASES as STIFFNESS_CASES
+from .stiffness import StiffnessRow, stiffness_study
 from .swing import Swing
 
 __all__ = [
+    "STIFFNESS_CASES",
     "Claim",
     "ContactRow",
     "ImpactOrderRow",
@@ -18,6 +21,7 @@ __all__ = [
     "OrderRow",
     "Run",
     "Setting",
+    "StiffnessRow",
     "Swing",
     "contact_study",
     "contenders",
@@ -26,4 +30,5 @@ __all__ = [
     "iteration_study",
     "order_cases",
     "order_table",
+    "stiffness_study",
 ]

@@ -115,7 +115,9 @@ class DoublePendulum:
     def solve(self, t_end: float, tolerance: float = TOLERANCE) -> Course:
         """The motion to `t_end`. With restitution the blows must not accumulate; without, the tip stays at the wall
         until the force on it vanishes."""
-        t, y, blows, openings = 0.0, self.start(), [], []
+        t, y = 0.0, self.start()
+        blows: list[Blow] = []
+        openings: list[float] = []
         while True:
             found = self._go(t, t_end, y, tolerance, self.gap)
             if found.status != 1:
