@@ -12,8 +12,11 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     newtons_cradle,
     pendulum,
     pendulum_stop,
+    rocking_block,
     slider_crank,
     slider_crank_stop,
+    stick_slip,
+    woodpecker,
 )
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import Entry, catalogue, load, names

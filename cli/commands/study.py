@@ -8,6 +8,7 @@ import typer
 from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
+from .study_contact import CONTACT_EXAMPLES, STIFFNESS_EXAMPLES, contact, stiffness
 
 ORDERS_EXAMPLES = (
     "Examples:\n\n  tlismni study orders --plot orders.png\n\n"
@@ -23,11 +24,14 @@ SHOWN_TOLERANCE = 1e-6
 """The tolerance whose runs are printed in full (the nearest that ran); all are in the JSON."""
 
 app = typer.Typer(
-    help="The method study: orders on a smooth problem and through impacts, iterations against achieved error.",
+    help="The method study: orders on a smooth problem and through impacts, behaviour at contact, iterations.",
     no_args_is_help=True,
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+app.command("contact", epilog=CONTACT_EXAMPLES)(contact)
+app.command("stiffness", epilog=STIFFNESS_EXAMPLES)(stiffness)
 
 Methods = Annotated[
     list[str] | None, typer.Option("--method", "-m", help="Only this method; may be repeated (see `tlismni methods`).")
@@ -77,7 +81,7 @@ def impacts(method: Methods = None, quick: Quick = False, json: Json = False, de
 
     with compile_notice(), progress_bar("impacts", len(order_cases(method))) as progress:
         rows = impact_orders(method, quick=quick, progress=progress)
-    figures = {"rows": [row.to_dict() for row in rows], "quick": quick}
+    figures: dict[str, Any] = {"rows": [row.to_dict() for row in rows], "quick": quick}
     if json:
         print_json(figures)
     else:

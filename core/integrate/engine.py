@@ -385,10 +385,14 @@ class Engine:
             # samples may have been asked for since the step that ended here
             recall(self.workspace.record, self._method.record, 0)
         self._new_history()
-        machine.handle(self, pending)
+        self.handle_contacts(pending)
         self._new_history()
         self.pending = self.unsettled()
         self._sample_now()
+
+    def handle_contacts(self, pending: list[int]) -> None:
+        """Let the state machine act on contacts with events. Studies of other treatments override this."""
+        machine.handle(self, pending)
 
     def _new_history(self) -> None:
         evaluate_residuals(self.workspace.record)

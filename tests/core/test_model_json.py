@@ -11,8 +11,11 @@ from tlismni.core import (
     AppliedTorque2D,
     Bushing2D,
     Constant,
+    CoordinateContact,
     CoordinateDriver,
     CoordinateLoad,
+    CoordinateTerm,
+    CoulombFriction,
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
@@ -33,6 +36,7 @@ from tlismni.core import (
     NewtonImpact,
     Parameter,
     PointMass2D,
+    PoissonImpact,
     Polynomial,
     Prismatic2D,
     Ramp,
@@ -71,6 +75,12 @@ law = st.one_of(
         for kind in (HuntCrossley, LankaraniNikravesh, Flores, Gonthier)
     ),
 )
+terms = st.lists(
+    st.builds(
+        CoordinateTerm, body=st.just("b"), coordinate=st.sampled_from(["x", "y", "angle"]), factor=st.floats(0.1, 10.0)
+    ),
+    min_size=1, max_size=3,
+).map(tuple)  # fmt: skip
 disk = st.builds(Disk2D, marker=marker, radius=positive)
 ELEMENTS = {
     "bodies": [
@@ -119,6 +129,12 @@ ELEMENTS = {
             DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk, law=law
         ),
         st.builds(DiskOnDisk2D, name=st.just("x"), a=disk, b=disk, law=law),
+        st.builds(CoordinateContact, name=st.just("x"), offset=number, terms=terms, slide=terms, law=law),
+        st.builds(
+            DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk,
+            law=st.builds(PoissonImpact, restitution=st.floats(0.0, 1.0)),
+            friction=st.builds(CoulombFriction, coefficient=st.floats(0.0, 2.0)),
+        ),
     ],
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
@@ -158,7 +174,7 @@ def test_the_list_of_elements_above_is_complete():
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
-        "DiskOnDisk2D",
+        "DiskOnDisk2D", "CoordinateContact",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from tlismni.core.contact.laws import KelvinVoigt
 from tlismni.core.description import Model
-from tlismni.core.elements import Distance2D, Prismatic2D, Revolute2D
+from tlismni.core.elements import CoordinateDriver, Distance2D, Prismatic2D, Revolute2D
 from tlismni.models import ScenarioError, catalogue, load, names
 from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio, kelvin_voigt_restitution
 from tlismni.models.parameters import ScenarioParameter
@@ -37,6 +37,12 @@ def test_every_scenario_starts_with_closed_joints_at_rest_or_consistent_speed(na
     model = load(name).model
     states = start_states(model)
     for joint in model.joints:
+        if isinstance(joint, CoordinateDriver):
+            body = next(b for b in model.bodies if b.name == joint.body)
+            k = body.coordinate_names.index(joint.coordinate)
+            start, rate = joint.motion.coefficients[:2]
+            assert [x[k] for x in body.initial_state()] == [start, rate]
+            continue
         (ax, ay), (avx, avy) = states.point(joint.a)
         (bx, by), (bvx, bvy) = states.point(joint.b)
         dx, dy, dvx, dvy = bx - ax, by - ay, bvx - avx, bvy - avy
@@ -124,6 +130,8 @@ def test_the_stop_faces_the_pendulum_from_either_side(start: float, stop: float)
         (lambda: load("slider_crank_stop", stop_angle=-3.0), "must lie below stop_angle"),
         (lambda: load("slider_crank_stop", rod_length=0.15), "must exceed"),
         (lambda: load("newtons_cradle", balls=3, released=3), "must be below balls"),
+        (lambda: load("rocking_block", tilt=0.3), "else the block falls over"),
+        (lambda: load("stick_slip", static_friction=0.2), "below friction = 0.3"),
     ],
 )
 def test_wrong_names_and_values_are_refused_with_a_way_out(call, text: str) -> None:  # type: ignore[no-untyped-def]

@@ -13,7 +13,8 @@ from tlismni.validation.study.impact_orders import FLOOR, LOST, ImpactOrderRow, 
 
 SCENARIO = load("double_pendulum_wall")
 REFERENCE = DoublePendulum.of(SCENARIO)
-END, BLOWS = REFERENCE.solve(SCENARIO.t_end)
+COURSE = REFERENCE.solve(SCENARIO.t_end)
+END, BLOWS = COURSE.end, COURSE.blows
 
 
 # ---- the reference itself
@@ -26,9 +27,9 @@ def test_reference_keeps_its_energy_between_blows_and_loses_at_them_what_it_says
 
 
 def test_reference_does_not_depend_on_its_tolerance() -> None:
-    end, blows = REFERENCE.solve(SCENARIO.t_end, 1e-12)
-    assert np.abs(end - END).max() < 1e-9
-    assert max(abs(a.t - b.t) for a, b in zip(blows, BLOWS, strict=True)) < 1e-11
+    course = REFERENCE.solve(SCENARIO.t_end, 1e-12)
+    assert np.abs(course.end - END).max() < 1e-9
+    assert max(abs(a.t - b.t) for a, b in zip(course.blows, BLOWS, strict=True)) < 1e-11
 
 
 def test_reference_strikes_as_newton_says_with_the_gap_closed() -> None:
@@ -66,6 +67,21 @@ def test_six_impacts_at_tight_tolerance_agree_to_1e_10(method: str, options: dic
         assert event.approach_speed == pytest.approx(blow.approach_speed, abs=1e-9)
         assert event.energy_loss == pytest.approx(blow.energy_loss, abs=1e-9)
     assert np.abs([result[name][-1] for name in NAMES] - END).max() < 1e-8
+
+
+@pytest.mark.parametrize("method, options", [("ebdf", {"k": 6}), ("irk", {"tableau": "gauss3"})])
+def test_plastic_impacts_hold_the_tip_at_the_wall_until_its_force_vanishes(method: str, options: dict) -> None:
+    scenario = load("double_pendulum_wall", restitution=0.0, wall=0.2)
+    course = DoublePendulum.of(scenario).solve(2.9)
+    result = simulate(scenario.model, 2.9, method, 1e-12, 1e-14, **options)
+    assert [event.kind for event in result.events] == ["impact", "close", "open"] * 3 + ["impact", "close"]
+    impacts = [event for event in result.events if event.kind == "impact"]
+    for impact, blow in zip(impacts, course.blows, strict=True):
+        assert impact.t == pytest.approx(blow.t, abs=1e-9)
+        assert impact.impulse == pytest.approx(blow.impulse, abs=1e-8)
+    openings = [event.t for event in result.events if event.kind == "open"]
+    assert openings == pytest.approx(course.openings[:3], abs=1e-9) and course.openings[3] == math.inf
+    assert np.abs([result[name][-1] for name in NAMES] - course.end).max() < 1e-7
 
 
 @pytest.mark.parametrize("method, options", [("ebdf", {"k": 4}), ("irk", {"tableau": "gauss3"}), ("hht", {})])

@@ -38,6 +38,15 @@ class Blow:
 
 
 @dataclass(frozen=True)
+class Course:
+    """A motion: its end (a, b, a', b'), its blows, and when (s) the tip left the wall again if it had stayed there."""
+
+    end: Array
+    blows: tuple[Blow, ...]
+    openings: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class DoublePendulum:
     """Two rods and a wall, with the parameters of the scenario `double_pendulum_wall`."""
 
@@ -97,31 +106,57 @@ class DoublePendulum:
         after = np.concatenate([y[:2], y[2:] + impulse * response])
         return after, Blow(t, approach, impulse, 0.5 * (1.0 - e) * impulse * approach)
 
-    def solve(self, t_end: float, tolerance: float = TOLERANCE) -> tuple[Array, tuple[Blow, ...]]:
-        """(state at `t_end` (4,), all blows before). The blows must not accumulate."""
-        t, y, blows = 0.0, self.start(), []
+    def force(self, y: Array) -> float:
+        """Force of the wall while the tip slides along it, N: M q'' = Q + F dg/dq with g'' = 0."""
+        gradient = self.gradient(y)
+        response = np.linalg.solve(self.mass(y[0], y[1]), gradient)
+        return -self._gap_acceleration(y, self.accelerations(y)) / float(gradient @ response)
+
+    def solve(self, t_end: float, tolerance: float = TOLERANCE) -> Course:
+        """The motion to `t_end`. With restitution the blows must not accumulate; without, the tip stays at the wall
+        until the force on it vanishes."""
+        t, y = 0.0, self.start()
+        blows: list[Blow] = []
+        openings: list[float] = []
         while True:
-            found = self._fly(t, t_end, y, tolerance, stop=True)
+            found = self._go(t, t_end, y, tolerance, self.gap)
             if found.status != 1:
-                return np.asarray(found.y[:, -1]), tuple(blows)
+                return Course(np.asarray(found.y[:, -1]), tuple(blows), tuple(openings))
             touch = float(found.t_events[0][0])
-            y = self._fly(t, touch, y, tolerance).y[:, -1]
+            y = self._go(t, touch, y, tolerance).y[:, -1]
             for _ in range(POLISH):
                 step = -self.gap(y) / float(self.gradient(y) @ y[2:])
-                y = self._fly(touch, touch + step, y, tolerance).y[:, -1]
+                y = self._go(touch, touch + step, y, tolerance).y[:, -1]
                 touch += step
             y, blow = self.strike(touch, y)
             blows.append(blow)
             t = touch
+            if self.parameters["restitution"] == 0.0 and self.force(y) > 0.0:
+                found = self._go(t, t_end, y, tolerance, self.force)
+                t, y = float(found.t[-1]), found.y[:, -1]
+                openings.append(t if found.status == 1 else math.inf)
 
-    def _fly(self, t: float, t_end: float, y: Array, tolerance: float, stop: bool = False) -> Any:
-        """Free motion from t to t_end, or, with `stop`, to where the gap closes."""
+    def _gap_acceleration(self, y: Array, accelerations: Array) -> float:
+        p = self.parameters
+        curving = p["upper_length"] * math.cos(y[0]) * y[2] ** 2 + p["lower_length"] * math.cos(y[1]) * y[3] ** 2
+        return float(self.gradient(y) @ accelerations - curving)
 
-        def closing(t: float, y: Array) -> float:
-            return self.gap(y)
+    def _go(self, t: float, t_end: float, y: Array, tolerance: float, until: Any = None) -> Any:
+        """Motion from t to t_end, or to where `until`, the gap or the force of a wall that the tip slides along,
+        becomes negative."""
+        slides = until == self.force
 
-        closing.terminal, closing.direction = True, -1.0  # type: ignore[attr-defined]
+        def ends(t: float, y: Array) -> float:
+            return float(until(y))
+
+        def motion(t: float, y: Array) -> list[float]:
+            rates = self.accelerations(y)
+            if slides:
+                rates = rates + self.force(y) * np.linalg.solve(self.mass(y[0], y[1]), self.gradient(y))
+            return [y[2], y[3], *rates]
+
+        ends.terminal, ends.direction = True, -1.0  # type: ignore[attr-defined]
         return solve_ivp(
-            lambda t, y: [y[2], y[3], *self.accelerations(y)], (t, t_end), y, "DOP853", rtol=tolerance, atol=tolerance,
-            max_step=LONGEST, events=closing if stop else None,
+            motion, (t, t_end), y, "DOP853", rtol=tolerance, atol=tolerance, max_step=LONGEST,
+            events=ends if until else None,
         )  # fmt: skip

@@ -138,4 +138,4 @@ def _errors(case: OrderCase, h: float) -> tuple[float, float] | None:
 def _problems() -> tuple[tuple[Scenario, tuple[Blow, ...]], ...]:
     """The scenarios and the blows of their references."""
     scenarios = [load("double_pendulum_wall", upper_angle=a, lower_angle=b) for a, b in STARTS]
-    return tuple((scenario, DoublePendulum.of(scenario).solve(scenario.t_end)[1]) for scenario in scenarios)
+    return tuple((scenario, DoublePendulum.of(scenario).solve(scenario.t_end).blows) for scenario in scenarios)
