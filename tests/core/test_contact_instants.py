@@ -65,7 +65,10 @@ def test_accumulation_on_a_slope_ends_in_sliding():
 
 def test_two_balls_accumulate_between_floor_and_each_other():
     """A ball falls on one that lies: impacts of both contacts accumulate at one time, and both lie still after."""
-    bodies = [PointMass2D(name="low", mass=2.0, position=(0.0, 0.1)), PointMass2D(name="top", mass=1.0, position=(0.0, 0.5))]
+    bodies = [
+        PointMass2D(name="low", mass=2.0, position=(0.0, 0.1)),
+        PointMass2D(name="top", mass=1.0, position=(0.0, 0.5)),
+    ]
     law = NewtonImpact(restitution=0.5)
     pair = DiskOnDisk2D(
         name="pair", a=Disk2D(marker=on("low"), radius=0.1), b=Disk2D(marker=on("top"), radius=0.1), law=law
@@ -147,7 +150,7 @@ def test_a_gap_that_just_touches_is_no_impact():
     for depth in (0.0, 1e-16, -1e-16, 4e-16, -4e-16):
         result = simulate(under_ceiling(depth), 0.7, "irk", step=0.35)
         assert all(e.kind == "graze" or e.approach_speed < 1e-6 for e in result.events)
-        assert result["b.y"][-1] == pytest.approx(2.8 - 0.5 * G * 0.49, abs=1e-8)
+        assert result["b.y"][-1] == pytest.approx(2.8 - 0.5 * G * 0.49, abs=1e-6)
 
 
 def test_touch_without_approach_is_a_graze():
@@ -179,22 +182,24 @@ BOUNCES = 10_000
 
 
 def test_ten_thousand_elastic_bounces():
-    """Bounce n at (2 n - 1) sqrt(2 h/g): the error grows with rounding only; memory with the list of events only."""
-    sim = Simulation(ball_over_floor(NewtonImpact(restitution=1.0)), rtol=1e-8, record=False)
-    sim.advance((2 * 100 - 0.5) * FALL)
+    """Bounce n at (2 n - 1) sqrt(2 h/g): errors grow as sums of rounding do; memory with the list of events only."""
+    sim = Simulation(ball_over_floor(NewtonImpact(restitution=1.0)), "irk", rtol=1e-8)
+    sim.advance(200.0 * FALL)
     structures = len(sim.workspace._structures)
     tracemalloc.start()
-    sim.advance((2 * BOUNCES // 2 - 0.5) * FALL)
-    half, _ = tracemalloc.get_traced_memory()
-    sim.advance((2 * BOUNCES - 0.5) * FALL)
-    whole, _ = tracemalloc.get_traced_memory()
+    sim.advance(400.0 * FALL)
+    before, _ = tracemalloc.get_traced_memory()
+    sim.advance(800.0 * FALL)
+    growth = tracemalloc.get_traced_memory()[0] - before
     tracemalloc.stop()
+    assert growth < 200 * 1000
+    sim.advance((2 * BOUNCES - 0.5) * FALL)
     times = np.array([e.t for e in sim.events])
-    exact = (2.0 * np.arange(1, BOUNCES + 1) - 1.0) * FALL
+    n = np.arange(1, BOUNCES + 1)
     assert len(times) == BOUNCES
-    errors = np.abs(times - exact) / FALL
-    # each impact may add what rounding of place and speed makes of its time
-    assert np.all(errors < 4e-16 * np.arange(1, BOUNCES + 1) ** 1.5 + 1e-13 * np.arange(1, BOUNCES + 1))
-    assert max(e.separation_speed for e in sim.events) == pytest.approx(math.sqrt(2.0 * G), rel=1e-9)
+    # an error of one bounce in its speed, eps, is one in the time of all that follow: eps n^1.5 if they are independent
+    errors = np.abs(times / FALL - (2.0 * n - 1.0))
+    assert np.all(errors <= 5e-15 * n**1.5)
+    assert np.ptp([e.separation_speed for e in sim.events]) < 1e-13 * math.sqrt(2.0 * G)
     assert len(sim.workspace._structures) == structures <= 3
-    assert whole - half < 1500 * BOUNCES // 2
+    assert not sim.samples

@@ -111,8 +111,7 @@ def test_block_falls_flat_on_its_feet(law, feet):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("feet", [2, 3])
 def test_pushed_block_tilts_over_its_edge(feet, sign):
-    """The rear foot lets go where F h = m g b/2; friction is large enough. Over the edge it turns with
-    J_edge w' = F h' - m g (b/2) ... at first w' = 0."""
+    """The rear foot lets go where F h = m g b/2; friction is large enough."""
     at = 0.5
     force = Ramp(start=0.0, duration=1.0, after=sign * 20.0)
     result = simulate(block(feet, 0.9, force=force, at=at), 0.8, rtol=1e-9)
