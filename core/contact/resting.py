@@ -14,6 +14,7 @@ from ..errors import SimulationError
 from .complementarity import ContactSolution, farthest, independent, solve_contacts
 from .lcp import NoComplementarySolution
 from .modes import CLOSED, IDLE, STICKS
+from .painleve import painleve
 from .settling import AT_LIMIT, Settling, unresolved_speed
 from .touching import Touching
 
@@ -250,22 +251,16 @@ class Resting:
             if left > NEARLY_SINGULAR * a.nn[i, i]:
                 continue
             if found.normal[i] > 0.0 or self.now.was[i] == CLOSED:
-                message = self._painleve(self.touching.infos[i].name, float(self.kinetic[i]))
-                raise SimulationError(message, t=self.sim.t_internal, loop="contact")
-
-    def _painleve(self, name: str, mu: float) -> str:
-        return (
-            f"contact '{name}', t = {self.sim.t_internal:.9g} s: Painleve's paradox. Sliding with mu = {mu:g}, the "
-            "friction presses the bodies together more than the normal force keeps them apart, so that rigid bodies "
-            "with Coulomb friction have no (or no unique) accelerations here: use a smaller coefficient, or a force "
-            "law with regularised friction for this contact"
-        )
+                t = self.sim.t_internal
+                raise SimulationError(
+                    painleve(self.touching.infos[i].name, t, float(self.kinetic[i])), t=t, loop="contact"
+                )
 
     def _no_solution(self) -> str:
         a = self.touching.a
         for i, contact in enumerate(self.touching.infos):
             if self.kinetic[i] > 0.0 and a.nn[i, i] <= self.kinetic[i] * abs(a.nt[i, i]):
-                return self._painleve(contact.name, float(self.kinetic[i]))
+                return painleve(contact.name, self.sim.t_internal, float(self.kinetic[i]))
         names = ", ".join(f"'{c.name}'" for c in self.touching.infos)
         return (
             f"contacts {names}, t = {self.sim.t_internal:.9g} s: no contact forces satisfy complementarity and "
