@@ -5,7 +5,7 @@ as a constraint, the others carry a constant share of their normal force (IDLE, 
 reaches its limit; then it keeps that limit and another takes the rest, or all let go.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,9 @@ class Resting:
         self, sim: "Engine", touching: Touching, now: Settling, rounding: float, accelerations: float = 0.0
     ) -> None:
         self.sim, self.touching, self.now = sim, touching, now
+        self.direction: Vector = np.zeros(len(now.contacts))
+        self.full: Flags = np.zeros(len(now.contacts), dtype=bool)
+        self.slipping = False
         gap_rate, slide_rate = touching.rates()
         largest = float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
         self.at_rest: Flags = np.abs(gap_rate) <= rounding
@@ -96,9 +99,9 @@ class Resting:
         slips = self.now.slips
         self.direction, self.full, self.slipping = self.known, np.zeros(len(slips), dtype=bool), False
         if np.any(slips):
-            found = self._held()
-            if found is not None:
-                return found
+            held = self._held()
+            if held is not None:
+                return held
             self.slipping = True
             self.direction = np.where(slips != 0.0, slips, self.direction)
         for _ in range(len(slips) + 1):
@@ -209,7 +212,7 @@ class Resting:
             begins[i] = self._moves(found, sticking, i)
         return begins
 
-    def _moves(self, found: ContactSolution, sticking: NDArray[np.intp], i: int) -> bool:
+    def _moves(self, found: ContactSolution, sticking: NDArray[np.intp], i: int | np.integer[Any]) -> bool:
         """True if closed gaps and those that stick leave contact i free to slide."""
         normals = np.flatnonzero(self._loaded(found))
         return len(sticking) in independent(self.touching.a, normals, np.append(sticking, i))[1]
