@@ -2,7 +2,7 @@
 
 import typer
 
-from .commands import cosim, crosscheck, export, methods, run, study
+from .commands import cosim, crosscheck, export, lyapunov, methods, run, study
 from .commands import list as list_command
 
 app = typer.Typer(
@@ -45,4 +45,5 @@ app.command("run", epilog=run.EXAMPLES)(run.run)
 app.command("export", epilog=export.EXAMPLES)(export.export)
 app.command("cosim", epilog=cosim.EXAMPLES)(cosim.cosim)
 app.command("crosscheck", epilog=crosscheck.EXAMPLES)(crosscheck.crosscheck)
+app.command("lyapunov", epilog=lyapunov.EXAMPLES)(lyapunov.lyapunov)
 app.add_typer(study.app, name="study")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
+from ..integrate.advance import NO_STEP
 from ..integrate.simulation import Simulation
 from .variation import Variation
 
@@ -58,7 +59,7 @@ def floquet_multipliers(
     variation = Variation(sim, factors=True)
     first = np.vstack([variation.dq, variation.dv])
     product = np.eye(len(variation.exponents))
-    while sim.t_internal < end:
+    while end - sim.t_internal > NO_STEP * abs(end):
         variation.advance(end)
         product = variation.last @ product
     if product.shape != (2 * variation.freedom,) * 2:

@@ -1,9 +1,9 @@
 """The variational equation between events, in independent coordinates, by Gauss collocation of order 6.
 
 Variations that keep the constraints are dq = N y with Phi_q N = 0; N is the identity in the rows of the independent
-coordinates and -Phi_qd^-1 Phi_qi in the others. Their rates are dv = N y' + N' y, with Phi_q N' = -B N and B the rate of
-Phi_q along the motion. With the momenta p = N^T M dv the linearised equations of motion lose the multipliers'
-variations (N^T Phi_q^T = 0), and no derivative of B is needed:
+coordinates and -Phi_qd^-1 Phi_qi in the others. Their rates are dv = N y' + N' y, with Phi_q N' = -B N and B the rate
+of Phi_q along the motion. With the momenta p = N^T M dv the linearised equations of motion lose the variations of the
+multipliers (N^T Phi_q^T = 0), and no derivative of B is needed:
 
     y' = G^-1 (p - N^T M N' y)                               G = N^T M N
     p' = N'^T M dv + N^T ((M' - D) dv - K dq)
@@ -143,10 +143,11 @@ def metric(mass: Any, work: Any) -> None:
 
 @internal
 def generator(
-    mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, dependent: Any, independent: Any, work: Any, out: Any
+    mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, dependent: Any, independent: Any, work: Any,
+    out: Any,
 ) -> float:  # fmt: skip
-    """Matrix (2f, 2f) of (y, p)' = out (y, p); returns the highest frequency, rad/s, from above: the traces of the fourth
-    power (of G^-1 K) and of the square (of G^-1 D), which no choice of coordinates changes."""
+    """Matrix (2f, 2f) of (y, p)' = out (y, p); returns a bound of the frequencies, rad/s, from tr((G^-1 K)^2) and
+    tr((G^-1 D)^2), which no choice of coordinates changes."""
     m, f = len(dependent), len(independent)
     null_space(phi_q, dependent, independent, work)
     metric(mass, work)
@@ -218,8 +219,8 @@ def collocate(generators: Any, h: float, z: Any, system: Any, slopes: Any) -> No
 
 @internal
 def orthonormal(mass: Any, dq: Any, dv: Any, r: Any) -> None:
-    """The columns of (dq, dv) made orthonormal in dq^T M dq + dv^T M dv, by the modified Gram-Schmidt process; r gets the
-    upper triangular factor."""
+    """The columns of (dq, dv) made orthonormal in dq^T M dq + dv^T M dv, by the modified Gram-Schmidt process; r gets
+    the upper triangular factor."""
     n, columns = dq.shape
     r[:, :] = 0.0
     for c in range(columns):
@@ -251,7 +252,7 @@ def carry(
 ) -> Any:  # fmt: skip
     """Carry variations over a step of size h, and make them orthonormal.
 
-    The matrices are those at its start, at the Gauss nodes of its substeps of equal size, and at its end, (3 s + 2, ...)
+    The matrices are those at its start, at the Gauss nodes of its substeps of equal size, and at its end, 3 s + 2 in
     all; mass_rate may be a single one. dq and dv (n, columns) are changed; dv is the part tangent to the constraints.
     r (columns, columns) gets the upper triangular matrix with which the new ones give what they were before they were
     made orthonormal.

@@ -1,7 +1,7 @@
 """The system linearised at points of a run: M, K, D, Phi_q and the rate of Phi_q along the motion.
 
-K and D are the derivatives of M a + Phi_q^T lambda - Q by q and v. The compiled tangent is affine in (c_q, c_v), so three
-of them give M, K and D. The constraints at acceleration level,
+K and D are the derivatives of M a + Phi_q^T lambda - Q by q and v. The compiled tangent is affine in (c_q, c_v), so
+that three of them give M, K and D. The constraints at acceleration level,
 
     phidd(v) = Phi_q a + v^T Phi_qq v + 2 Phi_qt v + Phi_tt,
 

@@ -35,7 +35,7 @@ class LyapunovResult:
     """(k,), 1/s: standard error of each, from the scatter of the means over BATCHES parts of the run. It means
     something where the run is long compared to the time over which the motion forgets; NaN for lost directions."""
     times: Floats
-    """(N,), s: where the running estimates are taken, the last one at the end."""
+    """(N,), s: ends of steps at which running estimates are taken, the last one at the end of the run."""
     running: Floats
     """(N, k), 1/s: estimates from the end of the transient to each of `times`."""
     start: float
@@ -110,7 +110,7 @@ def lyapunov_exponents(
     t0 : start, s.
     transient : time in which the basis turns into its directions and the motion onto its attractor; it does not count.
     count : how many exponents, from the largest; None: all.
-    samples : number of running estimates.
+    samples : number of running estimates (at least 20; fewer if there are fewer steps).
     progress : called with the time reached, now and then.
 
     Returns
@@ -127,8 +127,8 @@ def lyapunov_exponents(
             raise ModelError(f"{name} must be a finite number, not {value!r}")
     if transient < 0.0 or t0 + transient >= t_end:
         raise ModelError(
-            f"the exponents are means from t0 + transient = {t0 + transient:g} to t_end = {t_end:g}: the transient must "
-            "be >= 0 and end before t_end"
+            f"the exponents are means from t0 + transient = {t0 + transient:g} to t_end = {t_end:g}: the transient "
+            "must be >= 0 and end before t_end"
         )
     if isinstance(samples, bool) or not isinstance(samples, int) or samples < 1:
         raise ModelError(f"samples = {samples!r} must be a whole number, at least 1")
@@ -137,45 +137,53 @@ def lyapunov_exponents(
     sim = Simulation(system, method, rtol, atol, t0=t0, **options)
     variation = Variation(sim, count)
     start = t0 + transient
-    _run_to(variation, start, progress)
+    variation.run_to(start, start, progress)
     growth, volume, impacts, seen = variation.growth.copy(), variation.volume, variation.impacts, len(sim.events)
-    marks = np.union1d(np.linspace(start, t_end, samples + 1)[1:], np.linspace(start, t_end, BATCHES + 1)[1:])
-    totals = np.empty((len(marks), len(growth)))
-    for i, mark in enumerate(marks):
-        _run_to(variation, float(mark), progress)
-        # directions lost in the transient are lost for good: no difference of infinities
-        totals[i] = np.where(
-            np.isneginf(growth), -np.inf, variation.growth - np.where(np.isneginf(growth), 0.0, growth)
-        )
-    return _result(variation, start, marks, totals, variation.volume - volume, variation.impacts - impacts, seen)
-
-
-def _run_to(variation: Variation, t: float, progress: Callable[[float], None] | None) -> None:
-    sim, told = variation.sim, 0
-    while sim.t_internal < t:
-        variation.advance(t)
-        told += 1
-        if progress is not None and told % 100 == 0:
-            progress(sim.t_internal)
+    lost = np.isneginf(growth)
+    times: list[float] = []
+    totals: list[NDArray[np.float64]] = []
+    for mark in np.linspace(start, t_end, max(samples, BATCHES) + 1)[1:]:
+        # estimates stand at the ends of the steps that pass the marks: a stop at each would cost steps
+        if not times or times[-1] < mark:
+            variation.run_to(t_end, float(mark), progress)
+            times.append(variation.sim.t_internal)
+            # directions lost in the transient are lost for good: no difference of infinities
+            totals.append(np.where(lost, -np.inf, variation.growth - np.where(lost, 0.0, growth)))
+    impacts = variation.impacts - impacts
+    volume = variation.volume - volume if math.isfinite(volume) else -math.inf
+    return _result(variation, start, np.array(times), np.array(totals), volume, impacts, seen)
 
 
 def _result(
-    variation: Variation, start: float, marks: Floats, totals: Floats, volume: float, impacts: int, seen: int
+    variation: Variation, start: float, times: Floats, totals: Floats, volume: float, impacts: int, seen: int
 ) -> LyapunovResult:
-    sim = variation.sim
-    duration = float(marks[-1]) - start
-    running = totals / (marks - start)[:, None]
+    sim, duration = variation.sim, float(times[-1]) - start
+    running = totals / (times - start)[:, None]
     order = np.argsort(-running[-1], kind="stable")
-    ends = np.searchsorted(marks, np.linspace(start, marks[-1], BATCHES + 1)[1:] - 1e-9 * duration)
-    at = np.vstack([np.zeros(totals.shape[1]), totals[ends]])
-    with np.errstate(invalid="ignore"):
-        means = np.diff(at, axis=0) / np.diff(np.concatenate([[start], marks[ends]]))[:, None]
-        errors = np.std(means, axis=0, ddof=1) / math.sqrt(len(means))
-    errors[np.isneginf(running[-1])] = np.nan
     rate = math.nan
     if variation.complete:
         rate = volume / duration if np.all(np.isfinite(running[-1])) else -math.inf
     return LyapunovResult(
-        running[-1][order], errors[order], marks, running[:, order], start, impacts, tuple(sim.events[seen:]), rate,
-        {name: float(value) for name, value in sim.stats.items()},
-    )  # fmt: skip
+        exponents=running[-1][order],
+        errors=_errors(start, times, totals)[order],
+        times=times,
+        running=running[:, order],
+        start=start,
+        impacts=impacts,
+        events=tuple(sim.events[seen:]),
+        volume_rate=rate,
+        stats={name: float(value) for name, value in sim.stats.items()},
+    )
+
+
+def _errors(start: float, times: Floats, totals: Floats) -> Floats:
+    """Standard errors (k,) of the means, from those of BATCHES parts (fewer, if there were few steps)."""
+    ends = np.searchsorted(times, np.linspace(start, times[-1], BATCHES + 1)[1:])
+    ends = np.unique(np.minimum(ends, len(times) - 1))
+    if len(ends) < 2:
+        return np.full(totals.shape[1], np.nan)
+    at, when = np.vstack([np.zeros(totals.shape[1]), totals[ends]]), np.concatenate([[start], times[ends]])
+    with np.errstate(invalid="ignore"):
+        means = np.diff(at, axis=0) / np.diff(when)[:, None]
+        errors = np.std(means, axis=0, ddof=1) / math.sqrt(len(means))
+    return np.where(np.isneginf(totals[-1]), np.nan, errors)

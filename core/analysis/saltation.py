@@ -85,8 +85,8 @@ def cross(sim: Simulation, layouts: Layouts, dq: Floats, dv: Floats) -> Crossing
 
     Raises
     ------
-    SimulationError : where variations have no limit (contacts that strike at one instant, a touch without approach), and
-        for an impact that was not Newton's without friction.
+    SimulationError : where variations have no limit (contacts that strike at one instant, a touch without approach),
+        and for an impact that was not Newton's without friction.
     """
     n, arrays = sim.assembly.n, sim.workspace.arrays
     striking = next((k for k in sim.pending if sim.memory[k, MODE] != CLOSED), None)
@@ -134,7 +134,8 @@ def _normal_part(sim: Simulation, layout: Layout, rows: Rows, dq: Floats, dv: Fl
 def _solve(mass: Floats, jacobian: Floats, upper: Floats, lower: Floats) -> tuple[Floats, Floats]:
     """Solution of [M A^T; A 0] (x, Lambda) = (upper, lower)."""
     n, m = len(mass), len(jacobian)
-    saddle = np.block([[mass, jacobian.T], [jacobian, np.zeros((m, m))]])
+    saddle = np.zeros((n + m, n + m))
+    saddle[:n, :n], saddle[:n, n:], saddle[n:, :n] = mass, jacobian.T, jacobian
     found = np.linalg.solve(saddle, np.concatenate([upper, lower]))
     return found[:n], found[n:]
 
@@ -214,8 +215,8 @@ def _refuse(sim: Simulation, impacts: int, new: list[Event]) -> None:
     if impacts > 1:
         names = [event.contact for event in new if event.kind == "impact"]
         raise SimulationError(
-            f"contacts {names} strike at one instant, t = {t:.9g} s: neighbouring motions strike one after the other, in "
-            "either order, and the exponents are not defined there. Change the start or a length a little.",
+            f"contacts {names} strike at one instant, t = {t:.9g} s: neighbouring motions strike one after the other, "
+            "in either order, and the exponents are not defined there. Change the start or a length a little.",
             t=t,
             loop="event",
         )

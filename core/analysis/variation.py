@@ -1,13 +1,14 @@
 """Variations of a run: a basis of neighbouring motions, carried along step by step and event by event."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.laws import NewtonImpact
 from ..errors import ModelError, SimulationError
-from ..integrate.advance import aim
+from ..integrate.advance import NO_STEP, aim
 from ..integrate.engine import user_errors
 from ..integrate.records import CHUNK, EVENT, REACHED
 from ..integrate.simulation import Simulation
@@ -103,7 +104,8 @@ class Variation:
         basis = np.zeros((layout.n, layout.freedom))
         basis[layout.independent] = np.eye(layout.freedom)
         basis[layout.dependent] = -np.linalg.solve(phi_q[:, layout.dependent], phi_q[:, layout.independent])
-        return basis, np.linalg.cholesky(basis.T @ mass @ basis), mass
+        root: Floats = np.asarray(np.linalg.cholesky(basis.T @ mass @ basis), dtype=np.float64)
+        return basis, root, mass
 
     def _room(self, layout: Layout) -> tuple[Work, tuple[Floats, ...]]:
         """Room for what `carry` and `fly` compute in the present structure."""
@@ -117,8 +119,8 @@ class Variation:
             self._rooms[m, columns] = make_work(n, m, columns), tuple(np.zeros(shape) for shape in shapes)
         return self._rooms[m, columns]
 
-    def advance(self, t_end: float) -> None:
-        """Some steps of the run, at most to t_end, or what happens at the end of the newest one.
+    def advance(self, t_end: float, until: float | None = None) -> None:
+        """Some steps of the run, at most to t_end and none once `until` is reached; or what happens at the newest end.
 
         Raises
         ------
@@ -131,21 +133,30 @@ class Variation:
                 return
             code = EVENT
             if not self._step_by_step and len(self.exponents):
-                code = self._fly(t_end)
+                code = self._fly(t_end, t_end if until is None else until)
             if code not in (CHUNK, REACHED, STEP_LEFT):
                 sim.step(t_end)
             if code not in (CHUNK, REACHED):
                 self._step()
 
-    def _fly(self, t_end: float) -> int:
+    def run_to(self, t_end: float, until: float, progress: Callable[[float], None] | None = None) -> None:
+        """`advance` to the end of the first step at `until` or later; `progress` is called with the time at times."""
+        sim, count = self.sim, 0
+        while until - sim.t_internal > NO_STEP * abs(until):
+            self.advance(t_end, until)
+            count += 1
+            if progress is not None and count % 100 == 0:
+                progress(sim.t_internal)
+
+    def _fly(self, t_end: float, until: float) -> int:
         sim, layout = self.sim, self._layouts.now()
-        aim(sim, t_end, t_end)
+        aim(sim, until, t_end)
         work, room = self._room(layout)
         growth, totals = np.zeros(len(self.exponents)), np.array([self._frequency, 0.0])
         places = layout.rows, layout.cols, layout.colours, layout.dependent, layout.independent
         code = fly(
-            sim.workspace.record, sim._method.record, sim._loop.record, STEPS_AT_ONCE, places, room, work, self.dq, self.dv,
-            growth, totals,
+            sim.workspace.record, sim._method.record, sim._loop.record, STEPS_AT_ONCE, places, room, work, self.dq,
+            self.dv, growth, totals,
         )  # fmt: skip
         sim.t = sim.t_internal
         self._frequency = float(totals[0])
@@ -165,8 +176,8 @@ class Variation:
             substeps = max(1, math.ceil(h * self._frequency / SUBSTEP))
             if substeps > MOST_SUBSTEPS:
                 raise SimulationError(
-                    f"the step of {h:.3g} s at t = {t0:.9g} s would take {substeps} substeps of the variational equation: "
-                    f"the system's highest frequency is {self._frequency:.3g} rad/s; set a smaller max_step",
+                    f"the step of {h:.3g} s at t = {t0:.9g} s would take {substeps} substeps of the variational "
+                    f"equation: the system's highest frequency is {self._frequency:.3g} rad/s; set a smaller max_step",
                     t=t0,
                     loop="variation",
                 )

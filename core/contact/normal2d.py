@@ -9,7 +9,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..elements.geometry2d import HESSIAN_PAIRS, add_hessian, along, constrain, curvature, distance, height_over_line
+from ..elements.geometry2d import add_hessian, add_product, along, constrain, distance, height_over_line, levels
 from .laws import call_law
 from .modes import ACTIVE, APPROACH_SPEED, CLOSED, MEMORY_SIZE, MODE
 
@@ -36,7 +36,8 @@ def evaluate_law(b: Any, e: int, k: int, g: float, rate: float) -> Any:
 @internal
 def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessian: Any) -> None:
     """The force law of element e, contact k: what it adds for `job`."""
-    coord = imat(b.coord, b.count, 6)[e]
+    n = len(gradient)
+    coord = imat(b.coord, b.count, n)[e]
     extra = imat(b.extra, b.count, b.nextra)
     v = vec(b.v, b.n_extended)
     rate = along(gradient, v, coord)
@@ -46,22 +47,15 @@ def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessia
         vec(b.monitor, b.n_monitor)[k] = f
         if active:
             r = vec(b.r, b.n_extended)
-            for i in range(6):
+            for i in range(len(gradient)):
                 r[coord[i]] -= f * gradient[i]
     elif active and job == TANGENT:
         values = vec(b.values, b.n_values)
         coef = vec(b.coef, 2)
-        slot = imat(b.slot_s, b.count, 36)[e]
-        add_hessian(values, slot, hessian, -coef[0] * f)
-        for i in range(6):
-            for j in range(6):
-                values[slot[6 * i + j]] += (coef[0] * f_d + coef[1] * f_dd) * gradient[i] * gradient[j]
-        for m in range(21):
-            i, j = HESSIAN_PAIRS[m, 0], HESSIAN_PAIRS[m, 1]
-            for p in range(6):
-                values[slot[6 * p + j]] += coef[0] * f_dd * gradient[p] * hessian[m] * v[coord[i]]
-                if i != j:
-                    values[slot[6 * p + i]] += coef[0] * f_dd * gradient[p] * hessian[m] * v[coord[j]]
+        slot = imat(b.slot_s, b.count, n * n)[e]
+        add_hessian(values, slot, gradient, hessian, -coef[0] * f)
+        by_value, by_rate = coef[0] * f_d + coef[1] * f_dd, coef[0] * f_dd
+        add_product(values, slot, gradient, gradient, hessian, v, coord, by_value, by_rate)
     elif active and job == ENERGY:
         vec(b.energy, 3)[2] += energy
     elif active and job == POWER:
@@ -79,11 +73,7 @@ def act(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any) -> None
     lam = vec(b.lam, b.m_extended)
     closed = vec(b.memory, MEMORY_SIZE * b.n_memory)[MEMORY_SIZE * k + MODE] == CLOSED
     if job == RESIDUAL and not closed:
-        coord = imat(b.coord, b.count, 6)[e]
-        v = vec(b.v, b.n_extended)
-        vec(b.phi, b.m_extended)[row] = g
-        vec(b.phid, b.m_extended)[row] = along(gradient, v, coord)
-        vec(b.phidd, b.m_extended)[row] = along(gradient, vec(b.a, b.n_extended), coord) + curvature(hessian, v, coord)
+        levels(b, e, row, 1.0, g, gradient, hessian)
         if not force_law:
             vec(b.monitor, b.n_monitor)[k] = 0.0
     elif job == RESIDUAL or (job == TANGENT and closed):

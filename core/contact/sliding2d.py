@@ -8,19 +8,20 @@ F_T = RATIO F_N). A contact that acts as a force gets F_T from a regularised law
 from typing import Any
 
 import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import (
-    HESSIAN_PAIRS,
     add_hessian,
+    add_product,
     along,
     bearing,
     constrain,
-    curvature,
     distance,
     height_over_line,
+    levels,
 )
 from .friction import call_friction
 from .modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
@@ -45,30 +46,27 @@ def _slide_row(
     if sticks:
         constrain(b, job, e, row, 1, 1.0, since, gradient, hessian)
     elif job == RESIDUAL:
-        coord = imat(b.coord, b.count, 6)[e]
-        v = vec(b.v, b.n_extended)
         # what to remember if it begins to stick here
-        vec(b.phi, b.m_extended)[row] = s
-        vec(b.phid, b.m_extended)[row] = along(gradient, v, coord)
-        vec(b.phidd, b.m_extended)[row] = along(gradient, vec(b.a, b.n_extended), coord) + curvature(hessian, v, coord)
+        levels(b, e, row, 1.0, s, gradient, hessian)
 
 
 @internal
 def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -> None:
     """Friction of a closed contact in proportion to its normal force: F_T = slope lam; slope = mu s where it slides."""
-    coord = imat(b.coord, b.count, 6)[e]
+    coord = imat(b.coord, b.count, len(gradient))[e]
     lam = vec(b.lam, b.m_extended)[imat(b.row, b.count, 2)[e, 0]]
     if job == RESIDUAL:
         r = vec(b.r, b.n_extended)
-        for i in range(6):
+        for i in range(len(gradient)):
             r[coord[i]] -= slope * lam * gradient[i]
         vec(b.monitor, b.n_monitor)[b.n_memory + imat(b.extra, b.count, b.nextra)[e, 0]] = slope * lam
     elif job == TANGENT:
         values = vec(b.values, b.n_values)
-        slot = imat(b.slot_jt, b.count, 12)[e]
-        for i in range(6):
+        n = len(gradient)
+        slot = imat(b.slot_jt, b.count, 2 * n)[e]
+        for i in range(len(gradient)):
             values[slot[i]] -= slope * gradient[i]
-        add_hessian(values, imat(b.slot_s, b.count, 36)[e], hessian, -vec(b.coef, 2)[0] * slope * lam)
+        add_hessian(values, imat(b.slot_s, b.count, n * n)[e], gradient, hessian, -vec(b.coef, 2)[0] * slope * lam)
     elif job == POWER:
         rate = along(gradient, vec(b.v, b.n_extended), coord)
         vec(b.a, b.n_extended)[imat(b.extra, b.count, b.nextra)[e, 3]] -= slope * lam * rate
@@ -79,7 +77,7 @@ def _regularised(
     b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
 ) -> None:
     """The friction of an active force contact, by its regularised law."""
-    coord = imat(b.coord, b.count, 6)[e]
+    coord = imat(b.coord, b.count, len(gradient))[e]
     extra = imat(b.extra, b.count, b.nextra)[e]
     par = mat(b.par, b.count, b.npar)[e]
     v = vec(b.v, b.n_extended)
@@ -94,31 +92,23 @@ def _regularised(
         by_normal = 0.0
     if job == RESIDUAL:
         r = vec(b.r, b.n_extended)
-        for i in range(6):
+        for i in range(len(gradient)):
             r[coord[i]] -= force * gradient[i]
         vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = force
     elif job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * rate
     elif job == TANGENT:
+        n = len(gradient)
         values = vec(b.values, b.n_values)
-        slot = imat(b.slot_s, b.count, 36)[e]
+        slot = imat(b.slot_s, b.count, n * n)[e]
         c_q, c_v = vec(b.coef, 2)[0], vec(b.coef, 2)[1]
-        add_hessian(values, slot, hessian, -c_q * force)
-        # d(rate)/dq and d(gap rate)/dq
-        turn, g_turn = np.zeros(6), np.zeros(6)
-        for m in range(21):
-            i, j = HESSIAN_PAIRS[m, 0], HESSIAN_PAIRS[m, 1]
-            turn[j] += hessian[m] * v[coord[i]]
-            g_turn[j] += g_hessian[m] * v[coord[i]]
-            if i != j:
-                turn[i] += hessian[m] * v[coord[j]]
-                g_turn[i] += g_hessian[m] * v[coord[j]]
-        for j in range(6):
-            normal_q = -normal_d * g_gradient[j] - normal_dd * g_turn[j]
-            slope = c_q * (by_rate * turn[j] + by_normal * normal_q)
-            slope += c_v * (by_rate * gradient[j] - by_normal * normal_dd * g_gradient[j])
-            for i in range(6):
-                values[slot[6 * i + j]] -= slope * gradient[i]
+        add_hessian(values, slot, gradient, hessian, -c_q * force)
+        # with the sliding velocity, and with the gap and its rate through the normal force
+        add_product(values, slot, gradient, gradient, hessian, v, coord, -c_v * by_rate, -c_q * by_rate)
+        by_gap, by_gap_rate = c_q * normal_d + c_v * normal_dd, c_q * normal_dd
+        add_product(
+            values, slot, gradient, g_gradient, g_hessian, v, coord, by_normal * by_gap, by_normal * by_gap_rate
+        )
 
 
 @internal
@@ -152,15 +142,10 @@ def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
         ux, uy, wx, wy, angle, radius = par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4], par[e, 5]
         g, g_gradient, g_hessian = height_over_line(q, coord[e], ux, uy, wx, wy, angle)
         # along t = -J n, n the normal, and rolling: d = t . (r_b - r_a) + radius (theta_b - theta_a)
-        back, back_gradient, back_hessian = height_over_line(q, coord[e], ux, uy, wx, wy, angle + QUARTER_TURN)
-        gradient, hessian = np.empty(6), np.empty(21)
-        for i in range(6):
-            gradient[i] = -back_gradient[i]
-        for i in range(21):
-            hessian[i] = -back_hessian[i]
-        gradient[2] -= radius
-        gradient[5] += radius
-        s = radius * (q[coord[e, 5]] - q[coord[e, 2]]) - back
+        s, t_gradient, hessian = height_over_line(q, coord[e], ux, uy, wx, wy, angle - QUARTER_TURN)
+        t0, t1, t2, t3, t4, t5 = t_gradient
+        gradient = (t0, t1, t2 - radius, t3, t4, t5 + radius)
+        s += radius * (q[coord[e, 5]] - q[coord[e, 2]])
         act_sliding(b, job, e, g - radius, g_gradient, g_hessian, s, gradient, hessian, 0.0)
 
 
@@ -173,12 +158,12 @@ def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
         ux, uy, wx, wy, both, first = par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 5], par[e, 6]
         d, g_gradient, g_hessian = distance(q, coord[e], ux, uy, wx, wy)
         # d = -(R_a + R_b) phi + R_a theta_a + R_b theta_b, phi the direction from a to b
-        phi, gradient, hessian = bearing(q, coord[e], ux, uy, wx, wy)
-        for i in range(6):
-            gradient[i] *= -both
-        for i in range(21):
-            hessian[i] *= -both
-        gradient[2] += first
-        gradient[5] += both - first
+        phi, turn, bend = bearing(q, coord[e], ux, uy, wx, wy)
+        turn *= -both
+        bend *= -both
+        turn[2] += first
+        turn[5] += both - first
+        # tuples, so that the loops over them have lengths that the compiler knows
+        gradient, hessian = to_fixed_tuple(turn, 6), to_fixed_tuple(bend, 21)
         s = first * q[coord[e, 2]] + (both - first) * q[coord[e, 5]] - both * phi
         act_sliding(b, job, e, d - both, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * both)

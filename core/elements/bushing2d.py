@@ -43,7 +43,7 @@ def bushing2d_kernel(job: int, t: float, b: Any) -> None:
             values = vec(b.values, b.n_values)
             coef = vec(b.coef, 2)
             slot = imat(b.slot_s, b.count, 36)[e]
-            add_hessian(values, slot, hessian, coef[0] * k)
+            add_hessian(values, slot, gradient, hessian, coef[0] * k)
             for i in range(6):
                 for j in range(6):
                     values[slot[6 * i + j]] += coef[1] * c * (along_x[i] * along_x[j] + along_y[i] * along_y[j])

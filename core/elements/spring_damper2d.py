@@ -10,7 +10,7 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
 from ..model.base import NonNegative, Positive
 from .base import Numbering, PairElement2D, Row
-from .geometry2d import FULL_PATTERN, HESSIAN_PAIRS, add_hessian, along, distance, place
+from .geometry2d import FULL_PATTERN, add_hessian, add_product, along, distance, place
 
 MEETING = 1e-12
 """Markers nearer than this, relative to the size of the mechanism, have no direction between them but rounding."""
@@ -37,17 +37,9 @@ def spring_damper2d_kernel(job: int, t: float, b: Any) -> None:
             values = vec(b.values, b.n_values)
             coef = vec(b.coef, 2)
             slot = imat(b.slot_s, b.count, 36)[e]
-            add_hessian(values, slot, hessian, coef[0] * force)
-            for i in range(6):
-                for j in range(6):
-                    values[slot[6 * i + j]] += (coef[0] * k + coef[1] * c) * gradient[i] * gradient[j]
-            # the rate depends on q through the direction: c G_i (H v)_j
-            for m in range(21):
-                i, j = HESSIAN_PAIRS[m, 0], HESSIAN_PAIRS[m, 1]
-                for p in range(6):
-                    values[slot[6 * p + j]] += coef[0] * c * gradient[p] * hessian[m] * v[coord[e, i]]
-                    if i != j:
-                        values[slot[6 * p + i]] += coef[0] * c * gradient[p] * hessian[m] * v[coord[e, j]]
+            add_hessian(values, slot, gradient, hessian, coef[0] * force)
+            by_value, by_rate = coef[0] * k + coef[1] * c, coef[0] * c
+            add_product(values, slot, gradient, gradient, hessian, v, coord[e], by_value, by_rate)
         elif job == ENERGY:
             vec(b.energy, 3)[2] += 0.5 * k * stretch * stretch
         elif job == POWER:

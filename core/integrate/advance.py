@@ -52,6 +52,8 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 CHUNK_STEPS = 20_000
+NO_STEP = 4e-16
+"""Of the time: what is left before a stop or a breakpoint is rounding, and `run` makes no step of it."""
 MOST_HALVINGS = 40
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
@@ -85,11 +87,13 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             continue
         if now >= t:
             return
-        next_break = aim(sim, t, stop)
-        if now == math.nextafter(next_break, -math.inf):
+        if (due := due_break(sim)) is not None:
             # only now: until the run goes on from here, samples before this time need the history
-            restart_at(sim, next_break)
+            restart_at(sim, due)
             continue
+        aim(sim, t, stop)
+        if sim.clock[STOP_TIME] - now <= NO_STEP * abs(now):
+            return
         code = run(ws, ms, lc, CHUNK_STEPS)
         sim.flush()
         if code in (CHUNK, FULL):
@@ -117,14 +121,22 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             _fail(sim, code)
 
 
-def aim(sim: "Simulation", t: float, stop: float) -> float:
-    """Set the loop's clock: steps until `t` is reached, none beyond `stop`. Returns the next breakpoint."""
+def _next_break(sim: "Simulation") -> float:
+    return min((b for b in sim.assembly.breakpoints if b > sim.t_internal), default=math.inf)
+
+
+def due_break(sim: "Simulation") -> float | None:
+    """The breakpoint that the newest step ended just before, if it did: no step fits between."""
+    now, ahead = sim.t_internal, _next_break(sim)
+    return ahead if math.nextafter(ahead, -math.inf) - now <= NO_STEP * abs(now) else None
+
+
+def aim(sim: "Simulation", t: float, stop: float) -> None:
+    """Set the loop's clock: steps until `t` is reached, none beyond `stop`."""
     # steps end just before a breakpoint, so that they see what holds to the left of it
-    next_break = min((b for b in sim.assembly.breakpoints if b > sim.t_internal), default=math.inf)
-    sim.clock[BREAK_TIME] = next_break
-    sim.clock[STOP_TIME] = min(stop, math.nextafter(next_break, -math.inf))
+    sim.clock[BREAK_TIME] = _next_break(sim)
+    sim.clock[STOP_TIME] = min(stop, math.nextafter(sim.clock[BREAK_TIME], -math.inf))
     sim.clock[TARGET_TIME] = t
-    return next_break
 
 
 def _shrink(sim: "Simulation") -> bool:

@@ -96,8 +96,8 @@ class Simulation(Engine):
         with self._failures():
             if self.pending:
                 self._handle_pending()
-            elif self.at_breakpoint:
-                advance.restart_at(self, math.nextafter(now, math.inf))
+            elif (due := advance.due_break(self)) is not None:
+                advance.restart_at(self, due)
             elif now < t_end:
                 advance.advance_to(self, math.nextafter(now, math.inf), float(t_end))
         self.t = self.t_internal
@@ -105,7 +105,7 @@ class Simulation(Engine):
     @property
     def at_breakpoint(self) -> bool:
         """True if the newest step ended just before a time at which a force or a driver's rate jumps."""
-        return math.nextafter(self.t_internal, math.inf) in self.assembly.breakpoints
+        return advance.due_break(self) is not None
 
     def _advance_to(self, target: float, stop: float) -> None:
         with self._failures():
