@@ -22,6 +22,7 @@ from .contact.laws import (
     ZhiyingQishao,
     force_formula,
 )
+from .contact.segment2d import DiskOnSegment2D, Segment2D
 from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .description import Model
 from .elements import (
@@ -69,6 +70,7 @@ __all__ = [
     "Disk2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
+    "DiskOnSegment2D",
     "Distance2D",
     "EquationError",
     "EquationSystem",
@@ -104,6 +106,7 @@ __all__ = [
     "Result",
     "Revolute2D",
     "RigidBody2D",
+    "Segment2D",
     "Simulation",
     "SimulationError",
     "Sine",
