@@ -126,10 +126,11 @@ def _print(figures: dict[str, Any]) -> None:
         f"{figures['impacts']} impacts\n",
         markup=False,
     )
-    rows = [(str(k + 1), x, e) for k, (x, e) in enumerate(zip(figures["exponents"], figures["errors"], strict=True))]
-    print_table("Lyapunov exponents", ("", "1/s", "standard error"), rows)
+    pairs = zip(figures["exponents"], figures["errors"], strict=True)
+    exponents = [(str(k + 1), x, error) for k, (x, error) in enumerate(pairs)]
+    print_table("Lyapunov exponents", ("", "1/s", "standard error"), exponents)
     per_period = figures["impacts"] / duration * figures["period"] if figures["period"] else None
-    rows = [
+    rows: list[tuple[str, Any]] = [
         ("sum of the exponents, 1/s", sum(figures["exponents"])),
         ("divergence and 2 ln e of impacts, 1/s", figures["volume_rate"]),
         ("difference", number(figures["sum_residual"], 2)),
