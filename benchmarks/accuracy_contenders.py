@@ -76,7 +76,8 @@ def ours(problem: Problem, limit: float, quick: bool) -> list[Contender]:
     if quick:
         wanted = ("ebdf 3", "irk") if problem.stiff else ("adams 8", "bdf auto", "ebdf auto")
         methods = {name: methods[name] for name in wanted}
-    settings = decades(1, 13, 1 if quick else 2)
+    # rougher ones follow the vibration that they excite, which takes longer than to leave it alone
+    settings = decades(3 if problem.stiff else 1, 13, 1 if quick else 2)
 
     def contender(name: str, method: str, options: dict[str, Any]) -> Contender:
         def run(tolerance: float) -> Run:

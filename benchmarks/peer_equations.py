@@ -119,6 +119,14 @@ def _arm(q: Any, body: int, x: float, y: float) -> Any:
     return rx, ry, q[3 * body] + rx, q[3 * body + 1] + ry
 
 
+@njit
+def _moved(local: int, rx: float, ry: float) -> Any:
+    """How a point at offset (rx, ry) moves with coordinate `local` (0 x, 1 y, 2 angle) of its body."""
+    if local == 2:
+        return -ry, rx
+    return (1.0, 0.0) if local == 0 else (0.0, 1.0)
+
+
 def _residual(data: Mechanism, index: int) -> Callable[..., None]:
     mass, force, pins, held, bushings = data.mass, data.force, data.pins, data.held, data.bushings
     n, m = data.n, data.m
@@ -231,29 +239,23 @@ def _entries(data: Mechanism, index: int) -> Callable[..., int]:
             ax, ay, pax, pay = _arm(q, a, bushings[e, 2], bushings[e, 3])
             bx, by, pbx, pby = _arm(q, b, bushings[e, 4], bushings[e, 5])
             dx, dy = pbx - pax, pby - pay
-            # d(px, py)/d(x, y, angle) of both bodies; the force on b is -stiffness (dx, dy)
+            # the force on b is -stiffness (dx, dy)
             for i in range(6):
-                bi = b if i >= 3 else a
+                bi, rix, riy = (b, bx, by) if i >= 3 else (a, ax, ay)
                 if bi < 0:
                     continue
-                li = i % 3
                 si = 1.0 if i >= 3 else -1.0
-                rix, riy = (bx, by) if i >= 3 else (ax, ay)
-                jix = 1.0 if li == 0 else (-riy if li == 2 else 0.0)
-                jiy = 1.0 if li == 1 else (rix if li == 2 else 0.0)
+                jix, jiy = _moved(i % 3, rix, riy)
                 for j in range(6):
-                    bj = b if j >= 3 else a
+                    bj, rjx, rjy = (b, bx, by) if j >= 3 else (a, ax, ay)
                     if bj < 0:
                         continue
-                    lj = j % 3
                     sj = 1.0 if j >= 3 else -1.0
-                    rjx, rjy = (bx, by) if j >= 3 else (ax, ay)
-                    jjx = 1.0 if lj == 0 else (-rjy if lj == 2 else 0.0)
-                    jjy = 1.0 if lj == 1 else (rjx if lj == 2 else 0.0)
+                    jjx, jjy = _moved(j % 3, rjx, rjy)
                     value = si * sj * (jix * jjx + jiy * jjy)
-                    if i == j and li == 2:
+                    if i == j and i % 3 == 2:
                         value -= si * (rix * dx + riy * dy)
-                    at = add(at, tables, n + 3 * bi + li, 3 * bj + lj, 0, stiffness * value)
+                    at = add(at, tables, n + 3 * bi + i % 3, 3 * bj + j % 3, 0, stiffness * value)
         return at
 
     return entries

@@ -58,6 +58,10 @@ def interpolated(points: list[Point], target: float) -> tuple[float, str]:
     a, b = points[missed[-1]], points[missed[-1] + 1]
     share = math.log(a.error / target) / math.log(a.error / b.error)
     seconds = a.seconds * (b.seconds / a.seconds) ** share
+    fastest = min(points[missed[-1] + 1 :], key=lambda p: p.seconds)
+    if fastest.seconds <= seconds:
+        # on stiff problems finer tolerances may cost less
+        return fastest.seconds, f"faster with {fastest.setting}, error {fastest.error:.1e}"
     return seconds, f"between {a.setting}, error {a.error:.1e}, and {b.setting}, error {b.error:.1e}"
 
 

@@ -1,5 +1,6 @@
 """What a command works on: a scenario of the catalogue or a model file, with the settings of the command line."""
 
+import inspect
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -7,27 +8,38 @@ from typing import Any
 
 import typer
 
-from ..core import METHODS, Model, ModelError
+from ..core import METHODS, Model, ModelError, Simulation
 from ..models import Scenario, catalogue, load
 from .options import pairs, value_of
 
-RUN_OPTIONS: Mapping[str, tuple[str, str]] = {
-    "outer": ("newton", "outer loop of the TLISMNI methods: newton, simple (the fixed point) or jfnk (Newton-Krylov)"),
-    "acceleration": ("none", "of outer=simple: none, aitken or anderson"),
-    "depth": ("3", "of acceleration=anderson: iterates that are combined, 1 to 5"),
-    "fallback": ("false", "true: newton takes over if the outer loop fails; it is reported"),
-    "controller": ("elementary", "step sizes of one-step methods: elementary, pi or h211b"),
-    "first_step": ("", "first step under error control, s"),
-    "max_step": ("", "largest step under error control, s"),
+_MEANINGS = {
+    "outer": "outer loop of the TLISMNI methods: newton, simple (the fixed point) or jfnk (Newton-Krylov)",
+    "acceleration": "of outer=simple: none, aitken or anderson",
+    "depth": "of acceleration=anderson: iterates that are combined, 1 to 5",
+    "fallback": "true: newton takes over if the outer loop fails; it is reported",
+    "controller": "step sizes of one-step methods: elementary, pi or h211b",
+    "first_step": "first step under error control, s",
+    "max_step": "largest step under error control, s",
     "newton_tolerance": (
-        "",
-        "where the outer loop stops: with --step absolute and relative (1e-10), else in error weights (0.01)",
+        "where the outer loop stops: with --step absolute and relative (1e-10), else in error weights (0.01; irk 0.001)"
     ),
-    "redundant": ("drop", "constraints that repeat others: drop (left out, but checked) or refuse"),
-    "start_tolerance": ("0.001", "how far the start may be moved to meet the constraints, relative"),
+    "redundant": "constraints that repeat others: drop (left out, but checked) or refuse",
+    "start_tolerance": "how far the start may be moved to meet the constraints, relative",
 }
-"""Options of a run that belong to every method: default and meaning."""
-"""Options that every method takes."""
+
+
+def _shown(default: Any) -> str:
+    """A default as it would be typed; nothing for None, which stands for a choice of the solver."""
+    if default is None:
+        return ""
+    return str(default).lower() if isinstance(default, bool) else str(default)
+
+
+_PARAMETERS = inspect.signature(Simulation).parameters
+RUN_OPTIONS: Mapping[str, tuple[str, str]] = {
+    name: (_shown(_PARAMETERS[name].default), meaning) for name, meaning in _MEANINGS.items()
+}
+"""Options of a run that every method takes: default and meaning."""
 
 
 def read_source(

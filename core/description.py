@@ -5,19 +5,17 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from numbers import Real
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from .contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
-from .elements import Body, Element, Force, Joint, PlanarBody, PointMass2D
+from .contact import Contact
+from .elements import Body, BodyElement, Element, Force, Joint, PlanarBody, PointMass2D
 from .errors import ModelError
 from .model.base import Record, Vector2
 from .model.channels import Input, Parameter
 from .model.markers import GROUND
 from .model.signals import InputSignal
-
-Contact = Annotated[DiskOnHalfPlane2D | DiskOnDisk2D, Field(discriminator="type")]
 
 
 class Model(Record):
@@ -56,18 +54,20 @@ class Model(Record):
         inputs = {i.name for i in self.inputs}
         for element in self.elements():
             for marker in element.markers():
-                if marker.body != GROUND and marker.body not in bodies:
+                body = self._find(element, marker.body, bodies)
+                if body is not None and not isinstance(body, PlanarBody):
                     raise ValueError(
-                        f"'{element.name}' refers to body '{marker.body}', which does not exist; "
-                        f"bodies are {sorted(bodies)} and '{GROUND}'"
+                        f"'{element.name}' needs a point of '{body.name}', but a {type(body).__name__} has only its "
+                        f"coordinates {list(body.coordinate_names)}: act on one of these by name (CoordinateDriver, "
+                        "CoordinateLoad), or use a RigidBody2D"
                     )
-                if isinstance(bodies.get(marker.body), PointMass2D) and marker.point != (0.0, 0.0):
+                if isinstance(body, PointMass2D) and marker.point != (0.0, 0.0):
                     raise ValueError(
                         f"'{element.name}' has a marker at {marker.point} of point mass '{marker.body}', "
                         "which has no extension: use (0, 0), or a RigidBody2D"
                     )
-            for body, coordinate in element.moved_coordinates():
-                self._check_coordinate(element, body, bodies.get(body), coordinate)
+            for name, coordinate in element.moved_coordinates():
+                self._check_coordinate(element, self._find(element, name, bodies), coordinate)
             for signal in element.signals():
                 if isinstance(signal, InputSignal) and signal.channel not in inputs:
                     raise ValueError(
@@ -87,13 +87,23 @@ class Model(Record):
         return value
 
     @staticmethod
-    def _check_coordinate(element: Element, name: str, body: PlanarBody | None, coordinate: str) -> None:
+    def _find(element: Element, name: str, bodies: Mapping[str, BodyElement]) -> BodyElement | None:
+        """The body `name`, None for the ground."""
+        if name != GROUND and name not in bodies:
+            raise ValueError(
+                f"'{element.name}' refers to body '{name}', which does not exist; "
+                f"bodies are {sorted(bodies)} and '{GROUND}'"
+            )
+        return bodies.get(name)
+
+    @staticmethod
+    def _check_coordinate(element: Element, body: BodyElement | None, coordinate: str) -> None:
         if body is None:
             raise ValueError(f"'{element.name}' acts on coordinate '{coordinate}' of the ground, which does not move")
         if coordinate not in body.coordinate_names:
             raise ValueError(
-                f"'{element.name}' acts on coordinate '{coordinate}' of '{name}', but a {type(body).__name__} has only "
-                f"{list(body.coordinate_names)}: use a RigidBody2D, or another coordinate"
+                f"'{element.name}' acts on coordinate '{coordinate}' of '{body.name}', but a {type(body).__name__} has "
+                f"only {list(body.coordinate_names)}: use a RigidBody2D, or another coordinate"
             )
 
     def elements(self) -> Iterator[Element]:
@@ -193,6 +203,6 @@ class Model(Record):
 
     def coordinate_channels(self, assembly: Any, layout: Any) -> Any:
         """Channels of the bodies' coordinates."""
-        from .integrate.output import planar_coordinate_channels
+        from .integrate.output import body_coordinate_channels
 
-        return planar_coordinate_channels(assembly, layout)
+        return body_coordinate_channels(assembly, layout)

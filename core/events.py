@@ -9,7 +9,8 @@ class Event:
     """One event of one contact.
 
     kind : "impact" (velocity jump), "close" (a force law begins to act, or a contact becomes a constraint),
-    "open" (it ends), "rest" (accumulating impacts end in persistent contact).
+    "open" (it ends), "rest" (accumulating impacts end in persistent contact), "graze" (the gap touches zero without
+    approach), "stick" and "slip" (a closed contact with Coulomb friction comes to a stop, or begins to slide).
     """
 
     t: float
@@ -26,6 +27,8 @@ class Event:
     """m/s, after."""
     velocity_increment_residual: float = 0.0
     """Largest violation of the constraints at velocity-increment level, m/s."""
+    friction_impulse: float = 0.0
+    """Of an impact with friction, along the tangent, N s."""
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""

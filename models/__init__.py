@@ -6,11 +6,17 @@ A new scenario is one file with its parameter table and its builder, and its imp
 from . import (  # noqa: F401  (importing a scenario's file puts it in the catalogue)
     bouncing_ball,
     chain,
+    double_pendulum_wall,
     four_bar,
     impact_oscillator,
+    newtons_cradle,
     pendulum,
     pendulum_stop,
+    rocking_block,
     slider_crank,
+    slider_crank_stop,
+    stick_slip,
+    woodpecker,
 )
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import Entry, catalogue, load, names

@@ -32,6 +32,7 @@ def bouncing_ball(
     stiffness: float,
     exponent: float,
     damping: float | None,
+    relaxation_time: float | None,
 ) -> Scenario:
     """Body `ball`, contact `floor` at y = 0.
 
@@ -39,7 +40,13 @@ def bouncing_ball(
     sqrt(2h/g) (1+e)/(1-e), which is before the end for e <= 0.8.
     """
     contact = contact_law(
-        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping, mass=mass
+        law,
+        restitution=restitution,
+        stiffness=stiffness,
+        exponent=exponent,
+        damping=damping,
+        relaxation_time=relaxation_time,
+        mass=mass,
     )
     model = Model(
         name="bouncing_ball",

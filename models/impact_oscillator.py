@@ -35,6 +35,7 @@ def impact_oscillator(
     stiffness: float,
     exponent: float,
     damping: float | None,
+    relaxation_time: float | None,
 ) -> Scenario:
     """Body `mass` (1 kg) on the guide `guide` along x, held by `spring`, driven by `drive`; contact `stop`.
 
@@ -47,8 +48,9 @@ def impact_oscillator(
             "left of it"
         )
     contact = contact_law(
-        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping, mass=1.0
-    )
+        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping,
+        relaxation_time=relaxation_time, mass=1.0,
+    )  # fmt: skip
     on_mass = Marker2D(body="mass")
     model = Model(
         name="impact_oscillator",

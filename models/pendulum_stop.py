@@ -38,6 +38,7 @@ def pendulum_stop(
     stiffness: float,
     exponent: float,
     damping: float | None,
+    relaxation_time: float | None,
 ) -> Scenario:
     """Body `pendulum`, joint `pin` at the origin, contact `stop`.
 
@@ -51,7 +52,13 @@ def pendulum_stop(
             "and less than pi: else the tip starts on or behind the stop"
         )
     contact = contact_law(
-        law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping, mass=mass / 3.0
+        law,
+        restitution=restitution,
+        stiffness=stiffness,
+        exponent=exponent,
+        damping=damping,
+        relaxation_time=relaxation_time,
+        mass=mass / 3.0,
     )
     half = 0.5 * length
     # the stop's outward normal (its marker's second axis) points to where the rod starts

@@ -29,8 +29,8 @@ LARGEST_DEFLECTION = 0.01
 
 
 @dataclass(frozen=True)
-class _Dimensions:
-    """Of the rigid mechanism: r, l (m), masses (kg), g (m/s^2)."""
+class Dimensions:
+    """Of the rigid mechanism: r, l (m), masses (kg), g (m/s^2), a flywheel on the crank (kg m^2)."""
 
     r: float
     l: float
@@ -38,6 +38,19 @@ class _Dimensions:
     rod: float
     slider: float
     gravity: float
+    flywheel: float = 0.0
+
+    def effective_mass(self, angle: float) -> float:
+        """Mass that a blow on the slider along its axis feels at a crank angle (rad), kg; infinite at dead centre."""
+        r, l = self.r, self.l
+        sin_phi = -r / l * math.sin(angle)
+        cos_phi = math.sqrt(1.0 - sin_phi**2)
+        c, s = math.cos(angle), math.sin(angle)
+        p = -r * c / (l * cos_phi)
+        slider = -r * s - l * sin_phi * p
+        rod = (-r * s - 0.5 * l * sin_phi * p) ** 2 + (r * c + 0.5 * l * cos_phi * p) ** 2
+        inertia = self.flywheel + self.crank * r**2 / 3.0 + self.rod * (rod + l**2 / 12.0 * p**2)
+        return (inertia + self.slider * slider**2) / slider**2 if slider else math.inf
 
     def motion(self, angle: complex, rate: complex) -> tuple[complex, complex, complex]:
         """(crank's acceleration, force x, force y of the rod on the slider) in a state of the rigid mechanism.
@@ -62,7 +75,8 @@ class _Dimensions:
         slider_curve = -r * c - l * (cos_phi * p**2 + sin_phi * curve)
         rod_inertia = self.rod * l**2 / 12.0
         mass = (
-            self.crank * r**2 / 3.0
+            self.flywheel
+            + self.crank * r**2 / 3.0
             + self.rod * (rod[0] ** 2 + rod[1] ** 2)
             + rod_inertia * p**2
             + self.slider * slider**2
@@ -116,8 +130,8 @@ def slider_crank(
         raise ScenarioError(
             f"bushing_damping = {bushing_damping:g} needs bushing_stiffness > 0: a rigid pin has no damping"
         )
-    dimensions = _Dimensions(crank_length, rod_length, crank_mass, rod_mass, slider_mass, gravity)
-    bodies = _bodies(dimensions, crank_angle, crank_speed, *_deflection(
+    dimensions = Dimensions(crank_length, rod_length, crank_mass, rod_mass, slider_mass, gravity)
+    bodies = crank_bodies(dimensions, crank_angle, crank_speed, *_deflection(
         dimensions, crank_angle, crank_speed, bushing_stiffness, bushing_damping
     ))  # fmt: skip
     crank_end = Marker2D(body="crank", point=(0.5 * crank_length, 0.0))
@@ -143,7 +157,7 @@ def slider_crank(
     )
 
 
-def _deflection(d: _Dimensions, angle: float, rate: float, stiffness: float, damping: float) -> tuple[float, ...]:
+def _deflection(d: Dimensions, angle: float, rate: float, stiffness: float, damping: float) -> tuple[float, ...]:
     """(x, y, x', y') of the slider against the end of the rod: the slow solution of k d + c d' = -F to O(1/k^2).
 
     F' by the complex step along the rigid motion (Squire and Trapp, 1998).
@@ -166,8 +180,8 @@ def _deflection(d: _Dimensions, angle: float, rate: float, stiffness: float, dam
     return found
 
 
-def _bodies(
-    d: _Dimensions, angle: float, rate: float, dx: float, dy: float, dvx: float, dvy: float
+def crank_bodies(
+    d: Dimensions, angle: float, rate: float, dx: float = 0.0, dy: float = 0.0, dvx: float = 0.0, dvy: float = 0.0
 ) -> tuple[RigidBody2D, ...]:
     """The bodies at the start, the slider at (dx, dy) against the end of the rod, on the x axis."""
     c, s = math.cos(angle), math.sin(angle)
@@ -177,8 +191,9 @@ def _bodies(
     cp, sp = math.cos(phi), math.sin(phi)
     return (
         RigidBody2D(
-            name="crank", mass=d.crank, inertia=d.crank * d.r**2 / 12.0, position=(0.5 * d.r * c, 0.5 * d.r * s),
-            angle=angle, velocity=(-0.5 * d.r * s * rate, 0.5 * d.r * c * rate), angular_velocity=rate,
+            name="crank", mass=d.crank, inertia=d.crank * d.r**2 / 12.0 + d.flywheel,
+            position=(0.5 * d.r * c, 0.5 * d.r * s), angle=angle,
+            velocity=(-0.5 * d.r * s * rate, 0.5 * d.r * c * rate), angular_velocity=rate,
         ),
         RigidBody2D(
             name="rod", mass=d.rod, inertia=d.rod * d.l**2 / 12.0,

@@ -135,8 +135,7 @@ def _channels(model: Model) -> tuple[str, ...]:
     """What to compare of a model that does not say: the coordinates of its last body, forces and gaps."""
     names: list[str] = []
     for body in model.bodies[-1:]:
-        rates = {"x": "vx", "y": "vy", "angle": "angular_velocity"}
-        names += [f"{body.name}.{k}" for c in body.coordinate_names for k in (c, rates[c])]
+        names += [f"{body.name}.{k}" for c in body.coordinate_records() for k in (c.name, c.rate)]
     for contact in model.contacts:
         names += [f"{contact.name}.normal_force", f"{contact.name}.gap"]
     return tuple(names)

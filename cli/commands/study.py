@@ -8,11 +8,13 @@ import typer
 from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
+from .study_contact import CONTACT_EXAMPLES, STIFFNESS_EXAMPLES, contact, stiffness
 
 ORDERS_EXAMPLES = (
     "Examples:\n\n  tlismni study orders --plot orders.png\n\n"
     "  tlismni study orders --method ebdf --method mebdf --json"
 )
+IMPACTS_EXAMPLES = "Examples:\n\n  tlismni study impacts\n\n  tlismni study impacts --method ebdf --method bdf --json"
 ITERATIONS_EXAMPLES = (
     "Examples:\n\n  tlismni study iterations --plot iterations.png\n\n"
     "  tlismni study iterations --scenario chain --method hht --method ebdf --json"
@@ -22,11 +24,14 @@ SHOWN_TOLERANCE = 1e-6
 """The tolerance whose runs are printed in full (the nearest that ran); all are in the JSON."""
 
 app = typer.Typer(
-    help="The method study: orders on a problem with known solution, iterations against achieved error.",
+    help="The method study: orders on a smooth problem and through impacts, behaviour at contact, iterations.",
     no_args_is_help=True,
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+app.command("contact", epilog=CONTACT_EXAMPLES)(contact)
+app.command("stiffness", epilog=STIFFNESS_EXAMPLES)(stiffness)
 
 Methods = Annotated[
     list[str] | None, typer.Option("--method", "-m", help="Only this method; may be repeated (see `tlismni methods`).")
@@ -66,6 +71,35 @@ def orders(
     off = [row.case.setting.label for row in rows if not row.ok]
     if off:
         raise Failure(f"{len(off)} of {len(rows)} orders are off their theory: {', '.join(off)}")
+
+
+@app.command("impacts", epilog=IMPACTS_EXAMPLES)
+@one_line_errors
+def impacts(method: Methods = None, quick: Quick = False, json: Json = False, debug: Debug = False) -> None:
+    """Orders of the times and impulses of six impacts in one run; exit code 1 if a method loses its order to them."""
+    from ...validation.study import impact_orders, order_cases
+
+    with compile_notice(), progress_bar("impacts", len(order_cases(method))) as progress:
+        rows = impact_orders(method, quick=quick, progress=progress)
+    figures: dict[str, Any] = {"rows": [row.to_dict() for row in rows], "quick": quick}
+    if json:
+        print_json(figures)
+    else:
+        table = [
+            (
+                row["label"],
+                "?" if row["theory"] is None else row["theory"],
+                *(f"{found:.2f}" for found in row["observed"].values()),
+                f"{row['errors']['time'][-1]:.0e}" if row["steps"] else "",
+                row["verdict"],
+            )
+            for row in figures["rows"]
+        ]
+        columns = ("method", "theory", "times", "impulses", "least error of the times, s", "verdict")
+        print_table("Orders through six impacts: two rods and a wall, fixed steps", columns, table)
+    lost = [row.case.setting.label for row in rows if row.verdict == "lost"]
+    if lost:
+        raise Failure(f"{len(lost)} of {len(rows)} methods lose their order to the impacts: {', '.join(lost)}")
 
 
 @app.command("iterations", epilog=ITERATIONS_EXAMPLES)

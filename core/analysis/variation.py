@@ -104,8 +104,8 @@ class Variation:
         basis = np.zeros((layout.n, layout.freedom))
         basis[layout.independent] = np.eye(layout.freedom)
         basis[layout.dependent] = -np.linalg.solve(phi_q[:, layout.dependent], phi_q[:, layout.independent])
-        low: Floats = np.asarray(np.linalg.cholesky(basis.T @ mass @ basis), dtype=np.float64)
-        return basis, low, mass
+        root: Floats = np.asarray(np.linalg.cholesky(basis.T @ mass @ basis), dtype=np.float64)
+        return basis, root, mass
 
     def _room(self, layout: Layout) -> tuple[Work, tuple[Floats, ...]]:
         """Room for what `carry` and `fly` compute in the present structure."""
@@ -120,7 +120,11 @@ class Variation:
         return self._rooms[m, columns]
 
     def advance(self, t_end: float, until: float | None = None) -> None:
+<<<<<<< HEAD
+        """Some steps of the run, at most to t_end and none once `until` is reached; or what happens at the newest end.
+=======
         """Steps of the run, at most to t_end and none once `until` is reached; or what happens at the newest one's end.
+>>>>>>> lyap
 
         Raises
         ------

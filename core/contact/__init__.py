@@ -1,1 +1,12 @@
-""
+"""Contacts: shapes and gaps, laws, friction, and what happens when they meet. A new one is a file and its name here."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from .contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from .coordinate_contact import CoordinateContact
+
+CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, CoordinateContact)
+
+Contact = Annotated[DiskOnHalfPlane2D | DiskOnDisk2D | CoordinateContact, Field(discriminator="type")]

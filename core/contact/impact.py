@@ -1,81 +1,158 @@
-"""Impact at velocity-increment level, bilateral joints included.
+"""Impact of several contacts at once at velocity-increment level, joints and friction included.
 
-[M Phi_q^T G^T; Phi_q 0 0; G 0 0] (dv, Lambda_b, -P) = (0, 0, -(1 + e) g'^-), v^+ = v^- + dv, P >= 0.
+[M Phi_q^T; Phi_q 0] (dv, Lambda) = (G_N^T P_N + G_T^T P_T, 0), v^+ = v^- + dv, with the impact law of each contact.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..compiled.jit import compiled
-from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at, solve
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from .complementarity import ContactSolution, solve_contacts
+from .laws import ImpactLaw, NewtonImpact, PoissonImpact
+from .touching import Touching
+
+Vector = NDArray[np.float64]
+
+MOST_BLOWS = 100_000
+"""Of a sequential impact, before it is given up."""
+
+
+MOST_ROUNDS = 2000
+"""Of impacts at one instant, each of the contacts that approach then."""
+
+
+class EndlessImpact(ArithmeticError):
+    """A sequence of blows that does not end."""
 
 
 @dataclass(frozen=True)
 class Impact:
-    """What an impact did."""
+    """What an impact did, each entry for one contact, (contacts,)."""
 
-    impulse: float
-    """Normal impulse P, N s."""
-    impulses: dict[int, float]
-    """-Lambda of every active row of Phi: for contacts, their normal impulses, N s."""
-    energy_loss: float
-    """J."""
+    impulse: Vector
+    """Normal impulses, N s."""
+    friction_impulse: Vector
+    """Along the tangents, N s."""
+    energy_loss: Vector
+    """J; negative where the law puts energy in."""
+    approach: Vector
+    """-g' before (of a contact that is struck later at the same instant: before that), m/s."""
+    separation: Vector
+    """g' after, m/s."""
     residual: float
-    """Largest violation of the constraints at velocity-increment level, m/s."""
+    """Largest violation of the joints and of complementarity at velocity-increment level, m/s."""
 
 
-@compiled
-def _velocity_increment(ws: Any, row: int, increment: float) -> int:
-    """rhs = (dv, Lambda) for the closed structure: G dv = increment in `row`, 0 in all other rows."""
-    evaluate_residuals(ws)
-    evaluate_tangent(ws, 0.0, 0.0)
-    status = factor(lu_at(ws.kkt_query), ws.values)
-    if status != 0:
-        return status
-    rhs = vec(ws.rhs, ws.n + ws.m_act)
-    active = ivec(ws.active, ws.m_act)
-    for i in range(ws.n):
-        rhs[i] = 0.0
-    for i in range(ws.m_act):
-        rhs[ws.n + i] = increment if active[i] == row else 0.0
-    solve(lu_at(ws.kkt_query), ws.rhs)
-    return 0
+def strike(touching: Touching, restitution: Vector, rounding: float) -> Impact:
+    """Change the current velocities by the laws of the touching contacts, with these coefficients of restitution.
 
+    Those that separate beforehand take no part, so that none can put energy in without friction; if they approach
+    afterwards they are struck in another round. Rates below `rounding` (m/s) are none.
 
-def unit_impulse(workspace: Any, row: int) -> float:
-    """Normal impulse that changes the gap's rate in `row` by 1 m/s, in the closed structure, N s."""
-    if _velocity_increment(workspace.record, row, 1.0) != 0:
-        return 0.0
-    position = int(np.flatnonzero(workspace.structure.active == row)[0])
-    return -float(workspace.arrays["rhs"][workspace.assembly.n + position])
-
-
-def apply_impact(workspace: Any, row: int, restitution: float) -> Impact | None:
-    """Newton's impact law on the contact in `row`, in the closed structure; changes v.
-
-    Returns None if the matrix is singular (the caller names the contact).
+    Raises
+    ------
+    NoComplementarySolution : if the laws have no solution.
+    EndlessImpact : if the rounds, or sequential blows, do not end.
     """
-    ws, arrays, n = workspace.record, workspace.arrays, workspace.assembly.n
-    evaluate_residuals(ws)
-    approach = float(arrays["phid"][row])
-    if _velocity_increment(ws, row, -(1.0 + restitution) * approach) != 0:
-        return None
-    active = workspace.structure.active
-    solution = arrays["rhs"][: n + len(active)].copy()
-    dv, multipliers = solution[:n], solution[n:]
-    position = int(np.flatnonzero(active == row)[0])
-    impulse = -float(multipliers[position])
-    before = arrays["phid"][active].copy()
-    # M dv + Phi_q^T Lambda = 0, hence T^- - T^+ = -dv . M (v^- + dv/2) = Lambda . Phi_q (v^- + dv/2)
-    arrays["v"][:n] += dv
-    evaluate_residuals(ws)
-    after = arrays["phid"][active]
-    expected = np.zeros(len(active))
-    expected[position] = -(1.0 + restitution) * approach
-    residual = float(np.max(np.abs(after - before - expected), initial=0.0))
-    impulses = {int(r): -float(x) for r, x in zip(active, multipliers, strict=True)}
-    return Impact(impulse, impulses, impulse * 0.5 * (1.0 - restitution) * -approach, residual)
+    laws: list[ImpactLaw] = [c.law for c in touching.infos]  # type: ignore[misc]
+    mu = np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in touching.infos])
+    joints = touching.sim.workspace.structure.active
+    arrays = touching.sim.workspace.arrays
+    first, _ = touching.rates()
+    before = arrays["phid"][joints].copy()
+    count, violation = len(laws), 0.0
+    normal, tangential, loss = np.zeros(count), np.zeros(count), np.zeros(count)
+    approach = np.maximum(-first, 0.0)
+    sequential = any(isinstance(law, NewtonImpact) and law.propagation == "sequential" for law in laws)
+    for _ in range(MOST_ROUNDS):
+        gap_rate, slide_rate = touching.rates()
+        if np.all(gap_rate >= -rounding):
+            break
+        approach = np.where(approach > rounding, approach, -gap_rate)
+        if sequential:
+            p_n, p_t = _sequence(touching, restitution, mu, rounding)
+        else:
+            part = np.flatnonzero(gap_rate <= rounding)
+            p_n, p_t, off = _at_once(touching, part, [laws[i] for i in part], restitution[part], mu[part], rounding)
+            violation = max(violation, off)
+        after_gap, after_slide = touching.rates()
+        loss -= 0.5 * (p_n * (gap_rate + after_gap) + p_t * (slide_rate + after_slide))
+        normal, tangential = normal + p_n, tangential + p_t
+    else:
+        raise EndlessImpact(f"{MOST_ROUNDS} impacts of the touching contacts at one instant do not end")
+    # the joints keep their rates
+    violation = max(violation, float(np.max(np.abs(arrays["phid"][joints] - before), initial=0.0)))
+    return Impact(normal, tangential, loss, approach, touching.rates()[0], violation)
+
+
+def _at_once(
+    touching: Touching,
+    part: NDArray[np.intp],
+    laws: list[ImpactLaw],
+    restitution: Vector,
+    mu: Vector,
+    rounding: float,
+) -> tuple[Vector, Vector, float]:
+    """One complementarity problem of the contacts `part`, and a second one for the expansion of Poisson's contacts."""
+    poisson = np.array([isinstance(law, PoissonImpact) for law in laws])
+    a, free = touching.a.among(part), np.zeros(len(part))
+    gap_rate, slide_rate = _clear_rates(touching, part, rounding)
+    wanted = np.where(poisson, 0.0, restitution) * gap_rate
+    found = solve_contacts(a, gap_rate + wanted, slide_rate, mu, free)
+    _push(touching, part, found)
+    violation = _violation(found, touching.rates()[0][part] + wanted)
+    normal, tangential = np.zeros(len(touching.infos)), np.zeros(len(touching.infos))
+    normal[part], tangential[part] = found.normal, found.tangential
+    if np.any(poisson & (restitution > 0.0)):
+        gap_rate, slide_rate = _clear_rates(touching, part, rounding)
+        base = np.where(poisson, restitution * found.normal, 0.0)
+        back = solve_contacts(a, gap_rate + wanted, slide_rate, mu, free, base)
+        _push(touching, part, back)
+        normal[part] += back.normal
+        tangential[part] += back.tangential
+        # of what is beyond the given expansion, complementarity is asked
+        violation = max(violation, _violation(back, touching.rates()[0][part] + wanted, base))
+    return normal, tangential, violation
+
+
+def _clear_rates(touching: Touching, part: NDArray[np.intp], rounding: float) -> tuple[Vector, Vector]:
+    """The rates of the contacts `part`, with zero for what is rounding."""
+    gap_rate, slide_rate = (np.where(np.abs(x[part]) <= rounding, 0.0, x[part]) for x in touching.rates())
+    return gap_rate, slide_rate
+
+
+def _push(touching: Touching, part: NDArray[np.intp], found: ContactSolution) -> None:
+    normal, tangential = np.zeros(len(touching.infos)), np.zeros(len(touching.infos))
+    normal[part], tangential[part] = found.normal, found.tangential
+    touching.push(normal, tangential)
+
+
+def _violation(found: ContactSolution, motion: Vector, base: Vector | float = 0.0) -> float:
+    """How far the motion reached is below zero, or from zero where a contact was struck, m/s."""
+    free = found.normal - base
+    struck = free > 1e-9 * float(np.max(free, initial=0.0))
+    return max(float(np.max(-motion, initial=0.0)), float(np.max(np.abs(motion[struck]), initial=0.0)))
+
+
+def _sequence(touching: Touching, restitution: Vector, mu: Vector, rounding: float) -> tuple[Vector, Vector]:
+    """One blow after another, the fastest approach first, until none approaches."""
+    count = len(restitution)
+    normal, tangential = np.zeros(count), np.zeros(count)
+    a = touching.a
+    gap_rate, slide_rate = touching.rates()
+    for _ in range(MOST_BLOWS):
+        k = int(np.argmin(gap_rate))
+        if gap_rate[k] >= -rounding:
+            touching.push(normal, tangential)
+            return normal, tangential
+        one = np.array([k])
+        alone = type(a)(a.nn[np.ix_(one, one)], a.nt[np.ix_(one, one)], a.tt[np.ix_(one, one)])
+        blow = solve_contacts(alone, gap_rate[one] * (1.0 + restitution[one]), slide_rate[one], mu[one], np.zeros(1))
+        normal[k] += blow.normal[0]
+        tangential[k] += blow.tangential[0]
+        gap_rate = gap_rate + a.nn[:, k] * blow.normal[0] + a.nt[:, k] * blow.tangential[0]
+        slide_rate = slide_rate + a.nt[k] * blow.normal[0] + a.tt[:, k] * blow.tangential[0]
+        # exactly, so that the same contact is not struck again by rounding
+        gap_rate[k] = max(gap_rate[k], 0.0)
+    raise EndlessImpact(f"{MOST_BLOWS} blows one after another do not end")

@@ -1,15 +1,18 @@
-"""The contact state machine: what an event does to modes, velocities and structure."""
+"""The contact state machine: what events do to modes, velocities and structure."""
 
 import logging
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..errors import SimulationError
 from ..events import Event
-from ..system.assembly import ContactInfo
-from .impact import Impact, apply_impact
-from .laws import ForceLaw, NewtonImpact
+from .force_contact import handle_force
+from .impact import EndlessImpact, Impact, strike
+from .laws import ForceLaw, ImpactLaw
+from .lcp import NoComplementarySolution
 from .modes import (
-    ACTIVE,
     APPROACH_SPEED,
     CLOSED,
     IMPULSE_JUMP,
@@ -17,9 +20,13 @@ from .modes import (
     LOSS_JUMP,
     MODE,
     OPEN,
-    RATE_ROUNDING,
-    RELEASED,
+    RATIO,
+    SLIDE,
+    SLIDE_START,
+    STICKS,
 )
+from .resting import NO_FORCE, Resting, Settling, read, unresolved_speed
+from .touching import Touching
 
 if TYPE_CHECKING:
     from ..integrate.engine import Engine
@@ -28,175 +35,146 @@ logger = logging.getLogger(__name__)
 
 MOST_EVENTS_AT_ONCE = 50
 """Events without progress in time before a run is given up."""
+ENERGY_GAIN = 1e-12
+"""Of the kinetic energy: an impact that gains more is reported."""
 
 
-def handle(sim: "Engine", k: int) -> None:
-    """Contact k has an event at the workspace's current point (the newest row of the history)."""
-    contact = sim.assembly.contacts[k]
-    mode = sim.memory[k, MODE]
-    if isinstance(contact.law, NewtonImpact):
-        if mode == OPEN:
-            _impact(sim, k, contact, contact.law)
+def handle(sim: "Engine", pending: list[int]) -> None:
+    """The contacts `pending` have events at the workspace's current point (the newest row of the history)."""
+    constraints = []
+    for k in pending:
+        law = sim.assembly.contacts[k].law
+        if isinstance(law, ForceLaw):
+            handle_force(sim, k, law)
         else:
-            _open(sim, k, contact)
-    elif mode == OPEN:
-        _begin_force(sim, k, contact, contact.law)
-    else:
-        _end_force(sim, k, contact, contact.law, mode)
+            constraints.append(k)
+    if constraints:
+        settle(sim, constraints)
 
 
-def _impact(sim: "Engine", k: int, contact: ContactInfo, law: NewtonImpact) -> None:
-    memory = sim.memory[k]
-    approach = -sim.gap_rate(k)
-    if approach <= RATE_ROUNDING:
-        # a touch without approach: a constraint only if it does not separate and the bodies are pressed together
-        if approach > -RATE_ROUNDING and sim.presses(k):
-            _close(sim, k, "close", approach)
-        return
-    largest = max(memory[LARGEST_APPROACH], approach)
-    resting = law.restitution * approach <= law.rest_ratio * largest
-    plastic = law.restitution == 0.0
-    restitution = law.restitution
+def settle(sim: "Engine", pending: list[int]) -> None:
+    """Impacts, then which of the touching constraint contacts stay, and which stick or slide."""
+    contacts = sim.touching(pending)
+    now = read(sim, contacts, pending)
+    accelerations = float(np.max(np.abs(sim.workspace.arrays["a"][: sim.assembly.n]), initial=0.0))
+    slide_values = sim.slide_values(contacts)
+    touching = Touching(sim, contacts)
+    rounding = sim.rate_rounding()
+    gap_rate, _ = touching.rates()
+    approaching = (gap_rate < -rounding) & ((now.was == OPEN) | sim.formula.exact)
+    if np.any(approaching):
+        _impact(sim, touching, now, rounding)
+        accelerations = 0.0
+    chosen = Resting(sim, touching, now, rounding, accelerations).choose()
+    _take(sim, now, chosen, slide_values)
+    _report(sim, now, pending)
+
+
+# ---- velocity level -------------------------------------------------------------------------------------------------
+
+
+def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -> None:
+    """Strike; contacts that would bounce ever lower are struck without restitution, if they then stay."""
+    memory, contacts = sim.memory, now.contacts
+    laws: list[ImpactLaw] = [sim.assembly.contacts[k].law for k in contacts]  # type: ignore[misc]
+    restitution = np.array([law.restitution for law in laws])
     kinetic, before = sim.kinetic_energy(), sim.workspace.arrays["v"].copy()
-    stays = False
-    if resting or plastic:
-        impact, released = _strike(sim, k, contact, 0.0)
-        stays = sim.presses(k)
-        if resting and not plastic and not stays:
-            # as it was before the try: the blow decides anew which contacts let go
-            sim.workspace.arrays["v"][:] = before
-            for j in released:
-                sim.memory[j, MODE] = CLOSED
-            impact, released = _strike(sim, k, contact, restitution)
-        else:
-            restitution = 0.0
-    else:
-        impact, released = _strike(sim, k, contact, restitution)
-    memory[APPROACH_SPEED] = approach
-    memory[LARGEST_APPROACH] = largest
-    for j, other in enumerate(sim.assembly.contacts):
-        # closed contacts carry their share of the blow
-        sim.memory[j, IMPULSE_JUMP] += impact.impulses.get(other.row, 0.0)
-    memory[LOSS_JUMP] += impact.energy_loss
-    sim.add_input_work(sim.kinetic_energy() - kinetic + impact.energy_loss)
-    sim.add_event(
-        Event(
-            sim.t_internal, "impact", contact.name, impact.impulse, impact.energy_loss, approach,
-            restitution * approach, impact.residual,
-        )
-    )  # fmt: skip
-    for j in released:
-        other = sim.assembly.contacts[j]
-        sim.add_event(Event(sim.t_internal, "open", other.name, separation_speed=max(sim.gap_rate(j), 0.0)))
-    if stays:
-        _close(sim, k, "rest" if resting and not plastic else "close", 0.0)
-    else:
-        sim.use_modes()
-
-
-def _strike(sim: "Engine", k: int, contact: ContactInfo, restitution: float) -> tuple[Impact, list[int]]:
-    """The velocity jump, computed in the structure in which the contact is closed; its mode is left as it was.
-
-    Other closed contacts can push but not pull: those whose impulse would be tensile let go, and the impact is
-    computed again from the velocities before, until none pulls. Returns the impact and the contacts that let go.
-    """
-    before = sim.workspace.arrays["v"].copy()
-    mode = sim.memory[k, MODE]
-    released: list[int] = []
-    while True:
-        sim.memory[k, MODE] = CLOSED
-        sim.use_modes(accelerations=False)
-        impact = apply_impact(sim.workspace, contact.row, restitution)
-        sim.memory[k, MODE] = mode
-        if impact is None:
-            raise SimulationError(
-                f"impact at contact '{contact.name}', t = {sim.t_internal:.9g} s: the matrix of the velocity increment "
-                "is singular, so the contact repeats what other constraints say. Remove one of them.",
-                t=sim.t_internal,
-                loop="impact",
-            )
-        pulling = [
-            j
-            for j, other in enumerate(sim.assembly.contacts)
-            if j != k and impact.impulses.get(other.row, 0.0) < -1e-12 * impact.impulse
-        ]
-        if not pulling:
-            return impact, released
+    now.forget_events()
+    impact = _strike(sim, touching, restitution, rounding)
+    largest = np.maximum(memory[contacts, LARGEST_APPROACH], impact.approach)
+    ratio = np.array([law.rest_ratio for law in laws])
+    low = impact.separation <= np.maximum(ratio * largest, unresolved_speed(sim, now.falls))
+    low &= (impact.impulse > 0.0) & (restitution > 0.0) & (impact.approach > rounding)
+    if np.any(low):
+        bounced, velocities = impact, sim.workspace.arrays["v"].copy()
         sim.workspace.arrays["v"][:] = before
-        for j in pulling:
-            sim.memory[j, MODE] = OPEN
-        released += pulling
-
-
-def _close(sim: "Engine", k: int, kind: str, approach: float) -> None:
-    sim.memory[k, MODE] = CLOSED
-    sim.use_modes()
-    sim.add_event(Event(sim.t_internal, kind, sim.assembly.contacts[k].name, approach_speed=max(approach, 0.0)))
-
-
-def _open(sim: "Engine", k: int, contact: ContactInfo) -> None:
-    sim.memory[k, MODE] = OPEN
-    sim.use_modes()
-    sim.add_event(Event(sim.t_internal, "open", contact.name, separation_speed=max(sim.gap_rate(k), 0.0)))
-
-
-def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> None:
-    memory = sim.memory[k]
-    approach = -sim.gap_rate(k)
-    memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed, _settling_speed(sim, k, contact, law))
-    memory[MODE] = ACTIVE
-    memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
-    sim.open_accounts[k] = sim.contact_accounts(k)
-    sim.use_modes()
-    sim.start_small(memory[APPROACH_SPEED])
-    sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
-
-
-def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> float:
-    """Speed with which shapes that are laid on each other settle: sqrt(g d), with g the acceleration that presses them
-    and d the static penetration under it, m/s.
-
-    Laws that divide by the approach speed would hold a contact that begins without one like glue.
-    """
-    pressing = -float(sim.workspace.arrays["phidd"][contact.row])
-    if pressing <= 0.0:
-        return 0.0
-    weight = pressing * sim.effective_mass(k)
-    low, high = 0.0, 1e-12
-    while law.evaluate(high, 0.0, 1.0)[3] < weight:
-        low, high = high, 2.0 * high
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        if law.evaluate(middle, 0.0, 1.0)[3] < weight:
-            low = middle
+        impact = _strike(sim, touching, np.where(low, 0.0, restitution), rounding)
+        stay = Resting(sim, touching, now, rounding).forces().normal > 0.0
+        if np.all(stay[low]):
+            now.rests = {k for k, rest in zip(contacts, low, strict=True) if rest}
         else:
-            high = middle
-    return float((pressing * high) ** 0.5)
-
-
-def _end_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw, mode: float) -> None:
-    memory = sim.memory[k]
-    if mode == RELEASED:
-        if sim.gap(k) >= 0.0 or sim.gap_rate(k) > 0.0:
-            memory[MODE] = OPEN
-        else:
-            # pressed again before the shapes came apart
-            memory[MODE] = ACTIVE
-            memory[LOSS_JUMP] -= sim.elastic_energy(k, contact)
-            sim.start_small(memory[APPROACH_SPEED])
-        sim.use_modes()
-        return
-    early = law.release == "force"
-    if early:
-        # what the spring still holds when the force has reached zero is never given back
-        memory[LOSS_JUMP] += sim.elastic_energy(k, contact)
-    memory[MODE] = RELEASED if early else OPEN
-    impulse, loss = sim.contact_accounts(k)
-    impulse_before, loss_before = sim.open_accounts.get(k, (0.0, 0.0))
-    sim.use_modes()
-    sim.add_event(
-        Event(
-            sim.t_internal, "open", contact.name, impulse - impulse_before, loss - loss_before,
-            float(memory[APPROACH_SPEED]), sim.gap_rate(k),
+            sim.workspace.arrays["v"][:] = velocities
+            impact = bounced
+    total_loss = float(np.sum(impact.energy_loss))
+    sim.add_input_work(sim.kinetic_energy() - kinetic + total_loss)
+    if total_loss < -ENERGY_GAIN * max(kinetic, 1e-300):
+        named = ", ".join(f"'{c.name}' ({type(law).__name__})" for c, law in zip(touching.infos, laws, strict=True))
+        logger.warning(
+            "at t = %.9g s an impact of %s raises the energy by %.3g J: Newton's law can with friction or several "
+            "contacts; PoissonImpact does not with friction",
+            sim.t_internal,
+            named,
+            -total_loss,
         )
-    )  # fmt: skip
+    least = NO_FORCE * float(np.max(impact.impulse))
+    for i in np.argsort(-impact.approach, kind="stable"):
+        k = contacts[i]
+        if impact.impulse[i] <= least:
+            continue
+        memory[k, IMPULSE_JUMP] += impact.impulse[i]
+        memory[k, LOSS_JUMP] += impact.energy_loss[i]
+        if impact.approach[i] > rounding:
+            memory[k, APPROACH_SPEED] = impact.approach[i]
+            memory[k, LARGEST_APPROACH] = largest[i]
+        sim.add_event(
+            Event(
+                sim.t_internal, "impact", sim.assembly.contacts[k].name, float(impact.impulse[i]),
+                float(impact.energy_loss[i]), max(float(impact.approach[i]), 0.0),
+                max(float(impact.separation[i]), 0.0), impact.residual, float(impact.friction_impulse[i]),
+            )
+        )  # fmt: skip
+
+
+def _strike(sim: "Engine", touching: Touching, restitution: NDArray[np.float64], rounding: float) -> Impact:
+    try:
+        return strike(touching, restitution, rounding)
+    except (NoComplementarySolution, EndlessImpact) as error:
+        names = ", ".join(f"'{c.name}'" for c in touching.infos)
+        raise SimulationError(
+            f"impact of contacts {names} at t = {sim.t_internal:.9g} s: {error}. With large friction coefficients the "
+            "impact laws may have no solution: use PoissonImpact, less friction, or force laws",
+            t=sim.t_internal,
+            loop="impact",
+        ) from error
+
+
+# ---- taking and reporting -------------------------------------------------------------------------------------------
+
+
+def _take(sim: "Engine", now: Settling, chosen: dict[int, tuple[float, float]], slide_values: dict[int, float]) -> None:
+    """Set the modes, bring gaps and rates of new constraints to zero, and solve for the accelerations."""
+    memory = sim.memory
+    changed = False
+    for i, k in enumerate(now.contacts):
+        memory[k, MODE] = CLOSED if k in chosen else OPEN
+        slide, memory[k, RATIO] = chosen.get(k, (STICKS, 0.0))
+        memory[k, SLIDE] = slide
+        if k not in chosen:
+            continue
+        kept = now.was[i] == CLOSED and now.slid[i] == slide
+        changed |= not kept
+        if slide == STICKS and not kept and k in slide_values:
+            memory[k, SLIDE_START] = slide_values[k]
+    sim.use_modes(accelerations=False)
+    if changed and sim.formula.exact:
+        sim.meet_constraints()
+    sim.solve_accelerations()
+
+
+def _report(sim: "Engine", now: Settling, pending: list[int]) -> None:
+    memory, started = sim.memory, sim.started
+    for i, k in enumerate(now.contacts):
+        contact, mode, slide = sim.assembly.contacts[k], memory[k, MODE], memory[k, SLIDE]
+        kind = ""
+        if mode == CLOSED and now.was[i] != CLOSED:
+            kind = "rest" if k in now.rests else "close"
+        elif mode == OPEN and now.was[i] == CLOSED:
+            kind = "open"
+        elif mode == OPEN and not now.struck and k in pending and started:
+            kind = "graze"
+        elif mode == CLOSED and contact.coulomb is not None and slide != now.slid[i]:
+            slides, slid = abs(slide) == 1.0, abs(now.slid[i]) == 1.0
+            kind = "slip" if slides else "stick" if slid else ""
+        if kind:
+            speed = max(sim.gap_rate(k), 0.0) if kind == "open" else 0.0
+            sim.add_event(Event(sim.t_internal, kind, contact.name, separation_speed=speed))

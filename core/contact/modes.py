@@ -7,13 +7,20 @@ RELEASED = 3.0  # CCFM: the force has reached zero while the shapes still overla
 
 MODE_NAMES = {OPEN: "open", CLOSED: "closed", ACTIVE: "active", RELEASED: "released"}
 
+# how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
+STICKS = 0.0  # its sliding distance is a constraint
+IDLE = 2.0  # it cannot slide because others hold it, and carries a share of its normal force (RATIO)
+
 # columns of the memory
 MODE = 0
 APPROACH_SPEED = 1  # at the last first touch, m/s
 LARGEST_APPROACH = 2  # since the start, m/s
 IMPULSE_JUMP = 3  # sum of impact impulses, N s
 LOSS_JUMP = 4  # sum of energy lost at impacts and releases, J
-MEMORY_SIZE = 5
+SLIDE = 5  # STICKS, IDLE, +1 or -1
+SLIDE_START = 6  # sliding distance at which the contact began to stick, m
+RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slides
+MEMORY_SIZE = 8
 
 RATE_ROUNDING = 1e-12
 """m/s; a gap rate below this is none."""

@@ -5,29 +5,36 @@ from typing import Annotated
 from pydantic import Field
 
 from .applied_load2d import AppliedForce2D, AppliedTorque2D
-from .base import Element
+from .base import BodyElement, Element
 from .bushing2d import Bushing2D
 from .coordinate_driver import CoordinateDriver
+from .coordinate_load import CoordinateLoad
 from .distance2d import Distance2D
+from .linear_system import LinearSystem
 from .planar_body import PlanarBody, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
 from .revolute2d import Revolute2D
 from .spring_damper2d import SpringDamper2D
 
-Body = Annotated[PointMass2D | RigidBody2D, Field(discriminator="type")]
+Body = Annotated[PointMass2D | RigidBody2D | LinearSystem, Field(discriminator="type")]
 Joint = Annotated[Revolute2D | Prismatic2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
-Force = Annotated[SpringDamper2D | Bushing2D | AppliedForce2D | AppliedTorque2D, Field(discriminator="type")]
+Force = Annotated[
+    SpringDamper2D | Bushing2D | AppliedForce2D | AppliedTorque2D | CoordinateLoad, Field(discriminator="type")
+]
 
 __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
     "Body",
+    "BodyElement",
     "Bushing2D",
     "CoordinateDriver",
+    "CoordinateLoad",
     "Distance2D",
     "Element",
     "Force",
     "Joint",
+    "LinearSystem",
     "PlanarBody",
     "PointMass2D",
     "Prismatic2D",

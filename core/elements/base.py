@@ -16,12 +16,17 @@ class Numbering(Protocol):
     @property
     def gravity(self) -> tuple[float, float]: ...
 
-    def coordinates(self, body: str) -> tuple[int, int, int]:
-        """Indices of (x, y, theta) of a body; missing ones are the ground's, which stay zero."""
+    def coordinates(self, body: str) -> tuple[int, ...]:
+        """Indices of (x, y, theta) of a planar body; missing ones are the ground's, which stay zero. Of any other body,
+        those of its coordinates."""
+        ...
+
+    def coordinate(self, body: str, name: str) -> int:
+        """Index of the coordinate `name` of a body, which has it (the model has checked that)."""
         ...
 
     def initial(self, body: str) -> tuple[float, float, float]:
-        """Given initial (x, y, theta) of a body."""
+        """Given initial (x, y, theta) of a planar body."""
         ...
 
     def signal(self, signal: Signal) -> int:
@@ -34,6 +39,10 @@ class Numbering(Protocol):
 
     def law_address(self, law: Any) -> int:
         """Machine address of a force law's formula."""
+        ...
+
+    def friction_address(self, law: Any) -> int:
+        """Machine address of a regularised friction law's formula."""
         ...
 
     def work(self, name: str) -> int:
@@ -101,3 +110,57 @@ class Element(Record):
     def multiplier_channels(self) -> Sequence[Channel]:
         """One channel for each constraint row: what its multiplier means."""
         return ()
+
+
+class PairElement2D(Element):
+    """Base of what acts between two markers of planar bodies: its coordinates are the six of their bodies."""
+
+    type: str
+    a: Marker2D
+    b: Marker2D
+
+    def markers(self) -> Sequence[Marker2D]:
+        return (self.a, self.b)
+
+    def coordinates(self, numbering: Numbering) -> Sequence[int]:
+        """Indices of (x, y, theta) of the body of `a`, then of that of `b`."""
+        return (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body))
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A coordinate of a body: its name, what its channels are called, and how large it typically is."""
+
+    name: str
+    unit: str
+    rate: str
+    """Channel of its rate."""
+    acceleration: str
+    """Channel of its second rate."""
+    scale: float | None = None
+    """Typical magnitude, in its unit; None: the size of the mechanism."""
+
+    def unit_of(self, level: int) -> str:
+        """Unit of the coordinate (level 0), its rate (1) or second rate (2); "-" stays as it is."""
+        return self.unit if level == 0 or self.unit == UNKNOWN_UNIT else self.unit + ("", "/s", "/s2")[level]
+
+
+UNKNOWN_UNIT = "-"
+"""Of generalised coordinates that do not say theirs."""
+
+
+class BodyElement(Element):
+    """Base of what has coordinates of its own."""
+
+    def coordinate_records(self) -> Sequence[Coordinate]:
+        """Its coordinates, in the order of `initial_state`."""
+        raise NotImplementedError(f"{type(self).__name__} must name its coordinates")
+
+    @property
+    def coordinate_names(self) -> tuple[str, ...]:
+        """Names of its coordinates."""
+        return tuple(coordinate.name for coordinate in self.coordinate_records())
+
+    def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """(q0, v0)."""
+        raise NotImplementedError(f"{type(self).__name__} must say where it starts")

@@ -5,7 +5,6 @@ F = -k d - c d', T = -k_r phi - c_r phi'. Generalised forces are -(d d/d q)^T F,
 J_theta_a = -J rho_a, J_theta_b = J rho_b (rho the offsets R u), whose derivatives are rho_a and -rho_b.
 """
 
-import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
@@ -13,9 +12,8 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import NonNegative
-from ..model.markers import Marker2D
-from .base import Element, Numbering, Row
-from .geometry2d import FULL_PATTERN, add_hessian, along, half_square_distance
+from .base import Numbering, PairElement2D, Row
+from .geometry2d import FULL_PATTERN, add_hessian, along, arms, half_square_distance
 
 
 @internal
@@ -29,10 +27,7 @@ def bushing2d_kernel(job: int, t: float, b: Any) -> None:
         k, c, k_turn, c_turn = par[e, 4], par[e, 5], par[e, 6], par[e, 7]
         half, gradient, hessian = half_square_distance(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])
         ta, tb = coord[e, 2], coord[e, 5]
-        ca, sa = math.cos(q[ta]), math.sin(q[ta])
-        ax, ay = ca * par[e, 0] - sa * par[e, 1], sa * par[e, 0] + ca * par[e, 1]
-        cb, sb = math.cos(q[tb]), math.sin(q[tb])
-        bx, by = cb * par[e, 2] - sb * par[e, 3], sb * par[e, 2] + cb * par[e, 3]
+        ax, ay, bx, by = arms(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])
         along_x = (-1.0, 0.0, ay, 1.0, 0.0, -by)
         along_y = (0.0, -1.0, -ax, 0.0, 1.0, bx)
         rate_x, rate_y = along(along_x, v, coord[e]), along(along_y, v, coord[e])
@@ -48,7 +43,7 @@ def bushing2d_kernel(job: int, t: float, b: Any) -> None:
             values = vec(b.values, b.n_values)
             coef = vec(b.coef, 2)
             slot = imat(b.slot_s, b.count, 36)[e]
-            add_hessian(values, slot, hessian, coef[0] * k)
+            add_hessian(values, slot, gradient, hessian, coef[0] * k)
             for i in range(6):
                 for j in range(6):
                     values[slot[6 * i + j]] += coef[1] * c * (along_x[i] * along_x[j] + along_y[i] * along_y[j])
@@ -69,7 +64,7 @@ def bushing2d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 0]] += lost
 
 
-class Bushing2D(Element):
+class Bushing2D(PairElement2D):
     """Elastic bushing: pulls the points of markers `a` and `b` together, equally in all directions.
 
     The markers may coincide: that is where the force is zero. The equal and opposite forces act at the two points;
@@ -82,8 +77,6 @@ class Bushing2D(Element):
     kernel: ClassVar[Any] = bushing2d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
 
-    a: Marker2D
-    b: Marker2D
     stiffness: NonNegative
     """N/m, in every direction."""
     damping: NonNegative = 0.0
@@ -99,9 +92,6 @@ class Bushing2D(Element):
                 *self.a.point, *self.b.point, self.stiffness, self.damping, self.rotational_stiffness,
                 self.rotational_damping, self.b.angle - self.a.angle,
             ),
-            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+            self.coordinates(numbering),
             (numbering.work("dampers"),),
         )  # fmt: skip
-
-    def markers(self) -> Sequence[Marker2D]:
-        return (self.a, self.b)

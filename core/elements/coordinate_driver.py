@@ -10,9 +10,8 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, vec
 from ..model.base import Name
 from ..model.channels import Channel
-from ..model.markers import Marker2D
 from ..model.signals import Signal, Step, evaluate_signal
-from .base import Element, Numbering, Row
+from .base import UNKNOWN_UNIT, Element, Numbering, Row
 
 
 @internal
@@ -50,7 +49,8 @@ class CoordinateDriver(Element):
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 0),)
 
     body: Name
-    coordinate: Literal["x", "y", "angle"]
+    coordinate: Name
+    """"x", "y" or "angle" of a planar body, or the name of one of a LinearSystem's."""
     motion: Signal
     """Position in m or rad over time in s. An input channel moves with the rate it is given (0 unless set).
     At the ends of a Ramp the velocity jumps: an impact of the driver, with a warning in the log."""
@@ -65,11 +65,8 @@ class CoordinateDriver(Element):
         return self
 
     def row(self, numbering: Numbering) -> Row:
-        index = numbering.coordinates(self.body)[("x", "y", "angle").index(self.coordinate)]
+        index = numbering.coordinate(self.body, self.coordinate)
         return Row((), (index,), (numbering.signal(self.motion), numbering.work("input")))
-
-    def markers(self) -> Sequence[Marker2D]:
-        return (Marker2D(body=self.body),)
 
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:
         return ((self.body, self.coordinate),)
@@ -78,5 +75,5 @@ class CoordinateDriver(Element):
         return (self.motion,)
 
     def multiplier_channels(self) -> Sequence[Channel]:
-        unit = "N.m" if self.coordinate == "angle" else "N"
+        unit = {"x": "N", "y": "N", "angle": "N.m"}.get(self.coordinate, UNKNOWN_UNIT)
         return (Channel(f"{self.name}.reaction", unit, "reaction of the body on the driver"),)

@@ -11,8 +11,7 @@ from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive
 from ..model.channels import Channel
-from ..model.markers import Marker2D
-from .base import Element, Numbering, Row
+from .base import Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, ROW_PATTERN, constrain, half_square_distance
 
 
@@ -30,7 +29,7 @@ def distance2d_kernel(job: int, t: float, b: Any) -> None:
         constrain(b, job, e, row[e, 0], 0, 1.0 / length, half - 0.5 * length * length, gradient, hessian)
 
 
-class Distance2D(Element):
+class Distance2D(PairElement2D):
     """Markers `a` and `b` keep the distance `length` (a massless rod). Channel: force in it, tension positive."""
 
     type: Literal["Distance2D"] = "Distance2D"
@@ -39,19 +38,14 @@ class Distance2D(Element):
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ROW_PATTERN
 
-    a: Marker2D
-    b: Marker2D
     length: Positive
     """m."""
 
     def row(self, numbering: Numbering) -> Row:
         return Row(
             (*self.a.point, *self.b.point, self.length),
-            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+            self.coordinates(numbering),
         )
-
-    def markers(self) -> Sequence[Marker2D]:
-        return (self.a, self.b)
 
     def multiplier_channels(self) -> Sequence[Channel]:
         return (Channel(f"{self.name}.tension", "N", "force in the rod, tension positive"),)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import inlined, internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import imat, vec
 
@@ -28,7 +28,7 @@ def place(point: tuple[float, float], body: tuple[float, float, float]) -> tuple
     return x + c * point[0] - s * point[1], y + s * point[0] + c * point[1]
 
 
-@compiled
+@internal
 def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
     """Height of point b (offset w) over the line through point a (offset u) with normal at `angle` in a's frame.
 
@@ -57,14 +57,21 @@ def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: fl
     return g, gradient, hessian
 
 
-@compiled
-def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
-    """Half the squared distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21)."""
+@inlined
+def arms(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """The offsets u on body a and w on body b in the directions of space: (a_x, a_y, b_x, b_y)."""
     ta, tb = q[coord[2]], q[coord[5]]
     ca, sa = math.cos(ta), math.sin(ta)
     ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
     cb, sb = math.cos(tb), math.sin(tb)
     bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    return ax, ay, bx, by
+
+
+@internal
+def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """Half the squared distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21)."""
+    ax, ay, bx, by = arms(q, coord, ux, uy, wx, wy)
     dx = q[coord[3]] + bx - q[coord[0]] - ax
     dy = q[coord[4]] + by - q[coord[1]] - ay
     gradient = (-dx, -dy, dx * ay - dy * ax, dx, dy, -dx * by + dy * bx)
@@ -80,7 +87,7 @@ def half_square_distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy
     return 0.5 * (dx * dx + dy * dy), gradient, hessian
 
 
-@compiled
+@internal
 def distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
     """Distance of points a (offset u) and b (offset w), with gradient(6) and Hessian(21); 1/0 where they meet."""
     half, gradient, hessian = half_square_distance(q, coord, ux, uy, wx, wy)
@@ -108,34 +115,66 @@ def distance(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> 
     return d, (g0, g1, g2, g3, g4, g5), scaled
 
 
-@compiled
+@internal
 def along(gradient: Any, x: Any, coord: Any) -> float:
-    """gradient . x at the six coordinates."""
+    """gradient . x at the local coordinates."""
     total = 0.0
-    for i in range(6):
+    for i in range(len(gradient)):
         total += gradient[i] * x[coord[i]]
     return total
 
 
-@compiled
-def curvature(hessian: Any, v: Any, coord: Any) -> float:
-    """v^T H v at the six coordinates."""
-    total = 0.0
-    for k in range(21):
-        i, j = HESSIAN_PAIRS[k, 0], HESSIAN_PAIRS[k, 1]
-        w = 1.0 if i == j else 2.0
-        total += w * hessian[k] * v[coord[i]] * v[coord[j]]
-    return total
+@internal
+def add_product(
+    values: Any, slot: Any, left: Any, gradient: Any, hessian: Any, v: Any, coord: Any, by_value: float, by_rate: float
+) -> None:
+    """values[slot(p, j)] += left_p (by_value G + by_rate H v)_j: how a force along `left` changes with the value of the
+    function with gradient G and with its rate G . v."""
+    n, i, j = len(gradient), 0, 0
+    for k in range(len(hessian)):
+        x, y = by_rate * hessian[k] * v[coord[i]], by_rate * hessian[k] * v[coord[j]]
+        if i == j:
+            x += by_value * gradient[j]
+        for p in range(len(gradient)):
+            values[slot[n * p + j]] += left[p] * x
+            if i != j:
+                values[slot[n * p + i]] += left[p] * y
+        j += 1
+        if j == len(gradient):
+            i += 1
+            j = i
 
 
 @internal
-def add_hessian(values: Any, slot: Any, hessian: Any, factor: float) -> None:
-    """values[slot(i, j)] += factor H_ij for all 36 pairs."""
-    for k in range(21):
-        i, j = HESSIAN_PAIRS[k, 0], HESSIAN_PAIRS[k, 1]
-        values[slot[6 * i + j]] += factor * hessian[k]
+def add_hessian(values: Any, slot: Any, gradient: Any, hessian: Any, factor: float) -> None:
+    """values[slot(i, j)] += factor H_ij for all pairs of local coordinates."""
+    n, i, j = len(gradient), 0, 0
+    for k in range(len(hessian)):
+        values[slot[n * i + j]] += factor * hessian[k]
         if i != j:
-            values[slot[6 * j + i]] += factor * hessian[k]
+            values[slot[n * j + i]] += factor * hessian[k]
+        j += 1
+        if j == len(gradient):
+            i += 1
+            j = i
+
+
+@internal
+def levels(b: Any, e: int, row: int, factor: float, g: float, gradient: Any, hessian: Any) -> None:
+    """Row `row` of phi, phid and phidd: value, rate and acceleration of `factor * g`."""
+    coord = imat(b.coord, b.count, len(gradient))[e]
+    v = vec(b.v, b.n_extended)
+    vec(b.phi, b.m_extended)[row] = factor * g
+    vec(b.phid, b.m_extended)[row] = factor * along(gradient, v, coord)
+    acceleration, i, j = along(gradient, vec(b.a, b.n_extended), coord), 0, 0
+    for k in range(len(hessian)):
+        w = 1.0 if i == j else 2.0
+        acceleration += w * hessian[k] * v[coord[i]] * v[coord[j]]
+        j += 1
+        if j == len(gradient):
+            i += 1
+            j = i
+    vec(b.phidd, b.m_extended)[row] = factor * acceleration
 
 
 @internal
@@ -143,25 +182,45 @@ def constrain(
     b: Any, job: int, e: int, row: int, local_row: int, factor: float, g: float, gradient: Any, hessian: Any
 ) -> None:
     """Residual or tangent of the scalar constraint `factor * g = 0` of element `e` of the batch."""
-    coord = imat(b.coord, b.count, 6)[e]
+    n = len(gradient)
+    lam = vec(b.lam, b.m_extended)[row]
     if job == RESIDUAL:
-        q_r = vec(b.r, b.n_extended)
-        lam = vec(b.lam, b.m_extended)[row]
-        v = vec(b.v, b.n_extended)
-        a = vec(b.a, b.n_extended)
-        vec(b.phi, b.m_extended)[row] = factor * g
-        vec(b.phid, b.m_extended)[row] = factor * along(gradient, v, coord)
-        vec(b.phidd, b.m_extended)[row] = factor * (along(gradient, a, coord) + curvature(hessian, v, coord))
-        for i in range(6):
-            q_r[coord[i]] += factor * gradient[i] * lam
+        levels(b, e, row, factor, g, gradient, hessian)
+        coord = imat(b.coord, b.count, n)[e]
+        r = vec(b.r, b.n_extended)
+        for i in range(len(gradient)):
+            r[coord[i]] += factor * gradient[i] * lam
     else:
         values = vec(b.values, b.n_values)
-        lam = vec(b.lam, b.m_extended)[row]
-        c_q = vec(b.coef, 2)[0]
-        add_hessian(values, imat(b.slot_s, b.count, 36)[e], hessian, c_q * factor * lam)
-        nrow = b.nrow
-        slot_j = imat(b.slot_j, b.count, 6 * nrow)[e]
-        slot_jt = imat(b.slot_jt, b.count, 6 * nrow)[e]
-        for i in range(6):
-            values[slot_j[6 * local_row + i]] += factor * gradient[i]
-            values[slot_jt[6 * local_row + i]] += factor * gradient[i]
+        slot = imat(b.slot_s, b.count, n * n)[e]
+        add_hessian(values, slot, gradient, hessian, vec(b.coef, 2)[0] * factor * lam)
+        slot_j = imat(b.slot_j, b.count, n * b.nrow)[e]
+        slot_jt = imat(b.slot_jt, b.count, n * b.nrow)[e]
+        for i in range(len(gradient)):
+            values[slot_j[n * local_row + i]] += factor * gradient[i]
+            values[slot_jt[n * local_row + i]] += factor * gradient[i]
+
+
+@internal
+def bearing(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """Direction (rad) of the line from point a (offset u) to point b (offset w), with gradient(6) and Hessian(21).
+
+    With d = r_b - r_a: phi_i = (d x d_i)/D, phi_ij = (d_j x d_i + d x d_ij)/D - phi_i D_j/D, D = d . d.
+    """
+    ax, ay, bx, by = arms(q, coord, ux, uy, wx, wy)
+    dx = q[coord[3]] + bx - q[coord[0]] - ax
+    dy = q[coord[4]] + by - q[coord[1]] - ay
+    square = dx * dx + dy * dy
+    x1, y1 = (-1.0, 0.0, ay, 1.0, 0.0, -by), (0.0, -1.0, -ax, 0.0, 1.0, bx)
+    # second derivatives exist only with respect to each angle
+    x2, y2 = (0.0, 0.0, ax, 0.0, 0.0, -bx), (0.0, 0.0, ay, 0.0, 0.0, -by)
+    gradient = np.empty(6)
+    hessian = np.empty(21)
+    for i in range(6):
+        gradient[i] = (dx * y1[i] - dy * x1[i]) / square
+    for k in range(21):
+        i, j = HESSIAN_PAIRS[k, 0], HESSIAN_PAIRS[k, 1]
+        second = dx * y2[i] - dy * x2[i] if i == j else 0.0
+        growth = 2.0 * (dx * x1[j] + dy * y1[j]) / square
+        hessian[k] = (x1[j] * y1[i] - y1[j] * x1[i] + second) / square - gradient[i] * growth
+    return math.atan2(dy, dx), gradient, hessian

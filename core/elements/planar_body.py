@@ -10,7 +10,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive, Vector2
-from .base import Element, Numbering, Row
+from .base import BodyElement, Coordinate, Numbering, Row
 
 
 @internal
@@ -42,12 +42,15 @@ def planar_body_kernel(job: int, t: float, b: Any) -> None:
             energy[1] -= par[e, 2] * q[i] + par[e, 3] * q[j]
 
 
-class PlanarBody(Element):
+X, Y = Coordinate("x", "m", "vx", "ax"), Coordinate("y", "m", "vy", "ay")
+ANGLE = Coordinate("angle", "rad", "angular_velocity", "angular_acceleration", 1.0)
+
+
+class PlanarBody(BodyElement):
     """Base of the planar bodies."""
 
     kernel: ClassVar[Any] = planar_body_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 0), (1, 1), (2, 2))
-    coordinate_names: ClassVar[Sequence[str]]
 
     mass: Positive
     """Mass, kg."""
@@ -65,7 +68,9 @@ class PointMass2D(PlanarBody):
     """A point mass with coordinates x, y."""
 
     type: Literal["PointMass2D"] = "PointMass2D"
-    coordinate_names: ClassVar[Sequence[str]] = ("x", "y")
+
+    def coordinate_records(self) -> Sequence[Coordinate]:
+        return (X, Y)
 
     def row(self, numbering: Numbering) -> Row:
         return self._row(numbering, 0.0)
@@ -79,7 +84,6 @@ class RigidBody2D(PlanarBody):
     """A rigid body with coordinates x, y (centre of mass) and angle."""
 
     type: Literal["RigidBody2D"] = "RigidBody2D"
-    coordinate_names: ClassVar[Sequence[str]] = ("x", "y", "angle")
 
     inertia: Positive
     """Moment of inertia about the centre of mass, kg m^2."""
@@ -87,6 +91,9 @@ class RigidBody2D(PlanarBody):
     """Initial angle, rad."""
     angular_velocity: float = 0.0
     """Initial angular velocity, rad/s."""
+
+    def coordinate_records(self) -> Sequence[Coordinate]:
+        return (X, Y, ANGLE)
 
     def row(self, numbering: Numbering) -> Row:
         return self._row(numbering, self.inertia)

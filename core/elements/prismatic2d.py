@@ -11,8 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
-from ..model.markers import Marker2D
-from .base import Element, Numbering, Row
+from .base import Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, constrain, height_over_line
 
 
@@ -48,7 +47,7 @@ def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
             values[slot_jt[e, 11]] += 1.0
 
 
-class Prismatic2D(Element):
+class Prismatic2D(PairElement2D):
     """Marker `b` slides along the first axis of marker `a` and keeps the relative angle of the bodies.
 
     Its channels are the normal force and the torque on body a's side of the constraint (multipliers with the
@@ -61,8 +60,6 @@ class Prismatic2D(Element):
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = (*((0, j) for j in range(6)), (1, 2), (1, 5))
 
-    a: Marker2D
-    b: Marker2D
     relative_angle: float | None = None
     """theta_b - theta_a, rad; left out: as in the start configuration."""
 
@@ -72,11 +69,8 @@ class Prismatic2D(Element):
             relative = numbering.initial(self.b.body)[2] - numbering.initial(self.a.body)[2]
         return Row(
             (*self.a.point, *self.b.point, self.a.angle + 0.5 * math.pi, relative),
-            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+            self.coordinates(numbering),
         )
-
-    def markers(self) -> Sequence[Marker2D]:
-        return (self.a, self.b)
 
     def multiplier_channels(self) -> Sequence[Channel]:
         return (

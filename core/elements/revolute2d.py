@@ -11,8 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
-from ..model.markers import Marker2D
-from .base import Element, Numbering, Row
+from .base import Numbering, PairElement2D, Row
 
 
 @internal
@@ -74,7 +73,7 @@ def revolute2d_kernel(job: int, t: float, b: Any) -> None:
                 values[slot[e, 11]] -= bx
 
 
-class Revolute2D(Element):
+class Revolute2D(PairElement2D):
     """Markers `a` and `b` share a point. Its force channels are the force on body b, N."""
 
     type: Literal["Revolute2D"] = "Revolute2D"
@@ -85,17 +84,11 @@ class Revolute2D(Element):
         (0, 0), (0, 2), (0, 3), (0, 5), (1, 1), (1, 2), (1, 4), (1, 5),
     )  # fmt: skip
 
-    a: Marker2D
-    b: Marker2D
-
     def row(self, numbering: Numbering) -> Row:
         return Row(
             (*self.a.point, *self.b.point),
-            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+            self.coordinates(numbering),
         )
-
-    def markers(self) -> Sequence[Marker2D]:
-        return (self.a, self.b)
 
     def multiplier_channels(self) -> Sequence[Channel]:
         return (

@@ -9,9 +9,8 @@ from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
 from ..model.base import NonNegative, Positive
-from ..model.markers import Marker2D
-from .base import Element, Numbering, Row
-from .geometry2d import FULL_PATTERN, HESSIAN_PAIRS, add_hessian, along, distance, place
+from .base import Numbering, PairElement2D, Row
+from .geometry2d import FULL_PATTERN, add_hessian, add_product, along, distance, place
 
 MEETING = 1e-12
 """Markers nearer than this, relative to the size of the mechanism, have no direction between them but rounding."""
@@ -38,32 +37,22 @@ def spring_damper2d_kernel(job: int, t: float, b: Any) -> None:
             values = vec(b.values, b.n_values)
             coef = vec(b.coef, 2)
             slot = imat(b.slot_s, b.count, 36)[e]
-            add_hessian(values, slot, hessian, coef[0] * force)
-            for i in range(6):
-                for j in range(6):
-                    values[slot[6 * i + j]] += (coef[0] * k + coef[1] * c) * gradient[i] * gradient[j]
-            # the rate depends on q through the direction: c G_i (H v)_j
-            for m in range(21):
-                i, j = HESSIAN_PAIRS[m, 0], HESSIAN_PAIRS[m, 1]
-                for p in range(6):
-                    values[slot[6 * p + j]] += coef[0] * c * gradient[p] * hessian[m] * v[coord[e, i]]
-                    if i != j:
-                        values[slot[6 * p + i]] += coef[0] * c * gradient[p] * hessian[m] * v[coord[e, j]]
+            add_hessian(values, slot, gradient, hessian, coef[0] * force)
+            by_value, by_rate = coef[0] * k + coef[1] * c, coef[0] * c
+            add_product(values, slot, gradient, gradient, hessian, v, coord[e], by_value, by_rate)
         elif job == ENERGY:
             vec(b.energy, 3)[2] += 0.5 * k * stretch * stretch
         elif job == POWER:
             vec(b.a, b.n_extended)[extra[e, 0]] += c * rate * rate
 
 
-class SpringDamper2D(Element):
+class SpringDamper2D(PairElement2D):
     """Spring and damper between markers `a` and `b`."""
 
     type: Literal["SpringDamper2D"] = "SpringDamper2D"
     kernel: ClassVar[Any] = spring_damper2d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
 
-    a: Marker2D
-    b: Marker2D
     stiffness: NonNegative
     """N/m."""
     damping: NonNegative = 0.0
@@ -83,9 +72,6 @@ class SpringDamper2D(Element):
             )
         return Row(
             (*self.a.point, *self.b.point, self.stiffness, self.damping, self.natural_length),
-            (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body)),
+            self.coordinates(numbering),
             (numbering.work("dampers"),),
         )
-
-    def markers(self) -> Sequence[Marker2D]:
-        return (self.a, self.b)

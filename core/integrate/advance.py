@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..contact.modes import ACTIVE, CLOSED, MODE, OPEN
+from ..contact.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
@@ -44,7 +44,7 @@ from .records import (
     VIOLATED,
 )
 from .repair import repair
-from .watch import crossed
+from .watch import crossed, friction_margin
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -276,14 +276,16 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     mode = float(sim.memory[k, MODE])
     arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
     by_force = mode == CLOSED or (mode == ACTIVE and end[0] <= 0.0) or (mode not in (OPEN, ACTIVE) and end[0] <= 0.0)
+    force_sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
+    slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
+
+    def margin(step: float) -> float:
+        _trial(sim, step, h)
+        force = force_sign * float(arrays["monitor"][k])
+        return min(force, friction_margin(sim.workspace.record, k)) if slides else force
+
     if by_force:
-        sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
-
-        def value(step: float) -> float:
-            _trial(sim, step, h)
-            return sign * float(arrays["monitor"][k])
-
-        return find_root(value, 0.0, h, 0.5 * h, 0.0)
+        return find_root(margin, 0.0, h, 0.5 * h, 0.0)
     down = mode == OPEN
     sign = 1.0 if down else -1.0
     start = tuple(float(x) for x in sim.watch[k])
@@ -312,7 +314,11 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
             break
         low_step, high_step = 0.5 * low_step, low_step
     guess = 0.5 * (low_step + high_step)
-    return find_root(gap, low_step, high_step, guess, 2e-16 * size)
+    opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
+    if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
+        # the gap opens within this step, but the force has become tensile before
+        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0)
+    return opened
 
 
 def _warn_of_jump(sim: "Simulation", t: float) -> None:
@@ -351,6 +357,6 @@ def restart_at(sim: "Simulation", t: float) -> None:
         sim.add_input_work(sim.kinetic_energy() - kinetic)
     sim.use_modes()
     sim._new_history()
-    sim.pending = sim.pulling()
+    sim.pending = sim.unsettled()
     if not sim.pending:
         sim._sample_now()

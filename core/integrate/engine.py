@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
 from ..contact import machine
-from ..contact.impact import unit_impulse
 from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, RATE_ROUNDING
+from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, RATE_ROUNDING, SLIDE, SLIDE_START, STICKS
+from ..contact.touching import Touching
 from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
@@ -28,6 +28,7 @@ from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..system.partition import prepare
+from ..system.projection import bring_to_rest
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.redundancy import RedundantRow, choose_rows, describe
 from ..system.workspace import Workspace
@@ -38,7 +39,7 @@ from .records import MAX_STEP, STEP_SIZE
 from .sample import write_sample
 from .settings import Settings, set_control
 from .setup import build_loop, build_method
-from .watch import FORCE_ROUNDING, remember
+from .watch import FORCE_ROUNDING, GAP_ROUNDING, remember
 
 logger = logging.getLogger(__name__)
 
@@ -163,7 +164,11 @@ class Engine:
             if gap > gap_tolerance:
                 continue
             rate = self.gap_rate(k)
-            if gap < -gap_tolerance or rate < -RATE_ROUNDING or (rate <= RATE_ROUNDING and self.presses(k)):
+            if isinstance(contact.law, ForceLaw):
+                touches = gap < -gap_tolerance or rate < -RATE_ROUNDING or (rate <= RATE_ROUNDING and self.presses(k))
+            else:
+                touches = rate <= self.rate_rounding()
+            if touches:
                 touching.append(k)
         self.use_modes()
         self.clock[STEP_SIZE] = self.settings.first_step or self._first_step()
@@ -171,7 +176,7 @@ class Engine:
         # a force law that acts from the start holds energy from the start
         for k in touching:
             if isinstance(a.contacts[k].law, ForceLaw):
-                machine.handle(self, k)
+                machine.handle(self, [k])
         self._new_history()
         self.table.initial_energy = self.table.total_energy(self.sample())
         self._sample_now()
@@ -234,13 +239,12 @@ class Engine:
 
     def effective_mass(self, k: int) -> float:
         """Mass that contact k feels: normal impulse for a unit change of the gap's rate, joints included, kg."""
-        mode = self.memory[k, MODE]
-        self.memory[k, MODE] = CLOSED
+        before = self.memory[k].copy()
+        closed = np.flatnonzero(self.memory[: len(self.assembly.contacts), MODE] == CLOSED)
         try:
-            self.use_modes(accelerations=False)
-            return unit_impulse(self.workspace, self.assembly.contacts[k].row)
+            return 1.0 / float(Touching(self, [k], frozenset(int(j) for j in closed)).a.nn[0, 0])
         finally:
-            self.memory[k, MODE] = mode
+            self.memory[k] = before
             self.use_modes()
 
     def start_small(self, speed: float) -> None:
@@ -259,13 +263,16 @@ class Engine:
         modes = self.memory[: len(self.assembly.contacts), MODE]
         closed = frozenset(int(k) for k in np.flatnonzero(modes == CLOSED))
         engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
-        if self.workspace.key != (closed, engaged):
-            self.workspace.engage(closed, frozenset(engaged))
+        sticking = frozenset(
+            k for k in closed if self.assembly.contacts[k].coulomb is not None and self.memory[k, SLIDE] == STICKS
+        )
+        if self.workspace.key != (closed, engaged, sticking):
+            self.workspace.engage(closed, engaged, sticking)
         if choose_rows(self.workspace):
             self.note_redundant()
         prepare(self.workspace)
         if accelerations:
-            self._solve_accelerations()
+            self.solve_accelerations()
 
     def note_redundant(self) -> None:
         """Other rows are left out than before: add them to what the result tells."""
@@ -273,7 +280,8 @@ class Engine:
         logger.info("at t = %.9g s other redundant rows are left out of the equations: %s", self.t_internal, found)
         self.redundant += tuple(row for row in found if row not in self.redundant)
 
-    def _solve_accelerations(self) -> None:
+    def solve_accelerations(self) -> None:
+        """Accelerations, multipliers and the rates of the work accounts at the workspace's point."""
         arrays = self.workspace.arrays
         if solve_accelerations(self.workspace.record) != OK:
             raise ConsistencyError(
@@ -284,33 +292,74 @@ class Engine:
         # with the rates of the work accounts: Newmark's formula integrates them from here
         arrays["aux"][:] = arrays["a"]
 
-    def pulling(self) -> list[int]:
-        """Closed contacts whose force is tensile at the workspace's point: they open at once."""
-        arrays, tolerance = self.workspace.arrays, self._no_force()
+    # ---- constraint contacts ------------------------------------------------------------------------------------
+
+    def touching(self, pending: list[int]) -> list[int]:
+        """Constraint contacts without a gap at the workspace's point: closed ones, `pending`, and others that touch."""
+        level = GAP_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]))))
         return [
             k
             for k, contact in enumerate(self.assembly.contacts)
-            if self.memory[k, MODE] == CLOSED and arrays["lam"][contact.row] > tolerance
+            if not isinstance(contact.law, ForceLaw)
+            and (k in pending or self.memory[k, MODE] == CLOSED or abs(self.gap(k)) <= level)
         ]
 
-    def _no_force(self) -> float:
+    def slide_values(self, contacts: list[int]) -> dict[int, float]:
+        """Sliding distances of those contacts that have friction, m."""
+        found = {}
+        for k in contacts:
+            row, memory = self.assembly.contacts[k].slide_row, self.memory[k]
+            if row >= 0:
+                sticks = memory[MODE] == CLOSED and memory[SLIDE] == STICKS
+                found[k] = float(self.workspace.arrays["phi"][row] + (memory[SLIDE_START] if sticks else 0.0))
+        return found
+
+    def rate_rounding(self) -> float:
+        """Rate of a gap or a sliding distance below which it is none, m/s."""
+        return RATE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["v"][: self.assembly.n]))))
+
+    @property
+    def started(self) -> bool:
+        """True once a step has been made."""
+        return self.t_internal > self.settings.t0
+
+    def meet_constraints(self) -> None:
+        """Bring positions and velocities onto the constraints of the present structure, by rounding's worth."""
+        for residual, x in (("phi", "q"), ("phid", "v")):
+            evaluate_residuals(self.workspace.record)
+            if not bring_to_rest(self.workspace, residual, x):
+                raise SimulationError(
+                    f"at t = {self.t_internal:.9g} s the closed contacts cannot be met together with the joints",
+                    t=self.t_internal,
+                    loop="contact",
+                )
+        evaluate_residuals(self.workspace.record)
+
+    def unsettled(self) -> list[int]:
+        """Constraint contacts whose mode does not fit the forces at the workspace's point: closed ones that pull or are
+        held beyond their friction, and touching ones that would overlap."""
+        arrays, tolerance = self.workspace.arrays, self.no_force()
+        found = []
+        for k, contact in enumerate(self.assembly.contacts):
+            if self.memory[k, MODE] != CLOSED:
+                continue
+            force = -arrays["lam"][contact.row]
+            if force < -tolerance:
+                found.append(k)
+            elif contact.coulomb is not None and self.memory[k, SLIDE] == STICKS:
+                limit = contact.coulomb.sticking_coefficient * force
+                if abs(arrays["lam"][contact.slide_row]) > limit * (1.0 + 1e-9) + tolerance:
+                    found.append(k)
+        return found
+
+    def no_force(self) -> float:
         """Rounding of the multipliers: a force below this is none, N."""
         return FORCE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["lam"]), initial=0.0)))
 
     def presses(self, k: int) -> bool:
-        """True if contact k, held as a constraint now, would carry a compressive force (not just rounding)."""
-        arrays, contact = self.workspace.arrays, self.assembly.contacts[k]
-        mode = self.memory[k, MODE]
-        if isinstance(contact.law, ForceLaw):
-            self._solve_accelerations()
-            return bool(arrays["phidd"][contact.row] < 0.0)
-        self.memory[k, MODE] = CLOSED
-        try:
-            self.use_modes()
-            return bool(arrays["lam"][contact.row] < -self._no_force())
-        finally:
-            self.memory[k, MODE] = mode
-            self.use_modes()
+        """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""
+        self.solve_accelerations()
+        return bool(self.workspace.arrays["phidd"][self.assembly.contacts[k].row] < 0.0)
 
     # ---- at event rate ----------------------------------------
 
@@ -336,11 +385,14 @@ class Engine:
             # samples may have been asked for since the step that ended here
             recall(self.workspace.record, self._method.record, 0)
         self._new_history()
-        for k in pending:
-            machine.handle(self, k)
+        self.handle_contacts(pending)
         self._new_history()
-        self.pending = self.pulling()
+        self.pending = self.unsettled()
         self._sample_now()
+
+    def handle_contacts(self, pending: list[int]) -> None:
+        """Let the state machine act on contacts with events. Studies of other treatments override this."""
+        machine.handle(self, pending)
 
     def _new_history(self) -> None:
         evaluate_residuals(self.workspace.record)

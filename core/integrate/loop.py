@@ -10,7 +10,7 @@ from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
 from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
 from ..stage.inner import STRAINED, rounding_level
-from ..stage.solver import CHOICE_GROWTH
+from ..stage.matrices import CHOICE_GROWTH
 from ..system.records import (
     ATOL,
     CHOICE_CONDITION,
@@ -40,25 +40,19 @@ from ..system.records import (
     WORST_CONDITION,
 )
 from .records import (
-    A2,
-    B1,
-    B2,
     BREAK_TIME,
     CHUNK,
     CLOCK_SIZE,
     EAGER,
     EVENT,
-    FAILURES,
     FIXED_STEP,
     FULL,
-    GROWTH,
     HELD,
     HOLD,
     LOG_COLUMNS,
     MAX_STEP,
     NEAR_SINGULAR,
     PREVIOUS_NORM,
-    PREVIOUS_RATIO,
     REACHED,
     REJECTED_HERE,
     REPARTITION,
@@ -70,18 +64,16 @@ from .records import (
     VIOLATED,
 )
 from .sample import write_sample
+from .step_size import next_step, step_factor
 from .watch import any_crossed, remember
 
 LOG_SIZE = len(LOG_COLUMNS)
-SAFETY = 0.9
 # Rounding of a coordinate, relative to the largest, that differences over several steps make of 2e-16.
 ROUNDING = 2e-13
-MIN_FACTOR = 0.2
-MAX_FACTOR = 5.0  # of one-step formulas; multistep ones have their own
+AWAY = 8.0  # decrease of the condition after which a singular position is looked for anew
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
 LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
 REDUNDANT_TOLERANCE = 1e-8  # violation of a redundant row that shows that it is not; absolute up to 1, then relative
-DEAD_BAND = 1.2  # a multistep formula keeps its step unless it may grow by more
 
 
 @internal
@@ -193,53 +185,6 @@ def partition_strained(ws: Any) -> bool:
 
 
 @internal
-def _factor(error: float, order: float, growth: float) -> float:
-    """By how much the step may change."""
-    if error <= 0.0:
-        return growth
-    return min(growth, max(MIN_FACTOR, SAFETY * error ** (-1.0 / (order + 1.0))))
-
-
-@internal
-def _controlled(clock: Any, error: float, order: float) -> float:
-    """By how much a one-step formula's step changes, by the controller's coefficients."""
-    if error <= 0.0:
-        clock[PREVIOUS_NORM] = 0.0
-        return MAX_FACTOR
-    exponent = 1.0 / (order + 1.0)
-    factor = (SAFETY ** (order + 1.0) / error) ** (clock[B1] * exponent)
-    if clock[PREVIOUS_NORM] > 0.0:
-        factor *= (SAFETY ** (order + 1.0) / clock[PREVIOUS_NORM]) ** (clock[B2] * exponent)
-        factor *= clock[PREVIOUS_RATIO] ** -clock[A2]
-    else:
-        # without a past every controller is the elementary one
-        factor = SAFETY * error**-exponent
-    factor = min(MAX_FACTOR, max(MIN_FACTOR, factor))
-    clock[PREVIOUS_NORM], clock[PREVIOUS_RATIO] = error, factor
-    return factor
-
-
-@internal
-def _next_step(lc: Any, h: float, error: float, order: float, multistep: bool, hold: float) -> float:
-    """Step to follow an accepted one of size h.
-
-    A multistep formula grows only after `hold` equal steps, and only if it pays: growing at every step is not
-    zero-stable for more than a few steps, growing by GROWTH between such runs of equal steps is (companion matrices
-    of the variable-step formulas), and equal steps keep the coefficients.
-    """
-    clock = vec(lc.clock, CLOCK_SIZE)
-    if not multistep:
-        clock[HELD] = 0.0
-        return h * _controlled(clock, error, order)
-    factor = _factor(error, order, clock[GROWTH])
-    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock[GROWTH]) or clock[HELD] < hold):
-        clock[HELD] += 1.0
-        return h
-    clock[HELD] = 0.0
-    return h * factor
-
-
-@internal
 def _leap(ws: Any, ms: Any, lc: Any) -> float:
     """How far the step has gone, relative to what it may: beyond 1 two shapes could have passed through each other."""
     row, q, leap = history_row(ws, ms, 0), vec(ws.q, ws.n), vec(lc.leap, ws.n)
@@ -297,14 +242,13 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         if status != OK or (not fixed and not error[0] <= 1.0):
             counters[REJECTED] += 1
             clock[REJECTED_HERE] += 1.0
-            clock[FAILURES] += 1.0
             clock[PREVIOUS_NORM] = 0.0
             if fixed or (clock[EAGER] > 0.0 and (status == OUTER_DIVERGED or status == OUTER_SLOW)):
                 return status
             if status != OK:
                 h *= 0.25
             else:
-                h *= min(0.9, _factor(error[0], error[1], 1.0))
+                h *= min(0.9, step_factor(error[0], error[1], 1.0))
             clock[STEP_SIZE], clock[HELD] = h, 0.0
             if t + 0.01 * h == t or h < 1e-300:
                 return STEP_TOO_SMALL if status == OK else status
@@ -316,7 +260,6 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 counters[REJECTED] += 1
                 clock[REJECTED_HERE] += 1.0
                 continue
-        clock[FAILURES] = 0.0
         if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
             return VIOLATED
         if ws.n_contacts > 0 and any_crossed(ws, lc, h):
@@ -325,6 +268,9 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             # the stop time itself, not t + h with its rounding
             vec(ws.t, 1)[0] = stop
         accept(ws, ms, lc)
+        if AWAY * rate[CONDITION] < rate[LOOKED_CONDITION]:
+            # not within a trial: a step that leads astray would be looked at again and again
+            rate[LOOKED_CONDITION] = 0.0
         strained = partition_strained(ws)
         if not fixed:
             norm, order, hold = error[0], error[1], clock[HOLD]
@@ -334,7 +280,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 if clock[HELD] >= hold and call_step(lc.select, ws, ms, h) == OK and choice[NEXT_K] > 0.0:
                     choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
                     choice[NEXT_K] = 0.0
-            proposed = _next_step(lc, h, norm, order, multistep, hold)
+            proposed = next_step(lc, h, norm, order, multistep, hold)
             clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed
         if strained:
             return REPARTITION

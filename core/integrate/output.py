@@ -11,10 +11,6 @@ from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel
 from ..system.assembly import Assembly
 
-_RATES = {"x": ("vx", "m/s"), "y": ("vy", "m/s"), "angle": ("angular_velocity", "rad/s")}
-_ACCELERATIONS = {"x": ("ax", "m/s2"), "y": ("ay", "m/s2"), "angle": ("angular_acceleration", "rad/s2")}
-_UNITS = {"x": "m", "y": "m", "angle": "rad"}
-
 
 class SampleLayout:
     """Where things stand in a sample (see `sample.py`)."""
@@ -25,10 +21,11 @@ class SampleLayout:
         at = 1 + 3 * n
         self.multipliers = slice(at, at + m)
         at += m
-        self.force, self.gap, self.gap_rate, self.mode, self.impulse_jump, self.loss_jump = (
-            at + k * c for k in range(6)
-        )
-        at += 6 * c
+        (
+            self.force, self.gap, self.gap_rate, self.mode, self.impulse_jump, self.loss_jump,
+            self.friction, self.sliding,
+        ) = (at + k * c for k in range(8))  # fmt: skip
+        at += 8 * c
         self.kinetic, self.potential, self.strain = at, at + 1, at + 2
         self.work = {name: at + 3 + k for k, name in enumerate(assembly.work_names)}
         at += 3 + len(assembly.work_names)
@@ -75,7 +72,7 @@ class ChannelTable:
         for k, channel in enumerate(assembly.multiplier_channels):
             self._formulas.append((channel, layout.multipliers.start + k))
         for k, contact in enumerate(assembly.contacts):
-            self._add_contact(k, contact.name)
+            self._add_contact(k, contact.name, contact.slide_row >= 0)
         self._add_energies(assembly)
         for column, level, unit in zip(
             layout.residuals, ("position", "velocity", "acceleration"), ("m", "m/s", "m/s2"), strict=True
@@ -100,7 +97,7 @@ class ChannelTable:
         self._terms = _pairs([(k, column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
 
-    def _add_contact(self, k: int, name: str) -> None:
+    def _add_contact(self, k: int, name: str, friction: bool) -> None:
         layout = self.layout
         impulse, dissipation = layout.work[f"{name}.impulse"], layout.work[f"{name}.dissipation"]
         self._formulas += [
@@ -121,6 +118,15 @@ class ChannelTable:
             ),
             (Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer"), layout.mode + k),
         ]
+
+        if friction:
+            self._formulas += [
+                (
+                    Channel(f"{name}.friction_force", "N", "along the tangent, against the sliding velocity"),
+                    layout.friction + k,
+                ),
+                (Channel(f"{name}.sliding_velocity", "m/s", "of the second shape on the first"), layout.sliding + k),
+            ]
 
     def _add_energies(self, assembly: Assembly) -> None:
         layout, contacts = self.layout, len(assembly.contacts)
@@ -168,22 +174,17 @@ class ChannelTable:
         return float(sample[layout.kinetic] + sample[layout.potential] + sample[layout.strain])
 
 
-def planar_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, int]]:
+def body_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, int]]:
     """Position, velocity and acceleration of every body coordinate, with their columns in a sample."""
-    columns: list[tuple[Channel, int]] = []
-
-    def add(name: str, unit: str, description: str, at: int) -> None:
-        columns.append((Channel(name, unit, description), at))
-
+    columns = []
     for body, coordinate, index in assembly.body_columns:
-        rate, rate_unit = _RATES[coordinate]
-        acceleration, acceleration_unit = _ACCELERATIONS[coordinate]
-        add(f"{body}.{coordinate}", _UNITS[coordinate], f"{coordinate} of {body}", layout.q.start + index)
-        add(f"{body}.{rate}", rate_unit, f"rate of {coordinate} of {body}", layout.v.start + index)
-        add(
-            f"{body}.{acceleration}", acceleration_unit, f"second rate of {coordinate} of {body}",
-            layout.a.start + index,
-        )  # fmt: skip
+        for level, (name, what, part) in enumerate((
+            (coordinate.name, "", layout.q),
+            (coordinate.rate, "rate of ", layout.v),
+            (coordinate.acceleration, "second rate of ", layout.a),
+        )):  # fmt: skip
+            channel = Channel(f"{body}.{name}", coordinate.unit_of(level), f"{what}{coordinate.name} of {body}")
+            columns.append((channel, part.start + index))
     return columns
 
 

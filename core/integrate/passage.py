@@ -20,7 +20,7 @@ from ..methods.registry import STARTER_STAGES
 from ..system.records import ATOL, FACTOR_AGE, NEWTON_TOLERANCE, OK, REANALYZE, RTOL
 from ..system.redundancy import least_singular_value
 from .loop import accept, trial_step, violates_redundant
-from .records import EVENT, FAILURES, HELD, STEP_SIZE, STOP_TIME, TRIAL_STEP
+from .records import EVENT, HELD, STEP_SIZE, STOP_TIME, TRIAL_STEP
 from .repair import repair
 from .watch import crossed
 
@@ -192,7 +192,7 @@ def _try(sim: "Simulation", path: _Path, steps: tuple[list[float], ...], natural
                     continue
                 if of_error > 1.0:
                     logger.debug("step at t = %.9g s with tolerances relaxed by %g", sim.t_internal, of_error)
-                sim.clock[[TRIAL_STEP, STEP_SIZE, HELD, FAILURES]] = h, natural, 0.0, 0.0
+                sim.clock[[TRIAL_STEP, STEP_SIZE, HELD]] = h, natural, 0.0
                 if any(crossed(ws, lc, k, h) for k in range(len(sim.assembly.contacts))):
                     return EVENT
                 _accept(sim, h)

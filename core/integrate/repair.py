@@ -44,7 +44,7 @@ def _move_multipliers(sim: "Simulation") -> None:
     """Other rows carry the forces now: those left out get the multiplier zero in the whole history, and the newest row
     the multipliers that belong to the new choice."""
     sim.note_redundant()
-    sim._solve_accelerations()
+    sim.solve_accelerations()
     recorded = sim.workspace.arrays["lam"].copy()
     recall(sim.workspace.record, sim._method.record, 0)
     start = 4 * sim.assembly.n_extended

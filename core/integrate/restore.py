@@ -42,7 +42,7 @@ def get_state(sim: "Simulation") -> State:
         arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"] = perm_r.copy(), perm_c.copy()
         arrays[f"{name}_values"] = factorization.lu_values.copy()
         arrays[f"{name}_pivots"] = factorization.pivots.copy()
-    closed, engaged = workspace.key
+    closed, engaged, sticking = workspace.key
     if len(sim.stored_events) != len(sim.events):
         sim.stored_events = tuple(sim.events)
     facts = {
@@ -50,6 +50,7 @@ def get_state(sim: "Simulation") -> State:
         "closed": sorted(closed),
         "dropped": sorted(workspace.dropped),
         "engaged": sorted(engaged),
+        "sticking": sorted(sticking),
         "pending": list(sim.pending),
         "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
         "handled": [repr(sim._times_handled[0]), sim._times_handled[1]],
@@ -73,7 +74,8 @@ def set_state(sim: "Simulation", state: State) -> None:
     if sim.outer != facts["outer"]:
         sim.use_outer_loop(facts["outer"])
     sim.fallbacks = [Fallback(*entry) for entry in facts["fallbacks"]]
-    key, dropped = (frozenset(facts["closed"]), frozenset(facts["engaged"])), frozenset(facts["dropped"])
+    key = (frozenset(facts["closed"]), frozenset(facts["engaged"]), frozenset(facts["sticking"]))
+    dropped = frozenset(facts["dropped"])
     if workspace.key != key or workspace.dropped != dropped:
         workspace.drop(dropped)
         workspace.engage(*key)
@@ -115,5 +117,5 @@ def restart_here(sim: "Simulation") -> None:
         sim.pending = []
     sim.use_modes()
     sim._new_history()
-    sim.pending += [k for k in sim.pulling() if k not in sim.pending]
+    sim.pending += [k for k in sim.unsettled() if k not in sim.pending]
     remember(ws, sim._loop.record)

@@ -1,7 +1,8 @@
 """A sample: one recorded row of numbers at the current point of the workspace.
 
-Columns: t; q, v, a (n each); lam (m); force, gap, gap rate, mode, impact impulse, impact loss of each contact;
-kinetic, potential, strain energy; work accounts; residuals at position, velocity and acceleration level.
+Columns: t; q, v, a (n each); lam (m); force, gap, gap rate, mode, impact impulse, impact loss, friction force and
+sliding velocity of each contact; kinetic, potential, strain energy; work accounts; residuals at position, velocity and
+acceleration level.
 """
 
 from typing import Any
@@ -16,7 +17,7 @@ from ..system.evaluate import evaluate_energy, recorded_norm
 
 def sample_length(n: int, m: int, contacts: int, work: int) -> int:
     """Number of columns."""
-    return 1 + 3 * n + m + 6 * contacts + 3 + work + 3
+    return 1 + 3 * n + m + 8 * contacts + 3 + work + 3
 
 
 @compiled
@@ -38,7 +39,8 @@ def write_sample(ws: Any, out: Any) -> None:
         out[at + active[i]] = lam[active[i]]
     at += m
     if contacts:
-        monitor = vec(ws.monitor, contacts)
+        monitor = vec(ws.monitor, 2 * contacts)
+        slide_rows = ivec(ws.contact_slide_rows, contacts)
         memory = mat(ws.memory, contacts, MEMORY_SIZE)
         rows = ivec(ws.contact_rows, contacts)
         phi, phid = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
@@ -50,7 +52,11 @@ def write_sample(ws: Any, out: Any) -> None:
             out[at + 3 * contacts + k] = mode
             out[at + 4 * contacts + k] = memory[k, IMPULSE_JUMP]
             out[at + 5 * contacts + k] = memory[k, LOSS_JUMP]
-        at += 6 * contacts
+            with_friction = slide_rows[k] >= 0
+            acts = with_friction and (mode == ACTIVE or mode == CLOSED)
+            out[at + 6 * contacts + k] = monitor[contacts + k] if acts else 0.0
+            out[at + 7 * contacts + k] = phid[slide_rows[k]] if with_friction else 0.0
+        at += 8 * contacts
     evaluate_energy(ws)
     energy = vec(ws.energy, 3)
     for i in range(3):

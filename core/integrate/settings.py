@@ -18,7 +18,6 @@ from ..system.records import (
     ATOL,
     EXACTNESS,
     MAX_INNER,
-    MAX_OUTER,
     MOST_CONDITION,
     NEWTON_TOLERANCE,
     POSITION_TOLERANCE,
@@ -114,7 +113,8 @@ DEFAULT_ATOL = 1e-9
 def set_control(
     settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]
 ) -> None:
-    """Fill the workspace's control numbers and absolute tolerances; `newton_tolerance` is the formula's own."""
+    """Fill the workspace's absolute tolerances and its control numbers, but for those of the outer loop
+    (`Engine.use_outer_loop`); `newton_tolerance` is the formula's own."""
     control, n = arrays["control"], assembly.n
     fixed = settings.step is not None
     if fixed:
@@ -139,7 +139,6 @@ def set_control(
     finest = (settings.newton_tolerance or 1.0) if fixed else float(min(arrays["atol_q"][:n], default=1.0))
     control[EXACTNESS] = min(1.0, max(1e-3, 0.02 * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
-    control[MAX_OUTER] = OUTER_LOOPS[settings.outer].most_iterations
     control[MAX_INNER] = 12.0
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
     control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

@@ -4,7 +4,18 @@ from typing import Any
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, OPEN, RATE_ROUNDING, RELEASED
+from ..contact.modes import (
+    ACTIVE,
+    CLOSED,
+    IDLE,
+    MEMORY_SIZE,
+    MODE,
+    OPEN,
+    RATE_ROUNDING,
+    RELEASED,
+    SLIDE,
+    STICKS,
+)
 from ..stage.inner import rounding_level
 
 # A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
@@ -23,7 +34,7 @@ def remember(ws: Any, lc: Any) -> None:
         watch[k, 2] = vec(ws.phidd, ws.m_ext)[rows[k]]
 
 
-@compiled
+@internal
 def lowest_inside(g0: float, d0: float, g1: float, d1: float, h: float) -> Any:
     """Minimum of the cubic through (g, g') at both ends, and its place in (0, 1); g' must change from - to +."""
     low, high = 0.0, 1.0
@@ -46,6 +57,20 @@ def lowest_inside(g0: float, d0: float, g1: float, d1: float, h: float) -> Any:
 
 
 @compiled
+def friction_margin(ws: Any, k: int) -> float:
+    """How far closed contact k with Coulomb friction is from its next change, negative beyond it: mu_s F_N - |F_T|
+    while it sticks (N); its sliding velocity in the direction of sliding while it slides (m/s)."""
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+    row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    if memory[SLIDE] == STICKS:
+        friction = abs(vec(ws.lam, ws.m_ext)[row])
+        return vec(ws.contact_sticking, ws.n_contacts)[k] * vec(ws.monitor, ws.n_contacts)[k] - friction
+    if memory[SLIDE] == IDLE:
+        return 0.0
+    return memory[SLIDE] * vec(ws.phid, ws.m_ext)[row]
+
+
+@compiled
 def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
     """True if contact k has an event within the step of size h that ends at the current point."""
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
@@ -60,7 +85,8 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
             # constraints has let overlap before they opened may come apart
             overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
             return rate < -RATE_ROUNDING or (g < -overlap and watch[k, 0] >= -overlap)
-        if watch[k, 1] < 0.0 and rate > 0.0 and watch[k, 0] > 0.0:
+        # shapes that touch without a force turn round by rounding only
+        if watch[k, 1] < -RATE_ROUNDING and rate > RATE_ROUNDING and watch[k, 0] > 0.0:
             lowest, _ = lowest_inside(watch[k, 0], watch[k, 1], g, rate, h)
             return lowest < 0.0
         return False
@@ -69,7 +95,13 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
         largest = 1.0
         for i in range(ws.m_ext - 1):
             largest = max(largest, abs(lam[i]))
-        return force < -FORCE_ROUNDING * largest
+        if force < -FORCE_ROUNDING * largest:
+            return True
+        if vec(ws.contact_sticking, ws.n_contacts)[k] == 0.0:
+            return False
+        sticks = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS
+        none = FORCE_ROUNDING * largest if sticks else RATE_ROUNDING * rounding_level(ws, ws.v)
+        return friction_margin(ws, k) < -none
     if mode == ACTIVE:
         return g > 0.0 or (release == 2 and force < 0.0)
     if mode == RELEASED:

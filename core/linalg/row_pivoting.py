@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled.jit import compiled, interpreted
+from ..compiled.jit import compiled, internal, interpreted
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ NEGLIGIBLE = 1e-9
 FEW_ENTRIES = 60
 
 
-@compiled
+@internal
 def _insert(pending: Any, count: int, row: int) -> int:
     """Put a row into the first `count` pending ones, which descend; returns the new count."""
     at = count

@@ -1,4 +1,4 @@
-"""BDF inside TLISMNI: coordinates and velocities, orders 1 to 5, variable step on the actual grid.
+"""BDF inside TLISMNI: coordinates and velocities, orders 1 to 6, variable step on the actual grid.
 
 Error estimate: (y - extrapolation of degree k) h/(t_{n+1} - t_{n-k}), the next difference over k + 1 for equal steps.
 """

@@ -5,10 +5,10 @@ Nodes are s_j = (t_j - t_new)/h < 0, newest first. For equal steps they are the 
 
 from typing import Any
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 
 
-@compiled
+@internal
 def bdf_coefficients(s: Any, k: int, out: Any) -> None:
     """y(0) = sum_j out_j y_j + out_k h y'(0): derivative at 0 of the interpolant through 0 and s_0 ... s_{k-1}."""
     own = 0.0
@@ -23,7 +23,7 @@ def bdf_coefficients(s: Any, k: int, out: Any) -> None:
     out[k] = 1.0 / own
 
 
-@compiled
+@internal
 def extrapolation_weights(s: Any, k: int, out: Any) -> None:
     """y(0) = sum_j out_j y_j, the polynomial through s_0 ... s_{k-1} (Lagrange)."""
     for j in range(k):
@@ -34,7 +34,7 @@ def extrapolation_weights(s: Any, k: int, out: Any) -> None:
         out[j] = weight
 
 
-@compiled
+@internal
 def ebdf_coefficients(s: Any, k: int, out: Any) -> None:
     """y(0) = sum_j out_j y_j + h out_k y'(0) + h out_{k+1} y'(1), exact for degree k + 1 (Cash 1980).
 

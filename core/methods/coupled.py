@@ -15,7 +15,8 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.inner import inner_loop
-from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, refactor, solve_increment
+from ..stage.matrices import refactor
+from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, solve_increment
 from ..system.evaluate import evaluate_residuals
 from ..system.records import (
     CONTROL_SIZE,

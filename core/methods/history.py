@@ -5,7 +5,7 @@ Rows hold the full coordinates, never only the independent ones: a new partition
 
 from typing import Any
 
-from ..compiled.jit import compiled, inlined
+from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, mat, vec
 
 
@@ -27,7 +27,7 @@ def history_time(ms: Any, back: int) -> float:
     return vec(ms.times, ms.capacity)[row_index(ms, back)]
 
 
-@compiled
+@internal
 def push(ws: Any, ms: Any) -> None:
     """The current point of the workspace becomes the newest row."""
     ring = ivec(ms.ring, 2)

@@ -109,21 +109,29 @@ def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolati
 
 
 @internal
-def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
-    """Norm of (q, v) less its extrapolation through `count` rows: the next backward difference."""
+def difference_norm(ws: Any, ms: Any, q: Any, v: Any, weights: Any, first: int, count: int) -> float:
+    """Norm of the coordinates (q, v) less what `weights` make of the rows first ... first + count - 1 of the history;
+    the work accounts do not count."""
     n = ws.n_ext
-    q, v = vec(ws.q, n), vec(ws.v, n)
     difference = vec(ws.rhs, ws.n)
     norm = 0.0
     for kind in range(2):
         for i in range(ws.n):
             difference[i] = v[i] if kind else q[i]
         for j in range(count):
-            row = history_row(ws, ms, j)
+            row = history_row(ws, ms, first + j)
             for i in range(ws.n):
                 difference[i] -= weights[j] * row[kind * n + i]
         norm = max(norm, weighted_norm(difference, vec(ws.weight_v if kind else ws.weight_q, n), ws.n))
-    weight_v = vec(ws.weight_v, n)
+    return norm
+
+
+@internal
+def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
+    """Norm of (q, v) less its extrapolation through `count` rows: the next backward difference."""
+    n = ws.n_ext
+    v, weight_v = vec(ws.v, n), vec(ws.weight_v, n)
+    norm = difference_norm(ws, ms, vec(ws.q, n), v, weights, 0, count)
     for i in range(n - ws.n_work, n):
         off = v[i]
         for j in range(count):

@@ -10,11 +10,10 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..stage.solver import weighted_norm
 from ..system.records import OK
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
-from .multistep import rows_available, weight_rows
+from .multistep import COUNT_ROW, difference_norm, rows_available, weight_rows
 from .records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
 
 LEAST_K, MOST_K = 1, 2  # parameters of the formula
@@ -34,16 +33,7 @@ def _error(ws: Any, ms: Any, h: float, k: int) -> float:
         s[j] = (history_time(ms, j + 1) - history_time(ms, 0)) / h
     extrapolation_weights(s, k + 1, weights)
     newest = history_row(ws, ms, 0)
-    difference = vec(ws.rhs, ws.n)
-    norm = 0.0
-    for kind in range(2):
-        for i in range(ws.n):
-            difference[i] = newest[kind * n + i]
-        for j in range(k + 1):
-            row = history_row(ws, ms, j + 1)
-            for i in range(ws.n):
-                difference[i] -= weights[j] * row[kind * n + i]
-        norm = max(norm, weighted_norm(difference, vec(ws.weight_v if kind else ws.weight_q, n), ws.n))
+    norm = difference_norm(ws, ms, newest[:n], newest[n : 2 * n], weights, 1, k + 1)
     # for equal steps s[k] = -(k + 1)
     return norm / -s[k]
 
@@ -65,7 +55,7 @@ def select_k(ws: Any, ms: Any, h: float) -> int:
         if growth > best_growth:
             best, best_growth, best_norm = trial, growth, norm
     # the coefficients' nodes stood where the errors were formed
-    weight_rows(ms)[7, 0] = 0.0
+    weight_rows(ms)[COUNT_ROW, 0] = 0.0
     if best != k:
         choice[NEXT_K], choice[NEXT_NORM] = best, best_norm
     return OK

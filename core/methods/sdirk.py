@@ -1,6 +1,6 @@
 """SDIRK of order 4, five stages, L-stable, embedded order 3 (Hairer and Wanner, Solving ODEs II, table 6.5).
 
-Self-starting: it gives the multistep formulas their starting values, and is the method "irk" for now.
+Self-starting: it gives the multistep formulas their starting values, and is `irk` with the tableau sdirk4.
 Each stage has c_v = h gamma, c_q = (h gamma)^2: one matrix for all.
 """
 

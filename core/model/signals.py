@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ..compiled.jit import compiled
+from ..compiled.jit import internal
 from .base import Name, Positive, Record
 
 CONSTANT, STEP, RAMP, SINE, POLYNOMIAL, TABLE, INPUT = range(7)
@@ -151,7 +151,7 @@ Signal = Annotated[Constant | Step | Ramp | Sine | Polynomial | Table | InputSig
 """Any time function."""
 
 
-@compiled
+@internal
 def evaluate_signal(pool: Any, inputs: Any, offset: int, t: float) -> Any:
     """(f, f', f'') at time `t` of the signal that starts at `pool[offset]`."""
     kind = int(pool[offset])

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import jfnk, simple
-from .solver import refactor, solve_stage
+from .matrices import refactor
+from .solver import solve_stage
 
 
 @dataclass(frozen=True)

@@ -22,10 +22,7 @@ from ..system.records import (
     CORRECTION,
     COUNTERS_SIZE,
     FACTOR_AGE,
-    FACTOR_CQ,
-    FACTOR_CV,
     FACTORIZATIONS,
-    FAILED_NORM,
     LAST_INNER,
     LAST_OUTER,
     MAX_OUTER,
@@ -33,7 +30,6 @@ from ..system.records import (
     NOT_FINITE,
     OK,
     OUTER,
-    OUTER_DIVERGED,
     OUTER_RATE,
     OUTER_SLOW,
     POSITION_TOLERANCE,
@@ -43,7 +39,6 @@ from ..system.records import (
     SINGULAR,
     STAGE_ALPHA,
     STAGE_BETA,
-    STAGES,
     VELOCITY_TOLERANCE,
 )
 from .inner import rounding_level
@@ -51,10 +46,11 @@ from .solver import (
     LEAST_RATE,
     MOST_OUTER,
     RATE_GROWTH,
-    SLOW,
     add_increment,
+    begin_stage,
+    evaluate_prediction,
     increment_norm,
-    set_from_accelerations,
+    judge_contraction,
     weighted_norm,
 )
 
@@ -83,8 +79,8 @@ def refactor_absolute(ws: Any, c_q: float, c_v: float) -> int:
     status = _factored(ws, ws.kkt, c_q, c_v)
     if status != OK:
         return status
-    rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
-    rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER], rate[SENSITIVITY] = 1.0, 0.0, 0.0, 0.0
+    rate[FACTOR_AGE], rate[OUTER_RATE] = 0.0, 1.0
+    rate[LAST_OUTER], rate[LAST_INNER], rate[SENSITIVITY] = 0.0, 0.0, 0.0
     return OK
 
 
@@ -178,16 +174,12 @@ def _iterate(ws: Any, c_q: float, c_v: float, index: int) -> int:
             rate[LAST_OUTER] = k + 1
             return OK
         if k > 0:
-            contraction = norm / previous
-            rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
-            if contraction > 0.9 and norm > tolerance and (renewed > 0 or contraction > 2.0):
-                rate[FAILED_NORM] = contraction
-                return OUTER_DIVERGED
-            if contraction > SLOW and norm > tolerance and renewed < 2:
+            status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
+            if status == OUTER_SLOW:
                 renewed += 1
                 status = refactor_absolute(ws, c_q, c_v)
-                if status != OK:
-                    return status
+            if status != OK:
+                return status
         previous = norm
         known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance and _holds(ws, index):
@@ -205,10 +197,7 @@ def solve_absolute(ws: Any, t: float, c_q: float, c_v: float, index: int) -> int
     `index` says which constraints: 1 Baumgarte's combination, 2 positions and velocities, 3 positions.
     """
     rate = vec(ws.rate, RATE_SIZE)
-    vec(ws.t, 1)[0] = t
-    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
+    begin_stage(ws, t, c_q, c_v)
     if index == 2 and ws.m_act > 0:
         # its direction is part of the formula: always that of the predicted point, however old the other matrix is
         status = _factored(ws, ws.kkt_query, 0.0, 0.0)
@@ -222,8 +211,7 @@ def solve_absolute(ws: Any, t: float, c_q: float, c_v: float, index: int) -> int
     rate[FACTOR_AGE] = _USED
     status = _iterate(ws, c_q, c_v, index)
     if status != OK and not fresh:
-        set_from_accelerations(ws, c_q, c_v)
-        evaluate_residuals(ws)
+        evaluate_prediction(ws, c_q, c_v)
         status = refactor_absolute(ws, c_q, c_v)
         if status != OK:
             return status

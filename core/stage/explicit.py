@@ -7,20 +7,16 @@ are linear in (a, lambda): one increment from any guess solves them.
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, vec
-from ..system.evaluate import evaluate_residuals
-from ..system.records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, STAGES
+from ..compiled.views import vec
+from ..system.records import FACTOR_AGE, OK, RATE_SIZE
 from .absolute import refactor_absolute, solve_rows
-from .solver import add_increment, set_from_accelerations
+from .solver import add_increment, begin_stage
 
 
 @internal
 def solve_explicit_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     """(a, lambda) at t, q*, v*; alpha and beta (1/s) stand in `control`, c_q and c_v are zero."""
-    vec(ws.t, 1)[0] = t
-    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
+    begin_stage(ws, t, c_q, c_v)
     status = refactor_absolute(ws, c_q, c_v)
     # no later stage takes these factors
     vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0

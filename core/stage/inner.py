@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
 from ..system.evaluate import constraint_norm, evaluate_residuals
@@ -56,7 +56,7 @@ def rounding_level(ws: Any, x_address: int) -> float:
     return largest
 
 
-@compiled
+@internal
 def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> int:
     """Correct q_d, v_d, a_d until the constraints hold to the tolerances times `slack`.
 

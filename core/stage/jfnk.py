@@ -34,18 +34,16 @@ from ..system.records import (
     OUTER_RATE,
     OUTER_SLOW,
     RATE_SIZE,
-    STAGES,
 )
 from .inner import inner_loop
 from .solver import (
     LEAST_RATE,
-    MOST_INNER,
     RATE_GROWTH,
     add_increment,
+    begin_stage,
     increment_norm,
     inner_slack,
-    refactor,
-    set_from_accelerations,
+    prepare_attempt,
     solve_increment,
 )
 
@@ -203,27 +201,17 @@ def _return(ws: Any) -> None:
 @internal
 def solve_jfnk_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage from the predicted a, lambda in the workspace; with a new preconditioner if an old one fails."""
-    rate = vec(ws.rate, RATE_SIZE)
-    vec(ws.t, 1)[0] = t
-    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
-    if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > SLOW_KRYLOV or rate[LAST_INNER] > MOST_INNER:
-        status = refactor(ws, c_q, c_v)
+    begin_stage(ws, t, c_q, c_v)
+    status = OK
+    for attempt in range(2):
+        status = prepare_attempt(ws, c_q, c_v, attempt, SLOW_KRYLOV)
         if status != OK:
             return status
-    fresh = rate[FACTOR_AGE] == 0.0
-    rate[FACTOR_AGE] += 1.0
-    status = _iterate(ws, c_q, c_v)
-    if status == OK or fresh:
-        return status
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
-    status = refactor(ws, c_q, c_v)
-    if status != OK:
-        return status
-    rate[FACTOR_AGE] += 1.0
-    return _iterate(ws, c_q, c_v)
+        fresh = vec(ws.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
+        status = _iterate(ws, c_q, c_v)
+        if status == OK or fresh:
+            break
+    return status
 
 
 @internal
@@ -246,7 +234,6 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         status = inner_loop(ws, ws.lu_d, slack, np.inf)
         if status != OK:
             return status
-        _remember(ws)
         solve_increment(ws, ws.kkt)
         counters[OUTER] += 1
         norm = increment_norm(ws, c_q, c_v)

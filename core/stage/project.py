@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at, solve
+from ..compiled.views import vec
+from ..linalg import factor, lu_at
 from ..system.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.projection import correct_least
 from ..system.records import CONTROL_SIZE, INNER_DIVERGED, OK, POSITION_TOLERANCE, REANALYZE, VELOCITY_TOLERANCE
 from .accelerations import solve_accelerations
 from .inner import rounding_level
@@ -19,9 +20,6 @@ def _project_level(ws: Any, residual_address: int, x_address: int, tolerance: fl
 
     All coordinates take part, so that no partition is needed: one that is strained at this point does no harm.
     """
-    rhs = vec(ws.rhs, ws.n + ws.m_act)
-    residual, x = vec(residual_address, ws.m_ext), vec(x_address, ws.n_ext)
-    active = ivec(ws.active, ws.m_act)
     previous = np.inf
     for _ in range(12):
         norm = constraint_norm(ws, residual_address)
@@ -30,14 +28,7 @@ def _project_level(ws: Any, residual_address: int, x_address: int, tolerance: fl
         if not norm < 0.5 * previous:
             return INNER_DIVERGED
         previous = norm
-        for i in range(ws.n):
-            rhs[i] = 0.0
-        for i in range(ws.m_act):
-            rhs[ws.n + i] = -residual[active[i]]
-        solve(lu_at(ws.kkt_query), ws.rhs)
-        for i in range(ws.n):
-            x[i] += rhs[i]
-        evaluate_residuals(ws)
+        correct_least(ws, residual_address, x_address)
     return INNER_DIVERGED
 
 

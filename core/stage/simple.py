@@ -32,10 +32,10 @@ from ..system.records import (
     OUTER_RATE,
     OUTER_SLOW,
     RATE_SIZE,
-    STAGES,
 )
 from .inner import inner_loop
-from .solver import add_increment, increment_norm, inner_slack, refactor, set_from_accelerations, solve_increment
+from .matrices import refactor
+from .solver import add_increment, begin_stage, increment_norm, inner_slack, solve_increment
 
 AITKEN = 1.0
 MOST_DEPTH = 5
@@ -135,10 +135,7 @@ def solve_simple_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     control, counters, rate = (
         vec(ws.control, CONTROL_SIZE), ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE),
     )  # fmt: skip
-    vec(ws.t, 1)[0] = t
-    counters[STAGES] += 1
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
+    begin_stage(ws, t, c_q, c_v)
     tolerance, slack, acceleration = control[NEWTON_TOLERANCE], inner_slack(control), control[ACCELERATION]
     start_inner = counters[INNER]
     previous, first, relaxation = np.inf, 0.0, 1.0

@@ -14,26 +14,18 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, inlined, internal
+from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at, solve
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..linalg import lu_at, solve
+from ..system.evaluate import evaluate_residuals
 from ..system.records import (
-    CHOICE_CONDITION,
-    CONDITION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
     FACTOR_AGE,
-    FACTOR_CQ,
-    FACTOR_CV,
-    FACTORIZATIONS,
     FAILED_NORM,
-    FIRST_SENSITIVITY,
     INNER,
     LAST_INNER,
     LAST_OUTER,
-    LEAST_CONDITION,
-    LOOKED_CONDITION,
     MAX_OUTER,
     NEWTON_TOLERANCE,
     NOT_FINITE,
@@ -44,14 +36,11 @@ from ..system.records import (
     OUTER_SLOW,
     POSITION_TOLERANCE,
     RATE_SIZE,
-    REANALYZE,
     RTOL,
-    SENSITIVITY,
-    SINGULAR,
     STAGES,
-    WORST_CONDITION,
 )
 from .inner import inner_loop
+from .matrices import refactor
 
 # Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
 MOST_OUTER = 3
@@ -61,88 +50,9 @@ LEAST_RATE = 0.02
 RATE_GROWTH = 1.5
 # A contraction above this costs more iterations than a factorisation.
 SLOW = 0.2
-# Growth of the condition after which other redundant rows may be the better ones to leave out.
-CHOICE_GROWTH = 3.0
-# Decrease of the condition after which a singular position is looked for anew.
-AWAY = 8.0
-
-
-@compiled
-def refactor(ws: Any, c_q: float, c_v: float) -> int:
-    """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd."""
-    rate = vec(ws.rate, RATE_SIZE)
-    evaluate_tangent(ws, c_q, c_v)
-    rate[FACTOR_AGE] = -1.0
-    for address in (ws.kkt, ws.lu_d):
-        if address == ws.lu_d and ws.m_act == 0:
-            continue
-        status = factor(lu_at(address), ws.values)
-        if status == 2:
-            return REANALYZE
-        if status != 0:
-            return SINGULAR
-    _measure_sensitivity(ws)
-    _measure_condition(ws)
-    ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
-    rate[FACTOR_AGE], rate[FACTOR_CQ], rate[FACTOR_CV] = 0.0, c_q, c_v
-    rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
-    return OK
 
 
 @internal
-def _measure_sensitivity(ws: Any) -> None:
-    """How much the dependent coordinates move (scaled) for one move of all independent ones: |Phi_qd^-1 Phi_qi x|."""
-    rate = vec(ws.rate, RATE_SIZE)
-    if ws.m_act == 0 or ws.m_act == ws.n:
-        return
-    scale = vec(ws.scale, ws.n)
-    values = vec(ws.values, ws.n_values)
-    row, col, slot = ivec(ws.free_row, ws.n_free), ivec(ws.free_col, ws.n_free), ivec(ws.free_slot, ws.n_free)
-    dependent = ivec(ws.dependent, ws.m_act)
-    rhs = vec(ws.rhs, ws.m_act)
-    for i in range(ws.m_act):
-        rhs[i] = 0.0
-    for e in range(ws.n_free):
-        # weights between 1/2 and 3/2 in no simple ratio, so that the columns do not cancel
-        golden = 0.6180339887498949 * col[e]
-        rhs[row[e]] += values[slot[e]] * scale[col[e]] * (0.5 + golden - np.floor(golden))
-    solve(lu_at(ws.lu_d), ws.rhs)
-    largest = 0.0
-    for i in range(ws.m_act):
-        largest = max(largest, abs(rhs[i]) / scale[dependent[i]])
-    rate[SENSITIVITY] = largest
-    if rate[FIRST_SENSITIVITY] < 0.0:
-        rate[FIRST_SENSITIVITY] = largest
-
-
-@internal
-def _measure_condition(ws: Any) -> None:
-    """How far (scaled) the coordinates must move, at least, to mend one pseudo-random violation of size 1 of all rows:
-    about the inverse of the distance to a singular position, whatever the partition."""
-    if ws.m_act == 0:
-        return
-    rate = vec(ws.rate, RATE_SIZE)
-    rhs = vec(ws.rhs, ws.n + ws.m_act)
-    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
-    for i in range(ws.n):
-        rhs[i] = 0.0
-    for i in range(ws.m_act):
-        rhs[ws.n + i] = probe[i]
-    solve(lu_at(ws.kkt), ws.rhs)
-    largest = 0.0
-    for i in range(ws.n):
-        largest = max(largest, abs(rhs[i]) / scale[i])
-    rate[CONDITION] = largest
-    rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
-    if AWAY * largest < rate[LOOKED_CONDITION]:
-        rate[LOOKED_CONDITION] = 0.0
-    if rate[CHOICE_CONDITION] == 0.0 or CHOICE_GROWTH * largest < rate[CHOICE_CONDITION]:
-        rate[CHOICE_CONDITION] = largest
-    if rate[LEAST_CONDITION] == 0.0 or largest < rate[LEAST_CONDITION]:
-        rate[LEAST_CONDITION] = largest
-
-
-@compiled
 def solve_increment(ws: Any, lu_address: int) -> None:
     """rhs = -matrix^-1 (r, phidd)."""
     rhs = vec(ws.rhs, ws.n + ws.m_act)
@@ -166,14 +76,38 @@ def weighted_norm(x: Any, weight: Any, n: int) -> float:
     return np.sqrt(total / max(n, 1))
 
 
-@compiled
-def set_from_accelerations(ws: Any, c_q: float, c_v: float) -> None:
-    """q = q* + c_q a, v = v* + c_v a for all coordinates; for the dependent ones this is a prediction."""
+@internal
+def evaluate_prediction(ws: Any, c_q: float, c_v: float) -> None:
+    """Residuals at q = q* + c_q a, v = v* + c_v a of all coordinates; for the dependent ones this is a prediction."""
     q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
     q_star, v_star = vec(ws.q_star, ws.n_ext), vec(ws.v_star, ws.n_ext)
     for i in range(ws.n):
         q[i] = q_star[i] + c_q * a[i]
         v[i] = v_star[i] + c_v * a[i]
+    evaluate_residuals(ws)
+
+
+@internal
+def begin_stage(ws: Any, t: float, c_q: float, c_v: float) -> None:
+    """The time of a stage, and the residuals at the point that its formula makes of the predicted accelerations."""
+    vec(ws.t, 1)[0] = t
+    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
+    evaluate_prediction(ws, c_q, c_v)
+
+
+@internal
+def prepare_attempt(ws: Any, c_q: float, c_v: float, attempt: int, most_outer: int) -> int:
+    """Matrices for attempt 0 or 1 at a stage: first the old ones, unless they have become slow (more than `most_outer`
+    iterations at the last stage); then new ones at the predicted point. FACTOR_AGE is 1 if they are new."""
+    rate = vec(ws.rate, RATE_SIZE)
+    if attempt > 0:
+        evaluate_prediction(ws, c_q, c_v)
+    if attempt > 0 or rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > MOST_INNER:
+        status = refactor(ws, c_q, c_v)
+        if status != OK:
+            return status
+    rate[FACTOR_AGE] += 1.0
+    return OK
 
 
 @internal
@@ -208,33 +142,34 @@ def inner_slack(control: Any) -> float:
     return max(1.0, min(1e4, 0.01 * control[NEWTON_TOLERANCE] * control[RTOL] / control[POSITION_TOLERANCE]))
 
 
+@inlined
+def judge_contraction(rate: Any, contraction: float, wanting: bool, renewed: int) -> int:
+    """OK, OUTER_DIVERGED, or OUTER_SLOW: the matrix of the predicted point is not good enough, that of the present one
+    is. `wanting`: the tolerance is not met; `renewed`: how often the matrix has been renewed in this iteration."""
+    rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
+    if contraction > 0.9 and wanting and (renewed > 0 or contraction > 2.0):
+        rate[FAILED_NORM] = contraction
+        return OUTER_DIVERGED
+    return OUTER_SLOW if contraction > SLOW and wanting and renewed < 2 else OK
+
+
 @internal
 def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage from the predicted a, lambda in the workspace. Returns OK or what went wrong.
 
     On failure with old matrices it tries once more with new ones.
     """
-    rate = vec(ws.rate, RATE_SIZE)
-    vec(ws.t, 1)[0] = t
-    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
-    if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > MOST_OUTER or rate[LAST_INNER] > MOST_INNER:
-        status = refactor(ws, c_q, c_v)
+    begin_stage(ws, t, c_q, c_v)
+    status = OK
+    for attempt in range(2):
+        status = prepare_attempt(ws, c_q, c_v, attempt, MOST_OUTER)
         if status != OK:
             return status
-    fresh = rate[FACTOR_AGE] == 0.0
-    rate[FACTOR_AGE] += 1.0
-    status = _iterate(ws, c_q, c_v)
-    if status == OK or fresh:
-        return status
-    set_from_accelerations(ws, c_q, c_v)
-    evaluate_residuals(ws)
-    status = refactor(ws, c_q, c_v)
-    if status != OK:
-        return status
-    rate[FACTOR_AGE] += 1.0
-    return _iterate(ws, c_q, c_v)
+        fresh = vec(ws.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
+        status = _iterate(ws, c_q, c_v)
+        if status == OK or fresh:
+            break
+    return status
 
 
 @internal
@@ -261,17 +196,12 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         add_increment(ws, c_q, c_v)
         evaluate_residuals(ws)
         if k > 0:
-            contraction = norm / previous
-            rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
-            if contraction > 0.9 and norm > tolerance and (renewed > 0 or contraction > 2.0):
-                rate[FAILED_NORM] = contraction
-                return OUTER_DIVERGED
-            if contraction > SLOW and norm > tolerance and renewed < 2:
-                # the matrix of the predicted point is not good enough: that of the present one is
+            status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
+            if status == OUTER_SLOW:
                 renewed += 1
                 status = refactor(ws, c_q, c_v)
-                if status != OK:
-                    return status
+            if status != OK:
+                return status
         previous = norm
         known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance:

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.kernels import kernel_address
-from ..contact.laws import ForceLaw, NewtonImpact, law_address
+from ..contact.friction import CoulombFriction, Friction, FrictionLaw, friction_address
+from ..contact.laws import ForceLaw, ImpactLaw, law_address
 from ..description import Model
-from ..elements.base import Element, Form, Row
+from ..elements.base import Coordinate, Element, Form, Row
+from ..elements.planar_body import PlanarBody
 from ..errors import ModelError
 from ..model.channels import Channel
 from ..model.markers import GROUND
@@ -41,11 +43,19 @@ class ContactInfo:
 
     name: str
     row: int
-    law: NewtonImpact | ForceLaw
+    law: ImpactLaw | ForceLaw
     impulse_account: int
     dissipation_account: int
     extent: float = np.inf
     """Distance over which the shapes could pass through each other within a step, m."""
+    slide_row: int = -1
+    """Row of the sliding distance; -1: without friction."""
+    friction: Friction | None = None
+
+    @property
+    def coulomb(self) -> CoulombFriction | None:
+        """Its friction if the contact is a constraint."""
+        return self.friction if isinstance(self.friction, CoulombFriction) else None
 
 
 @dataclass
@@ -70,8 +80,8 @@ class Assembly:
     input_start: NDArray[np.float64]
     breakpoints: list[float]
     multiplier_channels: list[Channel]
-    body_columns: list[tuple[str, str, int]]
-    """(body, coordinate name, index)."""
+    body_columns: list[tuple[str, Coordinate, int]]
+    """(body, coordinate, index)."""
     coordinate_scale: NDArray[np.float64]
     """Typical magnitude of each coordinate, so that units do not choose the partition."""
     longest_step: float = np.inf
@@ -92,9 +102,9 @@ class Assembly:
 
     @property
     def is_angle(self) -> NDArray[np.bool_]:
-        """Which coordinates are angles (rad), (n,); the others are lengths (m)."""
+        """Which coordinates are angles (rad), (n,); the others count as lengths (m)."""
         angles = np.zeros(self.n, dtype=bool)
-        angles[[index for _, coordinate, index in self.body_columns if coordinate == "angle"]] = True
+        angles[[index for _, coordinate, index in self.body_columns if coordinate.unit == "rad"]] = True
         return angles
 
     @property
@@ -117,27 +127,32 @@ class _Numbering:
 
     def __init__(self, model: Model) -> None:
         self.gravity = model.gravity
-        self.index: dict[str, tuple[int, int, int]] = {}
+        self.index: dict[str, tuple[int, ...]] = {}
         self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
         self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
         self.pool: list[float] = []
         self.work_names: list[str] = []
         self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
-        n = sum(len(body.coordinate_names) for body in model.bodies)
+        self.names = {body.name: body.coordinate_names for body in model.bodies}
+        n = sum(len(names) for names in self.names.values())
         self.n = n
         self.index[GROUND] = (n, n + 1, n + 2)
         start = 0
         for body in model.bodies:
-            count = len(body.coordinate_names)
-            self.index[body.name] = tuple(  # type: ignore[assignment]
-                start + k if k < count else n + k for k in range(GROUND_SLOTS)
-            )
-            q0 = body.initial_state()[0]
-            self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
+            count = len(self.names[body.name])
+            own = tuple(range(start, start + count))
+            if isinstance(body, PlanarBody):
+                own += tuple(range(n + count, n + GROUND_SLOTS))
+                q0 = body.initial_state()[0]
+                self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
+            self.index[body.name] = own
             start += count
 
-    def coordinates(self, body: str) -> tuple[int, int, int]:
+    def coordinates(self, body: str) -> tuple[int, ...]:
         return self.index[body]
+
+    def coordinate(self, body: str, name: str) -> int:
+        return self.index[body][self.names[body].index(name)]
 
     def initial(self, body: str) -> tuple[float, float, float]:
         return self.initial_positions[body]
@@ -153,6 +168,9 @@ class _Numbering:
     def law_address(self, law: ForceLaw) -> int:
         return law_address(law)
 
+    def friction_address(self, law: FrictionLaw) -> int:
+        return friction_address(law)
+
     def work(self, name: str) -> int:
         if name not in self.work_names:
             self.work_names.append(name)
@@ -166,10 +184,10 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
 def assemble(model: Model) -> Assembly:
     """The model as flat tables. Raises ModelError for a contact of a body with itself."""
     for contact in model.contacts:
-        first, second = (marker.body for marker in contact.markers())
-        if first == second:
+        bodies = [marker.body for marker in contact.markers()]
+        if len(bodies) > 1 and len(set(bodies)) == 1:
             raise ModelError(
-                f"both shapes of contact '{contact.name}' are on '{first}': their gap never changes; "
+                f"both shapes of contact '{contact.name}' are on '{bodies[0]}': their gap never changes; "
                 "give it shapes on two bodies"
             )
     numbering = _Numbering(model)
@@ -206,9 +224,9 @@ def assemble(model: Model) -> Assembly:
     states = [body.initial_state() for body in model.bodies]
     columns, names = [], []
     for body in model.bodies:
-        for coordinate, index in zip(body.coordinate_names, numbering.index[body.name], strict=False):
+        for coordinate, index in zip(body.coordinate_records(), numbering.index[body.name], strict=False):
             columns.append((body.name, coordinate, index))
-            names.append(f"{body.name}.{coordinate}")
+            names.append(f"{body.name}.{coordinate.name}")
     q0 = np.array([x for q, _ in states for x in q], dtype=np.float64)
     m_joints = len(row_names) - sum(len(rows) for rows in contact_rows.values())
     return Assembly(
@@ -228,6 +246,8 @@ def assemble(model: Model) -> Assembly:
                 numbering.work(f"{c.name}.impulse"),
                 numbering.work(f"{c.name}.dissipation"),
                 c.extent(),
+                contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
+                c.friction,
             )
             for c in model.contacts
         ],
@@ -243,9 +263,10 @@ def assemble(model: Model) -> Assembly:
     )
 
 
-def _coordinate_scale(model: Model, columns: Sequence[tuple[str, str, int]]) -> NDArray[np.float64]:
-    """1 for angles; for translations the size of the mechanism, so that m and mm give the same partition."""
-    points = [body.position for body in model.bodies]
+def _coordinate_scale(model: Model, columns: Sequence[tuple[str, Coordinate, int]]) -> NDArray[np.float64]:
+    """What the coordinates say, 1 for angles; for translations of planar bodies the size of the mechanism, so that m
+    and mm give the same partition."""
+    points = [body.position for body in model.bodies if isinstance(body, PlanarBody)]
     points += [marker.point for e in model.elements() for marker in e.markers()]
     size = max((max(abs(x), abs(y)) for x, y in points), default=0.0) or 1.0
-    return np.array([1.0 if coordinate == "angle" else size for _, coordinate, _ in columns])
+    return np.array([size if coordinate.scale is None else coordinate.scale for _, coordinate, _ in columns])

@@ -60,7 +60,7 @@ def evaluate_energy(ws: Any) -> None:
     call_evaluate(ws.evaluate_function, ws, ENERGY)
 
 
-@compiled
+@internal
 def recorded_norm(ws: Any, address: int) -> float:
     """Largest magnitude among the active and the redundant rows of phi, phid or phidd; NaN counts as infinite."""
     largest = constraint_norm(ws, address)

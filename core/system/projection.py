@@ -4,19 +4,16 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, inlined
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from .evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
 from .workspace import Workspace
 
 
-@compiled
-def _least_correction(ws: Any, residual_address: int, x_address: int) -> int:
-    """x += the correction of least M-norm that removes the residual to first order."""
-    evaluate_tangent(ws, 0.0, 0.0)
-    if factor(lu_at(ws.kkt_query), ws.values) != 0:
-        return 1
+@inlined
+def correct_least(ws: Any, residual_address: int, x_address: int) -> None:
+    """x += the correction of least M-norm that removes the residual to first order, by the factors of `kkt_query`."""
     rhs = vec(ws.rhs, ws.n + ws.m_act)
     residual = vec(residual_address, ws.m_ext)
     active = ivec(ws.active, ws.m_act)
@@ -29,6 +26,15 @@ def _least_correction(ws: Any, residual_address: int, x_address: int) -> int:
     for i in range(ws.n):
         x[i] += rhs[i]
     evaluate_residuals(ws)
+
+
+@compiled
+def _least_correction(ws: Any, residual_address: int, x_address: int) -> int:
+    """The correction with matrices of the current point."""
+    evaluate_tangent(ws, 0.0, 0.0)
+    if factor(lu_at(ws.kkt_query), ws.values) != 0:
+        return 1
+    correct_least(ws, residual_address, x_address)
     return 0
 
 

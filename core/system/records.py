@@ -17,6 +17,7 @@ WORKSPACE = np.dtype(
             "values", "coef", "energy", "monitor", "memory", "inputs",
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
+            "contact_slide_rows", "contact_sticking",
             # structure (changes with the set of engaged contacts)
             "active", "redundant", "n_redundant", "probe",
             "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
@@ -61,21 +62,20 @@ CONTROL_SIZE = 14
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
 FACTOR_AGE = 1  # stages since the last factorisation; < 0: there is none
-FACTOR_CQ = 2
-FACTOR_CV = 3
-LAST_OUTER = 4
-LAST_INNER = 5
-FAILED_NORM = 6
-SENSITIVITY = 7  # |dq_d/dq_i| at the last factorisation, scaled
-FIRST_SENSITIVITY = 8  # the same when the partition was chosen; < 0: not known yet
-CORRECTION = 9  # of the stabilised index-2 form: |h M^-1 Phi_q^T mu| of the last stage, scaled
-CONDITION = 10  # of the constraints at the last factorisation: size of the motion that a unit violation asks for
-LEAST_CONDITION = 11  # the least of them in this structure; 0: none yet
-WORST_CONDITION = 12  # the largest of them in the present step
-CHOICE_CONDITION = 13  # when the redundant rows were last chosen, or the least since; 0: not known yet
-LOOKED_CONDITION = 14  # up to here it has been looked for a singular position in vain
+FACTOR_CV = 2  # c_v of that factorisation, for formulas that solve coupled stages themselves
+LAST_OUTER = 3
+LAST_INNER = 4
+FAILED_NORM = 5
+SENSITIVITY = 6  # |dq_d/dq_i| at the last factorisation, scaled
+FIRST_SENSITIVITY = 7  # the same when the partition was chosen; < 0: not known yet
+CORRECTION = 8  # of the stabilised index-2 form: |h M^-1 Phi_q^T mu| of the last stage, scaled
+CONDITION = 9  # of the constraints at the last factorisation: size of the motion that a unit violation asks for
+LEAST_CONDITION = 10  # the least of them in this structure; 0: none yet
+WORST_CONDITION = 11  # the largest of them in the present step
+CHOICE_CONDITION = 12  # when the redundant rows were last chosen, or the least since; 0: not known yet
+LOOKED_CONDITION = 13  # up to here it has been looked for a singular position in vain
 CONDITIONS = (CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION, LOOKED_CONDITION)
-RATE_SIZE = 15
+RATE_SIZE = 14
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)

@@ -60,12 +60,16 @@ class Structure:
 
 
 def build_structure(
-    assembly: Assembly, closed: frozenset[int], engaged: frozenset[int], dropped: frozenset[int] = frozenset()
+    assembly: Assembly,
+    closed: frozenset[int],
+    engaged: frozenset[int],
+    sticking: frozenset[int] = frozenset(),
+    dropped: frozenset[int] = frozenset(),
 ) -> Structure:
-    """Structure with contacts `closed` as constraints and `engaged` (closed or acting) in the pattern of S, without the
-    redundant rows `dropped`."""
+    """Structure with contacts `closed` as constraints, along the tangent too for those `sticking`, and `engaged`
+    (closed or acting) in the pattern of S, without the redundant rows `dropped`."""
     n, ground = assembly.n, assembly.ground
-    closed_rows = {assembly.contacts[k].row for k in closed}
+    closed_rows = {assembly.contacts[k].row for k in closed} | {assembly.contacts[k].slide_row for k in sticking}
     active = np.array(
         [row for row in range(assembly.m) if (row < assembly.m_joints and row not in dropped) or row in closed_rows],
         dtype=np.int64,

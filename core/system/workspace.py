@@ -58,13 +58,15 @@ class Workspace:
             "values": np.zeros(1),
             "coef": np.zeros(2),
             "energy": np.zeros(3),
-            "monitor": np.zeros(max(contacts, 1)),
+            "monitor": np.zeros(2 * max(contacts, 1)),
             "memory": np.zeros((max(contacts, 1), MEMORY_SIZE)),
             "inputs": np.zeros((max(len(a.input_names), 1), 3)),
             "signals": a.signals.copy(),
             "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
             "batches": np.zeros(len(a.batches), dtype=np.int64),
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
+            "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
+            "contact_sticking": np.array([c.coulomb.sticking_coefficient if c.coulomb else 0.0 for c in a.contacts]),
             "contact_release": np.array([_release(c.law) for c in a.contacts], dtype=np.int64),
             "active": np.zeros(0, dtype=np.int64),
             "redundant": np.zeros(0, dtype=np.int64),
@@ -149,9 +151,10 @@ class Workspace:
             },
         )  # fmt: skip
 
-    def engage(self, closed: frozenset[int], engaged: frozenset[int]) -> None:
-        """Make contacts `closed` constraints and give all `engaged` ones a place in the matrix."""
-        self.key = (closed, closed | engaged)
+    def engage(self, closed: frozenset[int], engaged: frozenset[int], sticking: frozenset[int] = frozenset()) -> None:
+        """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
+        a place in the matrix."""
+        self.key = (closed, closed | engaged, sticking)
         key = (*self.key, self.dropped)
         if key not in self._structures:
             self._structures[key] = build_structure(self.assembly, *key)

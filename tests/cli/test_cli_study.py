@@ -92,3 +92,42 @@ def test_an_unknown_kind_of_figure_is_refused_before_any_work(tlismni: Command, 
 def test_help_names_both_parts(tlismni: Command) -> None:
     done = tlismni("study", "--help")
     assert done.code == 0 and "orders" in done.out and "iterations" in done.out
+
+
+def test_impacts(tlismni: Command) -> None:
+    done = tlismni("study", "impacts", "--quick", "-m", "park")
+    assert done.code == 0
+    (line,) = [line for line in done.out.splitlines() if line.startswith(" park ")]
+    assert line.split()[-1] == "kept"
+    assert tlismni("study", "impacts", "--quick", "-m", "park", "--json").json["rows"][0]["verdict"] == "kept"
+
+
+def test_contact(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With two settings and one problem, so that it is short."""
+    from tlismni.validation.study.cases import Setting
+
+    monkeypatch.setattr("tlismni.validation.study.contact_failure.PROBLEMS", _first_problem())
+    monkeypatch.setattr("tlismni.validation.study.contact_failure.SETTINGS", (Setting("ebdf"), Setting("baumgarte")))
+    done = tlismni("study", "contact", "--quick")
+    assert done.code == 0
+    lines = [line.split() for line in done.out.splitlines() if line.startswith((" ebdf ", " baumgarte "))]
+    assert [(line[1], line[-1]) for line in lines if line[1] == "yes"] == [("yes", "none")] * 2
+    assert all(line[-1] != "none" for line in lines if line[1] == "no")
+    figures = tlismni("study", "contact", "--quick", "--json").json
+    assert figures["claims"][0]["name"] == "C4" and len(figures["rows"]) == 4
+
+
+def test_stiffness(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tlismni.validation.study import STIFFNESS_CASES
+
+    monkeypatch.setattr("tlismni.validation.study.stiffness.CASES", STIFFNESS_CASES[3:4])
+    done = tlismni("study", "stiffness", "--quick", "--json")
+    assert done.code == 0
+    (row,) = done.json["rows"]
+    assert row["observed"]["position"] == pytest.approx(row["theory"], abs=0.03)
+
+
+def _first_problem() -> Any:
+    from tlismni.validation.study.contact_failure import PROBLEMS
+
+    return PROBLEMS[:1]

@@ -134,7 +134,12 @@ def test_no_time_at_all_gives_the_start():
         (lambda: Table(times=(0.0, 1.0, 1.0, 2.0), values=(0.0, 0.0, 0.0, 0.0)), "times"),
         (lambda: Table(times=(0.0, 1.0, 2.0, 3.0), values=(0.0,) * 5), "values"),
         (lambda: Polynomial(coefficients=()), "coefficients"),
-        (lambda: CoordinateDriver(name="d", body="p", coordinate="z", motion=Constant(value=0.0)), "coordinate"),
+        (
+            lambda: Model(
+                bodies=[P], joints=[CoordinateDriver(name="d", body="p", coordinate="z", motion=Constant(value=0.0))]
+            ),
+            r"'d' acts on coordinate 'z' of 'p', but a PointMass2D has only \['x', 'y'\]",
+        ),
         (lambda: PointMass2D(name="p", mass="3"), r"mass: a number is needed, not the text '3'"),
         (lambda: PointMass2D(name="p", mass=True), "mass: a number is needed, not the truth value True"),
         (lambda: PointMass2D(name="p", mass=np.True_), "mass: .*truth value"),
@@ -184,6 +189,10 @@ P = PointMass2D(name="p", mass=1.0, position=(1.0, 0.0))
         ({"bodies": [P], "contacts": [floor_contact(NewtonImpact(restitution=0.5), body="nobody")]}, "nobody"),
         ({"bodies": [P], "forces": [AppliedForce2D(name="f", marker=on("nobody"))]}, "nobody"),
         ({"bodies": [P], "forces": [AppliedForce2D(name="f", marker=on("p", 0.1))]}, "extension"),
+        (
+            {"joints": [CoordinateDriver(name="d", body="nobody", coordinate="x", motion=Constant(value=0.0))]},
+            r"'d' refers to body 'nobody', which does not exist",
+        ),
         (
             {"bodies": [P], "forces": [AppliedForce2D(name="f", marker=on("p"), force_x=InputSignal(channel="u"))]},
             "u",

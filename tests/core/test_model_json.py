@@ -11,7 +11,11 @@ from tlismni.core import (
     AppliedTorque2D,
     Bushing2D,
     Constant,
+    CoordinateContact,
     CoordinateDriver,
+    CoordinateLoad,
+    CoordinateTerm,
+    CoulombFriction,
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
@@ -25,12 +29,14 @@ from tlismni.core import (
     InputSignal,
     KelvinVoigt,
     LankaraniNikravesh,
+    LinearSystem,
     Marker2D,
     Model,
     ModelError,
     NewtonImpact,
     Parameter,
     PointMass2D,
+    PoissonImpact,
     Polynomial,
     Prismatic2D,
     Ramp,
@@ -69,6 +75,12 @@ law = st.one_of(
         for kind in (HuntCrossley, LankaraniNikravesh, Flores, Gonthier)
     ),
 )
+terms = st.lists(
+    st.builds(
+        CoordinateTerm, body=st.just("b"), coordinate=st.sampled_from(["x", "y", "angle"]), factor=st.floats(0.1, 10.0)
+    ),
+    min_size=1, max_size=3,
+).map(tuple)  # fmt: skip
 disk = st.builds(Disk2D, marker=marker, radius=positive)
 ELEMENTS = {
     "bodies": [
@@ -76,6 +88,13 @@ ELEMENTS = {
         st.builds(
             RigidBody2D, name=st.just("x"), mass=positive, inertia=positive, position=vector, velocity=vector,
             angle=number, angular_velocity=number,
+        ),
+        st.builds(
+            LinearSystem, name=st.just("x"), coordinates=st.just(("u", "angle")),
+            mass=st.tuples(positive, positive).map(lambda d: ((d[0], 0.0), (0.0, d[1]))),
+            damping=st.none() | st.tuples(vector, vector), stiffness=st.none() | number.map(lambda k: ((k, k), (k, k))),
+            force=st.none() | vector, position=st.none() | vector, velocity=st.none() | vector,
+            units=st.none() | st.just(("m", "rad")), scales=st.none() | st.tuples(positive, positive),
         ),
     ],
     "joints": [
@@ -100,12 +119,22 @@ ELEMENTS = {
             AppliedForce2D, name=st.just("x"), marker=marker, force_x=signal, force_y=signal, follower=st.booleans()
         ),
         st.builds(AppliedTorque2D, name=st.just("x"), body=st.just("b"), torque=signal),
+        st.builds(
+            CoordinateLoad, name=st.just("x"), body=st.just("b"), coordinate=st.sampled_from(["x", "y", "angle"]),
+            load=signal,
+        ),
     ],
     "contacts": [
         st.builds(
             DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk, law=law
         ),
         st.builds(DiskOnDisk2D, name=st.just("x"), a=disk, b=disk, law=law),
+        st.builds(CoordinateContact, name=st.just("x"), offset=number, terms=terms, slide=terms, law=law),
+        st.builds(
+            DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk,
+            law=st.builds(PoissonImpact, restitution=st.floats(0.0, 1.0)),
+            friction=st.builds(CoulombFriction, coefficient=st.floats(0.0, 2.0)),
+        ),
     ],
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
@@ -144,7 +173,8 @@ def test_the_list_of_elements_above_is_complete():
     }
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
-        "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "DiskOnHalfPlane2D", "DiskOnDisk2D",
+        "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
+        "DiskOnDisk2D", "CoordinateContact",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

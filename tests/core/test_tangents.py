@@ -14,6 +14,7 @@ from tlismni.core import (
     Bushing2D,
     Constant,
     CoordinateDriver,
+    CoordinateLoad,
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
@@ -23,6 +24,8 @@ from tlismni.core import (
     HalfPlane2D,
     Hertz,
     KelvinVoigt,
+    KuwabaraKono,
+    LinearSystem,
     Model,
     NewtonImpact,
     PointMass2D,
@@ -33,6 +36,7 @@ from tlismni.core import (
     Sine,
     SpringDamper2D,
     Table,
+    Tsuji,
 )
 from tlismni.core.contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
 from tlismni.core.system.evaluate import evaluate_residuals, evaluate_tangent
@@ -46,6 +50,11 @@ A = RigidBody2D(name="a", mass=1.3, inertia=0.4)
 B = RigidBody2D(name="b", mass=0.7, inertia=0.2, position=(2.0, 0.5))
 P = PointMass2D(name="p", mass=2.0, position=(0.5, 1.5))
 LEFT, RIGHT = on("a", 0.3, -0.2), on("b", -0.4, 0.1)
+TOY = LinearSystem(
+    name="toy", coordinates=("u", "w", "z"), mass=((2.0, 0.3, 0.1), (0.3, 1.0, 0.2), (0.1, 0.2, 0.7)),
+    damping=((0.4, 0.3, 0.0), (-0.3, 0.2, 0.1), (0.0, 0.1, 0.5)),
+    stiffness=((4.0, -1.0, 0.0), (-1.0, 3.0, 0.5), (0.0, 0.5, 2.0)), force=(1.0, -2.0, 0.3),
+)  # fmt: skip
 SINE = Sine(amplitude=0.7, angular_frequency=2.0, phase=0.3, offset=0.2)
 
 
@@ -60,6 +69,8 @@ FORCE_LAWS = [
     Hertz(stiffness=5.0, exponent=2.0),
     KelvinVoigt(stiffness=4.0, damping=0.8),
     Flores(stiffness=6.0, restitution=0.5, exponent=2.0),
+    Tsuji(stiffness=5.0, damping=0.7),
+    KuwabaraKono(stiffness=5.0, relaxation_time=0.1),
 ]
 CASES = {
     "bodies": {},
@@ -114,6 +125,17 @@ CASES = {
         "forces": [AppliedForce2D(name="f", marker=RIGHT, force_x=SINE, force_y=Constant(value=1.4), follower=True)]
     },
     "torque": {"forces": [AppliedTorque2D(name="f", body="a", torque=SINE)]},
+    "linear system": {"bodies": [TOY]},
+    "two linear systems": {
+        "bodies": [TOY, LinearSystem(name="one", coordinates=("s",), mass=((1.5,),), stiffness=((3.0,),))]
+    },
+    "driven linear system": {
+        "bodies": [TOY], "joints": [CoordinateDriver(name="j", body="toy", coordinate="w", motion=SINE)]
+    },
+    "load on a linear system": {
+        "bodies": [TOY], "forces": [CoordinateLoad(name="f", body="toy", coordinate="z", load=SINE)]
+    },
+    "load on a coordinate": {"forces": [CoordinateLoad(name="f", body="b", coordinate="angle", load=SINE)]},
     "closed plane": {"contacts": [contact(NewtonImpact(restitution=0.5))], "mode": CLOSED},
     "closed disks": {"contacts": [contact(NewtonImpact(restitution=0.5), "disks")], "mode": CLOSED},
     "open plane": {"contacts": [contact(NewtonImpact(restitution=0.5))]},
@@ -175,8 +197,9 @@ def draw(point, seed):
 
 
 def system(case):
-    parts = {key: value for key, value in CASES[case].items() if key != "mode"}
-    return Point(Model(gravity=(0.3, -9.0), bodies=[A, B, P], **parts), CASES[case].get("mode"))
+    parts = {key: value for key, value in CASES[case].items() if key not in ("mode", "bodies")}
+    bodies = [A, *CASES[case].get("bodies", ()), B, P]  # what follows a body of other size keeps its place
+    return Point(Model(gravity=(0.3, -9.0), bodies=bodies, **parts), CASES[case].get("mode"))
 
 
 def check_matrix(point, state, c_q=0.6, c_v=0.8):

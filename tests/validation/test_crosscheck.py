@@ -39,7 +39,10 @@ def test_pendulum_stop_with_hunt_crossley_meets_the_agreed_tolerances() -> None:
 
 
 @needs_exudyn
-@pytest.mark.parametrize("law", ["hertz", "kelvin_voigt", "hunt_crossley", "lankarani_nikravesh", "flores", "gonthier"])
+@pytest.mark.parametrize(
+    "law",
+    ["hertz", "kelvin_voigt", "hunt_crossley", "carvalho_martins", "lankarani_nikravesh", "flores", "gonthier"],
+)
 def test_every_force_law_agrees(law: str) -> None:
     found = crosscheck("bouncing_ball", law=law, stiffness=1e5, height=0.3, t_end=0.9)
     assert found.ok, verdicts(found)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...core import KelvinVoigt, Result
+from ...core import ForceLaw, KelvinVoigt, Result
 from ...core.description import Model
 from ..exudyn_run import ExudynResult, run_exudyn
 from ..metrics import contact_intervals, impulse, peak, released, speeds, trajectory_difference
@@ -74,7 +74,9 @@ def compare_forces(task: Task) -> Comparison:
     rows: list[Row] = []
     entry = max((_entry_error(scenario.model, touch) for touch in found[:1]), default=0.0) * fine.step
     for contact in dict.fromkeys(touch.contact for touch in found):
-        rows += _contact_rows(contact, [x for x in found if x.contact == contact], ours, coarse, fine)
+        rows += _contact_rows(
+            contact, _pulls(scenario.model, contact), [x for x in found if x.contact == contact], ours, coarse, fine
+        )
     rows += _state_rows(task, found, ours, coarse, fine)
     if entry > 0.0:
         rows = [replace(r, uncertainty=r.uncertainty + entry * (r.scale or abs(r.exudyn))) for r in rows]
@@ -147,13 +149,22 @@ def _entry_error(model: Model, touch: Touch) -> float:
     return law.damping * (touch.approach_speed + touch.separation_speed) / touch.impulse
 
 
-def _measure(t: np.ndarray, channels: Channels, contact: str, number: int = 0) -> Quantities | None:
-    """The quantities of contact `number`, or None if it does not begin and end in the samples."""
+def _pulls(model: Model, contact: str) -> bool:
+    """Whether the law of `contact` may pull before it lets go at zero penetration."""
+    law = next(c.law for c in model.contacts if c.name == contact)
+    return isinstance(law, ForceLaw) and law.release == "gap"
+
+
+def _measure(t: np.ndarray, channels: Channels, contact: str, pulls: bool, number: int = 0) -> Quantities | None:
+    """The quantities of contact `number`, or None if it does not begin and end in the samples.
+
+    `pulls`: the contact lasts until the gap opens, though its force may pull before.
+    """
     gap, rate, force = (channels[f"{contact}.{x}"] for x in ("gap", "gap_rate", "normal_force"))
     intervals = [i for i in contact_intervals(t, gap, rate) if i.end is not None]
     if len(intervals) <= number:
         return None
-    interval = released(t, force, intervals[number])
+    interval = intervals[number] if pulls else released(t, force, intervals[number])
     inside = slice(max(interval.first - 1, 0), interval.last + 2)
     end = float(interval.end or 0.0)
     approach, separation = speeds(t, rate, interval)
@@ -169,10 +180,10 @@ def _measure(t: np.ndarray, channels: Channels, contact: str, number: int = 0) -
 
 
 def _contact_rows(
-    contact: str, found: list[Touch], ours: Result, coarse: ExudynResult, fine: ExudynResult
+    contact: str, pulls: bool, found: list[Touch], ours: Result, coarse: ExudynResult, fine: ExudynResult
 ) -> list[Row]:
     touch, h = found[0], fine.step
-    a, b = (_measure(r.t, r.channels, contact) for r in (coarse, fine))
+    a, b = (_measure(r.t, r.channels, contact, pulls) for r in (coarse, fine))
     inside = (ours.t >= touch.start) & (ours.t <= touch.end)
     top = peak(ours.t[inside], ours[f"{contact}.normal_force"][inside])[1]
     if a is None or b is None:
@@ -201,7 +212,8 @@ def _state_rows(task: Task, found: list[Touch], ours: Result, coarse: ExudynResu
     if len(found) > 1:
         second = found[1]
         number = sum(x.contact == second.contact for x in found[:1])
-        theirs = [_measure(r.t, r.channels, second.contact, number) for r in (coarse, fine)]
+        pulls = _pulls(task.scenario.model, second.contact)
+        theirs = [_measure(r.t, r.channels, second.contact, pulls, number) for r in (coarse, fine)]
         # one common instant, before either of them touches
         until = min([second.start, until, *(q.start for q in theirs if q is not None)])
         name = "before the second impact"

@@ -2,20 +2,33 @@
 
 from .cases import Setting, contenders, order_cases
 from .claims import Claim
+from .contact_claim import fourth_claim
+from .contact_failure import ContactRow, contact_study
+from .impact_orders import ImpactOrderRow, impact_orders
 from .iterations import IterationStudy, iteration_study
 from .orders import OrderRow, order_table
 from .runs import Run
+from .stiffness import CASES as STIFFNESS_CASES
+from .stiffness import StiffnessRow, stiffness_study
 from .swing import Swing
 
 __all__ = [
+    "STIFFNESS_CASES",
     "Claim",
+    "ContactRow",
+    "ImpactOrderRow",
     "IterationStudy",
     "OrderRow",
     "Run",
     "Setting",
+    "StiffnessRow",
     "Swing",
+    "contact_study",
     "contenders",
+    "fourth_claim",
+    "impact_orders",
     "iteration_study",
     "order_cases",
     "order_table",
+    "stiffness_study",
 ]

@@ -1,9 +1,9 @@
-"""Bodies and their weight."""
+"""Bodies and their weight, and linear systems."""
 
-from ...core.elements import PointMass2D, RigidBody2D
+from collections.abc import Sequence
+
+from ...core.elements import BodyElement, LinearSystem, PointMass2D, RigidBody2D
 from .registry import BodyItems, Build, Column, translates
-
-RIGID_NAMES = (("x", "y", "angle"), ("vx", "vy", "angular_velocity"), ("ax", "ay", "angular_acceleration"))
 
 
 @translates(RigidBody2D, PointMass2D)
@@ -26,11 +26,37 @@ def body(record: RigidBody2D | PointMass2D, build: Build) -> None:
     if any(build.model.gravity):
         marker = build.add("MarkerBodyMass", bodyNumber=item)
         build.add("LoadMassProportional", markerNumber=marker, loadVector=[*build.model.gravity, 0.0])
-    if build.sensors:
-        for level, output in enumerate(("Coordinates", "Coordinates_t", "Coordinates_tt")):
-            sensor = build.sensor(node, output, of_node=True)
-            for k in range(len(q0)):
-                # exudyn's coordinates are displacements from the reference
-                offset = q0[k] if level == 0 else 0.0
-                name = f"{record.name}.{RIGID_NAMES[level][k]}"
-                build.columns.append(Column(name, sensor, k, 1.0, offset))
+    _columns(record, build, node, q0)
+
+
+@translates(LinearSystem)
+def linear_system(record: LinearSystem, build: Build) -> None:
+    """NodeGenericODE2 with ObjectGenericODE2; reference = zero, so that the stiffness acts on the coordinates."""
+    n = len(record.coordinates)
+    zero = [0.0] * n
+    q0, v0 = record.initial_state()
+    node = build.add(
+        "NodeGenericODE2", numberOfODE2Coordinates=n, referenceCoordinates=zero, initialCoordinates=list(q0),
+        initialCoordinates_t=list(v0),
+    )  # fmt: skip
+    matrices = {
+        f"{name}Matrix": [list(row) for row in value]
+        for name in ("mass", "stiffness", "damping")
+        if (value := getattr(record, name)) is not None
+    }
+    item = build.add("ObjectGenericODE2", nodeNumbers=[node], forceVector=list(record.force or zero), **matrices)
+    build.bodies[record.name] = BodyItems(node, item, False)
+    _columns(record, build, node, zero)
+
+
+def _columns(record: BodyElement, build: Build, node: int, reference: Sequence[float]) -> None:
+    """Channels of the coordinates; exudyn's are displacements from the reference."""
+    if not build.sensors:
+        return
+    sensors = [
+        build.sensor(node, output, of_node=True) for output in ("Coordinates", "Coordinates_t", "Coordinates_tt")
+    ]
+    for k, coordinate in enumerate(record.coordinate_records()):
+        for level, name in enumerate((coordinate.name, coordinate.rate, coordinate.acceleration)):
+            offset = reference[k] if level == 0 else 0.0
+            build.columns.append(Column(f"{record.name}.{name}", sensors[level], k, 1.0, offset))

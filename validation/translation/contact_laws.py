@@ -2,13 +2,14 @@
 
 exudyn (1.13): F = k d^n (1 + chi d'/v0) + c d', with chi = 0 (model 0), chi = 3 (1 - e)/2 (model 1), or
 chi = 3 (1 - e)(11 - e)/(2 (1 + 9 e)) for e > 1/3 and (1 - e^2)/e below (model 2). Ours is the same form with
-D for chi. Hunt-Crossley is exudyn's model 1 with the same e; the other laws of the family become model 2 with
-the e whose chi is their D: model 2 reaches every D >= 0, so the law is exact, not approximated.
+D for chi. Hunt-Crossley is exudyn's model 1 and Carvalho-Martins its model 2 with the same e; the other laws of the
+family become model 2 with the e whose chi is their D: model 2 reaches every D >= 0, so the law is exact, not
+approximated.
 """
 
 import math
 
-from ...core.contact.laws import Hertz, HuntCrossley, KelvinVoigt, NewtonImpact
+from ...core.contact.laws import CarvalhoMartins, Hertz, HuntCrossley, ImpactLaw, KelvinVoigt
 from ...core.contact.laws.hunt_crossley import HuntCrossleyFamily
 from ..errors import NotTranslatable
 
@@ -19,28 +20,31 @@ _NEARLY_ELASTIC = 1.0 - 1e-15
 def contact_parameters(law: object, contact: str) -> dict[str, float | int]:
     """Fields of exudyn's contact objects that make up `law`.
 
-    Of Kelvin-Voigt only the force: exudyn holds on until the gap opens, the law lets go at zero force.
+    Of Kelvin-Voigt only the force: exudyn holds on until the gap opens, the law may let go at zero force.
 
     Raises
     ------
     NotTranslatable : for constraint contact and for laws that are not of exudyn's form.
     """
-    if isinstance(law, NewtonImpact):
+    if isinstance(law, ImpactLaw):
         raise NotTranslatable(
-            f"contact '{contact}' is a constraint (NewtonImpact), and exudyn has contact by force only. "
+            f"contact '{contact}' is a constraint ({type(law).__name__}), and exudyn has contact by force only. "
             "`crosscheck` compares it with the limit of three force laws of growing stiffness instead"
         )
-    if isinstance(law, KelvinVoigt):
+    # a subclass may have a formula of its own: only the family's members are known by more than their type
+    if type(law) is KelvinVoigt:
         fields = _fields(law.stiffness, 1.0, 0, 1.0, law.minimum_approach_speed)
         return {**fields, "contactDamping": law.damping}
-    if isinstance(law, Hertz):
+    if type(law) is Hertz:
         return _fields(law.stiffness, law.exponent, 0, 1.0, law.minimum_approach_speed)
-    if isinstance(law, HuntCrossley) and law.restitution > 0.0:
-        model, e = 1, law.restitution
-    elif isinstance(law, HuntCrossleyFamily):
-        model, e = 2, restitution_for(law.damping_factor())
-    else:
+    if not isinstance(law, HuntCrossleyFamily) or type(law).formula is not HuntCrossleyFamily.formula:
         raise NotTranslatable(f"contact '{contact}' has law {type(law).__name__}, which exudyn has no form of")
+    if type(law) is HuntCrossley and law.restitution > 0.0:
+        model, e = 1, law.restitution
+    elif type(law) is CarvalhoMartins:
+        model, e = 2, min(law.restitution, _NEARLY_ELASTIC)
+    else:
+        model, e = 2, restitution_for(law.damping_factor())
     return _fields(law.stiffness, law.exponent, model, e, law.minimum_approach_speed)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from ...core.contact.laws import KelvinVoigt
+from ...core.elements import PlanarBody
 from ...core.model.markers import GROUND, Marker2D
 from .contact_laws import contact_parameters
 from .kinematics import BodyStates, States, gap_motion
@@ -81,7 +82,7 @@ def _add(
     item = build.add(item_name, nodeNumber=memory, **fields, **law)
     if build.sensors:
         build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
-    if isinstance(record.law, KelvinVoigt):
+    if isinstance(record.law, KelvinVoigt) and record.law.release == "force":
         build.before_step.append(_release(build, item, memory, record.law, shapes))
         build.notes.append(f"{record.name}: switched off at the start of the step where its force would be tensile")
 
@@ -117,6 +118,8 @@ def _data_node(build: Build, shapes: Shapes) -> Any:
     """Node of the contact's memory, with the gap at the start: exudyn's active set begins with it."""
     bodies = {}
     for b in build.model.bodies:
+        if not isinstance(b, PlanarBody):
+            continue
         q, v = b.initial_state()
         bodies[b.name] = BodyStates(*(np.atleast_1d(x) for x in (*(*q, 0.0)[:3], *(*v, 0.0)[:3])))
     gap = float(gap_motion(shapes, States(1, bodies)).gap[0])
@@ -129,5 +132,6 @@ def _size(build: Build) -> float:
     for element in build.model.elements():
         lengths += [abs(x) for marker in element.markers() for x in marker.point]
     for body in build.model.bodies:
-        lengths += [abs(x) for x in body.position]
+        if isinstance(body, PlanarBody):
+            lengths += [abs(x) for x in body.position]
     return max(lengths)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...core.elements import AppliedForce2D, AppliedTorque2D, Bushing2D, SpringDamper2D
+from ...core.elements import AppliedForce2D, AppliedTorque2D, Bushing2D, CoordinateLoad, SpringDamper2D
 from ...core.model.markers import GROUND, Marker2D
 from .registry import Build, translates
 from .signals import TimeFunction, time_function
@@ -60,6 +60,21 @@ def applied_torque(record: AppliedTorque2D, build: Build) -> None:
         return
     marker = build.frame(Marker2D(body=record.body), record.name)
     _load(build, "LoadTorqueVector", marker, (None, None, time_function(record.torque, build.model)))
+
+
+@translates(CoordinateLoad)
+def coordinate_load(record: CoordinateLoad, build: Build) -> None:
+    """LoadCoordinate, over time as a user function."""
+    body = next(b for b in build.model.bodies if b.name == record.body)
+    marker = build.add(
+        "MarkerNodeCoordinate", nodeNumber=build.bodies[record.body].node,
+        coordinate=body.coordinate_names.index(record.coordinate),
+    )  # fmt: skip
+    load = time_function(record.load, build.model)
+    if load.constant is not None:
+        build.add("LoadCoordinate", markerNumber=marker, load=load.constant)
+    else:
+        build.add("LoadCoordinate", markerNumber=marker, load=1.0, loadUserFunction=lambda mbs, t, item: load.value(t))
 
 
 def _load(build: Build, item: str, marker: Any, components: tuple[TimeFunction | None, ...], **fields: Any) -> None:

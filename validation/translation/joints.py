@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from ...core.elements import CoordinateDriver, Distance2D, PointMass2D, Prismatic2D, Revolute2D
+from ...core.elements import CoordinateDriver, Distance2D, LinearSystem, Prismatic2D, Revolute2D
 from ...core.elements.base import Element
 from ...core.model.markers import GROUND
 from ..errors import NotTranslatable
@@ -61,12 +61,12 @@ def driver(record: CoordinateDriver, build: Build) -> None:
     if record.body == GROUND:
         raise NotTranslatable(f"'{record.name}' drives the ground, which cannot move: name a body")
     body = next(b for b in build.model.bodies if b.name == record.body)
-    k = ("x", "y", "angle").index(record.coordinate)
-    if isinstance(body, PointMass2D) and k == 2:
-        raise NotTranslatable(f"'{record.name}' drives the angle of '{body.name}', which is a point mass")
+    if record.coordinate not in body.coordinate_names:
+        raise NotTranslatable(f"'{record.name}' drives '{record.coordinate}', which '{body.name}' does not have")
+    k = body.coordinate_names.index(record.coordinate)
     motion = time_function(record.motion, build.model)
     # exudyn constrains displacements from the reference: subtract where the body starts
-    reference = body.initial_state()[0][k]
+    reference = 0.0 if isinstance(body, LinearSystem) else body.initial_state()[0][k]
     markers = [
         build.add("MarkerNodeCoordinate", nodeNumber=build.ground_node, coordinate=0),
         build.add("MarkerNodeCoordinate", nodeNumber=build.bodies[record.body].node, coordinate=k),

@@ -6,13 +6,13 @@ pull passes zero while it does); F_t in N acts against v_t: F_t = -mu(|v_t|) F_n
 so F_t is odd in v_t and F_t v_t <= 0.
 """
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from numba import types
 from pydantic import Field
 
-from ...compiled.jit import address_of, caller
-from ...model.base import Record
+from ...compiled.jit import caller
+from ..formula import FormulaRecord, formula_address
 
 FRICTION_RESULT = types.UniTuple(types.float64, 3)
 FRICTION_SIGNATURE = FRICTION_RESULT(*([types.float64] * 7))
@@ -23,21 +23,17 @@ FrictionCoefficient = Annotated[float, Field(ge=0.0)]
 """mu, dimensionless."""
 
 
-class FrictionLaw(Record):
-    """Base of the regularised friction laws, for contacts that act as forces (CCFM).
+class FrictionLaw(FormulaRecord):
+    """Base of the regularised friction laws, for contacts that act as forces (CCFM); a user's own too.
 
-    Class attribute: `formula` (numba function of FRICTION_SIGNATURE).
+    A subclass says its parameters as fields and its `formula`, a numba function of FRICTION_SIGNATURE.
     """
 
-    formula: ClassVar[Any]
-
-    def parameters(self) -> FrictionParameters:
-        """The five numbers that the formula is called with."""
-        raise NotImplementedError(f"{type(self).__name__} must name its formula's parameters")
+    parameter_count: ClassVar[int] = 5
 
     def evaluate(self, speed: float, normal_force: float) -> tuple[float, float, float]:
         """(F_t, dF_t/dv_t, dF_t/dF_n) from Python: N, N s/m, dimensionless."""
-        f, by_speed, by_normal = type(self).formula(float(speed), float(normal_force), *self.parameters())
+        f, by_speed, by_normal = type(self).formula(float(speed), float(normal_force), *self.formula_parameters())
         return float(f), float(by_speed), float(by_normal)
 
 
@@ -47,4 +43,4 @@ call_friction = caller(FRICTION_SIGNATURE)
 
 def friction_address(law: FrictionLaw) -> int:
     """Machine address of a friction law's formula."""
-    return address_of(type(law).formula, FRICTION_SIGNATURE)
+    return formula_address(law, FRICTION_SIGNATURE)

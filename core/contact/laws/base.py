@@ -1,46 +1,64 @@
 """What a continuous contact force law is: parameters and one compiled formula.
 
 A law is a numba function of LAW_SIGNATURE: (delta, delta_dot, v0, p0, p1, p2, p3) -> (F, dF/d delta,
-dF/d delta_dot, elastic part of F, elastic energy). delta > 0 is the penetration in m, delta_dot its rate, v0 the
+dF/d delta_dot, elastic part of F, elastic energy). delta >= 0 is the penetration in m, delta_dot its rate, v0 the
 approach speed at first contact in m/s; F > 0 pushes the bodies apart, N.
 """
 
-from typing import Any, ClassVar
+from typing import ClassVar, Literal
 
 from numba import types
 
-from ...compiled.jit import address_of, caller
-from ...model.base import Record
+from ...compiled.jit import caller
+from ..formula import FormulaRecord, formula_address
 
 LAW_RESULT = types.UniTuple(types.float64, 5)
 LAW_SIGNATURE = LAW_RESULT(*([types.float64] * 7))
 
+Release = Literal["force", "gap"]
+LawParameters = tuple[float, float, float, float]
 
-class ForceLaw(Record):
-    """Base of the continuous contact force laws (CCFM).
 
-    Class attributes: `formula` (numba function of LAW_SIGNATURE); `release` says when contact ends: "gap" (at
-    zero penetration) or "force" (when the force would become tensile).
+class ForceLaw(FormulaRecord):
+    """Base of the continuous contact force laws (CCFM), a user's own too.
+
+    A subclass says its parameters as fields and its `formula`, a numba function of LAW_SIGNATURE (or made by
+    `force_formula` from the force alone); it can stand in any contact at once, without being registered.
     """
 
-    formula: ClassVar[Any]
-    release: ClassVar[str] = "gap"
+    parameter_count: ClassVar[int] = 4
+    shared_fields: ClassVar[tuple[str, ...]] = ("minimum_approach_speed",)
 
     minimum_approach_speed: float = 1e-6
     """m/s; a contact that closes more slowly than this is given this approach speed (laws divide by it)."""
 
-    def parameters(self) -> tuple[float, float, float, float]:
-        """The four numbers that the formula is called with."""
-        raise NotImplementedError(f"{type(self).__name__} must name its formula's parameters")
+    @property
+    def release(self) -> Release:
+        """When contact ends: "gap" (at zero penetration) or "force" (when the force would become tensile)."""
+        return "gap"
 
     def evaluate(self, penetration: float, rate: float, approach_speed: float) -> tuple[float, ...]:
         """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) from Python."""
-        result = type(self).formula(penetration, rate, approach_speed, *self.parameters())
+        result = type(self).formula(float(penetration), float(rate), float(approach_speed), *self.formula_parameters())
         return tuple(float(x) for x in result)
 
     def elastic_energy(self, penetration: float) -> float:
         """Energy that the law's spring holds at a penetration (m), J."""
         return self.evaluate(penetration, 0.0, 1.0)[4]
+
+
+class ReleasedLaw(ForceLaw):
+    """Base of the laws whose force becomes tensile before the penetration is zero."""
+
+    shared_fields: ClassVar[tuple[str, ...]] = (*ForceLaw.shared_fields, "release_rule")
+
+    release_rule: Release = "force"
+    """When contact ends: when the force would become tensile ("force"), or at zero penetration ("gap"), the force
+    pulling before."""
+
+    @property
+    def release(self) -> Release:
+        return self.release_rule
 
 
 call_law = caller(LAW_SIGNATURE)
@@ -49,4 +67,4 @@ call_law = caller(LAW_SIGNATURE)
 
 def law_address(law: ForceLaw) -> int:
     """Machine address of a law's formula."""
-    return address_of(type(law).formula, LAW_SIGNATURE)
+    return formula_address(law, LAW_SIGNATURE)

@@ -4,7 +4,7 @@ from typing import Any, ClassVar, Literal
 
 from ...compiled.jit import compiled
 from ...model.base import Positive
-from .base import ForceLaw
+from .base import ForceLaw, LawParameters
 
 
 @compiled
@@ -23,5 +23,5 @@ class Hertz(ForceLaw):
     exponent: Positive = 1.5
     """n."""
 
-    def parameters(self) -> tuple[float, float, float, float]:
+    def parameters(self) -> LawParameters:
         return self.stiffness, self.exponent, 0.0, 0.0

@@ -1,10 +1,10 @@
-"""Kelvin-Voigt: F = K delta + c delta', released when the force would become tensile."""
+"""Kelvin-Voigt: F = K delta + c delta'."""
 
 from typing import Any, ClassVar, Literal
 
 from ...compiled.jit import compiled
 from ...model.base import NonNegative, Positive
-from .base import ForceLaw
+from .base import LawParameters, ReleasedLaw
 
 
 @compiled
@@ -12,20 +12,20 @@ def kelvin_voigt_formula(d: float, dd: float, v0: float, k: float, c: float, p2:
     return k * d + c * dd, k, c, k * d, 0.5 * k * d * d
 
 
-class KelvinVoigt(ForceLaw):
-    """F = K delta + c delta' >= 0.
+class KelvinVoigt(ReleasedLaw):
+    """F = K delta + c delta'. The force jumps by c v0 at first contact, which is not physical but is the law.
 
-    The force jumps by c v0 at first contact, which is not physical but is the law; contact ends at F = 0, with
-    the restitution of `numerics` section 6.1 (release without adhesion), not exp(-pi zeta / sqrt(1 - zeta^2)).
+    With release rule "force" contact ends at F = 0, before the penetration is zero; with "gap" at zero penetration
+    after the force has been tensile, with restitution exp(-pi zeta/sqrt(1 - zeta^2)), zeta = c/(2 sqrt(K m)) < 1,
+    and never for zeta >= 1.
     """
 
     type: Literal["KelvinVoigt"] = "KelvinVoigt"
     formula: ClassVar[Any] = kelvin_voigt_formula
-    release: ClassVar[str] = "force"
     stiffness: Positive
     """K, N/m."""
     damping: NonNegative
     """c, N s/m."""
 
-    def parameters(self) -> tuple[float, float, float, float]:
+    def parameters(self) -> LawParameters:
         return self.stiffness, self.damping, 0.0, 0.0

@@ -1,0 +1,180 @@
+"""Forces (or impulses) of several planar contacts at once, with Coulomb friction, as a complementarity problem.
+
+With w = b + A P for normal (N) and tangential (T) motion: 0 <= w_N, P_N >= 0, w_N P_N = 0, and for each contact with
+friction P_T = -mu P_N sgn(w_T) where it slides, |P_T| <= mu P_N where w_T = 0 (Glocker 2001, Pfeiffer and Glocker
+1996, chapter 8). The same problem holds for accelerations and forces, and for velocities and impulses.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .lcp import NoComplementarySolution, solve_lcp
+
+Vector = NDArray[np.float64]
+
+IMMOVABLE = 1e-12
+"""A direction whose inverse effective mass is below this part of what it could be cannot move."""
+RANK = 1e-10
+"""Singular values of the tangential block below this part of the largest are zero."""
+
+
+@dataclass(frozen=True)
+class Delassus:
+    """Inverse effective masses of n contacts, joints included: A = G M_b G^T, each block (n, n), 1/kg."""
+
+    nn: Vector
+    nt: Vector
+    tt: Vector
+
+    def among(self, part: NDArray[np.intp]) -> "Delassus":
+        """The blocks of the contacts `part`."""
+        here = np.ix_(part, part)
+        return Delassus(self.nn[here], self.nt[here], self.tt[here])
+
+    def rows(self, normal: NDArray[np.intp], tangential: NDArray[np.intp]) -> Vector:
+        """The block of these normal and these tangential directions, in this order."""
+        mixed = self.nt[np.ix_(normal, tangential)]
+        return np.block([[self.nn[np.ix_(normal, normal)], mixed], [mixed.T, self.tt[np.ix_(tangential, tangential)]]])
+
+
+@dataclass(frozen=True)
+class ContactSolution:
+    """Forces or impulses of n contacts, and the motion that follows, each (n,)."""
+
+    normal: Vector
+    tangential: Vector
+    normal_motion: Vector
+    tangential_motion: Vector
+    sticks: bool
+    """True if all friction was found below its limit at once: the tangential forces are the least ones (in norm)."""
+
+
+def solve_contacts(
+    a: Delassus, b_n: Vector, b_t: Vector, mu: Vector, direction: Vector, base: Vector | None = None
+) -> ContactSolution:
+    """Normal and tangential forces of n contacts.
+
+    Parameters
+    ----------
+    a : inverse effective masses.
+    b_n, b_t : motion without contact forces, (n,); normal is positive where the contact separates.
+    mu : coefficients of friction, (n,); 0: none.
+    direction : +1 or -1 where the contact slides and its friction is known, 0 where friction decides, (n,).
+    base : normal forces that act in any case, (n,); the solution's are added to them.
+
+    Raises
+    ------
+    NoComplementarySolution : if there is none.
+    """
+    n = len(b_n)
+    if n == 1 and mu[0] == 0.0 and base is None:
+        # most impacts are of one contact: no pivoting is needed
+        alone = np.maximum(-b_n / a.nn[0], 0.0)
+        motion = np.maximum(b_n, 0.0)
+        return ContactSolution(alone, np.zeros(1), motion, b_t + a.nt[0] * alone, False)
+    base = np.zeros(n) if base is None else base
+    largest = max(float(np.max(np.diag(a.nn), initial=0.0)), float(np.max(np.diag(a.tt), initial=0.0)))
+    free = np.flatnonzero((mu > 0.0) & (direction == 0.0) & (np.diag(a.tt) > IMMOVABLE * largest))
+    sliding = np.where(direction == 0.0, 0.0, -mu * direction)
+    # columns of the normal forces, the friction of sliding contacts included
+    nn, tn = a.nn + a.nt * sliding, a.nt.T + a.tt * sliding
+    b_n, b_t = b_n + nn @ base, b_t + tn @ base
+    if len(free):
+        found = _all_stick(a, nn, tn, b_n, b_t, mu, free, base)
+        normal, tangential = found or _with_limits(a, nn, tn, b_n, b_t, mu, free, base)
+    else:
+        found = None
+        normal, tangential = _scaled(nn, b_n, np.diag(a.nn)), np.zeros(n)
+    total = normal + base
+    tangential = tangential + sliding * total
+    return ContactSolution(
+        total,
+        tangential,
+        b_n + nn @ normal + a.nt[:, free] @ tangential[free],
+        b_t + tn @ normal + a.tt[:, free] @ tangential[free],
+        found is not None,
+    )
+
+
+def _scaled(m: Vector, q: Vector, inverse_mass: Vector) -> Vector:
+    """`solve_lcp` with rows and columns brought to unit size."""
+    d = 1.0 / np.sqrt(np.where(inverse_mass > 0.0, inverse_mass, 1.0))
+    return d * solve_lcp(d[:, None] * m * d, d * q)
+
+
+def _all_stick(
+    a: Delassus, nn: Vector, tn: Vector, b_n: Vector, b_t: Vector, mu: Vector, free: NDArray[np.intp], base: Vector
+) -> tuple[Vector, Vector] | None:
+    """The solution in which no contact of `free` slides, with the least tangential forces; None if there is none."""
+    inverse = np.linalg.pinv(a.tt[np.ix_(free, free)], rcond=RANK, hermitian=True)
+    across = a.nt[:, free] @ inverse
+    m, q = nn - across @ tn[free], b_n - across @ b_t[free]
+    # where sticking leaves no motion along the normals, what is left is rounding
+    root = np.sqrt(np.diag(a.nn))
+    m = np.where(np.abs(m) <= RANK * np.outer(root, root), 0.0, m)
+    q = np.where(np.abs(q) <= RANK * (np.abs(b_n) + np.abs(across) @ np.abs(b_t[free])), 0.0, q)
+    try:
+        normal = _scaled(m, q, np.diag(a.nn))
+    except NoComplementarySolution:
+        return None
+    wanted = b_t[free] + tn[free] @ normal
+    tangential = np.zeros(len(b_n))
+    tangential[free] = -inverse @ wanted
+    left = wanted + a.tt[np.ix_(free, free)] @ tangential[free]
+    if np.max(np.abs(left)) > 1e-9 * np.max(np.abs(wanted), initial=1e-300):
+        return None
+    limit = mu[free] * (normal + base)[free]
+    force = np.abs(tangential[free])
+    if np.all(force <= limit * (1.0 + 1e-12) + 1e-14 * np.max(force)):
+        return normal, tangential
+    return None
+
+
+def _with_limits(
+    a: Delassus, nn: Vector, tn: Vector, b_n: Vector, b_t: Vector, mu: Vector, free: NDArray[np.intp], base: Vector
+) -> tuple[Vector, Vector]:
+    """The problem with friction limits: unknown P_N, the two signs of P_T, and the speed of sliding.
+
+    In this form (Stewart and Trinkle 1996) the matrix is copositive and Lemke's method ends with a solution for every
+    impact from b = G v^-.
+    """
+    n, f = len(b_n), len(free)
+    across, along = a.nt[:, free], a.tt[np.ix_(free, free)]
+    pick = np.zeros((f, n))
+    pick[np.arange(f), free] = mu[free]
+    one, none = np.eye(f), np.zeros((f, f))
+    m = np.block(
+        [
+            [nn, across, -across, np.zeros((n, f))],
+            [tn[free], along, -along, one],
+            [-tn[free], -along, along, one],
+            [pick, -one, -one, none],
+        ]
+    )
+    q = np.concatenate([b_n, b_t[free], -b_t[free], mu[free] * base[free]])
+    root = np.sqrt(np.concatenate([np.diag(a.nn), np.diag(a.tt)[free]]))
+    force = 1.0 / np.where(root > 0.0, root, 1.0)
+    columns = np.concatenate([force, force[n:], 1.0 / force[n:]])
+    z = columns * solve_lcp(columns[:, None] * m * columns, columns * q)
+    tangential = np.zeros(n)
+    tangential[free] = z[n : n + f] - z[n + f : n + 2 * f]
+    return z[:n], tangential
+
+
+def independent(a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.intp]) -> tuple[list[int], list[int]]:
+    """Those of the directions that do not repeat earlier ones, normals first: positions in the given lists."""
+    matrix = a.rows(normal, tangential)
+    diagonal = np.diag(matrix).copy()
+    matrix = matrix / np.sqrt(np.outer(np.where(diagonal > 0, diagonal, 1.0), np.where(diagonal > 0, diagonal, 1.0)))
+    kept: list[int] = []
+    for i in range(len(matrix)):
+        rest = 1.0 if diagonal[i] > 0.0 else 0.0
+        if kept:
+            block = matrix[np.ix_(kept, kept)]
+            rest -= float(matrix[i, kept] @ np.linalg.solve(block, matrix[kept, i]))
+        if rest > RANK:
+            kept.append(i)
+    count = len(normal)
+    return [i for i in kept if i < count], [i - count for i in kept if i >= count]

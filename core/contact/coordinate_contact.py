@@ -1,0 +1,111 @@
+"""A contact between generalized coordinates: gap and sliding distance are linear in them.
+
+For end stops of a coordinate, and for systems whose geometry has been linearised.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ..compiled.jit import internal
+from ..compiled.views import imat, mat, vec
+from ..elements.base import Numbering, Row
+from ..model.base import Name, Record
+from ..model.markers import GROUND
+from .contact2d import Contact2D
+from .normal2d import act
+from .sliding2d import act_sliding
+
+MOST_COORDINATES = 6
+GAP_FACTORS = 16
+"""First column of the gap's factors in the table of parameters."""
+SLIDE_FACTORS = GAP_FACTORS + MOST_COORDINATES
+
+
+@internal
+def coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
+    par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6)
+    q, flat, gradient = vec(b.q, b.n_extended), np.zeros(21), np.empty(6)
+    for e in range(b.count):
+        g = par[e, 0]
+        for i in range(6):
+            gradient[i] = par[e, GAP_FACTORS + i]
+            g += gradient[i] * q[coord[e, i]]
+        act(b, job, e, g, gradient, flat)
+
+
+@internal
+def sliding_coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
+    par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6)
+    q, flat, gradient, along = vec(b.q, b.n_extended), np.zeros(21), np.empty(6), np.empty(6)
+    for e in range(b.count):
+        g, s = par[e, 0], 0.0
+        for i in range(6):
+            gradient[i], along[i] = par[e, GAP_FACTORS + i], par[e, SLIDE_FACTORS + i]
+            g += gradient[i] * q[coord[e, i]]
+            s += along[i] * q[coord[e, i]]
+        act_sliding(b, job, e, g, gradient, flat, s, along, flat, 0.0)
+
+
+class CoordinateTerm(Record):
+    """`factor` times a coordinate of a body."""
+
+    body: Name
+    coordinate: Name
+    factor: float = 1.0
+    """m per unit of the coordinate."""
+
+
+class CoordinateContact(Contact2D):
+    """Contact with gap = offset + sum of terms, and sliding distance = sum of slide terms.
+
+    An end stop that keeps a coordinate q below a limit has offset = limit and one term with factor -1.
+
+    Raises
+    ------
+    ModelError : without terms, with more than six coordinates, or with friction but without slide terms.
+    """
+
+    type: Literal["CoordinateContact"] = "CoordinateContact"
+    kernel: ClassVar[Any] = coordinate_contact_kernel
+    sliding_kernel: ClassVar[Any] = sliding_coordinate_contact_kernel
+
+    offset: float = 0.0
+    """Gap at coordinates zero, m."""
+    terms: Annotated[tuple[CoordinateTerm, ...], Field(min_length=1)]
+    slide: tuple[CoordinateTerm, ...] = ()
+
+    @model_validator(mode="after")
+    def _check_terms(self) -> "CoordinateContact":
+        used = self.moved_coordinates()
+        if len(used) > MOST_COORDINATES:
+            raise ValueError(
+                f"contact '{self.name}' depends on {len(used)} coordinates, at most {MOST_COORDINATES} are possible"
+            )
+        if not any(term.factor for term in self.terms):
+            raise ValueError(f"all factors of contact '{self.name}' are zero: its gap never changes")
+        if self.friction is not None and not any(term.factor for term in self.slide):
+            raise ValueError(f"contact '{self.name}' has friction but no slide terms: say along what it slides")
+        return self
+
+    def moved_coordinates(self) -> Sequence[tuple[str, str]]:
+        return tuple(dict.fromkeys((term.body, term.coordinate) for term in (*self.terms, *self.slide)))
+
+    def extent(self) -> float:
+        return math.inf
+
+    def row(self, numbering: Numbering) -> Row:
+        used = self.moved_coordinates()
+        indices = [numbering.coordinate(body, coordinate) for body, coordinate in used]
+        indices += [numbering.coordinates(GROUND)[0]] * (MOST_COORDINATES - len(used))
+        factors = [[0.0] * MOST_COORDINATES for _ in range(2)]
+        for row, terms in zip(factors, (self.terms, self.slide), strict=True):
+            for term in terms:
+                row[used.index((term.body, term.coordinate))] += term.factor
+        law = self._law_columns(numbering)
+        return Row(
+            (self.offset, *(0.0,) * 6, *law.parameters, *factors[0], *factors[1]), indices, law.extra
+        )  # fmt: skip

@@ -1,0 +1,88 @@
+"""Contacts that act as forces: what their beginning and end do."""
+
+from typing import TYPE_CHECKING
+
+from ..events import Event
+from ..system.assembly import ContactInfo
+from .laws import ForceLaw
+from .modes import ACTIVE, APPROACH_SPEED, LARGEST_APPROACH, LOSS_JUMP, MODE, OPEN, RELEASED
+
+if TYPE_CHECKING:
+    from ..integrate.engine import Engine
+
+DEEPEST = 1e12
+"""m; a penetration at which every spring that holds anything does."""
+
+
+def handle_force(sim: "Engine", k: int, law: ForceLaw) -> None:
+    """Contact k with a force law has an event at the workspace's current point."""
+    contact, mode = sim.assembly.contacts[k], sim.memory[k, MODE]
+    if mode == OPEN:
+        _begin_force(sim, k, contact, law)
+    else:
+        _end_force(sim, k, contact, law, mode)
+
+
+def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> None:
+    memory = sim.memory[k]
+    approach = -sim.gap_rate(k)
+    memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed, _settling_speed(sim, k, contact, law))
+    memory[MODE] = ACTIVE
+    memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
+    sim.open_accounts[k] = sim.contact_accounts(k)
+    sim.use_modes()
+    sim.start_small(memory[APPROACH_SPEED])
+    sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
+
+
+def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> float:
+    """Speed with which shapes that are laid on each other settle: sqrt(g d), with g the acceleration that presses them
+    and d the static penetration under it, m/s.
+
+    Laws that divide by the approach speed would hold a contact that begins without one like glue. 0 for a law whose
+    spring holds nothing.
+    """
+    pressing = -float(sim.workspace.arrays["phidd"][contact.row])
+    if pressing <= 0.0:
+        return 0.0
+    weight = pressing * sim.effective_mass(k)
+    low, high = 0.0, 1e-12
+    while law.evaluate(high, 0.0, 1.0)[3] < weight:
+        low, high = high, 2.0 * high
+        if high > DEEPEST:
+            return 0.0
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        if law.evaluate(middle, 0.0, 1.0)[3] < weight:
+            low = middle
+        else:
+            high = middle
+    return float((pressing * high) ** 0.5)
+
+
+def _end_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw, mode: float) -> None:
+    memory = sim.memory[k]
+    if mode == RELEASED:
+        if sim.gap(k) >= 0.0 or sim.gap_rate(k) > 0.0:
+            memory[MODE] = OPEN
+        else:
+            # pressed again before the shapes came apart
+            memory[MODE] = ACTIVE
+            memory[LOSS_JUMP] -= sim.elastic_energy(k, contact)
+            sim.start_small(memory[APPROACH_SPEED])
+        sim.use_modes()
+        return
+    early = law.release == "force"
+    if early:
+        # what the spring still holds when the force has reached zero is never given back
+        memory[LOSS_JUMP] += sim.elastic_energy(k, contact)
+    memory[MODE] = RELEASED if early else OPEN
+    impulse, loss = sim.contact_accounts(k)
+    impulse_before, loss_before = sim.open_accounts.get(k, (0.0, 0.0))
+    sim.use_modes()
+    sim.add_event(
+        Event(
+            sim.t_internal, "open", contact.name, impulse - impulse_before, loss - loss_before,
+            float(memory[APPROACH_SPEED]), sim.gap_rate(k),
+        )
+    )  # fmt: skip

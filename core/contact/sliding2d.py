@@ -1,0 +1,169 @@
+"""Planar contacts with friction: a second scalar function, the sliding distance, beside the gap.
+
+A closed contact that sticks has both as constraints. One that slides has the gap only, and its multiplier acts along
+grad g - mu s grad d, with s = +-1 the direction of sliding and d the sliding distance: F_T = -mu F_N s (in general
+F_T = RATIO F_N). A contact that acts as a force gets F_T from a regularised law.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
+
+from ..compiled.jit import internal
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..elements.geometry2d import (
+    add_hessian,
+    add_product,
+    along,
+    bearing,
+    constrain,
+    distance,
+    height_over_line,
+    levels,
+)
+from .friction import call_friction
+from .modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
+from .normal2d import LAW_ADDRESS, act, evaluate_law
+
+FRICTION = 11
+"""First friction parameter in the table of parameters."""
+FRICTION_ADDRESS = 5
+"""Column of `extra` with the address of a regularised law's formula."""
+QUARTER_TURN = 0.5 * np.pi
+
+
+@internal
+def _slide_row(
+    b: Any, job: int, e: int, k: int, s: float, gradient: Any, hessian: Any, period: float, sticks: bool
+) -> None:
+    """The sliding distance's row: its value, rate and acceleration always; a constraint while the contact sticks."""
+    row = imat(b.row, b.count, 2)[e, 1]
+    since = s - mat(b.memory, b.n_memory, MEMORY_SIZE)[k, SLIDE_START]
+    if period > 0.0:
+        since -= period * np.rint(since / period)
+    if sticks:
+        constrain(b, job, e, row, 1, 1.0, since, gradient, hessian)
+    elif job == RESIDUAL:
+        # what to remember if it begins to stick here
+        levels(b, e, row, 1.0, s, gradient, hessian)
+
+
+@internal
+def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -> None:
+    """Friction of a closed contact in proportion to its normal force: F_T = slope lam; slope = mu s where it slides."""
+    coord = imat(b.coord, b.count, len(gradient))[e]
+    lam = vec(b.lam, b.m_extended)[imat(b.row, b.count, 2)[e, 0]]
+    if job == RESIDUAL:
+        r = vec(b.r, b.n_extended)
+        for i in range(len(gradient)):
+            r[coord[i]] -= slope * lam * gradient[i]
+        vec(b.monitor, b.n_monitor)[b.n_memory + imat(b.extra, b.count, b.nextra)[e, 0]] = slope * lam
+    elif job == TANGENT:
+        values = vec(b.values, b.n_values)
+        n = len(gradient)
+        slot = imat(b.slot_jt, b.count, 2 * n)[e]
+        for i in range(len(gradient)):
+            values[slot[i]] -= slope * gradient[i]
+        add_hessian(values, imat(b.slot_s, b.count, n * n)[e], gradient, hessian, -vec(b.coef, 2)[0] * slope * lam)
+    elif job == POWER:
+        rate = along(gradient, vec(b.v, b.n_extended), coord)
+        vec(b.a, b.n_extended)[imat(b.extra, b.count, b.nextra)[e, 3]] -= slope * lam * rate
+
+
+@internal
+def _regularised(
+    b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
+) -> None:
+    """The friction of an active force contact, by its regularised law."""
+    coord = imat(b.coord, b.count, len(gradient))[e]
+    extra = imat(b.extra, b.count, b.nextra)[e]
+    par = mat(b.par, b.count, b.npar)[e]
+    v = vec(b.v, b.n_extended)
+    normal, normal_d, normal_dd, _, _ = evaluate_law(b, e, extra[0], g, along(g_gradient, v, coord))
+    rate = along(gradient, v, coord)
+    pushing = normal > 0.0
+    force, by_rate, by_normal = call_friction(
+        extra[FRICTION_ADDRESS], rate, max(normal, 0.0),
+        par[FRICTION], par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
+    )  # fmt: skip
+    if not pushing:
+        by_normal = 0.0
+    if job == RESIDUAL:
+        r = vec(b.r, b.n_extended)
+        for i in range(len(gradient)):
+            r[coord[i]] -= force * gradient[i]
+        vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = force
+    elif job == POWER:
+        vec(b.a, b.n_extended)[extra[3]] -= force * rate
+    elif job == TANGENT:
+        n = len(gradient)
+        values = vec(b.values, b.n_values)
+        slot = imat(b.slot_s, b.count, n * n)[e]
+        c_q, c_v = vec(b.coef, 2)[0], vec(b.coef, 2)[1]
+        add_hessian(values, slot, gradient, hessian, -c_q * force)
+        # with the sliding velocity, and with the gap and its rate through the normal force
+        add_product(values, slot, gradient, gradient, hessian, v, coord, -c_v * by_rate, -c_q * by_rate)
+        by_gap, by_gap_rate = c_q * normal_d + c_v * normal_dd, c_q * normal_dd
+        add_product(
+            values, slot, gradient, g_gradient, g_hessian, v, coord, by_normal * by_gap, by_normal * by_gap_rate
+        )
+
+
+@internal
+def act_sliding(
+    b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, s: float, gradient: Any, hessian: Any,
+    period: float,
+) -> None:  # fmt: skip
+    """What a contact with friction adds for `job`: gap g, sliding distance s (which may jump by `period`)."""
+    act(b, job, e, g, g_gradient, g_hessian)
+    k = imat(b.extra, b.count, b.nextra)[e, 0]
+    memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[k]
+    closed = memory[MODE] == CLOSED
+    sticks = closed and memory[SLIDE] == STICKS
+    if job == RESIDUAL:
+        lam = vec(b.lam, b.m_extended)
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = -lam[imat(b.row, b.count, 2)[e, 1]] if sticks else 0.0
+    if job == RESIDUAL or job == TANGENT:
+        _slide_row(b, job, e, k, s, gradient, hessian, period, sticks)
+    if closed and memory[RATIO] != 0.0:
+        _slip(b, job, e, -memory[RATIO], gradient, hessian)
+    elif memory[MODE] == ACTIVE and imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS] != 0:
+        _regularised(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+
+
+@internal
+def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
+    par = mat(b.par, b.count, b.npar)
+    coord = imat(b.coord, b.count, 6)
+    q = vec(b.q, b.n_extended)
+    for e in range(b.count):
+        ux, uy, wx, wy, angle, radius = par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4], par[e, 5]
+        g, g_gradient, g_hessian = height_over_line(q, coord[e], ux, uy, wx, wy, angle)
+        # along t = -J n, n the normal, and rolling: d = t . (r_b - r_a) + radius (theta_b - theta_a)
+        s, t_gradient, hessian = height_over_line(q, coord[e], ux, uy, wx, wy, angle - QUARTER_TURN)
+        t0, t1, t2, t3, t4, t5 = t_gradient
+        gradient = (t0, t1, t2 - radius, t3, t4, t5 + radius)
+        s += radius * (q[coord[e, 5]] - q[coord[e, 2]])
+        act_sliding(b, job, e, g - radius, g_gradient, g_hessian, s, gradient, hessian, 0.0)
+
+
+@internal
+def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
+    par = mat(b.par, b.count, b.npar)
+    coord = imat(b.coord, b.count, 6)
+    q = vec(b.q, b.n_extended)
+    for e in range(b.count):
+        ux, uy, wx, wy, both, first = par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 5], par[e, 6]
+        d, g_gradient, g_hessian = distance(q, coord[e], ux, uy, wx, wy)
+        # d = -(R_a + R_b) phi + R_a theta_a + R_b theta_b, phi the direction from a to b
+        phi, turn, bend = bearing(q, coord[e], ux, uy, wx, wy)
+        turn *= -both
+        bend *= -both
+        turn[2] += first
+        turn[5] += both - first
+        # tuples, so that the loops over them have lengths that the compiler knows
+        gradient, hessian = to_fixed_tuple(turn, 6), to_fixed_tuple(bend, 21)
+        s = first * q[coord[e, 2]] + (both - first) * q[coord[e, 5]] - both * phi
+        act_sliding(b, job, e, d - both, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * both)

@@ -1,0 +1,79 @@
+"""Unions that a user can extend: the records that this library knows, and a user's own subclasses of their base."""
+
+from collections.abc import Iterator, Mapping
+from functools import reduce
+from inspect import get_annotations
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field, GetCoreSchemaHandler
+from pydantic.fields import FieldInfo
+from pydantic_core import core_schema
+
+from .base import Record
+
+
+class OpenRecord(Record):
+    """Base of records that are told apart by their field `type`, which is the class's name unless it says otherwise."""
+
+    if TYPE_CHECKING:
+        type: str
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        super().__pydantic_init_subclass__(**kwargs)
+        if "type" not in get_annotations(cls):
+            # as if the class had said: type: Literal["Name"] = "Name"
+            cls.model_fields["type"] = FieldInfo(annotation=Literal[cls.__name__], default=cls.__name__)  # type: ignore[arg-type]
+            cls.model_rebuild(force=True)
+
+
+class OpenUnion:
+    """Annotation of a field: one of the `known` records by its `type`, or an own subclass of `base`.
+
+    Own records are found by the name of their class (the last definition of a name counts), so that a model with them
+    can be read from JSON wherever their class is defined.
+    """
+
+    def __init__(self, known: tuple[type[Record], ...], base: type[OpenRecord]) -> None:
+        self.known, self.base = known, base
+        self.names = {record.model_fields["type"].default: record for record in known}
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        union: Any = Annotated[reduce(or_, self.known), Field(discriminator="type")]
+        return core_schema.no_info_wrap_validator_function(
+            self._own_first,
+            handler.generate_schema(union),
+            # as the record that it is, not as the union: own fields are written too
+            serialization=core_schema.simple_ser_schema("any"),
+        )
+
+    def _own_first(self, value: Any, handler: core_schema.ValidatorFunctionWrapHandler) -> Any:
+        if isinstance(value, self.base) and type(value) not in self.known:
+            name = type(value).model_fields["type"].default
+            if name in self.names:
+                raise ValueError(
+                    f"type '{name}' is taken by a record of this library, which a model file would be read as: "
+                    "give your class another name"
+                )
+            return value
+        if isinstance(value, Mapping) and isinstance(value.get("type"), str) and value["type"] not in self.names:
+            return self._from_data(value)
+        return handler(value)
+
+    def _from_data(self, value: Mapping[str, Any]) -> Any:
+        name = value["type"]
+        own = {record.model_fields["type"].default: record for record in _subclasses(self.base)}
+        if name not in own:
+            known = ", ".join(f"'{each}'" for each in self.names)
+            raise ValueError(
+                f"type '{name}' is none of {known}, and no class of this name has been defined: "
+                f"import the module that defines it (a subclass of {self.base.__name__}) before the model is read"
+            )
+        return own[name](**value)
+
+
+def _subclasses(base: type[OpenRecord]) -> Iterator[type[OpenRecord]]:
+    for record in base.__subclasses__():
+        yield record
+        yield from _subclasses(record)
