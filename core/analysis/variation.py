@@ -120,11 +120,7 @@ class Variation:
         return self._rooms[m, columns]
 
     def advance(self, t_end: float, until: float | None = None) -> None:
-<<<<<<< HEAD
         """Some steps of the run, at most to t_end and none once `until` is reached; or what happens at the newest end.
-=======
-        """Steps of the run, at most to t_end and none once `until` is reached; or what happens at the newest one's end.
->>>>>>> lyap
 
         Raises
         ------
