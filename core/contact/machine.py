@@ -25,7 +25,8 @@ from .modes import (
     SLIDE_START,
     STICKS,
 )
-from .resting import NO_FORCE, Resting, Settling, read, unresolved_speed
+from .resting import NO_FORCE, Resting
+from .settling import Settling, read, unresolved_speed
 from .touching import Touching
 
 if TYPE_CHECKING:
@@ -155,7 +156,8 @@ def _take(sim: "Engine", now: Settling, chosen: dict[int, tuple[float, float]], 
         changed |= not kept
         if slide == STICKS and not kept and k in slide_values:
             memory[k, SLIDE_START] = slide_values[k]
-    sim.use_modes(accelerations=False)
+    if chosen or np.any(now.was == CLOSED):
+        sim.use_modes(accelerations=False)
     if changed and sim.formula.exact:
         sim.meet_constraints()
     sim.solve_accelerations()
