@@ -76,7 +76,10 @@ class Resting:
         ------
         SimulationError : if there are none (Painleve's paradox).
         """
-        self.takes = self.at_rest & ~self.now.leaves
+        self.takes: Flags = self.at_rest & ~self.now.leaves
+        self.direction: Vector = self.known
+        self.full: Flags = np.zeros(len(self.direction), dtype=bool)
+        self.slipping = False
         found = self._balance()
         spread = self._spread(found)
         if spread is not None:
@@ -95,9 +98,9 @@ class Resting:
         slips = self.now.slips
         self.direction, self.full, self.slipping = self.known, np.zeros(len(slips), dtype=bool), False
         if np.any(slips):
-            found = self._held()
-            if found is not None:
-                return found
+            held = self._held()
+            if held is not None:
+                return held
             self.slipping = True
             self.direction = np.where(slips != 0.0, slips, self.direction)
         for _ in range(len(slips) + 1):
@@ -179,7 +182,7 @@ class Resting:
             if np.any(np.abs(found.tangential[free]) >= self.static[free] * found.normal[free] * (1.0 - spare)):
                 continue
             sticking = np.flatnonzero(free)
-            if not np.any(free) or any(self._moves(found, sticking, i) for i in np.flatnonzero(known * loaded)):
+            if not np.any(free) or any(self._moves(found, sticking, int(i)) for i in np.flatnonzero(known * loaded)):
                 continue
             self.full = known != 0.0
             return found
@@ -205,7 +208,7 @@ class Resting:
         begins[sticking] = False
         sticking = sticking[loaded[sticking]]
         for i in np.flatnonzero(begins):
-            begins[i] = self._moves(found, sticking, i)
+            begins[i] = self._moves(found, sticking, int(i))
         return begins
 
     def _moves(self, found: ContactSolution, sticking: NDArray[np.intp], i: int) -> bool:

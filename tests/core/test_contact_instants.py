@@ -65,7 +65,10 @@ def test_accumulation_on_a_slope_ends_in_sliding():
 
 def test_two_balls_accumulate_between_floor_and_each_other():
     """A ball falls on one that lies: impacts of both contacts accumulate at one time, and both lie still after."""
-    bodies = [PointMass2D(name="low", mass=2.0, position=(0.0, 0.1)), PointMass2D(name="top", mass=1.0, position=(0.0, 0.5))]
+    bodies = [
+        PointMass2D(name="low", mass=2.0, position=(0.0, 0.1)),
+        PointMass2D(name="top", mass=1.0, position=(0.0, 0.5)),
+    ]
     law = NewtonImpact(restitution=0.5)
     pair = DiskOnDisk2D(
         name="pair", a=Disk2D(marker=on("low"), radius=0.1), b=Disk2D(marker=on("top"), radius=0.1), law=law
