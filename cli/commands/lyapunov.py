@@ -129,7 +129,7 @@ def _print(figures: dict[str, Any]) -> None:
     rows = [(str(k + 1), x, e) for k, (x, e) in enumerate(zip(figures["exponents"], figures["errors"], strict=True))]
     print_table("Lyapunov exponents", ("", "1/s", "standard error"), rows)
     per_period = figures["impacts"] / duration * figures["period"] if figures["period"] else None
-    rows = [
+    totals: list[tuple[str, Any]] = [
         ("sum of the exponents, 1/s", sum(figures["exponents"])),
         ("divergence and 2 ln e of impacts, 1/s", figures["volume_rate"]),
         ("difference", number(figures["sum_residual"], 2)),
@@ -137,4 +137,4 @@ def _print(figures: dict[str, Any]) -> None:
         *([("impacts a period", per_period)] if per_period is not None else []),
         ("steps", int(figures["stats"]["steps"])),
     ]
-    print_table("", ("what", "figure"), rows)
+    print_table("", ("what", "figure"), totals)

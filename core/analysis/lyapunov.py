@@ -140,7 +140,8 @@ def lyapunov_exponents(
     variation.run_to(start, start, progress)
     growth, volume, impacts, seen = variation.growth.copy(), variation.volume, variation.impacts, len(sim.events)
     lost = np.isneginf(growth)
-    times, totals = [], []
+    times: list[float] = []
+    totals: list[NDArray[np.float64]] = []
     for mark in np.linspace(start, t_end, max(samples, BATCHES) + 1)[1:]:
         # estimates stand at the ends of the steps that pass the marks: a stop at each would cost steps
         if not times or times[-1] < mark:

@@ -104,7 +104,8 @@ class Variation:
         basis = np.zeros((layout.n, layout.freedom))
         basis[layout.independent] = np.eye(layout.freedom)
         basis[layout.dependent] = -np.linalg.solve(phi_q[:, layout.dependent], phi_q[:, layout.independent])
-        return basis, np.linalg.cholesky(basis.T @ mass @ basis), mass
+        root: Floats = np.asarray(np.linalg.cholesky(basis.T @ mass @ basis), dtype=np.float64)
+        return basis, root, mass
 
     def _room(self, layout: Layout) -> tuple[Work, tuple[Floats, ...]]:
         """Room for what `carry` and `fly` compute in the present structure."""

@@ -80,7 +80,10 @@ class Resting:
         ------
         SimulationError : if there are none (Painleve's paradox).
         """
-        self.takes = self.at_rest & ~self.now.leaves
+        self.takes: Flags = self.at_rest & ~self.now.leaves
+        self.direction: Vector = self.known
+        self.full: Flags = np.zeros(len(self.direction), dtype=bool)
+        self.slipping = False
         found = self._balance()
         spread = self._spread(found)
         if spread is not None:
@@ -183,7 +186,7 @@ class Resting:
             if np.any(np.abs(found.tangential[free]) >= self.static[free] * found.normal[free] * (1.0 - spare)):
                 continue
             sticking = np.flatnonzero(free)
-            if not np.any(free) or any(self._moves(found, sticking, i) for i in np.flatnonzero(known * loaded)):
+            if not np.any(free) or any(self._moves(found, sticking, int(i)) for i in np.flatnonzero(known * loaded)):
                 continue
             self.full = known != 0.0
             return found
@@ -209,7 +212,7 @@ class Resting:
         begins[sticking] = False
         sticking = sticking[loaded[sticking]]
         for i in np.flatnonzero(begins):
-            begins[i] = self._moves(found, sticking, i)
+            begins[i] = self._moves(found, sticking, int(i))
         return begins
 
     def _moves(self, found: ContactSolution, sticking: NDArray[np.intp], i: int | np.integer[Any]) -> bool:

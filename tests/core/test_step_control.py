@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from helpers import GROUND, Marker2D, on, point_pendulum, residuals
 from test_orders import ANGLE, RATE, exact
-from tlismni.core import Model, ModelError, RigidBody2D, SpringDamper2D, simulate
+from tlismni.core import Model, ModelError, RigidBody2D, Simulation, SpringDamper2D, simulate
 from tlismni.models import load
 
 
@@ -39,6 +39,14 @@ class TestControllers:
 
 
 class TestBounds:
+    def test_a_target_within_rounding_of_the_newest_step_is_reached(self):
+        sim = Simulation(point_pendulum(ANGLE, RATE))
+        sim.advance(1.0)
+        for t in (math.nextafter(1.0, 2.0), math.nextafter(1.0 + 1e-15, 2.0)):
+            sim.advance(t)
+            assert sim.t == t
+            assert sim.sample()[0] == t
+
     def test_first_and_largest_step_are_kept(self):
         result = simulate(point_pendulum(ANGLE, RATE), 1.0, "irk", 1e-3, 1e-5, max_step=0.01, first_step=1e-5,
                           step_records=True)  # fmt: skip

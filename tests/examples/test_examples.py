@@ -75,6 +75,15 @@ def test_bead_on_the_turning_rod_follows_the_closed_form() -> None:
     assert max(f["residuals"].values()) < 1e-9
 
 
+def test_impact_oscillator_is_stable_or_chaotic_and_loses_what_damping_and_impacts_take() -> None:
+    f = figures("impact_oscillator")
+    assert f["closure"] < 1e-7
+    assert np.max(np.abs(f["multipliers"])) < 0.8
+    assert f["product"] == pytest.approx(f["expected_product"], rel=1e-7)
+    assert f["chaos"].exponents[0] > 3.0 * f["chaos"].errors[0]
+    assert f["sum"] == pytest.approx(f["expected_sum"], abs=1e-6)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_example_draws_its_figure(name: str, tmp_path: Path) -> None:
     path = tmp_path / "figure.png"

@@ -13,7 +13,7 @@ from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio, kelvin_vo
 from tlismni.models.parameters import ScenarioParameter
 from tlismni.validation.translation.kinematics import BodyStates, States, gap_motion
 
-WITH_CONTACT = ("bouncing_ball", "pendulum_stop", "double_pendulum_wall", "slider_crank_stop")
+WITH_CONTACT = ("bouncing_ball", "impact_oscillator", "pendulum_stop", "double_pendulum_wall", "slider_crank_stop")
 
 
 def start_states(model: Model) -> States:

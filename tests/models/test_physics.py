@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 from tlismni.core import simulate
-from tlismni.models import load
+from tlismni.models import ScenarioError, load
 
 
 def chain_reference() -> ModuleType:
@@ -55,6 +55,30 @@ def test_pendulum_strikes_the_stop_three_times() -> None:
     assert impacts[0].impulse == pytest.approx(1.7 * impacts[0].approach_speed / 3.0, rel=1e-7)
     for impact in impacts:
         assert impact.separation_speed == pytest.approx(0.7 * impact.approach_speed, rel=1e-7)
+
+
+def test_impact_oscillator_settles_on_the_known_orbit() -> None:
+    """One impact a period at phase 0.77427 with v+ = -4.15672 (both from the closed form of the flight)."""
+    period = math.pi
+    scenario = load("impact_oscillator", damping_ratio=0.02, frequency=2.0)
+    result = simulate(scenario.model, 100.0 * period, rtol=1e-9, atol=1e-11, record=False)
+    last = [e for e in result.events if e.kind == "impact"][-1]
+    assert last.t % period == pytest.approx(0.7742709267, abs=1e-7)
+    assert last.separation_speed == pytest.approx(4.1567220979, abs=1e-7)
+    assert last.separation_speed == pytest.approx(0.8 * last.approach_speed, rel=1e-12)
+
+
+def test_impact_oscillator_strikes_where_its_stop_is() -> None:
+    result = simulate(load("impact_oscillator", stop_position=0.05).model, 20.0)
+    impacts = [e.t for e in result.events if e.kind == "impact"]
+    assert len(impacts) > 5
+    assert result["mass.x"].max() == pytest.approx(0.05, abs=1e-9)
+    assert result["mass.y"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_impact_oscillator_starts_left_of_its_stop() -> None:
+    with pytest.raises(ScenarioError, match="start_position = 1 lies behind the stop"):
+        load("impact_oscillator", start_position=1.0)
 
 
 @pytest.mark.parametrize("law", ["hertz", "kelvin_voigt", "gonthier"])
