@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.laws import NewtonImpact
+from ..contact.laws import ImpactLaw
 from ..errors import ModelError, SimulationError
 from ..integrate.advance import NO_STEP, aim
 from ..integrate.engine import user_errors
@@ -56,11 +56,13 @@ class Variation:
 
     def __init__(self, sim: Simulation, columns: int | None = None, factors: bool = False) -> None:
         for contact in sim.assembly.contacts:
-            if not isinstance(contact.law, NewtonImpact):
+            if not isinstance(contact.law, ImpactLaw):
                 raise ModelError(
                     f"contact '{contact.name}' has the law {type(contact.law).__name__}: variations know contacts as "
                     "constraints only, use NewtonImpact"
                 )
+            if contact.friction is not None:
+                raise ModelError(f"contact '{contact.name}' has friction, which variations do not know: leave it out")
         if not sim.formula.exact:
             raise ModelError(
                 f"method '{sim.settings.method}' does not meet the constraints at all levels, which variations need: "

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tlismni.core import (
     AppliedTorque2D,
+    CoulombFriction,
     EquationSystem,
     GapContact,
     Hertz,
@@ -181,6 +182,24 @@ def test_chaotic_impact_oscillator_has_the_known_exponents():
     assert found.kaplan_yorke_dimension == pytest.approx(1.0 - found.exponents[0] / found.exponents[1])
 
 
+def test_closed_contact_carries_its_share_of_an_impact_like_a_joint():
+    """The impact oscillator on a floor, against an overhanging stop that also presses it onto the floor."""
+    z, w, r, c, s = 0.05, 2.8, 0.8, math.cos(0.4), math.sin(0.4)
+
+    def force(t, q, v):
+        return np.array([np.cos(w * t) - 2.0 * z * v[0] - q[0], -9.81])
+
+    contacts = [
+        GapContact("floor", lambda t, q: q[1], NewtonImpact(restitution=0.5)),
+        GapContact("stop", lambda t, q: -c * q[0] - s * q[1], NewtonImpact(restitution=r)),
+    ]
+    on_floor = EquationSystem(np.eye(2), force, q0=[-0.5, 0.0], v0=[0.0, 0.0], contacts=contacts)
+    found = lyapunov_exponents(on_floor, 12.0, rtol=1e-9, atol=1e-11)
+    expected = lyapunov_exponents(driven_oscillator(z, w, r, -0.5, 0.0), 12.0, rtol=1e-9, atol=1e-11)
+    assert found.impacts == expected.impacts > 3
+    assert found.exponents == pytest.approx(expected.exponents, abs=1e-6)
+
+
 def test_resting_contact_leaves_the_exponents_of_the_constrained_motion():
     """A ball that bounces to rest keeps the two exponents of its motion along the floor."""
     c, k, m = 0.4, 2.0, 1.0
@@ -241,6 +260,13 @@ def test_contacts_that_strike_at_one_instant_are_refused():
 def test_bad_arguments(arguments, text):
     with pytest.raises(ModelError, match=text):
         lyapunov_exponents(load("impact_oscillator").model, **arguments)
+
+
+def test_friction_is_refused():
+    model = load("pendulum_stop").model
+    rough = model.contacts[0].model_copy(update={"friction": CoulombFriction(coefficient=0.1)})
+    with pytest.raises(ModelError, match="'stop' has friction"):
+        lyapunov_exponents(model.model_copy(update={"contacts": (rough,)}), 1.0)
 
 
 def test_contacts_that_are_forces_are_refused():
