@@ -5,7 +5,7 @@ as a constraint, the others carry a constant share of their normal force (IDLE, 
 reaches its limit; then it keeps that limit and another takes the rest, or all let go.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,9 +50,6 @@ class Resting:
         self, sim: "Engine", touching: Touching, now: Settling, rounding: float, accelerations: float = 0.0
     ) -> None:
         self.sim, self.touching, self.now = sim, touching, now
-        self.direction: Vector = np.zeros(len(now.contacts))
-        self.full: Flags = np.zeros(len(now.contacts), dtype=bool)
-        self.slipping = False
         gap_rate, slide_rate = touching.rates()
         largest = float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
         self.at_rest: Flags = np.abs(gap_rate) <= rounding
@@ -215,7 +212,7 @@ class Resting:
             begins[i] = self._moves(found, sticking, int(i))
         return begins
 
-    def _moves(self, found: ContactSolution, sticking: NDArray[np.intp], i: int | np.integer[Any]) -> bool:
+    def _moves(self, found: ContactSolution, sticking: NDArray[np.intp], i: int) -> bool:
         """True if closed gaps and those that stick leave contact i free to slide."""
         normals = np.flatnonzero(self._loaded(found))
         return len(sticking) in independent(self.touching.a, normals, np.append(sticking, i))[1]
