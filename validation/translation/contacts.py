@@ -15,7 +15,6 @@ from ...core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, H
 from ...core.contact.laws import KelvinVoigt
 from ...core.elements import PlanarBody
 from ...core.model.markers import GROUND, Marker2D
-from ..errors import NotTranslatable
 from .contact_laws import contact_parameters
 from .kinematics import BodyStates, States, gap_motion
 from .registry import Build, ContactColumns, translates
@@ -78,11 +77,6 @@ def _add(
     **fields: Any,
 ) -> None:
     """The contact object with its law and memory; `sign` is +1 if its Force acts on the second shape's body."""
-    if record.friction is not None:
-        raise NotTranslatable(
-            f"contact '{record.name}' has friction ({record.friction.type}), which is not translated to exudyn: "
-            "compare it without friction"
-        )
     law = contact_parameters(record.law, record.name)
     memory = _data_node(build, shapes)
     item = build.add(item_name, nodeNumber=memory, **fields, **law)

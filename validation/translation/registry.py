@@ -38,9 +38,10 @@ def translate(record: Any, build: "Build") -> None:
 def find_translator(record: Any) -> Translator:
     """The function that translates `record`. Raises NotTranslatable if there is none."""
     translator = _TRANSLATORS.get(type(record))
-    if getattr(record, "friction", None) is not None:
+    friction = getattr(record, "friction", None)
+    if friction is not None:
         raise NotTranslatable(
-            f"contact '{record.name}' has friction, for which no translation to exudyn is written; leave it out "
+            f"contact '{record.name}' has friction '{friction.type}', which is not translated to exudyn; leave it out "
             "(friction=None) to compare the rest"
         )
     if translator is None:
