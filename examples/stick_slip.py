@@ -101,8 +101,8 @@ def plot(figures: dict[str, Any], path: Path) -> None:
     upper, lower = figure.subplots(2, 1, sharex=True)
     upper.plot(result.t, result["block.vx"], lw=1.0, label="block")
     upper.axhline(BELT_SPEED, color="0.6", lw=0.8, ls="--", label="belt")
-    upper.set(ylabel="speed, m/s")
-    upper.legend(loc="lower left")
+    upper.set(ylabel="speed, m/s", ylim=(-0.5, 0.5))
+    upper.legend(loc="upper right", ncols=2)
     lower.plot(result.t, result["shoe.friction_force"], lw=1.0)
     weight = MASS * GRAVITY
     for mu, name in ((STATIC, r"$\mu_s F_n$"), (KINETIC, r"$\mu F_n$")):
