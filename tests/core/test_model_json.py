@@ -11,11 +11,15 @@ from tlismni.core import (
     AppliedTorque2D,
     Bushing2D,
     Constant,
+    CoordinateContact,
     CoordinateDriver,
     CoordinateLoad,
+    CoordinateTerm,
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
+    DiskOnLine2D,
+    DiskOnSegment2D,
     Distance2D,
     Flores,
     Gonthier,
@@ -26,6 +30,7 @@ from tlismni.core import (
     InputSignal,
     KelvinVoigt,
     LankaraniNikravesh,
+    Line2D,
     LinearSystem,
     Marker2D,
     Model,
@@ -38,6 +43,7 @@ from tlismni.core import (
     Ramp,
     Revolute2D,
     RigidBody2D,
+    Segment2D,
     Sine,
     SpringDamper2D,
     Step,
@@ -119,6 +125,22 @@ ELEMENTS = {
             DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk, law=law
         ),
         st.builds(DiskOnDisk2D, name=st.just("x"), a=disk, b=disk, law=law),
+        st.builds(
+            DiskOnSegment2D, name=st.just("x"), disk=disk, law=law,
+            segment=st.builds(Segment2D, marker=marker, length=positive, radius=positive),
+        ),
+        st.builds(
+            DiskOnLine2D, name=st.just("x"), disk=disk, law=law,
+            line=st.builds(
+                Line2D, nodes=st.lists(st.builds(Marker2D, point=vector), min_size=2, max_size=4).map(tuple),
+                radius=positive, rounding=st.floats(0.1, 1.0),
+            ),
+        ),
+        st.builds(
+            CoordinateContact, name=st.just("x"), law=law, offset=number,
+            terms=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("y"), factor=positive)),
+            slide=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("x"), factor=positive)),
+        ),
     ],
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
@@ -158,7 +180,7 @@ def test_the_list_of_elements_above_is_complete():
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
-        "DiskOnDisk2D",
+        "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 
