@@ -30,6 +30,7 @@ from .contact.laws import (
     ZhiyingQishao,
     force_formula,
 )
+from .contact.segment2d import DiskOnSegment2D, Segment2D
 from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .description import Model
 from .elements import (
@@ -79,6 +80,7 @@ __all__ = [
     "Disk2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
+    "DiskOnSegment2D",
     "Distance2D",
     "EquationError",
     "EquationSystem",
@@ -115,6 +117,7 @@ __all__ = [
     "Result",
     "Revolute2D",
     "RigidBody2D",
+    "Segment2D",
     "Simulation",
     "SimulationError",
     "Sine",

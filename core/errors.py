@@ -21,7 +21,7 @@ class SimulationError(TlismniError):
     Attributes
     ----------
     t : time reached, s.
-    loop : "outer", "inner", "step size", "event" or "impact".
+    loop : "outer", "inner", "step size", "event", "contact" or "impact".
     partial : the `Result` up to that time, or None.
     """
 

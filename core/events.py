@@ -9,8 +9,9 @@ class Event:
     """One event of one contact.
 
     kind : "impact" (velocity jump), "close" (a force law begins to act, or a contact becomes a constraint),
-    "open" (it ends), "rest" (accumulating impacts end in persistent contact), "graze" (the gap touches zero without
-    approach), "stick" and "slip" (a closed contact with Coulomb friction comes to a stop, or begins to slide).
+    "open" (it ends), "rest" (accumulating impacts end in persistent contact), "graze" (the gap touches zero without an
+    approach that could be told from none), "stick" and "slip" (a closed contact with Coulomb friction comes to a stop,
+    or begins to slide).
     """
 
     t: float

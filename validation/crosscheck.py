@@ -15,6 +15,7 @@ from .comparisons.constraint_contact import compare_constraints
 from .comparisons.force_contact import compare_forces
 from .comparisons.smooth_motion import compare_motion
 from .exudyn_import import import_exudyn
+from .translation import find_translator
 
 log = logging.getLogger(__name__)
 
@@ -102,7 +103,9 @@ def crosscheck(
     OSError : if `report_dir` cannot be made, before anything is run.
     """
     chosen = _scenario(scenario, t_end, parameters)
-    import_exudyn()  # before our own run: say at once if it is missing
+    import_exudyn()  # before our own run: say at once if it is missing, or if something has no equal there
+    for element in chosen.model.elements():
+        find_translator(element)
     folder = None if report_dir is None else Path(report_dir)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)

@@ -6,7 +6,8 @@ from pydantic import Field
 
 from .contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
 from .coordinate_contact import CoordinateContact
+from .segment2d import DiskOnSegment2D
 
-CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, CoordinateContact)
+CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, DiskOnSegment2D, CoordinateContact)
 
-Contact = Annotated[DiskOnHalfPlane2D | DiskOnDisk2D | CoordinateContact, Field(discriminator="type")]
+Contact = Annotated[DiskOnHalfPlane2D | DiskOnDisk2D | DiskOnSegment2D | CoordinateContact, Field(discriminator="type")]

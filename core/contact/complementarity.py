@@ -178,3 +178,17 @@ def independent(a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.in
             kept.append(i)
     count = len(normal)
     return [i for i in kept if i < count], [i - count for i in kept if i >= count]
+
+
+def farthest(matrix: Vector, among: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Those of the directions `among` (a block of A) that do not repeat others, each time the one that is least held by
+    those before it."""
+    rest, kept = matrix[np.ix_(among, among)].copy(), []
+    scale = np.diag(rest).copy()
+    for _ in range(len(among)):
+        k = int(np.argmax(np.diag(rest)))
+        if not rest[k, k] > RANK * scale[k]:
+            break
+        kept.append(k)
+        rest -= np.outer(rest[:, k], rest[k]) / rest[k, k]
+    return np.sort(among[kept])

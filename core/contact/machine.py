@@ -25,7 +25,8 @@ from .modes import (
     SLIDE_START,
     STICKS,
 )
-from .resting import NO_FORCE, Resting, Settling, read, unresolved_speed
+from .resting import NO_FORCE, Resting
+from .settling import Settling, read, unresolved_speed
 from .touching import Touching
 
 if TYPE_CHECKING:
@@ -107,6 +108,8 @@ def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -
             -total_loss,
         )
     least = NO_FORCE * float(np.max(impact.impulse))
+    # a gap that would open again by itself before it could be seen to be negative
+    grazes = (now.was == OPEN) & (impact.approach <= unresolved_speed(sim, -now.falls))
     for i in np.argsort(-impact.approach, kind="stable"):
         k = contacts[i]
         if impact.impulse[i] <= least:
@@ -116,9 +119,10 @@ def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -
         if impact.approach[i] > rounding:
             memory[k, APPROACH_SPEED] = impact.approach[i]
             memory[k, LARGEST_APPROACH] = largest[i]
+        kind, name = "graze" if grazes[i] else "impact", sim.assembly.contacts[k].name
         sim.add_event(
             Event(
-                sim.t_internal, "impact", sim.assembly.contacts[k].name, float(impact.impulse[i]),
+                sim.t_internal, kind, name, float(impact.impulse[i]),
                 float(impact.energy_loss[i]), max(float(impact.approach[i]), 0.0),
                 max(float(impact.separation[i]), 0.0), impact.residual, float(impact.friction_impulse[i]),
             )
@@ -155,7 +159,8 @@ def _take(sim: "Engine", now: Settling, chosen: dict[int, tuple[float, float]], 
         changed |= not kept
         if slide == STICKS and not kept and k in slide_values:
             memory[k, SLIDE_START] = slide_values[k]
-    sim.use_modes(accelerations=False)
+    if chosen or np.any(now.was == CLOSED):
+        sim.use_modes(accelerations=False)
     if changed and sim.formula.exact:
         sim.meet_constraints()
     sim.solve_accelerations()

@@ -5,16 +5,17 @@ as a constraint, the others carry a constant share of their normal force (IDLE, 
 reaches its limit; then it keeps that limit and another takes the rest, or all let go.
 """
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SimulationError
-from .complementarity import ContactSolution, independent, solve_contacts
+from .complementarity import ContactSolution, farthest, independent, solve_contacts
 from .lcp import NoComplementarySolution
-from .modes import CLOSED, IDLE, MODE, RATIO, SLIDE, STICKS
+from .modes import CLOSED, IDLE, STICKS
+from .painleve import painleve
+from .settling import AT_LIMIT, Settling, unresolved_speed
 from .touching import Touching
 
 if TYPE_CHECKING:
@@ -29,85 +30,10 @@ NO_ACCELERATION = 1e-11
 """A gap's acceleration below this part of what weights and forces make is none."""
 NEARLY_SINGULAR = 1e-6
 """Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
-AT_LIMIT = 1e-9
-"""Friction within this part of its limit has reached it."""
-SPARE = 1e-6
-"""Part of its limit that a new distribution of sticking friction must leave to each contact."""
-UNRESOLVED = 1e-14
-"""Of the largest coordinate (or of 1 m): bounces that are lower than this are not told from rest."""
 PERHAPS_REST = 1e-3
 """Of the largest speed (or of 1 m/s): gaps that open faster than this are not at rest."""
-
-
-def speed(sim: "Engine") -> float:
-    """The largest of the present velocities."""
-    return float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
-
-
-def unresolved_speed(sim: "Engine", falls: Vector) -> Vector:
-    """Speed of separation below which a gap with the acceleration -falls (m/s^2) cannot be seen to open, m/s."""
-    size = max(1.0, float(np.max(np.abs(sim.workspace.arrays["q"][: sim.assembly.n]))))
-    return np.asarray(np.sqrt(2.0 * UNRESOLVED * size * np.maximum(falls, 0.0)))
-
-
-@dataclass
-class Settling:
-    """What is known of the touching contacts (their numbers in `contacts`) while an instant is settled."""
-
-    contacts: list[int]
-    was: Vector
-    """Modes before, (contacts,)."""
-    slid: Vector
-    """SLIDE before, (contacts,)."""
-    ratio: Vector
-    """RATIO before, (contacts,)."""
-    leaves: Flags
-    """The event is that the contact's force became zero."""
-    slips: Vector
-    """+-1 where the event is that a sticking contact reached its limit: the direction in which it goes; else 0."""
-    stops: Flags
-    """A sliding contact has come to a stop."""
-    falls: Vector
-    """Acceleration with which the gap closes before any impact, m/s^2."""
-    struck: bool = False
-    rests: set[int] = field(default_factory=set)
-
-    def forget_events(self) -> None:
-        """The velocities have jumped: only they say what moves how."""
-        self.struck = True
-        self.leaves[:], self.stops[:], self.slips[:] = False, False, 0.0
-
-
-def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
-    """What the touching contacts were, and which events those in `pending` have, at the workspace's current point."""
-    memory, arrays = sim.memory, sim.workspace.arrays
-    was, slid = memory[contacts, MODE].copy(), memory[contacts, SLIDE].copy()
-    count = len(contacts)
-    leaves, stops, slips = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool), np.zeros(count)
-    no_force, rounding = sim.no_force(), sim.rate_rounding()
-    for i, k in enumerate(contacts):
-        contact = sim.assembly.contacts[k]
-        if was[i] != CLOSED:
-            continue
-        if contact.coulomb is not None and abs(slid[i]) == 1.0:
-            rate, acceleration = (float(arrays[level][contact.slide_row]) for level in ("phid", "phidd"))
-            # what moves with another that stops does so at the same time
-            stops[i] = abs(rate) <= rounding and slid[i] * acceleration < 0.0
-        if k not in pending:
-            continue
-        force = -float(arrays["lam"][contact.row])
-        # a method that does not meet the constraints at all levels may end a little before its force is zero
-        leaves[i] = contact.coulomb is None or slid[i] == IDLE or force <= no_force
-        if leaves[i] or contact.coulomb is None:
-            continue
-        if slid[i] == STICKS:
-            friction = -float(arrays["lam"][contact.slide_row])
-            if abs(friction) >= contact.coulomb.sticking_coefficient * force * (1.0 - AT_LIMIT):
-                slips[i] = -np.sign(friction)
-        elif abs(slid[i]) == 1.0:
-            stops[i] = True
-    falls = -arrays["phidd"][[sim.assembly.contacts[k].row for k in contacts]]
-    return Settling(contacts, was, slid, memory[contacts, RATIO].copy(), leaves, slips, stops, falls)
+SPARE = 1e-6
+"""Part of its limit that a new distribution of sticking friction must leave to each contact."""
 
 
 class Resting:
@@ -116,7 +42,8 @@ class Resting:
     Attributes
     ----------
     at_rest : neither separating nor approaching, (contacts,).
-    direction : +-1 where the contact slides, 0 where friction decides, (contacts,).
+    known : +-1 where the contact slides, 0 where friction decides, (contacts,).
+    direction : the same after `forces`, which finds those that begin to slide.
     """
 
     def __init__(
@@ -124,11 +51,12 @@ class Resting:
     ) -> None:
         self.sim, self.touching, self.now = sim, touching, now
         gap_rate, slide_rate = touching.rates()
+        largest = float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
         self.at_rest: Flags = np.abs(gap_rate) <= rounding
-        if np.any(np.abs(gap_rate) <= PERHAPS_REST * max(1.0, speed(sim))) or not now.struck:
+        if np.any(np.abs(gap_rate) <= PERHAPS_REST * max(1.0, largest)) or not now.struck:
             self._prepare(accelerations)
             self.at_rest |= (gap_rate > 0.0) & (gap_rate <= unresolved_speed(sim, -self.b_n))
-        self.direction: Vector = np.where(np.abs(slide_rate) > rounding, np.sign(slide_rate), 0.0)
+        self.known: Vector = np.where(np.abs(slide_rate) > rounding, np.sign(slide_rate), 0.0)
         laws = [c.coulomb for c in touching.infos]
         self.kinetic = np.array([law.coefficient if law else 0.0 for law in laws])
         self.static = np.array([law.sticking_coefficient if law else 0.0 for law in laws])
@@ -138,23 +66,43 @@ class Resting:
         # a constraint that holds does not separate, however much its method drifts
         self.at_rest |= closed
         slides = closed & (np.abs(now.slid) == 1.0) & ~now.stops
-        self.direction[closed] = np.where(slides, now.slid, 0.0)[closed]
+        self.known[closed] = np.where(slides, now.slid, 0.0)[closed]
 
     # ---- forces -----------------------------------------------------------------------------------------------------
 
     def forces(self) -> ContactSolution:
-        """Forces of all touching contacts (zero where they separate); `direction` is completed by those that begin to
-        slide.
+        """Forces of all touching contacts (zero where they separate).
 
         Raises
         ------
         SimulationError : if there are none (Painleve's paradox).
         """
-        slips, self.full = self.now.slips, np.zeros(len(self.direction), dtype=bool)
+        self.takes: Flags = self.at_rest & ~self.now.leaves
+        self.direction: Vector = self.known
+        self.full: Flags = np.zeros(len(self.direction), dtype=bool)
+        self.slipping = False
+        found = self._balance()
+        spread = self._spread(found)
+        if spread is not None:
+            first = self.direction, self.full, self.takes, self.slipping
+            self.takes = spread
+            again = self._balance()
+            if np.all(self._loaded(again)[spread]):
+                found = again
+            else:
+                self.direction, self.full, self.takes, self.slipping = first
+        self._refuse_jam(found)
+        return found
+
+    def _balance(self) -> ContactSolution:
+        """Forces of the contacts `takes`."""
+        slips = self.now.slips
+        self.direction, self.full, self.slipping = self.known, np.zeros(len(slips), dtype=bool), False
         if np.any(slips):
-            found = self._held()
-            if found is not None:
-                return found
+            held = self._held()
+            if held is not None:
+                return held
+            self.slipping = True
             self.direction = np.where(slips != 0.0, slips, self.direction)
         for _ in range(len(slips) + 1):
             mu = np.where(self.direction != 0.0, self.kinetic, self.static)
@@ -164,8 +112,21 @@ class Resting:
             self.direction = np.where(begins, -np.sign(found.tangential), self.direction)
             if not again:
                 break
-        self._refuse_jam(found)
         return found
+
+    def _spread(self, found: ContactSolution) -> Flags | None:
+        """Of contacts whose normals repeat each other, those that lie farthest apart: on them a body stands firmly.
+        None if there are none, or if nothing asks for a new choice."""
+        loaded = self._loaded(found)
+        if not (self.now.struck or np.any(loaded & (self.now.was != CLOSED))):
+            return None
+        still = np.flatnonzero(self.takes & (np.abs(found.normal_motion) <= 1e3 * self.none * self.size))
+        apart = farthest(self.touching.a.nn, still)
+        if len(apart) == len(still) or np.all(loaded[apart]):
+            return None
+        flags = np.zeros(len(loaded), dtype=bool)
+        flags[apart] = True
+        return flags
 
     def _prepare(self, accelerations: float) -> None:
         """Free accelerations of gaps and sliding distances, with zero for what is rounding."""
@@ -180,17 +141,16 @@ class Resting:
         self.b_t = np.where(np.abs(b_t) <= self.none * along, 0.0, b_t)
 
     def _solve(self, direction: Vector, mu: Vector) -> ContactSolution:
-        takes = self.at_rest & ~self.now.leaves
         for _ in range(2):
             try:
-                found = self._with(takes, direction, mu)
+                found = self._with(self.takes, direction, mu)
             except NoComplementarySolution as error:
                 raise SimulationError(self._no_solution(), t=self.sim.t_internal, loop="contact") from error
             # one that leaves does so unless the others' forces press it together again
-            back = self.at_rest & ~takes & (found.normal_motion < -1e3 * self.none * self.size)
+            back = self.at_rest & ~self.takes & (found.normal_motion < -1e3 * self.none * self.size)
             if not (self.sim.formula.exact and np.any(back)):
                 break
-            takes |= back
+            self.takes = self.takes | back
         return found
 
     def _with(self, takes: Flags, direction: Vector, mu: Vector) -> ContactSolution:
@@ -215,7 +175,7 @@ class Resting:
             direction = np.where(self.direction != 0.0, self.direction, known)
             mu = np.where(self.direction != 0.0, self.kinetic, self.static)
             try:
-                found = self._with(self.at_rest & ~now.leaves, direction, mu)
+                found = self._with(self.takes, direction, mu)
             except NoComplementarySolution:
                 continue
             loaded = self._loaded(found)
@@ -223,7 +183,7 @@ class Resting:
             if np.any(np.abs(found.tangential[free]) >= self.static[free] * found.normal[free] * (1.0 - spare)):
                 continue
             sticking = np.flatnonzero(free)
-            if not np.any(free) or any(self._moves(found, sticking, i) for i in np.flatnonzero(known * loaded)):
+            if not np.any(free) or any(self._moves(found, sticking, int(i)) for i in np.flatnonzero(known * loaded)):
                 continue
             self.full = known != 0.0
             return found
@@ -236,7 +196,9 @@ class Resting:
         """Contacts with friction below its limit (or below it in any case: the least distribution was found); those
         with the highest limits first."""
         limit = self.static * found.normal
-        below = found.sticks | (np.abs(found.tangential) < limit * (1.0 - AT_LIMIT)) | (limit == 0.0)
+        below = (np.abs(found.tangential) < limit * (1.0 - AT_LIMIT)) | (limit == 0.0)
+        if found.sticks and not self.slipping:
+            below[:] = True
         some = np.flatnonzero((self.static > 0.0) & (self.direction == 0.0) & below & ~self.full & self.at_rest)
         return some[np.argsort(-limit[some], kind="stable")]
 
@@ -247,7 +209,7 @@ class Resting:
         begins[sticking] = False
         sticking = sticking[loaded[sticking]]
         for i in np.flatnonzero(begins):
-            begins[i] = self._moves(found, sticking, i)
+            begins[i] = self._moves(found, sticking, int(i))
         return begins
 
     def _moves(self, found: ContactSolution, sticking: NDArray[np.intp], i: int) -> bool:
@@ -292,22 +254,16 @@ class Resting:
             if left > NEARLY_SINGULAR * a.nn[i, i]:
                 continue
             if found.normal[i] > 0.0 or self.now.was[i] == CLOSED:
-                message = self._painleve(self.touching.infos[i].name, float(self.kinetic[i]))
-                raise SimulationError(message, t=self.sim.t_internal, loop="contact")
-
-    def _painleve(self, name: str, mu: float) -> str:
-        return (
-            f"contact '{name}', t = {self.sim.t_internal:.9g} s: Painleve's paradox. Sliding with mu = {mu:g}, the "
-            "friction presses the bodies together more than the normal force keeps them apart, so that rigid bodies "
-            "with Coulomb friction have no (or no unique) accelerations here: use a smaller coefficient, or a force "
-            "law with regularised friction for this contact"
-        )
+                t = self.sim.t_internal
+                raise SimulationError(
+                    painleve(self.touching.infos[i].name, t, float(self.kinetic[i])), t=t, loop="contact"
+                )
 
     def _no_solution(self) -> str:
         a = self.touching.a
         for i, contact in enumerate(self.touching.infos):
             if self.kinetic[i] > 0.0 and a.nn[i, i] <= self.kinetic[i] * abs(a.nt[i, i]):
-                return self._painleve(contact.name, float(self.kinetic[i]))
+                return painleve(contact.name, self.sim.t_internal, float(self.kinetic[i]))
         names = ", ".join(f"'{c.name}'" for c in self.touching.infos)
         return (
             f"contacts {names}, t = {self.sim.t_internal:.9g} s: no contact forces satisfy complementarity and "

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @compiled
-def _factor_joints(ws: Any) -> int:
+def factor_joints(ws: Any) -> int:
     """[M Phi_q^T; Phi_q 0] of the present structure at the current point."""
     evaluate_residuals(ws)
     evaluate_tangent(ws, 0.0, 0.0)
@@ -31,7 +31,7 @@ def _factor_joints(ws: Any) -> int:
 
 
 @compiled
-def _solve_joints(ws: Any) -> None:
+def solve_joints(ws: Any) -> None:
     """rhs -> its solution with the factorised matrix."""
     solve(lu_at(ws.kkt_query), ws.rhs)
 
@@ -95,11 +95,11 @@ class Touching:
 
     def _factor(self) -> None:
         workspace = self.sim.workspace
-        if _factor_joints(workspace.record) == 0:
+        if factor_joints(workspace.record) == 0:
             return
         try:
             workspace.structure.kkt_query.analyze(workspace.arrays["values"])
-            singular = _factor_joints(workspace.record) != 0
+            singular = factor_joints(workspace.record) != 0
         except SingularMatrixError:
             singular = True
         if singular:
@@ -116,7 +116,7 @@ class Touching:
         size = n + len(workspace.structure.active)
         rhs = workspace.arrays["rhs"]
         rhs[:n], rhs[n:size] = direction, 0.0
-        _solve_joints(workspace.record)
+        solve_joints(workspace.record)
         return rhs[:n].copy(), rhs[n:size].copy()
 
     def _refuse_immovable(self) -> None:

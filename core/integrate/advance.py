@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..contact.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
+from ..contact.painleve import refuse_passed_jam, sliding_contacts
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
@@ -94,8 +95,12 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
         aim(sim, t, stop)
         if sim.clock[STOP_TIME] - now <= NO_STEP * abs(now):
             return
-        code = run(ws, ms, lc, CHUNK_STEPS)
+        # while a contact slides, each step is looked at
+        sliding = sliding_contacts(sim)
+        code = run(ws, ms, lc, 1 if sliding else CHUNK_STEPS)
         sim.flush()
+        if sliding and code == CHUNK and sim.t_internal > now:
+            refuse_passed_jam(sim, sliding)
         if code in (CHUNK, FULL):
             sim.report_progress(sim.t_internal)
         elif code == REACHED:

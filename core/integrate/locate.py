@@ -6,6 +6,8 @@ from collections.abc import Callable
 import numpy as np
 
 MAX_TRIALS = 60
+JUMP = 1e-6
+"""A function that is this large, relative to its largest value, right beside its root jumps there."""
 
 
 def quintic(h: float, start: tuple[float, float, float], end: tuple[float, float, float]) -> np.ndarray:
@@ -53,11 +55,13 @@ def find_root(function: Callable[[float], float], low: float, high: float, guess
     """Root of `function` (positive at `low`, negative at `high`) to rounding; `floor` is its rounding noise.
 
     Secant steps (ITP-like safeguard: bisection when they do not halve the bracket in three trials).
-    Returns the argument of the last evaluation, so that the caller's state belongs to it.
+    Returns the argument of the last evaluation, so that the caller's state belongs to it: on the safe side of the root,
+    but behind a jump of the function, since what it asks for is seen only there.
     """
     x_low, x_high = low, high
     f_low: float | None = None
     f_high: float | None = None
+    largest = 0.0
     x = guess
     last: tuple[float, float] | None = None
     widths = [high - low]
@@ -65,6 +69,7 @@ def find_root(function: Callable[[float], float], low: float, high: float, guess
         f = function(x)
         if abs(f) <= floor:
             return x
+        largest = max(largest, abs(f))
         if f > 0.0:
             x_low, f_low = x, f
         else:
@@ -84,6 +89,9 @@ def find_root(function: Callable[[float], float], low: float, high: float, guess
             proposal = 0.5 * (x_low + x_high)
         last = (x, f)
         x = proposal
+    if f_low is not None and f_low > JUMP * largest and f_high is not None:
+        function(x_high)
+        return x_high
     # the side past the event would be found again as a crossing: end on the safe one
     if x_low > low:
         function(x_low)

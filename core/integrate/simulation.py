@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact.painleve import jam
 from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
@@ -117,8 +118,13 @@ class Simulation(Engine):
         try:
             with user_errors(self.assembly):
                 yield
-        except ConsistencyError as error:
+        except (ConsistencyError, SimulationError) as error:
             t = self.t_internal
+            jammed = None if getattr(error, "loop", "") in ("contact", "impact", "event") else jam(self)
+            if jammed is not None:
+                raise SimulationError(jammed, t=t, loop="contact") from error
+            if isinstance(error, SimulationError):
+                raise
             raise SimulationError(f"at t = {t:.9g} s: {error}", t=t, loop="event") from error
 
     # ---- channels, inputs, state ------------------------------------------------------------------------------------

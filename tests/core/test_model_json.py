@@ -19,6 +19,7 @@ from tlismni.core import (
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
+    DiskOnSegment2D,
     Distance2D,
     Flores,
     Gonthier,
@@ -42,6 +43,7 @@ from tlismni.core import (
     Ramp,
     Revolute2D,
     RigidBody2D,
+    Segment2D,
     Sine,
     SpringDamper2D,
     Step,
@@ -129,6 +131,10 @@ ELEMENTS = {
             DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk, law=law
         ),
         st.builds(DiskOnDisk2D, name=st.just("x"), a=disk, b=disk, law=law),
+        st.builds(
+            DiskOnSegment2D, name=st.just("x"), disk=disk, segment=st.builds(Segment2D, marker=marker, length=positive),
+            law=law,
+        ),
         st.builds(CoordinateContact, name=st.just("x"), offset=number, terms=terms, slide=terms, law=law),
         st.builds(
             DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk,
@@ -174,7 +180,7 @@ def test_the_list_of_elements_above_is_complete():
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
-        "DiskOnDisk2D", "CoordinateContact",
+        "DiskOnDisk2D", "DiskOnSegment2D", "CoordinateContact",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

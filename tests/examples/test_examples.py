@@ -84,6 +84,13 @@ def test_impact_oscillator_is_stable_or_chaotic_and_loses_what_damping_and_impac
     assert f["sum"] == pytest.approx(f["expected_sum"], abs=1e-6)
 
 
+def test_block_on_the_belt_sticks_and_slips_when_the_closed_form_says() -> None:
+    f = figures("stick_slip")
+    assert f["kinds"] == ["slip", "stick"] * 5 + ["slip"]
+    assert np.max(np.abs(f["times"] - f["expected_times"])) < 1e-9
+    assert f["largest_energy_balance"] < 1e-8
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_example_draws_its_figure(name: str, tmp_path: Path) -> None:
     path = tmp_path / "figure.png"

@@ -9,6 +9,7 @@ from momentum import momentum_drift
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from tlismni.core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.contact.friction import TanhFriction
 from tlismni.core.contact.laws import (
     CarvalhoMartins,
     Flores,
@@ -19,6 +20,7 @@ from tlismni.core.contact.laws import (
     NewtonImpact,
     Tsuji,
 )
+from tlismni.core.contact.segment2d import DiskOnSegment2D, Segment2D
 from tlismni.core.description import Model
 from tlismni.core.elements import PointMass2D, Prismatic2D, RigidBody2D
 from tlismni.core.model.markers import Marker2D
@@ -190,10 +192,24 @@ def point_mass_in_a_prismatic_joint() -> Model:
     return Model(bodies=(PointMass2D(name="p", mass=1.0),), joints=(joint,))
 
 
+def drop_with_friction() -> Model:
+    model = drop(Hertz(stiffness=K))
+    friction = TanhFriction(coefficient=0.3, transition_speed=0.01)
+    return model.model_copy(update={"contacts": (model.contacts[0].model_copy(update={"friction": friction}),)})
+
+
+def drop_on_a_segment() -> Model:
+    disk = Disk2D(marker=Marker2D(body="ball"), radius=0.1)
+    contact = DiskOnSegment2D(name="floor", segment=Segment2D(length=1.0), disk=disk, law=Hertz(stiffness=K))
+    return Model(bodies=(PointMass2D(name="ball", mass=1.0, position=(0.5, 1.0)),), contacts=(contact,))
+
+
 @needs_exudyn
 @pytest.mark.parametrize(
     "make, text",
     [
+        (drop_with_friction, "friction .Tanh., which is not translated"),
+        (drop_on_a_segment, "'floor' is a DiskOnSegment2D, for which no translation"),
         (newton_drop, "constraint .* limit"),
         (tsuji_drop, "law Tsuji, which exudyn has no form of"),
         (law_with_another_formula, "law Hardening, which exudyn has no form of"),

@@ -157,3 +157,14 @@ def test_missing_exudyn_is_said_before_anything_is_run(monkeypatch: pytest.Monke
     monkeypatch.setattr("tlismni.validation.exudyn_import.importlib.import_module", refuse)
     with pytest.raises(ExudynUnavailable, match="libgl1"):
         crosscheck("chain")
+
+
+@needs_exudyn
+@pytest.mark.parametrize(
+    "name, words", [("stick_slip", "'rubbing' has friction"), ("woodpecker", "friction"), ("rocking_block", "'left'")]
+)
+def test_what_has_no_equal_in_exudyn_is_refused_before_anything_is_run(name: str, words: str) -> None:
+    said: list[str] = []
+    with pytest.raises(NotTranslatable, match=words):
+        crosscheck(name, progress=said.append)
+    assert said == []

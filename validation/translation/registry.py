@@ -32,14 +32,25 @@ def translates(*records: type) -> Callable[[T], T]:
 
 def translate(record: Any, build: "Build") -> None:
     """Add the exudyn equal of `record`. Raises NotTranslatable if there is none."""
+    find_translator(record)(record, build)
+
+
+def find_translator(record: Any) -> Translator:
+    """The function that translates `record`. Raises NotTranslatable if there is none."""
     translator = _TRANSLATORS.get(type(record))
+    friction = getattr(record, "friction", None)
+    if friction is not None:
+        raise NotTranslatable(
+            f"contact '{record.name}' has friction '{friction.type}', which is not translated to exudyn; leave it out "
+            "(friction=None) to compare the rest"
+        )
     if translator is None:
         known = sorted(t.__name__ for t in _TRANSLATORS)
         raise NotTranslatable(
             f"'{getattr(record, 'name', record)}' is a {type(record).__name__}, for which no translation to "
             f"exudyn is written; there are translations of {known}"
         )
-    translator(record, build)
+    return translator
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,86 @@
+"""What is known of the touching contacts while the state machine settles an instant: modes before, and their events."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .modes import CLOSED, IDLE, MODE, RATIO, SLIDE, STICKS
+
+if TYPE_CHECKING:
+    from ..integrate.engine import Engine
+
+Vector = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+UNRESOLVED = 1e-14
+"""Of the largest coordinate (or of 1 m): bounces that are lower than this are not told from rest."""
+AT_LIMIT = 1e-9
+"""Friction within this part of its limit has reached it."""
+
+
+def unresolved_speed(sim: "Engine", falls: Vector) -> Vector:
+    """Speed of separation below which a gap with the acceleration -falls (m/s^2) cannot be seen to open, m/s."""
+    size = max(1.0, float(np.max(np.abs(sim.workspace.arrays["q"][: sim.assembly.n]))))
+    return np.asarray(np.sqrt(2.0 * UNRESOLVED * size * np.maximum(falls, 0.0)))
+
+
+@dataclass
+class Settling:
+    """What is known of the touching contacts (their numbers in `contacts`) while an instant is settled."""
+
+    contacts: list[int]
+    was: Vector
+    """Modes before, (contacts,)."""
+    slid: Vector
+    """SLIDE before, (contacts,)."""
+    ratio: Vector
+    """RATIO before, (contacts,)."""
+    leaves: Flags
+    """The event is that the contact's force became zero."""
+    slips: Vector
+    """+-1 where the event is that a sticking contact reached its limit: the direction in which it goes; else 0."""
+    stops: Flags
+    """A sliding contact has come to a stop."""
+    falls: Vector
+    """Acceleration with which the gap closes before any impact, m/s^2."""
+    struck: bool = False
+    rests: set[int] = field(default_factory=set)
+
+    def forget_events(self) -> None:
+        """The velocities have jumped: only they say what moves how."""
+        self.struck = True
+        self.leaves[:], self.stops[:], self.slips[:] = False, False, 0.0
+
+
+def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
+    """What the touching contacts were, and which events those in `pending` have, at the workspace's current point."""
+    memory, arrays = sim.memory, sim.workspace.arrays
+    was, slid = memory[contacts, MODE].copy(), memory[contacts, SLIDE].copy()
+    count = len(contacts)
+    leaves, stops, slips = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool), np.zeros(count)
+    no_force, rounding = sim.no_force(), sim.rate_rounding()
+    for i, k in enumerate(contacts):
+        contact = sim.assembly.contacts[k]
+        if was[i] != CLOSED:
+            continue
+        if contact.coulomb is not None and abs(slid[i]) == 1.0:
+            rate, acceleration = (float(arrays[level][contact.slide_row]) for level in ("phid", "phidd"))
+            # what moves with another that stops does so at the same time
+            stops[i] = abs(rate) <= rounding and slid[i] * acceleration < 0.0
+        if k not in pending:
+            continue
+        force = -float(arrays["lam"][contact.row])
+        # a method that does not meet the constraints at all levels may end a little before its force is zero
+        leaves[i] = contact.coulomb is None or slid[i] == IDLE or force <= no_force
+        if leaves[i] or contact.coulomb is None:
+            continue
+        if slid[i] == STICKS:
+            friction = -float(arrays["lam"][contact.slide_row])
+            if abs(friction) >= contact.coulomb.sticking_coefficient * force * (1.0 - AT_LIMIT):
+                slips[i] = -np.sign(friction)
+        elif abs(slid[i]) == 1.0:
+            stops[i] = True
+    falls = -arrays["phidd"][[sim.assembly.contacts[k].row for k in contacts]]
+    return Settling(contacts, was, slid, memory[contacts, RATIO].copy(), leaves, slips, stops, falls)

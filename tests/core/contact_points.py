@@ -1,0 +1,60 @@
+"""A contact at given states: rows, residuals, tangents, for tests of gaps, sliding distances and their derivatives."""
+
+import numpy as np
+from test_tangents import Point
+from tlismni.core.contact.modes import APPROACH_SPEED, CLOSED, MODE, SLIDE, SLIDE_START
+
+
+class ContactPoint(Point):
+    """A model with one contact in a given mode (and `slide`, if it has friction) at any point of its state space."""
+
+    def __init__(self, model, mode, slide=0.0, stuck_at=0.0):
+        super().__init__(model)
+        memory = self.workspace.arrays["memory"]
+        memory[0, [MODE, APPROACH_SPEED, SLIDE, SLIDE_START]] = mode, 0.9, slide, stuck_at
+        one, none = frozenset({0}), frozenset()
+        sticks = mode == CLOSED and slide == 0.0 and self.m > 1
+        self.workspace.engage(one if mode == CLOSED else none, one, one if sticks else none)
+
+    def gap(self, q, v=None):
+        """Gap and its rate."""
+        rows = self.at(0.0, q, np.zeros(self.n) if v is None else v, np.zeros(self.n), np.zeros(self.m))
+        return rows[1][0], rows[2][0]
+
+    def slide(self, q, v=None):
+        """Sliding distance and its rate."""
+        rows = self.at(0.0, q, np.zeros(self.n) if v is None else v, np.zeros(self.n), np.zeros(self.m))
+        return rows[1][1], rows[2][1]
+
+
+def state_at(point, q, seed):
+    """A state (t, q, v, a, lam) with random rates and multipliers."""
+    random = np.random.default_rng(seed)
+    return [
+        0.0, np.asarray(q, dtype=float), *(random.uniform(-1.0, 1.0, point.n) for _ in range(2)),
+        random.uniform(-2.0, -0.5, point.m),
+    ]  # fmt: skip
+
+
+def check_derivatives(point, state, h=1e-3, tolerance=1e-7):
+    """The matrix is the derivative of the residuals, and the levels are those of each other, by central differences of
+    span h. The shapes must stay in the same region of their contour."""
+    n, active = point.n, point.workspace.structure.active
+    c_q, c_v, nothing, no_lam = 0.6, 0.8, np.zeros(point.n), np.zeros(point.m)
+    point.at(*state)
+    matrix = point.tangent(c_q, c_v)
+    unit = np.eye(n)
+    s = np.array([point.derivative(0, (0.0, c_q * e, c_v * e, e, no_lam), state, h) for e in unit]).T
+    jacobian = np.array([point.derivative(1, (0.0, e, nothing, nothing, no_lam), state, h) for e in unit]).T[active]
+    scale = max(1.0, np.abs(s).max())
+    assert np.abs(matrix[:n, :n] - s).max() < tolerance * scale
+    assert np.abs(matrix[n:, :n] - jacobian).max(initial=0.0) < tolerance
+    for k, row in enumerate(active):
+        force = point.derivative(0, (0.0, nothing, nothing, nothing, np.eye(point.m)[row]), state, h)
+        assert np.abs(matrix[:n, n + k] - force).max() < tolerance
+    _, _, v, a, _ = state
+    first = point.derivative(1, (0.0, v, nothing, nothing, no_lam), state, h)
+    second = point.derivative(2, (0.0, v, a, nothing, no_lam), state, h)
+    _, _, phid, phidd = point.at(*state)
+    assert np.abs(phid - first).max() < tolerance
+    assert np.abs(phidd - second).max() < tolerance

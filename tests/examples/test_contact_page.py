@@ -1,0 +1,47 @@
+"""The page on contact and friction: its code runs and gives what it says, its tables name what there is."""
+
+import math
+import re
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tlismni.core import Event
+from tlismni.core.contact.laws import ImpactLaw, NewtonImpact, PoissonImpact
+
+PAGE = (Path(__file__).parents[2] / "docs" / "contact.md").read_text()
+
+
+def test_the_code_runs() -> None:
+    names: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", PAGE, re.S):
+        exec(block, names)
+    (closed, rolls) = names["rolling"].events
+    assert (closed.kind, rolls.kind) == ("close", "stick")
+    assert rolls.t == pytest.approx(0.1699, abs=5e-5) and rolls.t == pytest.approx(1.5 / (0.9 * 9.81), abs=1e-9)
+    assert names["rolling"]["ball.vx"][-1] == pytest.approx(1.0, rel=1e-9)
+    assert names["at_once"] == pytest.approx([-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0], rel=1e-12)
+    assert names["poisson"] == pytest.approx(names["at_once"], rel=1e-12)
+    assert names["in_turn"] == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
+    assert names["stick"].t == pytest.approx(1.5 / (0.3 * 9.81), abs=1e-9)
+    assert names["stopped"]["b.x"][-1] == pytest.approx(1.5**2 / (0.6 * 9.81), rel=1e-9)
+    assert names["stopped"]["shoe.dissipation"][-1] == pytest.approx(1.5**2, rel=1e-9)
+    assert names["reason"].startswith("contact 'shoe', t = 0 s: Painleve's paradox. Sliding with mu = 1.4, ")
+    assert math.isclose(
+        (1.0 + 3.0 * math.cos(names["a"]) ** 2) / (3.0 * math.sin(names["a"]) * math.cos(names["a"])), 4 / 3
+    )
+
+
+def test_every_kind_and_field_of_an_event_stands_in_the_table() -> None:
+    table = PAGE.split("## Events")[1].split("##")[0]
+    assert Event.__doc__ is not None
+    for kind in re.findall(r'"(\w+)"', Event.__doc__.split("kind :")[1]):
+        assert f"| `{kind}` |" in table
+    for field in fields(Event):
+        assert f"`{field.name}`" in table
+
+
+def test_every_impact_law_stands_on_the_page() -> None:
+    for law in (NewtonImpact, PoissonImpact):
+        assert issubclass(law, ImpactLaw) and f"| `{law.__name__}`" in PAGE
