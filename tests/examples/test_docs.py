@@ -67,6 +67,14 @@ def test_the_fmu_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert (tmp_path / "ball.fmu").is_file()
 
 
+def test_the_page_of_exponents_runs() -> None:
+    names: dict[str, Any] = {}
+    for block in blocks("lyapunov.md", "python"):
+        exec(block, names)
+    assert abs(names["found"].sum_residual) < 1e-8
+    assert names["orbit"].multipliers == pytest.approx([0.75307082, 0.74949563], abs=1e-7)
+
+
 def test_the_model_file_is_one() -> None:
     (text,) = blocks("model-files.md", "json")
     model = Model.from_json(text)
