@@ -14,7 +14,7 @@ from ..errors import SimulationError
 from .complementarity import RANK, ContactSolution, farthest, independent, solve_contacts
 from .lcp import NoComplementarySolution
 from .modes import CLOSED, IDLE, STICKS
-from .painleve import painleve
+from .painleve import no_solution, painleve
 from .settling import AT_LIMIT, Settling, unresolved_speed
 from .touching import Touching
 
@@ -180,7 +180,8 @@ class Resting:
             try:
                 found = self._with(self.takes, direction, mu)
             except NoComplementarySolution as error:
-                raise SimulationError(self._no_solution(), t=self.sim.t_internal, loop="contact") from error
+                message = no_solution(self.touching, self.kinetic)
+                raise SimulationError(message, t=self.sim.t_internal, loop="contact") from error
             # one that leaves does so unless the others' forces press it together again
             back = self.at_rest & ~self.takes & (found.normal_motion < -1e3 * self.none * self.size)
             if not (self.sim.formula.exact and np.any(back)):
@@ -293,15 +294,3 @@ class Resting:
                 raise SimulationError(
                     painleve(self.touching.infos[i].name, t, float(self.kinetic[i])), t=t, loop="contact"
                 )
-
-    def _no_solution(self) -> str:
-        a = self.touching.a
-        for i, contact in enumerate(self.touching.infos):
-            if self.kinetic[i] > 0.0 and a.nn[i, i] <= self.kinetic[i] * abs(a.nt[i, i]):
-                return painleve(contact.name, self.sim.t_internal, float(self.kinetic[i]))
-        names = ", ".join(f"'{c.name}'" for c in self.touching.infos)
-        return (
-            f"contacts {names}, t = {self.sim.t_internal:.9g} s: no contact forces satisfy complementarity and "
-            "friction at once (Painleve's paradox of several contacts): use smaller friction coefficients, or force "
-            "laws"
-        )
