@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..linalg import SingularMatrixError
@@ -30,6 +31,19 @@ def painleve(name: str, t: float, mu: float) -> str:
         "bodies together more than the normal force keeps them apart, so that rigid bodies with Coulomb friction have "
         "no (or no unique) accelerations here: use a smaller coefficient, or a force law with regularised friction "
         "for this contact"
+    )
+
+
+def no_solution(touching: Touching, mu: NDArray[np.float64]) -> str:
+    """What to tell where no forces fit the touching contacts with the coefficients mu (contacts,)."""
+    a, t = touching.a, touching.sim.t_internal
+    for i, contact in enumerate(touching.infos):
+        if mu[i] > 0.0 and a.nn[i, i] <= mu[i] * abs(a.nt[i, i]):
+            return painleve(contact.name, t, float(mu[i]))
+    names = ", ".join(f"'{c.name}'" for c in touching.infos)
+    return (
+        f"contacts {names}, t = {t:.9g} s: no contact forces satisfy complementarity and friction at once (Painleve's "
+        "paradox of several contacts): use smaller friction coefficients, or force laws"
     )
 
 

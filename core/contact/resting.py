@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SimulationError
-from .complementarity import ContactSolution, farthest, independent, solve_contacts
+from .complementarity import RANK, ContactSolution, farthest, independent, solve_contacts
 from .lcp import NoComplementarySolution
 from .modes import CLOSED, IDLE, STICKS
-from .painleve import painleve
+from .painleve import no_solution, painleve
 from .settling import AT_LIMIT, Settling, unresolved_speed
 from .touching import Touching
 
@@ -50,23 +50,50 @@ class Resting:
         self, sim: "Engine", touching: Touching, now: Settling, rounding: float, accelerations: float = 0.0
     ) -> None:
         self.sim, self.touching, self.now = sim, touching, now
-        gap_rate, slide_rate = touching.rates()
-        largest = float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
-        self.at_rest: Flags = np.abs(gap_rate) <= rounding
-        if np.any(np.abs(gap_rate) <= PERHAPS_REST * max(1.0, largest)) or not now.struck:
-            self._prepare(accelerations)
-            self.at_rest |= (gap_rate > 0.0) & (gap_rate <= unresolved_speed(sim, -self.b_n))
-        self.known: Vector = np.where(np.abs(slide_rate) > rounding, np.sign(slide_rate), 0.0)
+        self.rounding = rounding
         laws = [c.coulomb for c in touching.infos]
         self.kinetic = np.array([law.coefficient if law else 0.0 for law in laws])
         self.static = np.array([law.sticking_coefficient if law else 0.0 for law in laws])
-        if now.struck:
+        self._look()
+        self.at_rest: Flags = np.abs(self.gap_rate) <= rounding
+        if not now.struck:
+            # a constraint that holds does not separate, however much its method drifts
+            self.at_rest |= now.was == CLOSED
+        largest = float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
+        if np.any(np.abs(self.gap_rate) <= PERHAPS_REST * max(1.0, largest)) or not now.struck:
+            self._prepare(accelerations)
+            self._hold(self._soon_back(self.b_n))
+
+    def _look(self) -> None:
+        """Read the velocities."""
+        now = self.now
+        self.gap_rate, self.slide_rate = self.touching.rates()
+        self.known: Vector = np.where(np.abs(self.slide_rate) > self.rounding, np.sign(self.slide_rate), 0.0)
+        if not now.struck:
+            closed = now.was == CLOSED
+            slides = closed & (np.abs(now.slid) == 1.0) & ~now.stops
+            self.known[closed] = np.where(slides, now.slid, 0.0)[closed]
+
+    def _soon_back(self, motion: Vector) -> Flags:
+        """Gaps that open but, with these accelerations, less than could be told from zero."""
+        slow = (self.gap_rate > 0.0) & (self.gap_rate <= unresolved_speed(self.sim, -motion))
+        return np.asarray(slow & ~self.at_rest)
+
+    def _hold(self, back: Flags) -> None:
+        """Contacts `back` are at rest too: take what is left of their rates away."""
+        if not np.any(back):
             return
-        closed = now.was == CLOSED
-        # a constraint that holds does not separate, however much its method drifts
-        self.at_rest |= closed
-        slides = closed & (np.abs(now.slid) == 1.0) & ~now.stops
-        self.known[closed] = np.where(slides, now.slid, 0.0)[closed]
+        self.at_rest = self.at_rest | back
+        if not self.sim.formula.exact:
+            return
+        normals = np.flatnonzero(self.at_rest)
+        stuck = np.flatnonzero(self.at_rest & (self.static > 0.0) & (self.known == 0.0))
+        rates = np.concatenate([self.gap_rate[normals], self.slide_rate[stuck]])
+        impulses = -np.linalg.lstsq(self.touching.a.rows(normals, stuck), rates, rcond=RANK)[0]
+        push, along = np.zeros(len(back)), np.zeros(len(back))
+        push[normals], along[stuck] = impulses[: len(normals)], impulses[len(normals) :]
+        self.touching.push(push, along)
+        self._look()
 
     # ---- forces -----------------------------------------------------------------------------------------------------
 
@@ -82,6 +109,14 @@ class Resting:
         self.full: Flags = np.zeros(len(self.direction), dtype=bool)
         self.slipping = False
         found = self._balance()
+        for _ in range(len(self.at_rest)):
+            # one that opens so slowly that it falls back at once
+            back = self._soon_back(found.normal_motion)
+            if not np.any(back):
+                break
+            self._hold(back)
+            self.takes = self.takes | back
+            found = self._balance()
         spread = self._spread(found)
         if spread is not None:
             first = self.direction, self.full, self.takes, self.slipping
@@ -145,7 +180,8 @@ class Resting:
             try:
                 found = self._with(self.takes, direction, mu)
             except NoComplementarySolution as error:
-                raise SimulationError(self._no_solution(), t=self.sim.t_internal, loop="contact") from error
+                message = no_solution(self.touching, self.kinetic)
+                raise SimulationError(message, t=self.sim.t_internal, loop="contact") from error
             # one that leaves does so unless the others' forces press it together again
             back = self.at_rest & ~self.takes & (found.normal_motion < -1e3 * self.none * self.size)
             if not (self.sim.formula.exact and np.any(back)):
@@ -258,15 +294,3 @@ class Resting:
                 raise SimulationError(
                     painleve(self.touching.infos[i].name, t, float(self.kinetic[i])), t=t, loop="contact"
                 )
-
-    def _no_solution(self) -> str:
-        a = self.touching.a
-        for i, contact in enumerate(self.touching.infos):
-            if self.kinetic[i] > 0.0 and a.nn[i, i] <= self.kinetic[i] * abs(a.nt[i, i]):
-                return painleve(contact.name, self.sim.t_internal, float(self.kinetic[i]))
-        names = ", ".join(f"'{c.name}'" for c in self.touching.infos)
-        return (
-            f"contacts {names}, t = {self.sim.t_internal:.9g} s: no contact forces satisfy complementarity and "
-            "friction at once (Painleve's paradox of several contacts): use smaller friction coefficients, or force "
-            "laws"
-        )

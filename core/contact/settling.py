@@ -14,8 +14,11 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-UNRESOLVED = 1e-14
-"""Of the largest coordinate (or of 1 m): bounces that are lower than this are not told from rest."""
+NEAR_ZERO = 1e-6
+"""Of the largest multiplier (or of 1 N): a force that an event has left with less may be zero."""
+UNRESOLVED = 1e-12
+"""Of the largest coordinate (or of 1 m): bounces that are lower than this are not told from rest. Shapes touch where
+their gap is below this, and closing one contact may move the gap of another by as much."""
 AT_LIMIT = 1e-9
 """Friction within this part of its limit has reached it."""
 
@@ -61,6 +64,7 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
     count = len(contacts)
     leaves, stops, slips = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool), np.zeros(count)
     no_force, rounding = sim.no_force(), sim.rate_rounding()
+    strongest, fastest = (max(1.0, float(np.max(np.abs(arrays[name]), initial=0.0))) for name in ("lam", "v"))
     for i, k in enumerate(contacts):
         contact = sim.assembly.contacts[k]
         if was[i] != CLOSED:
@@ -71,16 +75,21 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
             stops[i] = abs(rate) <= rounding and slid[i] * acceleration < 0.0
         if k not in pending:
             continue
-        force = -float(arrays["lam"][contact.row])
+        force, coulomb = -float(arrays["lam"][contact.row]), contact.coulomb
         # a method that does not meet the constraints at all levels may end a little before its force is zero
-        leaves[i] = contact.coulomb is None or slid[i] == IDLE or force <= no_force
-        if leaves[i] or contact.coulomb is None:
+        leaves[i] = coulomb is None or slid[i] == IDLE or force <= no_force
+        if leaves[i] or coulomb is None:
             continue
+        # a force is found less finely than a velocity: the event is of what is nearer to zero
+        part = force / strongest
         if slid[i] == STICKS:
             friction = -float(arrays["lam"][contact.slide_row])
-            if abs(friction) >= contact.coulomb.sticking_coefficient * force * (1.0 - AT_LIMIT):
+            if abs(friction) >= coulomb.sticking_coefficient * force * (1.0 - AT_LIMIT):
                 slips[i] = -np.sign(friction)
+            else:
+                leaves[i] = part <= NEAR_ZERO
         elif abs(slid[i]) == 1.0:
-            stops[i] = True
+            leaves[i] = part <= NEAR_ZERO and part < abs(float(arrays["phid"][contact.slide_row])) / fastest
+            stops[i] |= not leaves[i]
     falls = -arrays["phidd"][[sim.assembly.contacts[k].row for k in contacts]]
     return Settling(contacts, was, slid, memory[contacts, RATIO].copy(), leaves, slips, stops, falls)

@@ -238,18 +238,22 @@ def _locate(sim: "Simulation") -> None:
     ws, lc = sim.workspace.record, sim._loop.record
     h = float(sim.clock[TRIAL_STEP])
     contacts = range(len(sim.assembly.contacts))
-    watched = [k for k in contacts if crossed(ws, lc, k, h)]
-    ends = {k: (sim.gap(k), sim.gap_rate(k), _gap_acceleration(sim, k)) for k in watched}
-    found = {k: _event_step(sim, k, h, ends[k]) for k in watched}
-    step = min(min(found.values()), h)
-    if not sim.formula.exact and step <= AT_ONCE * h:
-        recall(ws, sim._method.record, 0)
-        sim.pending = [k for k in watched if found[k] <= AT_ONCE * h]
-        return
-    _trial(sim, step, h)
+    found: dict[int, float] = {}
+    step = h
+    while late := [k for k in contacts if k not in found and crossed(ws, lc, k, step)]:
+        # the shorter step may end where a gap is negative that the longer one has passed
+        ends = {k: (sim.gap(k), sim.gap_rate(k), _gap_acceleration(sim, k)) for k in late}
+        found |= {k: _event_step(sim, k, step, ends[k]) for k in late}
+        first = min(step, *found.values())
+        if not sim.formula.exact and first <= AT_ONCE * h:
+            recall(ws, sim._method.record, 0)
+            sim.pending = [k for k in found if found[k] <= AT_ONCE * h]
+            return
+        step = first
+        _trial(sim, step, h)
     accept(ws, sim._method.record, lc)
     sim.flush()
-    sim.pending = [k for k in watched if found[k] <= step * (1.0 + 1e-12)]
+    sim.pending = [k for k in found if found[k] <= step * (1.0 + 1e-12)]
 
 
 def _gap_acceleration(sim: "Simulation", k: int) -> float:

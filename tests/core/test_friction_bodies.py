@@ -273,7 +273,8 @@ END = 1.2
 
 @pytest.mark.parametrize("units", [(1e3, 1e3, 1e3), (1e2, 1e3, 1.0), (1e-1, 1e-3, 1e-2), (1.0, 1e6, 1.0)])
 def test_units_do_not_matter(units):
-    """m, kg, s against mm, g, ms and others; tolerances in the same units."""
+    """m, kg, s against mm, g, ms and others; tolerances in the same units. What counts as rest is 1e-12 of the largest
+    coordinate, or of 1 m where that is more: of the last bounces not all are the same."""
     length, _, time = units
     options = {"rtol": 1e-10, "method": "irk"}
     names, times, ends = history(simulate(tumble(), END, atol=1e-12, **options))
@@ -282,7 +283,7 @@ def test_units_do_not_matter(units):
     names_2, times_2, ends_2 = history(simulate(tumble(*units), END * time, atol=atol, **options), *units)
     assert len(names) > 8 and names_2 == names
     assert times_2 == pytest.approx(times, abs=1e-8)
-    assert ends_2 == pytest.approx(ends, abs=1e-8)
+    assert ends_2 == pytest.approx(ends, abs=1e-6)
 
 
 def test_the_mirror_image_moves_as_the_mirror_shows():
