@@ -2,6 +2,7 @@
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
+from .contact.disk_on_line import DiskOnLine2D, Line2D
 from .contact.friction import (
     AmbrosioFriction,
     BrownMcPheeFriction,
@@ -80,6 +81,7 @@ __all__ = [
     "Disk2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
+    "DiskOnLine2D",
     "DiskOnSegment2D",
     "Distance2D",
     "EquationError",
@@ -101,6 +103,7 @@ __all__ = [
     "KuwabaraKono",
     "LankaraniNikravesh",
     "LeeWang",
+    "Line2D",
     "LinearSystem",
     "Marker2D",
     "Material",

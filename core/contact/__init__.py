@@ -6,8 +6,12 @@ from pydantic import Field
 
 from .contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
 from .coordinate_contact import CoordinateContact
+from .disk_on_line import DiskOnLine2D
 from .segment2d import DiskOnSegment2D
 
-CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, DiskOnSegment2D, CoordinateContact)
+CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, DiskOnSegment2D, DiskOnLine2D, CoordinateContact)
 
-Contact = Annotated[DiskOnHalfPlane2D | DiskOnDisk2D | DiskOnSegment2D | CoordinateContact, Field(discriminator="type")]
+Contact = Annotated[
+    DiskOnHalfPlane2D | DiskOnDisk2D | DiskOnSegment2D | DiskOnLine2D | CoordinateContact,
+    Field(discriminator="type"),
+]

@@ -75,8 +75,8 @@ def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -
 @internal
 def _regularised(
     b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
-) -> None:
-    """The friction of an active force contact, by its regularised law."""
+) -> Any:
+    """The friction of an active force contact, by its regularised law: (F_T, dF_T/dv)."""
     coord = imat(b.coord, b.count, len(gradient))[e]
     extra = imat(b.extra, b.count, b.nextra)[e]
     par = mat(b.par, b.count, b.npar)[e]
@@ -109,14 +109,18 @@ def _regularised(
         add_product(
             values, slot, gradient, g_gradient, g_hessian, v, coord, by_normal * by_gap, by_normal * by_gap_rate
         )
+    return force, by_rate
 
 
 @internal
 def act_sliding(
     b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, s: float, gradient: Any, hessian: Any,
     period: float,
-) -> None:  # fmt: skip
-    """What a contact with friction adds for `job`: gap g, sliding distance s (which may jump by `period`)."""
+) -> Any:  # fmt: skip
+    """What a contact with friction adds for `job`: gap g, sliding distance s (which may jump by `period`).
+
+    Returns a regularised friction force and its derivative by the sliding velocity, (0, 0) if there is none.
+    """
     act(b, job, e, g, g_gradient, g_hessian)
     k = imat(b.extra, b.count, b.nextra)[e, 0]
     memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[k]
@@ -130,7 +134,8 @@ def act_sliding(
     if closed and memory[RATIO] != 0.0:
         _slip(b, job, e, -memory[RATIO], gradient, hessian)
     elif memory[MODE] == ACTIVE and imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS] != 0:
-        _regularised(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+        return _regularised(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+    return 0.0, 0.0
 
 
 @internal

@@ -95,6 +95,10 @@ class Element(Record):
         """This element's row in the tables of its kernel."""
         raise NotImplementedError(f"{type(self).__name__} must say how it becomes a row of its kernel's tables")
 
+    def rows(self, numbering: Numbering) -> Sequence[Row]:
+        """Its rows, one after another in the tables, for elements that have several; they share its constraints."""
+        return (self.row(numbering),)
+
     def markers(self) -> Sequence[Marker2D]:
         """The markers it uses (their bodies must exist)."""
         return ()

@@ -198,15 +198,16 @@ def assemble(model: Model) -> Assembly:
     contact_rows: dict[str, tuple[int, ...]] = {}
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
-        form, row = element.form(), element.row(numbering)
+        form = element.form()
         rows = tuple(range(len(row_names), len(row_names) + form.constraint_rows))
         row_names += [element.name] * form.constraint_rows
         if element.name in contact_names:
             contact_rows[element.name] = rows
         multipliers += element.multiplier_channels()
-        key = (kernel_address(form.kernel), len(row.coordinates))
-        forms[key] = form
-        grouped.setdefault(key, []).append((element, row, rows))
+        for row in element.rows(numbering):
+            key = (kernel_address(form.kernel), len(row.coordinates))
+            forms[key] = form
+            grouped.setdefault(key, []).append((element, row, rows))
     batches = []
     for key, members in grouped.items():
         batches.append(

@@ -19,6 +19,7 @@ from tlismni.core import (
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
+    DiskOnLine2D,
     DiskOnSegment2D,
     Distance2D,
     Flores,
@@ -30,6 +31,7 @@ from tlismni.core import (
     InputSignal,
     KelvinVoigt,
     LankaraniNikravesh,
+    Line2D,
     LinearSystem,
     Marker2D,
     Model,
@@ -132,10 +134,21 @@ ELEMENTS = {
         ),
         st.builds(DiskOnDisk2D, name=st.just("x"), a=disk, b=disk, law=law),
         st.builds(
-            DiskOnSegment2D, name=st.just("x"), disk=disk, segment=st.builds(Segment2D, marker=marker, length=positive),
-            law=law,
+            DiskOnSegment2D, name=st.just("x"), disk=disk, law=law,
+            segment=st.builds(Segment2D, marker=marker, length=positive, radius=positive),
         ),
-        st.builds(CoordinateContact, name=st.just("x"), offset=number, terms=terms, slide=terms, law=law),
+        st.builds(
+            DiskOnLine2D, name=st.just("x"), disk=disk, law=law,
+            line=st.builds(
+                Line2D, nodes=st.lists(st.builds(Marker2D, point=vector), min_size=2, max_size=4).map(tuple),
+                radius=positive, rounding=st.floats(0.1, 1.0),
+            ),
+        ),
+        st.builds(
+            CoordinateContact, name=st.just("x"), law=law, offset=number,
+            terms=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("y"), factor=positive)),
+            slide=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("x"), factor=positive)),
+        ),
         st.builds(
             DiskOnHalfPlane2D, name=st.just("x"), plane=st.builds(HalfPlane2D, marker=marker), disk=disk,
             law=st.builds(PoissonImpact, restitution=st.floats(0.0, 1.0)),
@@ -180,7 +193,7 @@ def test_the_list_of_elements_above_is_complete():
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
-        "DiskOnDisk2D", "DiskOnSegment2D", "CoordinateContact",
+        "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

@@ -9,6 +9,7 @@ from momentum import momentum_drift
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from tlismni.core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.contact.disk_on_line import DiskOnLine2D, Line2D
 from tlismni.core.contact.friction import TanhFriction
 from tlismni.core.contact.laws import (
     CarvalhoMartins,
@@ -204,10 +205,21 @@ def drop_on_a_segment() -> Model:
     return Model(bodies=(PointMass2D(name="ball", mass=1.0, position=(0.5, 1.0)),), contacts=(contact,))
 
 
+def drop_on_a_line() -> Model:
+    disk = Disk2D(marker=Marker2D(body="ball"), radius=0.1)
+    line = Line2D(nodes=(Marker2D(), Marker2D(body="end")))
+    bodies = (
+        PointMass2D(name="ball", mass=1.0, position=(0.5, 1.0)),
+        PointMass2D(name="end", mass=1.0, position=(1.0, 0.0)),
+    )
+    return Model(bodies=bodies, contacts=(DiskOnLine2D(name="floor", line=line, disk=disk, law=Hertz(stiffness=K)),))
+
+
 @needs_exudyn
 @pytest.mark.parametrize(
     "make, text",
     [
+        (drop_on_a_line, "'floor' is a DiskOnLine2D, for which no translation"),
         (drop_with_friction, "friction .Tanh., which is not translated"),
         (drop_on_a_segment, "'floor' is a DiskOnSegment2D, for which no translation"),
         (newton_drop, "constraint .* limit"),
