@@ -3,7 +3,7 @@
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
 from .contact.disk_on_line import DiskOnLine2D, Line2D
-from .contact.friction import CoulombFriction, TanhFriction
+from .contact.friction import CoulombFriction, LuGreFriction, TanhFriction
 from .contact.laws import (
     CarvalhoMartins,
     Flores,
@@ -94,6 +94,7 @@ __all__ = [
     "LeeWang",
     "Line2D",
     "LinearSystem",
+    "LuGreFriction",
     "Marker2D",
     "Material",
     "Model",
