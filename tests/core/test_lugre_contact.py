@@ -220,7 +220,7 @@ SOFT = LuGreFriction(
     viscous_damping=0.1,
 )  # fmt: skip
 A, B = RigidBody2D(name="a", mass=1.3, inertia=0.4), RigidBody2D(name="b", mass=0.7, inertia=0.2, position=(0.0, 1.0))
-HARD = KelvinVoigt(stiffness=60.0, damping=0.8)
+HARD = KelvinVoigt(stiffness=60.0, damping=0.1)
 CONTACTS = {
     "plane": DiskOnHalfPlane2D(
         name="c", plane=HalfPlane2D(marker=on("a", 0.3, -0.2, 0.4)), disk=Disk2D(marker=on("b", -0.4, 0.1), radius=1.8),

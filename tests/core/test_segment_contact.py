@@ -43,9 +43,9 @@ CASES = {
     "sticking": (NewtonImpact(restitution=0.5), CoulombFriction(coefficient=0.4), CLOSED, 0.0),
     "sliding": (NewtonImpact(restitution=0.5), CoulombFriction(coefficient=0.4), CLOSED, -1.0),
     "friction force": (
-        KelvinVoigt(stiffness=60.0, damping=0.8), TanhFriction(coefficient=0.4, transition_speed=0.3), ACTIVE, 0.0
+        KelvinVoigt(stiffness=60.0, damping=0.1), TanhFriction(coefficient=0.4, transition_speed=0.3), ACTIVE, 0.0
     ),
-    "bristles": (KelvinVoigt(stiffness=60.0, damping=0.8), BRISTLES, ACTIVE, 0.0),
+    "bristles": (KelvinVoigt(stiffness=60.0, damping=0.1), BRISTLES, ACTIVE, 0.0),
 }  # fmt: skip
 
 
