@@ -7,15 +7,13 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ..elements.base import Element, Form, Numbering, Row
-from ..elements.geometry2d import FULL_PATTERN, ROW_PATTERN
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker2D
-from .friction import CoulombFriction, Friction
+from .bristle2d import bristle_disk_on_disk_kernel, bristle_disk_on_half_plane_kernel
+from .friction import CoulombFriction, Friction, LuGreFriction
 from .laws import ContactLaw, ForceLaw
 from .normal2d import disk_on_disk_kernel, disk_on_half_plane_kernel
 from .sliding2d import sliding_disk_on_disk_kernel, sliding_disk_on_half_plane_kernel
-
-BOTH_ROWS: Sequence[tuple[int, int]] = tuple((k, j) for k in range(2) for j in range(6))
 
 
 class HalfPlane2D(Record):
@@ -39,14 +37,20 @@ Shape2D = Annotated[HalfPlane2D | Disk2D, Field(discriminator="type")]
 
 
 class Contact2D(Element):
-    """Base of the planar contacts. Class attributes: `kernel` without friction, `sliding_kernel` with it."""
+    """Base of the planar contacts.
+
+    Class attributes: `kernel` without friction, `sliding_kernel` with it, `bristle_kernel` with LuGre's; `width`, the
+    number of coordinates that gap and sliding distance depend on.
+    """
 
     sliding_kernel: ClassVar[Any]
+    bristle_kernel: ClassVar[Any]
+    width: ClassVar[int] = 6
 
     law: ContactLaw
     """What happens when the gap closes."""
     friction: Friction | None = None
-    """What resists sliding: Coulomb for contacts as constraints, a regularised law for those that act as forces."""
+    """What resists sliding: Coulomb's for contacts as constraints, a regularised law or LuGre's for forces."""
 
     @model_validator(mode="after")
     def _friction_fits(self) -> "Contact2D":
@@ -67,10 +71,29 @@ class Contact2D(Element):
 
     def form(self) -> Form:
         """A contact with friction has a second row, the sliding distance's."""
-        kind = type(self)
+        kind, n = type(self), self.width
         if self.friction is None:
-            return Form(kind.kernel, 1, FULL_PATTERN, ROW_PATTERN)
-        return Form(kind.sliding_kernel, 2, FULL_PATTERN, BOTH_ROWS)
+            kernel, rows, size = kind.kernel, 1, n
+        elif isinstance(self.friction, LuGreFriction):
+            kernel, rows, size = kind.bristle_kernel, 2, n + 1
+        else:
+            kernel, rows, size = kind.sliding_kernel, 2, n
+        full = tuple((i, j) for i in range(size) for j in range(size))
+        return Form(kernel, rows, full, tuple((k, j) for k in range(rows) for j in range(n)))
+
+    def internal_coordinates(self) -> Sequence[str]:
+        return ("bristle",) if isinstance(self.friction, LuGreFriction) else ()
+
+    def contact_rows(self, numbering: Numbering) -> Sequence[Row]:
+        """Its rows but for what LuGre's friction adds at their ends."""
+        return (self.row(numbering),)
+
+    def rows(self, numbering: Numbering) -> Sequence[Row]:
+        rows = self.contact_rows(numbering)
+        if not isinstance(self.friction, LuGreFriction):
+            return rows
+        last, own = self.friction.parameters()[-1], numbering.internal(self.name)
+        return tuple(Row((*row.parameters, last), (*row.coordinates, *own), row.extra) for row in rows)
 
     def extent(self) -> float:
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
@@ -113,6 +136,8 @@ class Contact2D(Element):
             return (0.0,) * 5, 0
         if isinstance(self.friction, CoulombFriction):
             return (self.friction.coefficient, 0.0, 0.0, 0.0, 0.0), 0
+        if isinstance(self.friction, LuGreFriction):
+            return self.friction.parameters()[:-1], 0
         return self.friction.formula_parameters(), numbering.friction_address(self.friction)
 
 
@@ -122,6 +147,7 @@ class DiskOnHalfPlane2D(Contact2D):
     type: Literal["DiskOnHalfPlane2D"] = "DiskOnHalfPlane2D"
     kernel: ClassVar[Any] = disk_on_half_plane_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_half_plane_kernel
+    bristle_kernel: ClassVar[Any] = bristle_disk_on_half_plane_kernel
 
     plane: HalfPlane2D
     disk: Disk2D
@@ -140,6 +166,7 @@ class DiskOnDisk2D(Contact2D):
     type: Literal["DiskOnDisk2D"] = "DiskOnDisk2D"
     kernel: ClassVar[Any] = disk_on_disk_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_disk_kernel
+    bristle_kernel: ClassVar[Any] = bristle_disk_on_disk_kernel
 
     a: Disk2D
     b: Disk2D

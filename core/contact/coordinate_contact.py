@@ -15,6 +15,7 @@ from ..compiled.views import imat, mat, vec
 from ..elements.base import Numbering, Row
 from ..model.base import Name, Record
 from ..model.markers import GROUND
+from .bristle2d import act_bristles
 from .contact2d import Contact2D
 from .normal2d import act
 from .sliding2d import act_sliding
@@ -50,6 +51,18 @@ def sliding_coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
         act_sliding(b, job, e, g, gradient, flat, s, along, flat, 0.0)
 
 
+@internal
+def bristle_coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
+    par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord)
+    q, flat, gradient, along = vec(b.q, b.n_extended), np.zeros(21), np.empty(6), np.empty(6)
+    for e in range(b.count):
+        g = par[e, 0]
+        for i in range(6):
+            gradient[i], along[i] = par[e, GAP_FACTORS + i], par[e, SLIDE_FACTORS + i]
+            g += gradient[i] * q[coord[e, i]]
+        act_bristles(b, job, e, g, gradient, flat, along, flat)
+
+
 class CoordinateTerm(Record):
     """`factor` times a coordinate of a body."""
 
@@ -72,6 +85,7 @@ class CoordinateContact(Contact2D):
     type: Literal["CoordinateContact"] = "CoordinateContact"
     kernel: ClassVar[Any] = coordinate_contact_kernel
     sliding_kernel: ClassVar[Any] = sliding_coordinate_contact_kernel
+    bristle_kernel: ClassVar[Any] = bristle_coordinate_contact_kernel
 
     offset: float = 0.0
     """Gap at coordinates zero, m."""

@@ -9,17 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from ..elements.base import Form, Numbering, Row
+from ..elements.base import Numbering, Row
 from ..elements.geometry2d import place
 from ..errors import ModelError
 from ..model.base import NonNegative, Record
 from ..model.markers import GROUND, Marker2D
 from .contact2d import Contact2D, Disk2D
 from .friction import CoulombFriction
-from .line2d import WIDTH, disk_on_line_kernel, sliding_disk_on_line_kernel
+from .line2d import WIDTH, bristle_disk_on_line_kernel, disk_on_line_kernel, sliding_disk_on_line_kernel
 from .segment2d import refuse_point_on_line
 
-FULL: Sequence[tuple[int, int]] = tuple((i, j) for i in range(WIDTH) for j in range(WIDTH))
 SHARPEST = math.radians(170.0)
 """Largest angle of a vertex: beyond it the line runs back on itself."""
 
@@ -55,6 +54,8 @@ class DiskOnLine2D(Contact2D):
     type: Literal["DiskOnLine2D"] = "DiskOnLine2D"
     kernel: ClassVar[Any] = disk_on_line_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_line_kernel
+    bristle_kernel: ClassVar[Any] = bristle_disk_on_line_kernel
+    width: ClassVar[int] = WIDTH
 
     line: Line2D
     disk: Disk2D
@@ -75,19 +76,13 @@ class DiskOnLine2D(Contact2D):
             )
         return self
 
-    def form(self) -> Form:
-        frictionless = self.friction is None
-        count = 1 if frictionless else 2
-        row = tuple((k, j) for k in range(count) for j in range(WIDTH))
-        return Form(type(self).kernel if frictionless else type(self).sliding_kernel, count, FULL, row)
-
     def extent(self) -> float:
         return self.disk.radius + self.line.radius
 
     def markers(self) -> Sequence[Marker2D]:
         return (*self.line.nodes, self.disk.marker)
 
-    def rows(self, numbering: Numbering) -> Sequence[Row]:
+    def contact_rows(self, numbering: Numbering) -> Sequence[Row]:
         """One row a piece.
 
         Raises

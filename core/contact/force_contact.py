@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from ..events import Event
 from ..system.assembly import ContactInfo
+from .friction import LuGreFriction
 from .laws import ForceLaw
 from .modes import ACTIVE, APPROACH_SPEED, LARGEST_APPROACH, LOSS_JUMP, MODE, OPEN, RELEASED
 
@@ -29,10 +30,19 @@ def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> 
     memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed, _settling_speed(sim, k, contact, law))
     memory[MODE] = ACTIVE
     memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
+    _let_bristles_go(sim, k, contact)
     sim.open_accounts[k] = sim.contact_accounts(k)
     sim.use_modes()
     sim.start_small(memory[APPROACH_SPEED])
     sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
+
+
+def _let_bristles_go(sim: "Engine", k: int, contact: ContactInfo) -> None:
+    """LuGre's bristles stand straight again; what they held is lost."""
+    if isinstance(contact.friction, LuGreFriction):
+        v = sim.workspace.arrays["v"]
+        sim.memory[k, LOSS_JUMP] += 0.5 * contact.friction.bristle_stiffness * float(v[contact.bristle]) ** 2
+        v[contact.bristle] = 0.0
 
 
 def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> float:
@@ -77,6 +87,7 @@ def _end_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw, mode:
         # what the spring still holds when the force has reached zero is never given back
         memory[LOSS_JUMP] += sim.elastic_energy(k, contact)
     memory[MODE] = RELEASED if early else OPEN
+    _let_bristles_go(sim, k, contact)
     impulse, loss = sim.contact_accounts(k)
     impulse_before, loss_before = sim.open_accounts.get(k, (0.0, 0.0))
     sim.use_modes()

@@ -17,6 +17,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import TANGENT
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along
+from .bristle2d import act_bristles
 from .curve2d import add_direction, arm_derivatives, foot_derivatives, length_derivatives, nearest_on_parabola
 from .normal2d import act
 from .sliding2d import act_sliding
@@ -77,7 +78,7 @@ def _weigh(par: Any, t: float, weights: Any) -> None:
 @internal
 def _find_piece(b: Any, first: int, points: Any, directions: Any, bends: Any, control: Any) -> Any:
     """(piece, t) of the nearest point of the line whose pieces begin with element `first`."""
-    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, WIDTH), vec(b.q, b.n_extended)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     best, t_best, least = first, 0.0, np.inf
     for e in range(first, first + imat(b.extra, b.count, b.nextra)[first, PIECES]):
         _place(q, coord[e], par[e], points, directions, bends)
@@ -110,7 +111,7 @@ def _foot(b: Any, first: int, points: Any, directions: Any, bends: Any, control:
     piece, t = _find_piece(b, first, points, directions, bends, control)
     par = mat(b.par, b.count, b.npar)[piece]
     extra = imat(b.extra, b.count, b.nextra)[piece]
-    _place(vec(b.q, b.n_extended), imat(b.coord, b.count, WIDTH)[piece], par, points, directions, bends)
+    _place(vec(b.q, b.n_extended), imat(b.coord, b.count, b.ncoord)[piece], par, points, directions, bends)
     _controls(par, points, control)
     _weigh(par, t, weights)
     _slopes(control, t, slopes)
@@ -144,15 +145,25 @@ def _stretch(weights: Any, directions: Any, slopes: Any, side: float, offset: fl
 @internal
 def _add_curl(b: Any, e: int, force: float, by_rate: float, gradient: Any, xi: Any, by_node: Any) -> None:
     """Tangent of a friction force along `gradient`, whose derivatives lack the skew part (xi a^T - a xi^T)/2."""
-    n = len(xi)
+    n = b.ncoord
+    values, slot, c_q = vec(b.values, b.n_values), imat(b.slot_s + 8 * e * n * n, n, n), vec(b.coef, 2)[0]
+    _add_turn(b, e, gradient, by_rate, xi, by_node)
+    for i in range(len(xi)):
+        for j in range(len(xi)):
+            values[slot[i, j]] -= c_q * force * 0.5 * (xi[i] * by_node[j] - by_node[i] * xi[j])
+
+
+@internal
+def _add_turn(b: Any, e: int, left: Any, factor: float, xi: Any, by_node: Any) -> None:
+    """What the skew part does to the sliding velocity: rows `left` of the tangent, (ncoord,) or fewer."""
+    n = b.ncoord
     coord, v = imat(b.coord, b.count, n)[e], vec(b.v, b.n_extended)
-    values, slot, c_q = vec(b.values, b.n_values), imat(b.slot_s, b.count, n * n)[e], vec(b.coef, 2)[0]
+    values, slot, c_q = vec(b.values, b.n_values), imat(b.slot_s + 8 * e * n * n, n, n), vec(b.coef, 2)[0]
     moved, stretched = 0.5 * along(xi, v, coord), 0.5 * along(by_node, v, coord)
-    for i in range(n):
-        for j in range(n):
-            skew = 0.5 * (xi[i] * by_node[j] - by_node[i] * xi[j])
-            turn = moved * by_node[j] - stretched * xi[j]
-            values[slot[n * i + j]] -= c_q * (force * skew + by_rate * gradient[i] * turn)
+    for j in range(len(xi)):
+        turn = c_q * factor * (moved * by_node[j] - stretched * xi[j])
+        for i in range(len(left)):
+            values[slot[i, j]] -= turn * left[i]
 
 
 @internal
@@ -172,52 +183,72 @@ def disk_on_line_kernel(job: int, t: float, b: Any) -> None:
 
 
 @internal
-def sliding_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
-    """With the velocity w . v of the disk's surface on the line's; w is no gradient where the line can stretch.
+def _slide_on_line(b: Any, first: int) -> Any:
+    """(piece, does the foot move, gap, gradient, Hessian, w, derivatives of w, grad xi, a's by the nodes) of the line
+    whose pieces begin with element `first`.
 
-    w = a grad xi - r grad phi + r grad theta_b, phi the direction of the normal: on a held end
-    -R grad phi + (R - r) grad(angle of the tangent) + r grad theta_b.
+    w . v is the velocity of the disk's surface on the line's; w is no gradient where the line can stretch:
+    w = a grad xi - r grad phi + r grad theta_b, phi the direction of the normal; on a held end
+    -R grad phi + (R - r) grad(angle of the tangent) + r grad theta_b. The symmetric part of its derivatives is given.
     """
     points, directions, bends = np.empty((NODES + 1, 2)), np.empty((WIDTH, 2)), np.empty((WIDTH, 2))
     control, weights, slopes = np.empty((3, 2)), np.empty((3, WIDTH)), np.empty((3, 2))
-    first, second, turn, by_node = np.empty((WIDTH, 2)), np.empty((PAIRS, 2)), np.empty(WIDTH), np.zeros(WIDTH)
+    one, two, turn, by_node = np.empty((WIDTH, 2)), np.empty((PAIRS, 2)), np.empty(WIDTH), np.zeros(WIDTH)
     xi, xi_hessian, g_gradient, g_hessian = np.empty(WIDTH), np.empty(PAIRS), np.empty(WIDTH), np.empty(PAIRS)
-    gradient, hessian = np.empty(WIDTH), np.empty(PAIRS)
+    gradient, hessian = np.zeros(WIDTH), np.zeros(PAIRS)
+    piece, _, moves, ex, ey = _foot(b, first, points, directions, bends, control, weights, slopes)
+    par = mat(b.par, b.count, b.npar)[piece]
+    both, radius = par[BOTH], par[RADIUS]
+    foot_derivatives(weights, directions, bends, ex, ey, slopes, moves, xi, xi_hessian)
+    arm_derivatives(weights, directions, bends, slopes, xi, xi_hessian, one, two)
+    d = length_derivatives(ex, ey, one, two, g_gradient, g_hessian)
+    tx, ty = slopes[0, 0], slopes[0, 1]
+    if moves:
+        side = 1.0 if tx * ey - ty * ex >= 0.0 else -1.0
+        a, growth = _stretch(weights, directions, slopes, side, both - radius, by_node)
+        k = 0
+        for i in range(WIDTH):
+            gradient[i] = a * xi[i]
+            for j in range(i, WIDTH):
+                mixed = 0.5 * (xi[i] * by_node[j] + xi[j] * by_node[i])
+                hessian[k] = a * xi_hessian[k] + growth * xi[i] * xi[j] + mixed
+                k += 1
+        add_direction(ex, ey, one, two, -radius, gradient, hessian, turn)
+    else:
+        add_direction(ex, ey, one, two, -both, gradient, hessian, turn)
+        k = 0
+        for i in range(WIDTH):
+            for c in range(2):
+                one[i, c] = weights[1, i] * directions[i, c]
+                two[k : k + WIDTH - i, c] = 0.0
+                two[k, c] = weights[1, i] * bends[i, c]
+            k += WIDTH - i
+        add_direction(tx, ty, one, two, both - radius, gradient, hessian, turn)
+    gradient[WIDTH - 1] += radius
+    return piece, moves, d - both, g_gradient, g_hessian, gradient, hessian, xi, by_node
+
+
+@internal
+def sliding_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
     e = 0
     while e < b.count:
-        piece, _, moves, ex, ey = _foot(b, e, points, directions, bends, control, weights, slopes)
-        par = mat(b.par, b.count, b.npar)[piece]
-        both, radius = par[BOTH], par[RADIUS]
-        foot_derivatives(weights, directions, bends, ex, ey, slopes, moves, xi, xi_hessian)
-        arm_derivatives(weights, directions, bends, slopes, xi, xi_hessian, first, second)
-        d = length_derivatives(ex, ey, first, second, g_gradient, g_hessian)
-        gradient[:] = 0.0
-        hessian[:] = 0.0
-        tx, ty = slopes[0, 0], slopes[0, 1]
-        if moves:
-            side = 1.0 if tx * ey - ty * ex >= 0.0 else -1.0
-            a, growth = _stretch(weights, directions, slopes, side, both - radius, by_node)
-            k = 0
-            for i in range(WIDTH):
-                gradient[i] = a * xi[i]
-                for j in range(i, WIDTH):
-                    mixed = 0.5 * (xi[i] * by_node[j] + xi[j] * by_node[i])
-                    hessian[k] = a * xi_hessian[k] + growth * xi[i] * xi[j] + mixed
-                    k += 1
-            add_direction(ex, ey, first, second, -radius, gradient, hessian, turn)
-        else:
-            add_direction(ex, ey, first, second, -both, gradient, hessian, turn)
-            k = 0
-            for i in range(WIDTH):
-                for c in range(2):
-                    first[i, c] = weights[1, i] * directions[i, c]
-                    second[k : k + WIDTH - i, c] = 0.0
-                    second[k, c] = weights[1, i] * bends[i, c]
-                k += WIDTH - i
-            add_direction(tx, ty, first, second, both - radius, gradient, hessian, turn)
-        gradient[WIDTH - 1] += radius
-        # no sliding distance: what sticks does so by a law that needs none
-        force, by_rate = act_sliding(b, job, piece, d - both, g_gradient, g_hessian, 0.0, gradient, hessian, 0.0)
+        piece, moves, g, g_gradient, g_hessian, gradient, hessian, xi, by_node = _slide_on_line(b, e)
+        # without a sliding distance: none could be held
+        force, by_rate = act_sliding(b, job, piece, g, g_gradient, g_hessian, 0.0, gradient, hessian, 0.0)
         if job == TANGENT and moves:
             _add_curl(b, piece, force, by_rate, gradient, xi, by_node)
+        e += imat(b.extra, b.count, b.nextra)[e, PIECES]
+
+
+@internal
+def bristle_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
+    bristle = np.zeros(WIDTH + 1)
+    bristle[WIDTH] = 1.0
+    e = 0
+    while e < b.count:
+        piece, moves, g, g_gradient, g_hessian, gradient, hessian, xi, by_node = _slide_on_line(b, e)
+        force, by_rate, z_by_rate = act_bristles(b, job, piece, g, g_gradient, g_hessian, gradient, hessian)
+        if job == TANGENT and moves:
+            _add_curl(b, piece, force, by_rate, gradient, xi, by_node)
+            _add_turn(b, piece, bristle, z_by_rate, xi, by_node)
         e += imat(b.extra, b.count, b.nextra)[e, PIECES]

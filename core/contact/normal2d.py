@@ -36,7 +36,7 @@ def evaluate_law(b: Any, e: int, k: int, g: float, rate: float) -> Any:
 @internal
 def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessian: Any) -> None:
     """The force law of element e, contact k: what it adds for `job`."""
-    n = len(gradient)
+    n = b.ncoord
     coord = imat(b.coord, b.count, n)[e]
     extra = imat(b.extra, b.count, b.nextra)
     v = vec(b.v, b.n_extended)
@@ -52,7 +52,7 @@ def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessia
     elif active and job == TANGENT:
         values = vec(b.values, b.n_values)
         coef = vec(b.coef, 2)
-        slot = imat(b.slot_s, b.count, n * n)[e]
+        slot = imat(b.slot_s + 8 * e * n * n, n, n)
         add_hessian(values, slot, gradient, hessian, -coef[0] * f)
         by_value, by_rate = coef[0] * f_d + coef[1] * f_dd, coef[0] * f_dd
         add_product(values, slot, gradient, gradient, hessian, v, coord, by_value, by_rate)

@@ -19,6 +19,7 @@ from ..elements.base import Numbering, Row
 from ..elements.geometry2d import arms, bearing, distance, height_over_line
 from ..model.base import NonNegative, Positive, Record
 from ..model.markers import Marker2D
+from .bristle2d import act_bristles
 from .contact2d import Contact2D, Disk2D
 from .normal2d import act
 from .sliding2d import QUARTER_TURN, act_sliding
@@ -103,12 +104,21 @@ def disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
 
 @internal
 def sliding_disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
-    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6), vec(b.q, b.n_extended)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
         g, g_gradient, g_hessian = gap_to_segment(q, coord[e], par[e])
         s, gradient, hessian = slide_on_segment(q, coord[e], par[e])
         period = 2.0 * par[e, LENGTH] + 2.0 * np.pi * par[e, 5]
         act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, period)
+
+
+@internal
+def bristle_disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
+    for e in range(b.count):
+        g, g_gradient, g_hessian = gap_to_segment(q, coord[e], par[e])
+        _, gradient, hessian = slide_on_segment(q, coord[e], par[e])
+        act_bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
 
 
 class Segment2D(Record):
@@ -134,6 +144,7 @@ class DiskOnSegment2D(Contact2D):
     type: Literal["DiskOnSegment2D"] = "DiskOnSegment2D"
     kernel: ClassVar[Any] = disk_on_segment_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_segment_kernel
+    bristle_kernel: ClassVar[Any] = bristle_disk_on_segment_kernel
 
     segment: Segment2D
     disk: Disk2D

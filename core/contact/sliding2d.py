@@ -53,7 +53,7 @@ def _slide_row(
 @internal
 def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -> None:
     """Friction of a closed contact in proportion to its normal force: F_T = slope lam; slope = mu s where it slides."""
-    coord = imat(b.coord, b.count, len(gradient))[e]
+    coord = imat(b.coord, b.count, b.ncoord)[e]
     lam = vec(b.lam, b.m_extended)[imat(b.row, b.count, 2)[e, 0]]
     if job == RESIDUAL:
         r = vec(b.r, b.n_extended)
@@ -62,14 +62,40 @@ def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -
         vec(b.monitor, b.n_monitor)[b.n_memory + imat(b.extra, b.count, b.nextra)[e, 0]] = slope * lam
     elif job == TANGENT:
         values = vec(b.values, b.n_values)
-        n = len(gradient)
+        n = b.ncoord
         slot = imat(b.slot_jt, b.count, 2 * n)[e]
         for i in range(len(gradient)):
             values[slot[i]] -= slope * gradient[i]
-        add_hessian(values, imat(b.slot_s, b.count, n * n)[e], gradient, hessian, -vec(b.coef, 2)[0] * slope * lam)
+        add_hessian(values, imat(b.slot_s + 8 * e * n * n, n, n), gradient, hessian, -vec(b.coef, 2)[0] * slope * lam)
     elif job == POWER:
         rate = along(gradient, vec(b.v, b.n_extended), coord)
         vec(b.a, b.n_extended)[imat(b.extra, b.count, b.nextra)[e, 3]] -= slope * lam * rate
+
+
+@internal
+def add_friction(
+    b: Any, job: int, e: int, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any, force: float,
+    by_rate: float, by_normal: float, normal_d: float, normal_dd: float,
+) -> None:  # fmt: skip
+    """Residual or tangent of a friction force that depends on the sliding velocity and on the normal force, and that
+    on the penetration and its rate."""
+    n = b.ncoord
+    coord, v = imat(b.coord, b.count, n)[e], vec(b.v, b.n_extended)
+    if job == RESIDUAL:
+        r = vec(b.r, b.n_extended)
+        for i in range(len(gradient)):
+            r[coord[i]] -= force * gradient[i]
+        vec(b.monitor, b.n_monitor)[b.n_memory + imat(b.extra, b.count, b.nextra)[e, 0]] = force
+    elif job == TANGENT:
+        values = vec(b.values, b.n_values)
+        slot = imat(b.slot_s + 8 * e * n * n, n, n)
+        c_q, c_v = vec(b.coef, 2)[0], vec(b.coef, 2)[1]
+        add_hessian(values, slot, gradient, hessian, -c_q * force)
+        add_product(values, slot, gradient, gradient, hessian, v, coord, -c_v * by_rate, -c_q * by_rate)
+        by_gap, by_gap_rate = c_q * normal_d + c_v * normal_dd, c_q * normal_dd
+        add_product(
+            values, slot, gradient, g_gradient, g_hessian, v, coord, by_normal * by_gap, by_normal * by_gap_rate
+        )
 
 
 @internal
@@ -77,7 +103,7 @@ def _regularised(
     b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
 ) -> Any:
     """The friction of an active force contact, by its regularised law: (F_T, dF_T/dv)."""
-    coord = imat(b.coord, b.count, len(gradient))[e]
+    coord = imat(b.coord, b.count, b.ncoord)[e]
     extra = imat(b.extra, b.count, b.nextra)[e]
     par = mat(b.par, b.count, b.npar)[e]
     v = vec(b.v, b.n_extended)
@@ -90,24 +116,11 @@ def _regularised(
     )  # fmt: skip
     if not pushing:
         by_normal = 0.0
-    if job == RESIDUAL:
-        r = vec(b.r, b.n_extended)
-        for i in range(len(gradient)):
-            r[coord[i]] -= force * gradient[i]
-        vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = force
-    elif job == POWER:
+    if job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * rate
-    elif job == TANGENT:
-        n = len(gradient)
-        values = vec(b.values, b.n_values)
-        slot = imat(b.slot_s, b.count, n * n)[e]
-        c_q, c_v = vec(b.coef, 2)[0], vec(b.coef, 2)[1]
-        add_hessian(values, slot, gradient, hessian, -c_q * force)
-        # with the sliding velocity, and with the gap and its rate through the normal force
-        add_product(values, slot, gradient, gradient, hessian, v, coord, -c_v * by_rate, -c_q * by_rate)
-        by_gap, by_gap_rate = c_q * normal_d + c_v * normal_dd, c_q * normal_dd
-        add_product(
-            values, slot, gradient, g_gradient, g_hessian, v, coord, by_normal * by_gap, by_normal * by_gap_rate
+    else:
+        add_friction(
+            b, job, e, g_gradient, g_hessian, gradient, hessian, force, by_rate, by_normal, normal_d, normal_dd
         )
     return force, by_rate
 
@@ -139,36 +152,43 @@ def act_sliding(
 
 
 @internal
+def slide_on_half_plane(q: Any, coord: Any, par: Any) -> Any:
+    """(gap, gradient, Hessian, sliding distance, gradient, Hessian) of one row of coordinates and parameters."""
+    ux, uy, wx, wy, angle, radius = par[0], par[1], par[2], par[3], par[4], par[5]
+    g, g_gradient, g_hessian = height_over_line(q, coord, ux, uy, wx, wy, angle)
+    # along t = -J n, n the normal, and rolling: d = t . (r_b - r_a) + radius (theta_b - theta_a)
+    s, (t0, t1, t2, t3, t4, t5), hessian = height_over_line(q, coord, ux, uy, wx, wy, angle - QUARTER_TURN)
+    s += radius * (q[coord[5]] - q[coord[2]])
+    return g - radius, g_gradient, g_hessian, s, (t0, t1, t2 - radius, t3, t4, t5 + radius), hessian
+
+
+@internal
+def slide_on_disk(q: Any, coord: Any, par: Any) -> Any:
+    """The same for two disks."""
+    ux, uy, wx, wy, both, first = par[0], par[1], par[2], par[3], par[5], par[6]
+    d, g_gradient, g_hessian = distance(q, coord, ux, uy, wx, wy)
+    # d = -(R_a + R_b) phi + R_a theta_a + R_b theta_b, phi the direction from a to b
+    phi, turn, bend = bearing(q, coord, ux, uy, wx, wy)
+    turn *= -both
+    bend *= -both
+    turn[2] += first
+    turn[5] += both - first
+    s = first * q[coord[2]] + (both - first) * q[coord[5]] - both * phi
+    # tuples, so that the loops over them have lengths that the compiler knows
+    return d - both, g_gradient, g_hessian, s, to_fixed_tuple(turn, 6), to_fixed_tuple(bend, 21)
+
+
+@internal
 def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
-    par = mat(b.par, b.count, b.npar)
-    coord = imat(b.coord, b.count, 6)
-    q = vec(b.q, b.n_extended)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
-        ux, uy, wx, wy, angle, radius = par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4], par[e, 5]
-        g, g_gradient, g_hessian = height_over_line(q, coord[e], ux, uy, wx, wy, angle)
-        # along t = -J n, n the normal, and rolling: d = t . (r_b - r_a) + radius (theta_b - theta_a)
-        s, t_gradient, hessian = height_over_line(q, coord[e], ux, uy, wx, wy, angle - QUARTER_TURN)
-        t0, t1, t2, t3, t4, t5 = t_gradient
-        gradient = (t0, t1, t2 - radius, t3, t4, t5 + radius)
-        s += radius * (q[coord[e, 5]] - q[coord[e, 2]])
-        act_sliding(b, job, e, g - radius, g_gradient, g_hessian, s, gradient, hessian, 0.0)
+        g, g_gradient, g_hessian, s, gradient, hessian = slide_on_half_plane(q, coord[e], par[e])
+        act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 0.0)
 
 
 @internal
 def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
-    par = mat(b.par, b.count, b.npar)
-    coord = imat(b.coord, b.count, 6)
-    q = vec(b.q, b.n_extended)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
-        ux, uy, wx, wy, both, first = par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 5], par[e, 6]
-        d, g_gradient, g_hessian = distance(q, coord[e], ux, uy, wx, wy)
-        # d = -(R_a + R_b) phi + R_a theta_a + R_b theta_b, phi the direction from a to b
-        phi, turn, bend = bearing(q, coord[e], ux, uy, wx, wy)
-        turn *= -both
-        bend *= -both
-        turn[2] += first
-        turn[5] += both - first
-        # tuples, so that the loops over them have lengths that the compiler knows
-        gradient, hessian = to_fixed_tuple(turn, 6), to_fixed_tuple(bend, 21)
-        s = first * q[coord[e, 2]] + (both - first) * q[coord[e, 5]] - both * phi
-        act_sliding(b, job, e, d - both, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * both)
+        g, g_gradient, g_hessian, s, gradient, hessian = slide_on_disk(q, coord[e], par[e])
+        act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * par[e, 5])

@@ -33,6 +33,10 @@ class Numbering(Protocol):
         """Offset of a time function in the pool."""
         ...
 
+    def internal(self, name: str) -> tuple[int, ...]:
+        """Indices of the internal coordinates of the element `name`."""
+        ...
+
     def contact(self, name: str) -> int:
         """Number of the contact `name`."""
         ...
@@ -98,6 +102,11 @@ class Element(Record):
     def rows(self, numbering: Numbering) -> Sequence[Row]:
         """Its rows, one after another in the tables, for elements that have several; they share its constraints."""
         return (self.row(numbering),)
+
+    def internal_coordinates(self) -> Sequence[str]:
+        """Names of its internal coordinates: states z of its own, each the velocity of a coordinate of unit mass,
+        1 a = z'. They come after those of the bodies; their positions mean nothing."""
+        return ()
 
     def markers(self) -> Sequence[Marker2D]:
         """The markers it uses (their bodies must exist)."""

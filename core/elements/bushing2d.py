@@ -42,21 +42,21 @@ def bushing2d_kernel(job: int, t: float, b: Any) -> None:
         elif job == TANGENT:
             values = vec(b.values, b.n_values)
             coef = vec(b.coef, 2)
-            slot = imat(b.slot_s, b.count, 36)[e]
+            slot = imat(b.slot_s + 8 * 36 * e, 6, 6)
             add_hessian(values, slot, gradient, hessian, coef[0] * k)
             for i in range(6):
                 for j in range(6):
-                    values[slot[6 * i + j]] += coef[1] * c * (along_x[i] * along_x[j] + along_y[i] * along_y[j])
+                    values[slot[i, j]] += coef[1] * c * (along_x[i] * along_x[j] + along_y[i] * along_y[j])
                 # d' depends on the angles through the offsets
-                values[slot[6 * i + 2]] += coef[0] * c * v[ta] * (along_x[i] * ax + along_y[i] * ay)
-                values[slot[6 * i + 5]] -= coef[0] * c * v[tb] * (along_x[i] * bx + along_y[i] * by)
-            values[slot[14]] += coef[0] * c * (ax * rate_x + ay * rate_y)
-            values[slot[35]] -= coef[0] * c * (bx * rate_x + by * rate_y)
+                values[slot[i, 2]] += coef[0] * c * v[ta] * (along_x[i] * ax + along_y[i] * ay)
+                values[slot[i, 5]] -= coef[0] * c * v[tb] * (along_x[i] * bx + along_y[i] * by)
+            values[slot[2, 2]] += coef[0] * c * (ax * rate_x + ay * rate_y)
+            values[slot[5, 5]] -= coef[0] * c * (bx * rate_x + by * rate_y)
             stiff = coef[0] * k_turn + coef[1] * c_turn
-            values[slot[14]] += stiff
-            values[slot[17]] -= stiff
-            values[slot[32]] -= stiff
-            values[slot[35]] += stiff
+            values[slot[2, 2]] += stiff
+            values[slot[2, 5]] -= stiff
+            values[slot[5, 2]] -= stiff
+            values[slot[5, 5]] += stiff
         elif job == ENERGY:
             vec(b.energy, 3)[2] += k * half + 0.5 * k_turn * turn * turn
         elif job == POWER:

@@ -128,17 +128,17 @@ def along(gradient: Any, x: Any, coord: Any) -> float:
 def add_product(
     values: Any, slot: Any, left: Any, gradient: Any, hessian: Any, v: Any, coord: Any, by_value: float, by_rate: float
 ) -> None:
-    """values[slot(p, j)] += left_p (by_value G + by_rate H v)_j: how a force along `left` changes with the value of the
+    """values[slot[p, j]] += left_p (by_value G + by_rate H v)_j: how a force along `left` changes with the value of the
     function with gradient G and with its rate G . v."""
-    n, i, j = len(gradient), 0, 0
+    i, j = 0, 0
     for k in range(len(hessian)):
         x, y = by_rate * hessian[k] * v[coord[i]], by_rate * hessian[k] * v[coord[j]]
         if i == j:
             x += by_value * gradient[j]
         for p in range(len(gradient)):
-            values[slot[n * p + j]] += left[p] * x
+            values[slot[p, j]] += left[p] * x
             if i != j:
-                values[slot[n * p + i]] += left[p] * y
+                values[slot[p, i]] += left[p] * y
         j += 1
         if j == len(gradient):
             i += 1
@@ -147,12 +147,12 @@ def add_product(
 
 @internal
 def add_hessian(values: Any, slot: Any, gradient: Any, hessian: Any, factor: float) -> None:
-    """values[slot(i, j)] += factor H_ij for all pairs of local coordinates."""
-    n, i, j = len(gradient), 0, 0
+    """values[slot[i, j]] += factor H_ij for all pairs of local coordinates."""
+    i, j = 0, 0
     for k in range(len(hessian)):
-        values[slot[n * i + j]] += factor * hessian[k]
+        values[slot[i, j]] += factor * hessian[k]
         if i != j:
-            values[slot[n * j + i]] += factor * hessian[k]
+            values[slot[j, i]] += factor * hessian[k]
         j += 1
         if j == len(gradient):
             i += 1
@@ -162,7 +162,7 @@ def add_hessian(values: Any, slot: Any, gradient: Any, hessian: Any, factor: flo
 @internal
 def levels(b: Any, e: int, row: int, factor: float, g: float, gradient: Any, hessian: Any) -> None:
     """Row `row` of phi, phid and phidd: value, rate and acceleration of `factor * g`."""
-    coord = imat(b.coord, b.count, len(gradient))[e]
+    coord = imat(b.coord, b.count, b.ncoord)[e]
     v = vec(b.v, b.n_extended)
     vec(b.phi, b.m_extended)[row] = factor * g
     vec(b.phid, b.m_extended)[row] = factor * along(gradient, v, coord)
@@ -182,7 +182,7 @@ def constrain(
     b: Any, job: int, e: int, row: int, local_row: int, factor: float, g: float, gradient: Any, hessian: Any
 ) -> None:
     """Residual or tangent of the scalar constraint `factor * g = 0` of element `e` of the batch."""
-    n = len(gradient)
+    n = b.ncoord
     lam = vec(b.lam, b.m_extended)[row]
     if job == RESIDUAL:
         levels(b, e, row, factor, g, gradient, hessian)
@@ -192,7 +192,7 @@ def constrain(
             r[coord[i]] += factor * gradient[i] * lam
     else:
         values = vec(b.values, b.n_values)
-        slot = imat(b.slot_s, b.count, n * n)[e]
+        slot = imat(b.slot_s + 8 * e * n * n, n, n)
         add_hessian(values, slot, gradient, hessian, vec(b.coef, 2)[0] * factor * lam)
         slot_j = imat(b.slot_j, b.count, n * b.nrow)[e]
         slot_jt = imat(b.slot_jt, b.count, n * b.nrow)[e]

@@ -36,7 +36,7 @@ def spring_damper2d_kernel(job: int, t: float, b: Any) -> None:
         elif job == TANGENT:
             values = vec(b.values, b.n_values)
             coef = vec(b.coef, 2)
-            slot = imat(b.slot_s, b.count, 36)[e]
+            slot = imat(b.slot_s + 8 * 36 * e, 6, 6)
             add_hessian(values, slot, gradient, hessian, coef[0] * force)
             by_value, by_rate = coef[0] * k + coef[1] * c, coef[0] * c
             add_product(values, slot, gradient, gradient, hessian, v, coord[e], by_value, by_rate)

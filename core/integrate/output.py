@@ -73,6 +73,9 @@ class ChannelTable:
             self._formulas.append((channel, layout.multipliers.start + k))
         for k, contact in enumerate(assembly.contacts):
             self._add_contact(k, contact.name, contact.slide_row >= 0)
+            if contact.bristle >= 0:
+                channel = Channel(f"{contact.name}.bristle", "m", "deflection of the friction's bristles")
+                self._formulas.append((channel, layout.v.start + contact.bristle))
         self._add_energies(assembly)
         for column, level, unit in zip(
             layout.residuals, ("position", "velocity", "acceleration"), ("m", "m/s", "m/s2"), strict=True

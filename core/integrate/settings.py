@@ -134,6 +134,8 @@ def set_control(
         angles = assembly.is_angle
         arrays["atol_q"][:n] = np.where(angles, atol["angle"], atol["length"])
         arrays["atol_v"][:n] = np.where(angles, atol["angular_speed"], atol["speed"])
+        # the state is the velocity of such a coordinate, and a deflection: a length
+        arrays["atol_v"][:n][assembly.is_internal] = atol["length"]
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     # differences over several steps see what the constraints leave open: it has to be small against the tolerances
     finest = (settings.newton_tolerance or 1.0) if fixed else float(min(arrays["atol_q"][:n], default=1.0))

@@ -8,18 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.kernels import kernel_address
-from ..contact.friction import CoulombFriction, Friction, FrictionLaw, friction_address
-from ..contact.laws import ForceLaw, ImpactLaw, law_address
+from ..contact.friction import CoulombFriction, Friction
+from ..contact.laws import ForceLaw, ImpactLaw
 from ..description import Model
 from ..elements.base import Coordinate, Element, Form, Row
+from ..elements.internal import internal_coordinates_kernel
 from ..elements.planar_body import PlanarBody
 from ..errors import ModelError
 from ..model.channels import Channel
-from ..model.markers import GROUND
-from ..model.signals import Signal
-
-GROUND_SLOTS = 3
-"""Extended vectors end in the ground's (x, y, angle), which stay zero, and the work accounts."""
+from .numbering import GROUND_SLOTS, ModelNumbering
 
 
 @dataclass
@@ -51,6 +48,8 @@ class ContactInfo:
     slide_row: int = -1
     """Row of the sliding distance; -1: without friction."""
     friction: Friction | None = None
+    bristle: int = -1
+    """Index of its friction's internal coordinate, whose velocity is the deflection of the bristles; -1: none."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -86,6 +85,9 @@ class Assembly:
     """Typical magnitude of each coordinate, so that units do not choose the partition."""
     longest_step: float = np.inf
     """Step beyond which error control could miss what a time function does, s."""
+    n_internal: int = 0
+    """How many of the coordinates, the last ones, are internal ones of elements: states without a place, whose values
+    are the velocities."""
     bind: Callable[[Any], None] | None = None
     """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
     user_error: list[BaseException] = field(default_factory=list)
@@ -98,7 +100,14 @@ class Assembly:
         if not self.contacts:
             return np.full(self.n, np.inf)
         smallest = min(contact.extent for contact in self.contacts)
-        return np.ascontiguousarray(0.5 * np.minimum(self.coordinate_scale, smallest))
+        leap = np.ascontiguousarray(0.5 * np.minimum(self.coordinate_scale, smallest))
+        leap[self.n - self.n_internal :] = np.inf
+        return leap
+
+    @property
+    def is_internal(self) -> NDArray[np.bool_]:
+        """Which coordinates are internal ones, (n,)."""
+        return np.arange(self.n) >= self.n - self.n_internal
 
     @property
     def is_angle(self) -> NDArray[np.bool_]:
@@ -122,61 +131,6 @@ class Assembly:
         return self.n + GROUND_SLOTS + self.work_names.index(name)
 
 
-class _Numbering:
-    """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
-
-    def __init__(self, model: Model) -> None:
-        self.gravity = model.gravity
-        self.index: dict[str, tuple[int, ...]] = {}
-        self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
-        self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
-        self.pool: list[float] = []
-        self.work_names: list[str] = []
-        self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
-        self.names = {body.name: body.coordinate_names for body in model.bodies}
-        n = sum(len(names) for names in self.names.values())
-        self.n = n
-        self.index[GROUND] = (n, n + 1, n + 2)
-        start = 0
-        for body in model.bodies:
-            count = len(self.names[body.name])
-            own = tuple(range(start, start + count))
-            if isinstance(body, PlanarBody):
-                own += tuple(range(n + count, n + GROUND_SLOTS))
-                q0 = body.initial_state()[0]
-                self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
-            self.index[body.name] = own
-            start += count
-
-    def coordinates(self, body: str) -> tuple[int, ...]:
-        return self.index[body]
-
-    def coordinate(self, body: str, name: str) -> int:
-        return self.index[body][self.names[body].index(name)]
-
-    def initial(self, body: str) -> tuple[float, float, float]:
-        return self.initial_positions[body]
-
-    def signal(self, signal: Signal) -> int:
-        offset = len(self.pool)
-        self.pool.extend(float(x) for x in signal.pool(self.inputs))
-        return offset
-
-    def contact(self, name: str) -> int:
-        return self.contact_numbers[name]
-
-    def law_address(self, law: ForceLaw) -> int:
-        return law_address(law)
-
-    def friction_address(self, law: FrictionLaw) -> int:
-        return friction_address(law)
-
-    def work(self, name: str) -> int:
-        if name not in self.work_names:
-            self.work_names.append(name)
-        return self.n + GROUND_SLOTS + self.work_names.index(name)
-
-
 def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
     return np.ascontiguousarray(np.array(rows, dtype=dtype).reshape(len(rows), -1))
 
@@ -190,7 +144,7 @@ def assemble(model: Model) -> Assembly:
                 f"both shapes of contact '{contact.name}' are on '{bodies[0]}': their gap never changes; "
                 "give it shapes on two bodies"
             )
-    numbering = _Numbering(model)
+    numbering = ModelNumbering(model)
     grouped: dict[tuple[int, int], list[tuple[Element, Row, tuple[int, ...]]]] = {}
     forms: dict[tuple[int, int], Form] = {}
     row_names: list[str] = []
@@ -222,7 +176,11 @@ def assemble(model: Model) -> Assembly:
                 np.array([numbering.contact_numbers.get(e.name, -1) for e, _, _ in members], dtype=np.int64),
             )
         )
-    states = [body.initial_state() for body in model.bodies]
+    internal = np.arange(numbering.n - len(numbering.internal_names), numbering.n)
+    if len(internal):
+        batches.append(_internal_batch(internal))
+    rest = (np.zeros(len(internal)),) * 2
+    states = [*(body.initial_state() for body in model.bodies), rest]
     columns, names = [], []
     for body in model.bodies:
         for coordinate, index in zip(body.coordinate_records(), numbering.index[body.name], strict=False):
@@ -238,7 +196,7 @@ def assemble(model: Model) -> Assembly:
         q0=q0,
         v0=np.array([x for _, v in states for x in v], dtype=np.float64),
         row_names=row_names,
-        coordinate_names=names,
+        coordinate_names=[*names, *numbering.internal_names],
         contacts=[
             ContactInfo(
                 c.name,
@@ -249,6 +207,7 @@ def assemble(model: Model) -> Assembly:
                 c.extent(),
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 c.friction,
+                next(iter(numbering.internal(c.name)), -1),
             )
             for c in model.contacts
         ],
@@ -259,15 +218,28 @@ def assemble(model: Model) -> Assembly:
         breakpoints=sorted({t for e in model.elements() for s in e.signals() for t in s.breakpoints()}),
         multiplier_channels=multipliers,
         body_columns=columns,
-        coordinate_scale=_coordinate_scale(model, columns),
+        coordinate_scale=_coordinate_scale(model, columns, len(internal)),
+        n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
 
 
-def _coordinate_scale(model: Model, columns: Sequence[tuple[str, Coordinate, int]]) -> NDArray[np.float64]:
+def _internal_batch(internal: NDArray[np.int64]) -> Batch:
+    """The unit masses of internal coordinates."""
+    count = len(internal)
+    nothing = np.zeros((count, 0), dtype=np.int64)
+    address = kernel_address(internal_coordinates_kernel)
+    none = np.full(count, -1, dtype=np.int64)
+    return Batch(address, np.zeros((count, 0)), internal[:, None].copy(), nothing, nothing, ((0, 0),), (), none)
+
+
+def _coordinate_scale(
+    model: Model, columns: Sequence[tuple[str, Coordinate, int]], n_internal: int
+) -> NDArray[np.float64]:
     """What the coordinates say, 1 for angles; for translations of planar bodies the size of the mechanism, so that m
-    and mm give the same partition."""
+    and mm give the same partition. Internal coordinates change no size: they have that of the mechanism."""
     points = [body.position for body in model.bodies if isinstance(body, PlanarBody)]
     points += [marker.point for e in model.elements() for marker in e.markers()]
     size = max((max(abs(x), abs(y)) for x, y in points), default=0.0) or 1.0
-    return np.array([size if coordinate.scale is None else coordinate.scale for _, coordinate, _ in columns])
+    scales = [size if coordinate.scale is None else coordinate.scale for _, coordinate, _ in columns]
+    return np.array([*scales, *(size,) * n_internal])

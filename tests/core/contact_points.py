@@ -30,8 +30,9 @@ class ContactPoint(Point):
 def state_at(point, q, seed):
     """A state (t, q, v, a, lam) with random rates and multipliers."""
     random = np.random.default_rng(seed)
+    internal = np.zeros(point.n - len(q))
     return [
-        0.0, np.asarray(q, dtype=float), *(random.uniform(-1.0, 1.0, point.n) for _ in range(2)),
+        0.0, np.array([*q, *internal], dtype=float), *(random.uniform(-1.0, 1.0, point.n) for _ in range(2)),
         random.uniform(-2.0, -0.5, point.m),
     ]  # fmt: skip
 

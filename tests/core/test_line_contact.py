@@ -16,6 +16,7 @@ from tlismni.core import (
     HalfPlane2D,
     KelvinVoigt,
     Line2D,
+    LuGreFriction,
     Marker2D,
     Model,
     ModelError,
@@ -39,7 +40,13 @@ CASES = {
     "open": (NewtonImpact(restitution=0.5), None, OPEN),
     "force": (KelvinVoigt(stiffness=4.0, damping=0.8), None, ACTIVE),
     "friction force": (
-        KelvinVoigt(stiffness=4.0, damping=0.8), TanhFriction(coefficient=0.4, transition_speed=0.3), ACTIVE
+        KelvinVoigt(stiffness=60.0, damping=0.1), TanhFriction(coefficient=0.4, transition_speed=0.3), ACTIVE
+    ),
+    "bristles": (
+        KelvinVoigt(stiffness=60.0, damping=0.1),
+        LuGreFriction(coefficient=0.4, static_coefficient=0.6, stribeck_speed=0.5, bristle_stiffness=0.3,
+                      bristle_damping=0.2, viscous_damping=0.1),
+        ACTIVE,
     ),
 }  # fmt: skip
 

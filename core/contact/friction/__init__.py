@@ -1,6 +1,6 @@
 """Friction laws. A new one is a file with its parameters and formula, and its name in FRICTION_LAWS.
 
-LuGre friction has a state and therefore a signature of its own: `lugre.py`; it is not in `Friction`.
+LuGre friction has a state and therefore a signature and kernels of its own: `lugre.py`, `../bristle2d.py`.
 """
 
 from typing import Annotated
@@ -10,6 +10,7 @@ from .ambrosio import AmbrosioFriction
 from .base import FRICTION_SIGNATURE, FrictionLaw, call_friction, friction_address
 from .brown_mcphee import BrownMcPheeFriction
 from .coulomb import CoulombFriction
+from .lugre import LuGreFriction
 from .step import StepFriction
 from .tanh import TanhFriction
 from .threlfall import ThrelfallFriction
@@ -21,9 +22,10 @@ FRICTION_LAWS = (
     AmbrosioFriction,
     StepFriction,
     BrownMcPheeFriction,
+    LuGreFriction,
 )
 
-Friction = Annotated[CoulombFriction | FrictionLaw, OpenUnion(FRICTION_LAWS, FrictionLaw)]
+Friction = Annotated[CoulombFriction | LuGreFriction | FrictionLaw, OpenUnion(FRICTION_LAWS, FrictionLaw)]
 
 __all__ = [
     "FRICTION_LAWS",
@@ -33,6 +35,7 @@ __all__ = [
     "CoulombFriction",
     "Friction",
     "FrictionLaw",
+    "LuGreFriction",
     "StepFriction",
     "TanhFriction",
     "ThrelfallFriction",

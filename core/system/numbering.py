@@ -1,0 +1,76 @@
+"""Numbers of coordinates, signals and work accounts while a model's tables are built."""
+
+from ..contact.friction import FrictionLaw, friction_address
+from ..contact.laws import ForceLaw, law_address
+from ..description import Model
+from ..elements.planar_body import PlanarBody
+from ..model.markers import GROUND
+from ..model.signals import Signal
+
+GROUND_SLOTS = 3
+"""Extended vectors end in the ground's (x, y, angle), which stay zero, and the work accounts."""
+
+
+class ModelNumbering:
+    """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
+
+    def __init__(self, model: Model) -> None:
+        self.gravity = model.gravity
+        self.index: dict[str, tuple[int, ...]] = {}
+        self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
+        self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
+        self.pool: list[float] = []
+        self.work_names: list[str] = []
+        self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
+        self.names = {body.name: body.coordinate_names for body in model.bodies}
+        n_bodies = sum(len(names) for names in self.names.values())
+        self.internals: dict[str, tuple[int, ...]] = {}
+        self.internal_names: list[str] = []
+        for element in model.elements():
+            own = element.internal_coordinates()
+            first = n_bodies + len(self.internal_names)
+            self.internals[element.name] = tuple(range(first, first + len(own)))
+            self.internal_names += [f"{element.name}.{name}" for name in own]
+        self.n = n = n_bodies + len(self.internal_names)
+        self.index[GROUND] = (n, n + 1, n + 2)
+        start = 0
+        for body in model.bodies:
+            count = len(self.names[body.name])
+            own = tuple(range(start, start + count))
+            if isinstance(body, PlanarBody):
+                own += tuple(range(n + count, n + GROUND_SLOTS))
+                q0 = body.initial_state()[0]
+                self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
+            self.index[body.name] = own
+            start += count
+
+    def coordinates(self, body: str) -> tuple[int, ...]:
+        return self.index[body]
+
+    def coordinate(self, body: str, name: str) -> int:
+        return self.index[body][self.names[body].index(name)]
+
+    def initial(self, body: str) -> tuple[float, float, float]:
+        return self.initial_positions[body]
+
+    def signal(self, signal: Signal) -> int:
+        offset = len(self.pool)
+        self.pool.extend(float(x) for x in signal.pool(self.inputs))
+        return offset
+
+    def internal(self, name: str) -> tuple[int, ...]:
+        return self.internals[name]
+
+    def contact(self, name: str) -> int:
+        return self.contact_numbers[name]
+
+    def law_address(self, law: ForceLaw) -> int:
+        return law_address(law)
+
+    def friction_address(self, law: FrictionLaw) -> int:
+        return friction_address(law)
+
+    def work(self, name: str) -> int:
+        if name not in self.work_names:
+            self.work_names.append(name)
+        return self.n + GROUND_SLOTS + self.work_names.index(name)
