@@ -38,6 +38,7 @@ from .description import Model
 from .elements import (
     AppliedForce2D,
     AppliedTorque2D,
+    AxialRod,
     Bushing2D,
     CoordinateDriver,
     CoordinateLoad,
@@ -68,6 +69,7 @@ __all__ = [
     "AmbrosioFriction",
     "AppliedForce2D",
     "AppliedTorque2D",
+    "AxialRod",
     "BrownMcPheeFriction",
     "Bushing2D",
     "CarvalhoMartins",

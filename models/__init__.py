@@ -13,6 +13,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     pendulum,
     pendulum_stop,
     rocking_block,
+    rod_wall,
     slider_crank,
     slider_crank_stop,
     stick_slip,

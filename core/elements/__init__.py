@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from .applied_load2d import AppliedForce2D, AppliedTorque2D
+from .axial_rod import AxialRod
 from .base import BodyElement, Element
 from .bushing2d import Bushing2D
 from .coordinate_driver import CoordinateDriver
@@ -16,7 +17,7 @@ from .prismatic2d import Prismatic2D
 from .revolute2d import Revolute2D
 from .spring_damper2d import SpringDamper2D
 
-Body = Annotated[PointMass2D | RigidBody2D | LinearSystem, Field(discriminator="type")]
+Body = Annotated[PointMass2D | RigidBody2D | LinearSystem | AxialRod, Field(discriminator="type")]
 Joint = Annotated[Revolute2D | Prismatic2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
 Force = Annotated[
     SpringDamper2D | Bushing2D | AppliedForce2D | AppliedTorque2D | CoordinateLoad, Field(discriminator="type")
@@ -25,6 +26,7 @@ Force = Annotated[
 __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
+    "AxialRod",
     "Body",
     "BodyElement",
     "Bushing2D",

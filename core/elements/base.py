@@ -77,6 +77,16 @@ class Form:
     """Local (row, j) pairs where Phi_q may be nonzero."""
 
 
+@dataclass(frozen=True)
+class Part:
+    """Rows of one kernel that an element brings; they share its constraint rows."""
+
+    form: Form
+    rows: Sequence[Row]
+    massless: int = -1
+    """Coordinate without mass that the constraint row holds; a closed contact that moves it takes the row's place."""
+
+
 class Element(Record):
     """Base of everything in a model that has a kernel.
 
@@ -102,6 +112,10 @@ class Element(Record):
     def rows(self, numbering: Numbering) -> Sequence[Row]:
         """Its rows, one after another in the tables, for elements that have several; they share its constraints."""
         return (self.row(numbering),)
+
+    def parts(self, numbering: Numbering) -> Sequence["Part"]:
+        """All that it brings into the tables, for elements with rows of several kernels."""
+        return (Part(self.form(), self.rows(numbering)),)
 
     def internal_coordinates(self) -> Sequence[str]:
         """Names of its internal coordinates: states z of its own, each the velocity of a coordinate of unit mass,
