@@ -26,17 +26,32 @@ CONSISTENT, LUMPED = (1.0 / 3.0, 1.0 / 6.0), (0.5, 0.0)
 
 
 @internal
+def _add_forces(b: Any, e: int, first: int, count: int) -> None:
+    """r of `count` equal elements, whose parameters are those of row e, between consecutive nodes from `first` on."""
+    p = mat(b.par, b.count, 8)[e]
+    m_ii, m_ij, m_jj, stiffness, damping, length = p[0], p[1], p[2], p[3], p[4], p[5]
+    weight_i, weight_j, at = p[6], p[7], 8 * first
+    q, v, a = vec(b.q + at, count + 1), vec(b.v + at, count + 1), vec(b.a + at, count + 1)
+    r = vec(b.r + at, count + 1)
+    q_i, v_i, a_i, left = q[0], v[0], a[0], 0.0
+    for k in range(count):
+        q_j, v_j, a_j = q[k + 1], v[k + 1], a[k + 1]
+        force = stiffness * (q_j - q_i - length) + damping * (v_j - v_i)
+        r[k] += left + m_ii * a_i + m_ij * a_j - force - weight_i
+        left = m_ij * a_i + m_jj * a_j + force - weight_j
+        q_i, v_i, a_i = q_j, v_j, a_j
+    r[count] += left
+
+
+@internal
 def axial_rod_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, 8)  # m_ii, m_ij, m_jj, stiffness, damping, length, weight of i, of j
-    coord = imat(b.coord, b.count, 2)
-    q, v, a = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended)
+    coord, extra = imat(b.coord, b.count, 2), imat(b.extra, b.count, 2)
     if job == RESIDUAL:
-        r = vec(b.r, b.n_extended)
-        for e in range(b.count):
-            i, j = coord[e, 0], coord[e, 1]
-            force = par[e, 3] * (q[j] - q[i] - par[e, 5]) + par[e, 4] * (v[j] - v[i])
-            r[i] += par[e, 0] * a[i] + par[e, 1] * a[j] - force - par[e, 6]
-            r[j] += par[e, 1] * a[i] + par[e, 2] * a[j] + force - par[e, 7]
+        e = 0
+        while e < b.count:
+            _add_forces(b, e, coord[e, 0], extra[e, 1])
+            e += extra[e, 1]
     elif job == TANGENT:
         values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
         slot = imat(b.slot_s, b.count, 4)
@@ -47,7 +62,7 @@ def axial_rod_kernel(job: int, t: float, b: Any) -> None:
             values[slot[e, 2]] += par[e, 1] - k
             values[slot[e, 3]] += par[e, 2] + k
     elif job == ENERGY:
-        energy = vec(b.energy, 3)
+        q, v, energy = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.energy, 3)
         for e in range(b.count):
             i, j = coord[e, 0], coord[e, 1]
             stretch = q[j] - q[i] - par[e, 5]
@@ -55,12 +70,17 @@ def axial_rod_kernel(job: int, t: float, b: Any) -> None:
             energy[1] -= par[e, 6] * q[i] + par[e, 7] * q[j]
             energy[2] += 0.5 * par[e, 3] * stretch * stretch
     elif job == POWER:
-        lost = 0.0
-        for e in range(b.count):
-            rate = v[coord[e, 1]] - v[coord[e, 0]]
-            lost += par[e, 4] * rate * rate
-        if b.count > 0:
-            a[imat(b.extra, b.count, 1)[0, 0]] += lost
+        v, a = vec(b.v, b.n_extended), vec(b.a, b.n_extended)
+        e = 0
+        while e < b.count:
+            first, count = coord[e, 0], extra[e, 1]
+            if par[e, 4] > 0.0:
+                lost = 0.0
+                for i in range(first, first + count):
+                    rate = v[i + 1] - v[i]
+                    lost += par[e, 4] * rate * rate
+                a[extra[e, 0]] += lost
+            e += count
 
 
 class AxialRod(BodyElement):
@@ -121,6 +141,10 @@ class AxialRod(BodyElement):
         """Distance of the nodes of the unstrained rod from its left end (N + 1,), m."""
         return np.linspace(0.0, self.length, self.elements + 1)
 
+    @property
+    def linear(self) -> bool:
+        return True
+
     def coordinate_records(self) -> Sequence[Coordinate]:
         return _coordinates(self.elements + 1, self.length)
 
@@ -132,12 +156,16 @@ class AxialRod(BodyElement):
         return Form(type(self).kernel, 0, ((0, 0), (0, 1), (1, 0), (1, 1)), ())
 
     def rows(self, numbering: Numbering) -> Sequence[Row]:
-        """One row an element."""
-        n, account = self.elements, (numbering.work("dampers"),)
+        """One row an element; the first of equal ones says how many there are."""
+        account = numbering.work("dampers")
         index = numbering.coordinates(self.name)
+        table = self._parameters(numbering.gravity[0])
+        starts = np.flatnonzero(np.concatenate(([True], np.any(table[1:] != table[:-1], axis=1))))
+        runs = np.zeros(self.elements, dtype=np.int64)
+        runs[starts] = np.diff(np.append(starts, self.elements))
         return [
-            Row(parameters, (index[e], index[e + 1]), account)
-            for e, parameters in enumerate(self._parameters(numbering.gravity[0]).tolist()[:n])
+            Row(parameters, (index[e], index[e + 1]), (account, run))
+            for e, (parameters, run) in enumerate(zip(table.tolist(), runs.tolist(), strict=True))
         ]
 
     def parts(self, numbering: Numbering) -> Sequence[Part]:

@@ -100,6 +100,11 @@ class Element(Record):
 
     name: Name
 
+    @property
+    def linear(self) -> bool:
+        """True if its residuals are linear in (q, v, a, multipliers) with constant coefficients."""
+        return False
+
     def form(self) -> Form:
         """Kernel, number of constraint rows and patterns of this element."""
         kind = type(self)

@@ -87,6 +87,8 @@ class Assembly:
     """Step beyond which error control could miss what a time function does, s."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
     """Rows of massless ends, each with the contacts that take its place when they close."""
+    linear: bool = False
+    """All elements are linear with constant coefficients."""
     n_internal: int = 0
     """How many of the coordinates, the last ones, are internal ones of elements: states without a place, whose values
     are the velocities."""
@@ -232,6 +234,7 @@ def assemble(model: Model) -> Assembly:
         body_columns=columns,
         coordinate_scale=_coordinate_scale(model, columns, len(internal)),
         replaced_rows=_replaced_rows(model, massless, batches),
+        linear=all(element.linear for element in model.elements()),
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
@@ -251,8 +254,8 @@ def _replaced_rows(model: Model, massless: Mapping[int, int], batches: Sequence[
         restitution = getattr(contact.law, "restitution", 0.0)
         if isinstance(contact.law, ForceLaw) or restitution != 0.0 or contact.friction is not None:
             raise ModelError(
-                f"contact '{contact.name}' is at a massless end, which takes no impulse: it must be a constraint without "
-                "friction and with restitution 0 (NewtonImpact), or the end must have mass"
+                f"contact '{contact.name}' is at a massless end, which takes no impulse: it must be a constraint "
+                "without friction and with restitution 0 (NewtonImpact), or the end must have mass"
             )
         if len(ends) > 1:
             raise ModelError(
