@@ -12,12 +12,12 @@ MOST_STEPS = 20_000
 MOST_ELEMENTS = 1_000_000
 
 
-def rod_parameters(elements: int = 50) -> tuple[ScenarioParameter, ...]:
+def rod_parameters(elements: int = 50, mass_matrix: str = "consistent") -> tuple[ScenarioParameter, ...]:
     """Mesh, material and step."""
     return (
         ScenarioParameter("elements", elements, "-", "number of linear bar elements", 3, MOST_ELEMENTS),
         ScenarioParameter(
-            "mass_matrix", "consistent", "-", "of the elements", choices=("consistent", "lumped")
+            "mass_matrix", mass_matrix, "-", "of the elements", choices=("consistent", "lumped")
         ),
         ScenarioParameter(
             "massless_contact", False, "-", "no mass at the contact node: closing takes no energy"

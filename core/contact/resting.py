@@ -267,8 +267,9 @@ class Resting:
             closed |= (now.was == CLOSED) & ~now.leaves & (np.abs(found.normal_motion) <= self.none)
         idle = self.at_rest & ~closed & ~now.leaves & (self.b_n == 0.0) & (found.normal_motion == 0.0)
         if np.any(idle):
-            # a node of an elastic body that has come to rest while its neighbours still approach
-            closed |= idle & (self.touching.free_jerks() < 0.0)
+            # a node of an elastic body that has come to rest while its neighbours still approach; or a gap that was
+            # left open at this very instant, and that every step closes at once
+            closed |= idle & ((self.touching.free_jerks() < 0.0) | (self.sim.events_here > 2))
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]

@@ -1,7 +1,7 @@
 """Rod along the x axis: linear bar finite elements between nodes x0 .. xN, whose coordinates are positions.
 
 Element of length l with nodes i, j:  N = EA ((x_j - x_i) / l - 1) + EA tau (v_j - v_i) / l,
-r += M_e (a_i, a_j) + (-N, N) - (weight halves);  M_e = rho A l [1/3 1/6; 1/6 1/3] (consistent) or rho A l / 2 I (lumped).
+r += M_e (a_i, a_j) + (-N, N) - (halves of the weight);  M_e = rho A l [1/3 1/6; 1/6 1/3] (consistent) or rho A l I/2
 """
 
 from collections.abc import Sequence
@@ -86,7 +86,7 @@ def axial_rod_kernel(job: int, t: float, b: Any) -> None:
 class AxialRod(BodyElement):
     """An elastic rod along the x axis, in linear bar elements.
 
-    Its coordinates are the positions `x0` (left end) to `xN` (right end) of the N + 1 nodes, so that a CoordinateContact
+    Its coordinates are the positions `x0` (left end) to `xN` (right end) of its nodes, so that a CoordinateContact
     between a node and a wall, or between nodes of two rods, has a gap that is a distance. Channels are `NAME.xk`,
     `NAME.vxk`, `NAME.axk`. The model's gravity acts on it along x.
 

@@ -331,6 +331,11 @@ class Engine:
         """True once a step has been made."""
         return self.t_internal > self.settings.t0
 
+    @property
+    def events_here(self) -> int:
+        """How often events have been handled at the present instant, without progress in time."""
+        return self._times_handled[1]
+
     def meet_constraints(self) -> None:
         """Bring positions and velocities onto the constraints of the present structure, by rounding's worth."""
         for residual, x in (("phi", "q"), ("phid", "v")):
@@ -384,8 +389,10 @@ class Engine:
 
     def force_noise(self) -> NDArray[np.float64]:
         """What rounding of the coordinates leaves in the forces (n,), N: in stiff bodies, coordinates that are nearly
-        equal make large forces that cancel each other."""
-        return np.asarray(COORDINATE_NOISE * self.tangent_product(1.0, 0.0, self.workspace.arrays["q"], True))
+        equal make large forces that cancel each other. That of the largest travels to all of them as waves."""
+        largest = float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]), initial=0.0))
+        noise = np.full(self.assembly.n, COORDINATE_NOISE * largest)
+        return np.asarray(self.tangent_product(1.0, 0.0, noise, True))
 
     def presses(self, k: int) -> bool:
         """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""
