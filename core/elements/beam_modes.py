@@ -82,7 +82,9 @@ class Direction:
         index = np.ix_(self.free, self.free)
         k, m, rigid = self.stiffness[index], self.mass[index], self.rigid.shape[1]
         if count > len(self.free) - rigid:
-            raise ModelError(f"{count} modes of a finite element model with {len(self.free)} unknowns: give more elements")
+            raise ModelError(
+                f"{count} modes of a finite element model with {len(self.free)} unknowns: give more elements"
+            )
         shift = np.trace(k) / np.trace(m) / len(self.free) ** 4 if rigid else 0.0
         mu, x = eigh(m, k + shift * m)
         found = np.zeros((len(self.mass), count))

@@ -192,7 +192,7 @@ def test_a_stiff_beam_moves_as_the_rigid_body():
 def test_joints_and_contacts_take_the_frame_as_a_body():
     """A cantilever held at its root by a prismatic joint falls like a rigid body; its frame rests on a floor."""
     s = beam(geometric_stiffening=False)
-    guide = Prismatic2D(name="guide", a=on("ground", angle=0.5 * math.pi), b=on("s"), relative_angle=-0.5 * math.pi)
+    guide = Prismatic2D(name="guide", a=on("ground", angle=0.5 * math.pi), b=on("s"))
     floor = DiskOnHalfPlane2D(
         name="floor", plane=HalfPlane2D(marker=on("ground", 0.0, -0.5)), disk=Disk2D(marker=on("s")),
         law=NewtonImpact(restitution=0.0),
