@@ -15,6 +15,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     rocking_block,
     slider_crank,
     slider_crank_stop,
+    sphere_beam,
     stick_slip,
     woodpecker,
 )

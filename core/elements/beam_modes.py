@@ -125,8 +125,8 @@ class Direction:
             energy = x @ self.stiffness @ x
             if energy <= DEPENDENT**2 * whole or whole == 0.0:
                 raise ModelError(
-                    "the static shape of an attachment is a sum of the modes and of the attachments before it: leave it "
-                    "out, or take fewer modes"
+                    "the static shape of an attachment is a sum of the modes and of the attachments before it: leave "
+                    "it out, or take fewer modes"
                 )
             rest = np.column_stack([rest, x / np.sqrt(energy)])
         mu, y = np.linalg.eigh(rest.T @ self.mass @ rest)

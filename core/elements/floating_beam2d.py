@@ -30,8 +30,8 @@ class FloatingBeam2D(FloatingBody2D):
     """A straight, uniform Euler-Bernoulli beam, small strains and deflections in a frame that moves freely.
 
     The boundary conditions of the modes say what the frame is: "cantilever" the tangent at the first end,
-    "simply_supported" the chord, with its origin at the first end, "free" the mean axes, with their origin at the centre
-    of mass. A marker on the beam is one on this frame; points along the beam are those of a MaterialPoint2D.
+    "simply_supported" the chord, with its origin at the first end, "free" the mean axes, with their origin at the
+    centre of mass. A marker on the beam is one on this frame; points along the beam are those of a MaterialPoint2D.
 
     The amplitudes `mode1` ... are the largest displacements of the modes, m: bending modes, shapes of transverse
     attachments, then axial modes and shapes of axial attachments.
@@ -83,7 +83,7 @@ class FloatingBeam2D(FloatingBody2D):
             value = getattr(self, name)
             if isinstance(value, tuple) and len(value) != n:
                 raise ValueError(f"{name} of '{self.name}' has {len(value)} entries, needed is one for each of its {n} "
-                                 "modes: bending modes and transverse attachments, axial modes and axial attachments")  # fmt: skip
+                                 "modes: bending and transverse attachments, then axial ones")  # fmt: skip
         beam_modes(self)
         return self
 

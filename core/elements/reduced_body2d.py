@@ -26,9 +26,9 @@ class ReducedPoint(Record):
 class ReducedBody2D(FloatingBody2D):
     """A flexible planar body as reduced matrices over n modes: r = R + A(theta) (u0 + S p).
 
-    Coordinates are those of the frame, `x`, `y`, `angle`, and the amplitudes `mode1` ... `moden`. The integrals are over
-    the mass of the undeformed body, with u0 from the frame's origin; u x v = u_x v_y - u_y v_x. The model's gravity acts
-    on it. A rigid motion has no place among the modes: the frame has it already.
+    Coordinates are those of the frame, `x`, `y`, `angle`, and the amplitudes `mode1` ... `moden`. The integrals are
+    over the mass of the undeformed body, with u0 from the frame's origin; u x v = u_x v_y - u_y v_x. The model's
+    gravity acts on it. A rigid motion has no place among the modes: the frame has it already.
 
     Raises
     ------

@@ -48,7 +48,7 @@ def particles(seed=3, n=2, count=5, stiffening=True, **changes):
         "damping": (0.1 * root @ root.T).tolist(),
         "modal_first_moment": np.einsum("i,ick->ck", masses, s).tolist(),
         "modal_inertia": np.einsum("i,ic,ick->k", masses, u0, s).tolist(),
-        "modal_coupling": np.einsum("i,ik->k", masses * u0[:, 0], s[:, 1]) - np.einsum("i,ik->k", masses * u0[:, 1], s[:, 0]),
+        "modal_coupling": (masses * u0[:, 0]) @ s[:, 1] - (masses * u0[:, 1]) @ s[:, 0],
         "gyroscopic": (cross - cross.T).tolist(),
         "geometric_first_moment": np.einsum("i,ickl->ckl", masses, g).tolist(),
         "geometric_inertia": np.einsum("i,ic,ickl->kl", masses, u0, g).tolist(),
