@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Record, Vector2
 from .beam_modes import Array, BoundaryConditions, Grid, bending, make_grid, stretching
-from .floating_body2d import FloatingBody2D, Invariants, Shape
+from .flexible_body import PointShape
+from .floating_body2d import FloatingBody2D, Invariants
 
 ELEMENTS_PER_MODE = 4
 LEAST_ELEMENTS = 20
@@ -97,17 +98,16 @@ class FloatingBeam2D(FloatingBody2D):
     def invariants(self) -> Invariants:
         return beam_modes(self).invariants(self)
 
-    def material_point(self, point: Vector2) -> Shape:
+    def material_point(self, point: Vector2) -> PointShape:
         modes, (s, y) = beam_modes(self), point
         if not -1e-9 * self.length <= s <= self.length * (1.0 + 1e-9):
             raise ModelError(f"point {tuple(point)} of '{self.name}': the beam runs from 0 to {self.length:g} m")
         (wy, slope), (ux, strain) = (
             [(modes.grid.shape(np.array([s]), k) @ x)[0] for k in range(2)] for x in (modes.w, modes.u)
         )
-        return Shape(
-            np.array([s - modes.origin, y]), np.array([1.0, 0.0]), np.array([ux - y * slope, wy]),
-            np.array([strain, slope]),
-        )  # fmt: skip
+        return self.point_shape(
+            np.array([s - modes.origin, y]), np.array([ux - y * slope, wy]), np.array([strain, slope])
+        )
 
 
 @dataclass(frozen=True)

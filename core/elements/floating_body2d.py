@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .base import Coordinate, Form, Numbering, Row
+from .flexible_body import FlexibleBody, PointShape
 from .floating_kernel2d import floating_body2d_kernel
 from .planar_body import ANGLE, PlanarBody, X, Y
 
@@ -53,21 +54,7 @@ class Invariants:
         return full
 
 
-@dataclass(frozen=True)
-class Shape:
-    """Where a material point is in the frame, u0 + S p, and which way the body runs there, t0 + T p."""
-
-    u0: Array
-    """(2,), m."""
-    t0: Array
-    """(2,)."""
-    S: Array
-    """(2, n)."""
-    T: Array
-    """(2, n), 1/m for amplitudes in m."""
-
-
-class FloatingBody2D(PlanarBody):
+class FloatingBody2D(PlanarBody, FlexibleBody):
     """Base of the bodies in a floating frame: coordinates x, y, angle of the frame, then the modal amplitudes.
 
     A marker on the body is one on its frame.
@@ -88,18 +75,15 @@ class FloatingBody2D(PlanarBody):
         """Its invariants."""
         raise NotImplementedError(f"{type(self).__name__} must give its invariants")
 
-    def material_point(self, point: tuple[float, float]) -> Shape:
-        """The shape functions at a material point.
-
-        Raises
-        ------
-        ModelError : if the body has no such point.
-        """
-        raise NotImplementedError(f"{type(self).__name__} must say where its points are")
-
     def mode_names(self) -> tuple[str, ...]:
         """Names of the amplitudes."""
         raise NotImplementedError(f"{type(self).__name__} must name its modes")
+
+    def point_shape(self, offset: Array, shape: Array, slope: Array) -> PointShape:
+        """A point at `offset` (2,), moved by `shape` (2, n), on an axis along x whose tangent `slope` (2, n) turns."""
+        return PointShape(
+            ("x", "y", "angle"), self.mode_names(), (float(offset[0]), float(offset[1])), (1.0, 0.0), shape, slope
+        )
 
     amplitude_unit: ClassVar[str] = "m"
 

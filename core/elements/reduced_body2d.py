@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import Positive, Record, Vector2
-from .floating_body2d import Array, FloatingBody2D, Invariants, Shape
+from .flexible_body import PointShape
+from .floating_body2d import Array, FloatingBody2D, Invariants
 from .linear_system import SYMMETRY, Matrix, Vector
 
 
@@ -141,12 +142,12 @@ class ReducedBody2D(FloatingBody2D):
             G=_or_zero(self.geometric_first_moment, (2, n, n)),
         )
 
-    def material_point(self, point: Vector2) -> Shape:
+    def material_point(self, point: Vector2) -> PointShape:
         for given in self.points:
             if np.allclose(given.point, point, rtol=1e-9, atol=1e-12):
                 n = len(self.modal_mass)
                 turn = np.vstack([np.zeros(n), _or_zero(given.rotation, (n,))])
-                return Shape(np.array(given.point), np.array([1.0, 0.0]), np.array(given.shape), turn)
+                return self.point_shape(np.array(given.point), np.array(given.shape), turn)
         raise ModelError(
             f"'{self.name}' has no point {tuple(point)}; `points` gives {[given.point for given in self.points]}"
         )

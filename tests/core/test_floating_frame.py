@@ -246,6 +246,6 @@ def test_points_of_a_reduced_body_are_those_that_it_gives():
     given_point = ReducedPoint(point=(0.5, 0.1), shape=((0.1, 0.2), (1.0, -1.0)), rotation=(0.3, 0.4))
     body, _ = particles(points=(given_point,))
     shape = body.material_point((0.5, 0.1))
-    assert shape.S.tolist() == [[0.1, 0.2], [1.0, -1.0]] and shape.T.tolist() == [[0.0, 0.0], [0.3, 0.4]]
+    assert shape.shape.tolist() == [[0.1, 0.2], [1.0, -1.0]] and shape.slope.tolist() == [[0.0, 0.0], [0.3, 0.4]]
     with pytest.raises(ModelError, match=r"no point \(0.0, 0.0\); `points` gives \[\(0.5, 0.1\)\]"):
         body.material_point((0.0, 0.0))
