@@ -8,6 +8,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     chain,
     double_pendulum_wall,
     four_bar,
+    hub_beam_stop,
     impact_oscillator,
     newtons_cradle,
     pendulum,
@@ -15,6 +16,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     rocking_block,
     slider_crank,
     slider_crank_stop,
+    sphere_beam,
     stick_slip,
     woodpecker,
 )

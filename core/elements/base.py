@@ -1,6 +1,6 @@
 """What an element is: a record, one kernel, and how its record becomes a row of the kernel's tables."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
@@ -15,6 +15,11 @@ class Numbering(Protocol):
 
     @property
     def gravity(self) -> tuple[float, float]: ...
+
+    @property
+    def bodies(self) -> "Mapping[str, BodyElement]":
+        """The model's bodies by name."""
+        ...
 
     def coordinates(self, body: str) -> tuple[int, ...]:
         """Indices of (x, y, theta) of a planar body; missing ones are the ground's, which stay zero. Of any other body,
@@ -94,6 +99,14 @@ class Element(Record):
         """Kernel, number of constraint rows and patterns of this element."""
         kind = type(self)
         return Form(kind.kernel, kind.constraint_rows, kind.tangent_pattern, kind.jacobian_pattern)
+
+    def form_in(self, bodies: "Mapping[str, BodyElement]") -> Form:
+        """Its form in a model with these bodies, for elements whose size depends on another."""
+        return self.form()
+
+    def check_in(self, bodies: "Mapping[str, BodyElement]") -> None:
+        """Raise ValueError if it does not fit the model's bodies; bodies of markers and of moved coordinates need no
+        check here."""
 
     def row(self, numbering: Numbering) -> Row:
         """This element's row in the tables of its kernel."""
@@ -177,3 +190,11 @@ class BodyElement(Element):
     def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0)."""
         raise NotImplementedError(f"{type(self).__name__} must say where it starts")
+
+    def start_in(self, bodies: "Mapping[str, BodyElement]") -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """(q0, v0) in a model with these bodies, for bodies that start where another one is."""
+        return self.initial_state()
+
+    def extent(self) -> Sequence[tuple[float, float]]:
+        """Points where it starts that tell the size of the mechanism, m."""
+        return ()
