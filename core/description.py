@@ -10,7 +10,7 @@ from typing import Any, Literal
 from pydantic import model_validator
 
 from .contact import Contact
-from .elements import Body, BodyElement, Element, Force, Joint, PlanarBody, PointMass2D
+from .elements import Body, BodyElement, Element, Force, Joint, PlanarFrame, PointMass2D
 from .errors import ModelError
 from .model.base import Record, Vector2
 from .model.channels import Input, Parameter
@@ -53,13 +53,15 @@ class Model(Record):
         bodies = {body.name: body for body in self.bodies}
         inputs = {i.name for i in self.inputs}
         for element in self.elements():
+            element.check_in(bodies)
             for marker in element.markers():
                 body = self._find(element, marker.body, bodies)
-                if body is not None and not isinstance(body, PlanarBody):
+                if body is not None and not isinstance(body, PlanarFrame):
                     raise ValueError(
                         f"'{element.name}' needs a point of '{body.name}', but a {type(body).__name__} has only its "
-                        f"coordinates {list(body.coordinate_names)}: act on one of these by name (CoordinateDriver, "
-                        "CoordinateLoad), or use a RigidBody2D"
+                        f"coordinates {list(body.coordinate_names[:12])}: act on one of these by name "
+                        "(CoordinateDriver, CoordinateLoad), on a MaterialPoint2D of a flexible body, or use a "
+                        "RigidBody2D"
                     )
                 if isinstance(body, PointMass2D) and marker.point != (0.0, 0.0):
                     raise ValueError(
@@ -103,7 +105,7 @@ class Model(Record):
         if coordinate not in body.coordinate_names:
             raise ValueError(
                 f"'{element.name}' acts on coordinate '{coordinate}' of '{body.name}', but a {type(body).__name__} has "
-                f"only {list(body.coordinate_names)}: use a RigidBody2D, or another coordinate"
+                f"only {list(body.coordinate_names[:12])}: use a RigidBody2D, or another coordinate"
             )
 
     def elements(self) -> Iterator[Element]:

@@ -8,6 +8,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     chain,
     double_pendulum_wall,
     four_bar,
+    hub_beam_stop,
     impact_oscillator,
     mass_on_rod,
     newtons_cradle,
@@ -18,6 +19,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     rod_wall,
     slider_crank,
     slider_crank_stop,
+    sphere_beam,
     stick_slip,
     woodpecker,
 )

@@ -127,10 +127,12 @@ class Touching:
         structure, values = self.sim.workspace.structure, self.sim.workspace.arrays["values"]
         n = self.sim.assembly.n
         mass = np.flatnonzero((structure.rows < n) & (structure.cols < n))
+        largest = float(np.max(values[mass[structure.rows[mass] == structure.cols[mass]]], initial=0.0))
         for contact, g, inverse in zip(self.infos, self.normal, np.diag(self.a.nn), strict=True):
             mass_g = np.bincount(structure.rows[mass], values[mass] * g[structure.cols[mass]], n)
             # without joints it is at least this (Cauchy and Schwarz)
-            free = float(g @ g) ** 2 / float(g @ mass_g)
+            # (a frame without mass of its own counts as the heaviest)
+            free = float(g @ g) ** 2 / (float(g @ mass_g) or largest * float(g @ g))
             if not inverse > IMMOVABLE * free:
                 raise SimulationError(
                     f"contact '{contact.name}', t = {self.sim.t_internal:.9g} s: joints and drivers hold both shapes, "

@@ -1,6 +1,6 @@
 """What an element is: a record, one kernel, and how its record becomes a row of the kernel's tables."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
@@ -15,6 +15,11 @@ class Numbering(Protocol):
 
     @property
     def gravity(self) -> tuple[float, float]: ...
+
+    @property
+    def bodies(self) -> "Mapping[str, BodyElement]":
+        """The model's bodies by name."""
+        ...
 
     def coordinates(self, body: str) -> tuple[int, ...]:
         """Indices of (x, y, theta) of a planar body; missing ones are the ground's, which stay zero. Of any other body,
@@ -110,6 +115,14 @@ class Element(Record):
         kind = type(self)
         return Form(kind.kernel, kind.constraint_rows, kind.tangent_pattern, kind.jacobian_pattern)
 
+    def form_in(self, bodies: "Mapping[str, BodyElement]") -> Form:
+        """Its form in a model with these bodies, for elements whose size depends on another."""
+        return self.form()
+
+    def check_in(self, bodies: "Mapping[str, BodyElement]") -> None:
+        """Raise ValueError if it does not fit the model's bodies; bodies of markers and of moved coordinates need no
+        check here."""
+
     def row(self, numbering: Numbering) -> Row:
         """This element's row in the tables of its kernel."""
         raise NotImplementedError(f"{type(self).__name__} must say how it becomes a row of its kernel's tables")
@@ -120,7 +133,7 @@ class Element(Record):
 
     def parts(self, numbering: Numbering) -> Sequence["Part"]:
         """All that it brings into the tables, for elements with rows of several kernels."""
-        return (Part(self.form(), self.rows(numbering)),)
+        return (Part(self.form_in(numbering.bodies), self.rows(numbering)),)
 
     def internal_coordinates(self) -> Sequence[str]:
         """Names of its internal coordinates: states z of its own, each the velocity of a coordinate of unit mass,
@@ -196,3 +209,11 @@ class BodyElement(Element):
     def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0)."""
         raise NotImplementedError(f"{type(self).__name__} must say where it starts")
+
+    def start_in(self, bodies: "Mapping[str, BodyElement]") -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """(q0, v0) in a model with these bodies, for bodies that start where another one is."""
+        return self.initial_state()
+
+    def extent(self) -> Sequence[tuple[float, float]]:
+        """Points where it starts that tell the size of the mechanism, m."""
+        return ()

@@ -46,7 +46,12 @@ X, Y = Coordinate("x", "m", "vx", "ax"), Coordinate("y", "m", "vy", "ay")
 ANGLE = Coordinate("angle", "rad", "angular_velocity", "angular_acceleration", 1.0)
 
 
-class PlanarBody(BodyElement):
+class PlanarFrame(BodyElement):
+    """Base of what moves like a rigid body in the plane: coordinates x, y and (but for point masses) angle. Markers
+    can be put on it."""
+
+
+class PlanarBody(PlanarFrame):
     """Base of the planar bodies."""
 
     kernel: ClassVar[Any] = planar_body_kernel
@@ -58,6 +63,9 @@ class PlanarBody(BodyElement):
     """Initial position of the centre of mass, m."""
     velocity: Vector2 = (0.0, 0.0)
     """Initial velocity of the centre of mass, m/s."""
+
+    def extent(self) -> Sequence[tuple[float, float]]:
+        return (self.position,)
 
     def _row(self, numbering: Numbering, inertia: float) -> Row:
         gx, gy = numbering.gravity

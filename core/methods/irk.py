@@ -4,7 +4,8 @@ state-space equation of the independent coordinates that they integrate.
 The stages are solved in `coupled.py`. Then v_{n+1} = v_n + h sum b_i a_i and
 q_{n+1} = q_n + h v_n + h^2 sum (b^T A)_i a_i; with Radau IIA that is the last stage.
 Error estimate: y_{n+1} - yhat, yhat = y_n + h (b0 f_n + sum_i bhat_i f_i + gamma f(t_{n+1}, yhat)): one more stage
-with the same matrix (de Swart and Soederlind 1997).
+with the same matrix (de Swart and Soederlind 1997). Gauss methods take it times its ratio to a difference of one order
+less (`Tableau.lower_difference`).
 """
 
 from typing import Any
@@ -22,11 +23,11 @@ from .coupled import solve_coupled
 from .history import history_row, history_time
 from .multistep import finish_stage, weight_rows
 from .records import ESTIMATE
-from .stages import BA, EMBEDDED, END, GAMMA, START, VECTORS, B, load_stage, stage_count, stage_rows
+from .stages import BA, EMBEDDED, END, GAMMA, LOWER, START, VECTORS, B, load_stage, stage_count, stage_rows
 
 # parameters, besides STAGE_COUNT
 STIFFLY_ACCURATE = 1
-ESTIMATE_ORDER = 2
+ERROR_ORDER = 2
 
 
 @internal
@@ -126,19 +127,33 @@ def _end(ws: Any, ms: Any, t: float, h: float) -> int:
 
 
 @internal
-def _distance_to_embedded(ws: Any) -> float:
-    """Weighted norm of (q, v, work) less yhat."""
+def _norm(ws: Any, of_q: Any, of_v: Any) -> float:
+    """Weighted norm of differences of coordinates, velocities and work accounts."""
+    weight_v = vec(ws.weight_v, ws.n_ext)
+    norm = max(weighted_norm(of_q, vec(ws.weight_q, ws.n_ext), ws.n), weighted_norm(of_v, weight_v, ws.n))
+    for l in range(ws.n_ext - ws.n_work, ws.n_ext):
+        norm = max(norm, abs(of_v[l]) / weight_v[l])
+    return norm
+
+
+@internal
+def _error_of_step(ws: Any, ms: Any, h: float) -> float:
+    """Norm of (q, v, work) less yhat; times its ratio to the lower difference where the method has one."""
     n = ws.n_ext
+    table, rows, stages = weight_rows(ms), stage_rows(ws), stage_count(ms)
     q, v = vec(ws.q, n), vec(ws.v, n)
     hat_q, hat_v = vec(ws.base_q, n), vec(ws.base_v, n)
-    weight_v = vec(ws.weight_v, n)
     for l in range(n):
         hat_q[l] -= q[l]
         hat_v[l] -= v[l]
-    norm = max(weighted_norm(hat_q, vec(ws.weight_q, n), ws.n), weighted_norm(hat_v, weight_v, ws.n))
-    for l in range(n - ws.n_work, n):
-        norm = max(norm, abs(hat_v[l]) / weight_v[l])
-    return norm
+    distance = _norm(ws, hat_q, hat_v)
+    for l in range(n):
+        hat_q[l], hat_v[l] = 0.0, 0.0
+        for i in range(stages):
+            hat_q[l] += h * table[EMBEDDED, LOWER + i] * rows[i, n + l]
+            hat_v[l] += h * table[EMBEDDED, LOWER + i] * rows[i, 2 * n + l]
+    lower = _norm(ws, hat_q, hat_v)
+    return distance * distance / np.hypot(distance, lower) if distance > 0.0 else distance
 
 
 @internal
@@ -146,7 +161,7 @@ def irk_step(ws: Any, ms: Any, h: float) -> int:
     """One step with the tableau in the method record; the error estimate only where it is asked for."""
     parameters, error = vec(ms.parameters, 8), vec(ms.error, 2)
     t = history_time(ms, 0)
-    error[0], error[1] = 0.0, parameters[ESTIMATE_ORDER]
+    error[0], error[1] = 0.0, parameters[ERROR_ORDER]
     status = solve_coupled(ws, ms, t, h)
     if status != OK:
         return status
@@ -157,5 +172,5 @@ def irk_step(ws: Any, ms: Any, h: float) -> int:
             return status
     status = _end(ws, ms, t, h)
     if status == OK and parameters[ESTIMATE] != 0.0:
-        error[0] = _distance_to_embedded(ws)
+        error[0] = _error_of_step(ws, ms, h)
     return status

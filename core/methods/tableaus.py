@@ -33,8 +33,11 @@ class Tableau:
     description : one line.
     c, a, b : nodes (s,), coefficients (s, s), weights (s,).
     sweep : S, (s, s) lower triangular with equal diagonal.
-    order : classical order; order_of_estimate : order of the embedded formula.
-    start_weight : weight of f_n in the embedded formula where its order leaves it free; None: its order gives it.
+    order : classical order.
+    order_of_estimate : order of the embedded formula, at most s: one of order s + 1 compares the method with its own
+        collocation polynomial, of degree s, and sees no error at all of a linear equation.
+    start_weight : weight of f_n in the embedded formula, which its order leaves free. With symmetric nodes the sign
+        decides: -(-1)^s gamma would make the weights orthogonal to one power more, that is order s + 1.
     """
 
     description: str
@@ -44,12 +47,17 @@ class Tableau:
     sweep: tuple[tuple[float, ...], ...]
     order: int
     order_of_estimate: int
-    start_weight: float | None = None
+    start_weight: float
 
     @property
     def gamma(self) -> float:
         """Diagonal of the sweep matrix, and the implicit weight of the embedded formula."""
         return self.sweep[0][0]
+
+    @property
+    def order_of_error(self) -> int:
+        """p where the error estimate falls as h^(p + 1)."""
+        return self.order_of_estimate + (0 if self.stiffly_accurate else 1)
 
     @property
     def stiffly_accurate(self) -> bool:
@@ -64,14 +72,22 @@ class Tableau:
         """
         p, c = self.order_of_estimate, np.array(self.c)
         right = 1.0 / np.arange(1, p + 1) - self.gamma
+        right[0] -= self.start_weight
         conditions = np.vander(c, p, increasing=True).T
-        if self.start_weight is not None:
-            right[0] -= self.start_weight
-            return self.start_weight, np.asarray(np.linalg.solve(conditions, right), dtype=np.float64)
-        at_start = np.zeros((p, 1))
-        at_start[0, 0] = 1.0
-        weights = np.linalg.solve(np.hstack([at_start, conditions]), right)
-        return float(weights[0]), np.asarray(weights[1:], dtype=np.float64)
+        return self.start_weight, np.asarray(np.linalg.solve(conditions, right), dtype=np.float64)
+
+    def lower_difference(self) -> Floats:
+        """Weights (s,) of h f_i at the stages that give something of order h^s: their difference of order s - 1.
+
+        The embedded formula of a Gauss method is s orders below it. Its distance from the method is therefore taken
+        times the rate at which such differences fall from one order to the next, distance / lower difference
+        (as in Hairer, Norsett and Wanner's DOP853). Zero for the other methods, whose estimate stays as it is.
+        """
+        if self.stiffly_accurate:
+            return np.zeros(len(self.c))
+        c = np.array(self.c)
+        divided = np.array([1.0 / np.prod([x - y for y in c if y != x]) for x in c])
+        return np.asarray(self.gamma * divided / divided[-1])
 
     def sweep_error(self, d: Floats, k: Floats) -> Floats:
         """E(d, k) of the module's docstring for damping d >= 0 (N,) and stiffness k >= 0 (N,), as (N, s, s)."""
@@ -100,9 +116,10 @@ class Tableau:
 
         vectors = np.zeros((4, COUPLED_STAGES))
         vectors[:, : len(b)] = self.c, b, b @ a, self.end_extrapolation()
-        tail = np.zeros(COUPLED_STAGES + 2)
+        tail = np.zeros(2 * COUPLED_STAGES + 2)
         tail[: len(b)] = embedded
-        tail[COUPLED_STAGES:] = start, self.gamma
+        tail[COUPLED_STAGES : COUPLED_STAGES + 2] = start, self.gamma
+        tail[COUPLED_STAGES + 2 : COUPLED_STAGES + 2 + len(b)] = self.lower_difference()
         return (
             block(a),
             block(a @ a),
@@ -136,7 +153,8 @@ TABLEAUS = {
         (0.5, 0.5),
         ((0.27826, 0.0), (0.58668, 0.27826)),
         order=4,
-        order_of_estimate=3,
+        order_of_estimate=2,
+        start_weight=0.27826,
     ),
     "gauss3": Tableau(  # Kuntzmann 1961, Butcher 1964
         "Gauss with 3 stages, order 6, symmetric",
@@ -149,6 +167,7 @@ TABLEAUS = {
         (5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0),
         ((0.20222, 0.0, 0.0), (0.23620, 0.20222, 0.0), (0.05584, 0.49162, 0.20222)),
         order=6,
-        order_of_estimate=4,
+        order_of_estimate=3,
+        start_weight=-0.20222,
     ),
 }

@@ -13,7 +13,6 @@ from ..contact.laws import ForceLaw, ImpactLaw
 from ..description import Model
 from ..elements.base import Coordinate, Element, Form, Row
 from ..elements.internal import internal_coordinates_kernel
-from ..elements.planar_body import PlanarBody
 from ..errors import ModelError
 from ..model.channels import Channel
 from .numbering import GROUND_SLOTS, ModelNumbering
@@ -194,7 +193,7 @@ def assemble(model: Model) -> Assembly:
     if len(internal):
         batches.append(_internal_batch(internal))
     rest = (np.zeros(len(internal)),) * 2
-    states = [*(body.initial_state() for body in model.bodies), rest]
+    states = [*(body.start_in(numbering.bodies) for body in model.bodies), rest]
     columns, names = [], []
     for body in model.bodies:
         for coordinate, index in zip(body.coordinate_records(), numbering.index[body.name], strict=False):
@@ -279,7 +278,7 @@ def _coordinate_scale(
 ) -> NDArray[np.float64]:
     """What the coordinates say, 1 for angles; for translations of planar bodies the size of the mechanism, so that m
     and mm give the same partition. Internal coordinates change no size: they have that of the mechanism."""
-    points = [body.position for body in model.bodies if isinstance(body, PlanarBody)]
+    points = [point for body in model.bodies for point in body.extent()]
     points += [marker.point for e in model.elements() for marker in e.markers()]
     size = max((max(abs(x), abs(y)) for x, y in points), default=0.0) or 1.0
     scales = [size if coordinate.scale is None else coordinate.scale for _, coordinate, _ in columns]

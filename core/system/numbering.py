@@ -3,7 +3,8 @@
 from ..contact.friction import FrictionLaw, friction_address
 from ..contact.laws import ForceLaw, law_address
 from ..description import Model
-from ..elements.planar_body import PlanarBody
+from ..elements.base import BodyElement
+from ..elements.planar_body import PlanarFrame
 from ..model.markers import GROUND
 from ..model.signals import Signal
 
@@ -16,6 +17,7 @@ class ModelNumbering:
 
     def __init__(self, model: Model) -> None:
         self.gravity = model.gravity
+        self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
         self.index: dict[str, tuple[int, ...]] = {}
         self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
         self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
@@ -24,6 +26,7 @@ class ModelNumbering:
         self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
         self.names = {body.name: body.coordinate_names for body in model.bodies}
         n_bodies = sum(len(names) for names in self.names.values())
+        self.places: dict[str, dict[str, int]] = {}
         self.internals: dict[str, tuple[int, ...]] = {}
         self.internal_names: list[str] = []
         for element in model.elements():
@@ -37,18 +40,21 @@ class ModelNumbering:
         for body in model.bodies:
             count = len(self.names[body.name])
             own = tuple(range(start, start + count))
-            if isinstance(body, PlanarBody):
+            if isinstance(body, PlanarFrame):
                 own += tuple(range(n + count, n + GROUND_SLOTS))
-                q0 = body.initial_state()[0]
+                q0 = body.start_in(self.bodies)[0]
                 self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
             self.index[body.name] = own
             start += count
 
     def coordinates(self, body: str) -> tuple[int, ...]:
-        return self.index[body]
+        planar = body in self.initial_positions
+        return self.index[body][:GROUND_SLOTS] if planar else self.index[body]
 
     def coordinate(self, body: str, name: str) -> int:
-        return self.index[body][self.names[body].index(name)]
+        if body not in self.places:
+            self.places[body] = dict(zip(self.names[body], self.index[body], strict=False))
+        return self.places[body][name]
 
     def initial(self, body: str) -> tuple[float, float, float]:
         return self.initial_positions[body]

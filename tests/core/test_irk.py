@@ -137,7 +137,7 @@ def test_order_survives_full_turns_and_the_new_partitions_that_they_need(tableau
 def test_error_control_follows_the_tolerance(tableau, bound):
     """h goes as rtol^(1/(estimate's order + 1)), the error of the formula as h^order; of a step the sweeps may leave
     a hundredth of rtol."""
-    exponent = TABLEAUS[tableau].order / (TABLEAUS[tableau].order_of_estimate + 1)
+    exponent = TABLEAUS[tableau].order / (TABLEAUS[tableau].order_of_error + 1)
     errors = []
     for rtol in (1e-5, 1e-7, 1e-9):
         run = simulate(point_pendulum(ANGLE, RATE), 1.0, "irk", rtol, rtol * 1e-2, record=False, tableau=tableau)
@@ -145,6 +145,29 @@ def test_error_control_follows_the_tolerance(tableau, bound):
         assert errors[-1] < bound * rtol
         assert errors[-1] > 1e-2 * rtol**exponent
     assert errors[0] > errors[1] > errors[2]
+
+
+@every_tableau
+@pytest.mark.parametrize("damping", [0.0, 0.5])
+def test_the_estimate_sees_the_error_of_a_linear_equation(tableau, damping):
+    """A collocation polynomial satisfies its own quadrature: an embedded formula of too high an order sees nothing."""
+    frequency = math.sqrt(40.0 - 0.25 * damping**2)
+
+    def exact_position(t):
+        phase = frequency * t
+        swing = 0.1 * math.cos(phase) + (0.3 + 0.05 * damping) / frequency * math.sin(phase)
+        return math.exp(-0.5 * damping * t) * swing
+
+    oscillator = EquationSystem(
+        mass=np.eye(1), force=lambda t, q, v: np.array([-40.0 * q[0] - damping * v[0]]), q0=[0.1], v0=[0.3]
+    )
+    for rtol in (1e-3, 1e-6):
+        run = simulate(
+            oscillator, 5.0, "irk", rtol, 1e-2 * rtol, tableau=tableau, first_step=1.0, step_records=True, record=False
+        )
+        assert run.stats["rejected"] > 0
+        assert run.q[-1, 0] == pytest.approx(exact_position(5.0), abs=rtol)
+        assert np.all(run.steps["error"] > 0.0)
 
 
 def test_higher_orders_take_fewer_steps_than_the_diagonal_method():

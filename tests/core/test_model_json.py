@@ -10,6 +10,8 @@ from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
     Bushing2D,
+    Cable2D,
+    Clamp2D,
     Constant,
     CoordinateContact,
     CoordinateDriver,
@@ -34,6 +36,7 @@ from tlismni.core import (
     Line2D,
     LinearSystem,
     Marker2D,
+    MaterialPoint2D,
     Model,
     ModelError,
     NewtonImpact,
@@ -100,10 +103,23 @@ ELEMENTS = {
             force=st.none() | vector, position=st.none() | vector, velocity=st.none() | vector,
             units=st.none() | st.just(("m", "rad")), scales=st.none() | st.tuples(positive, positive),
         ),
+        st.builds(
+            Cable2D, name=st.just("x"), elements=st.just(1), length=positive, mass_per_length=positive,
+            axial_stiffness=positive, bending_stiffness=positive, axial_damping=positive, bending_damping=positive,
+            reference_strain=number, reference_curvature=number, relaxed=st.sampled_from(["straight", "start"]),
+            integration=st.sampled_from(["full", "reduced"]), position=vector, angle=number, velocity=vector,
+            shape=st.none() | st.tuples(st.tuples(number, number, positive, number)).map(lambda node: 2 * node),
+            angular_velocity=number,
+        ),
+        st.builds(
+            MaterialPoint2D, name=st.just("x"), body=st.just("rope"),
+            point=st.tuples(st.floats(0.0, 1.0), st.just(0.0)),
+        ),
     ],
     "joints": [
         st.builds(Revolute2D, name=st.just("x"), a=marker, b=marker),
         st.builds(Prismatic2D, name=st.just("x"), a=marker, b=marker, relative_angle=st.none() | number),
+        st.builds(Clamp2D, name=st.just("x"), a=marker, b=marker, relative_angle=st.none() | number),
         st.builds(Distance2D, name=st.just("x"), a=marker, b=marker, length=positive),
         st.builds(
             CoordinateDriver, name=st.just("x"), body=st.just("b"),
@@ -157,10 +173,11 @@ ELEMENTS = {
     ],
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
+ROPE = Cable2D(name="rope", elements=1, length=1.0, mass_per_length=1.0, axial_stiffness=1.0, bending_stiffness=0.0)
 
 
 def model_with(kind, element):
-    parts = {"bodies": [BODY], "joints": [], "forces": [], "contacts": [], "inputs": [Input(name="u", unit="N")]}
+    parts = {"bodies": [BODY, ROPE], "joints": [], "forces": [], "contacts": [], "inputs": [Input(name="u", unit="N")]}
     parts[kind] = [*parts[kind], element]
     return Model(name="journey", **parts)
 
@@ -193,7 +210,8 @@ def test_the_list_of_elements_above_is_complete():
     here = {
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
-        "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact",
+        "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
+        "Clamp2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

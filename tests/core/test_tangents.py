@@ -205,15 +205,15 @@ def system(case):
     return Point(Model(gravity=(0.3, -9.0), bodies=bodies, **parts), CASES[case].get("mode"))
 
 
-def check_matrix(point, state, c_q=0.6, c_v=0.8):
+def check_matrix(point, state, c_q=0.6, c_v=0.8, h=H):
     """S = dr/da + c_v dr/dv + c_q dr/dq; Phi_q; its transpose; and nothing below."""
     n, active = point.n, point.workspace.structure.active
     point.at(*state)
     matrix = point.tangent(c_q, c_v)
     zero, unit = np.zeros(n), np.eye(n)
     no_lam = np.zeros(point.m)
-    s = np.array([point.derivative(0, (0.0, c_q * e, c_v * e, e, no_lam), state) for e in unit]).T
-    jacobian = np.array([point.derivative(1, (0.0, e, zero, zero, no_lam), state) for e in unit]).T[active]
+    s = np.array([point.derivative(0, (0.0, c_q * e, c_v * e, e, no_lam), state, h) for e in unit]).T
+    jacobian = np.array([point.derivative(1, (0.0, e, zero, zero, no_lam), state, h) for e in unit]).T[active]
     scale = max(1.0, np.abs(s).max())
     assert np.abs(matrix[:n, :n] - s).max() < 1e-8 * scale
     assert np.abs(matrix[n:, :n] - jacobian).max(initial=0.0) < 1e-8
@@ -225,14 +225,14 @@ def check_matrix(point, state, c_q=0.6, c_v=0.8):
         assert np.abs(force - matrix[n + list(active).index(row), :n]).max() < 1e-9
 
 
-def check_levels(point, state):
+def check_levels(point, state, h=H):
     """Phi' and Phi'' along the motion are the velocity and acceleration residuals: all gaps and constraints."""
     _, q, v, a, lam = state
     point.at(*state)
-    first = point.derivative(1, (1.0, v, np.zeros_like(q), np.zeros_like(q), np.zeros_like(lam)), state)
+    first = point.derivative(1, (1.0, v, np.zeros_like(q), np.zeros_like(q), np.zeros_like(lam)), state, h)
     _, _, phid, phidd = point.at(*state)
     assert np.abs(phid - first).max(initial=0.0) < 1e-8
-    second = point.derivative(2, (1.0, v, a, np.zeros_like(q), np.zeros_like(lam)), state)
+    second = point.derivative(2, (1.0, v, a, np.zeros_like(q), np.zeros_like(lam)), state, h)
     assert np.abs(phidd - second).max(initial=0.0) < 1e-8
 
 

@@ -1,0 +1,177 @@
+"""The record of a planar cable of gradient-deficient cubic ANCF elements. Its kernel is in `cable_kernel.py`."""
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from ..errors import ModelError
+from ..model.base import NonNegative, Positive, Vector2
+from .base import Coordinate, Numbering, Row
+from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
+from .cable_shape import POINTS, gauss_places, weights
+from .flexible_body import FlexibleBody, PointShape
+
+FULL_PATTERN = tuple((i, j) for i in range(NODAL) for j in range(NODAL))
+
+
+class Cable2D(FlexibleBody):
+    """A cable or beam (shear-rigid, large deformation) of `elements` equal ANCF elements in a row.
+
+    Node k = 0 ... elements has the absolute coordinates x{k}, y{k} and the slope dr/ds, slope_x{k} and slope_y{k}, s
+    the length along the undeformed body. Strains: axial |r'| - 1 and material curvature (r' x r'')/|r'|^2. Channels are
+    NAME.x3, .vx3, .ax3, ..., NAME.slope_x3, .d_slope_x3, .dd_slope_x3; those of points between the nodes come with a
+    MaterialPoint2D.
+
+    Raises
+    ------
+    ModelError : for a shape with another number of nodes, or one with a slope of zero.
+    """
+
+    type: Literal["Cable2D"] = "Cable2D"
+    kernel: ClassVar[Any] = cable2d_kernel
+    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
+
+    elements: Annotated[int, Field(ge=1)]
+    """Number of elements."""
+    length: Positive
+    """Undeformed length of the whole cable, m."""
+    mass_per_length: Positive
+    """kg/m."""
+    axial_stiffness: Positive
+    """EA, N."""
+    bending_stiffness: NonNegative
+    """EI, N m^2; 0 is a thread."""
+    axial_damping: NonNegative = 0.0
+    """Axial force per rate of the axial strain, N s."""
+    bending_damping: NonNegative = 0.0
+    """Bending moment per rate of the curvature, N m^2 s."""
+    reference_strain: float = 0.0
+    """Axial strain without force, 1."""
+    reference_curvature: float = 0.0
+    """Curvature without moment, 1/m."""
+    relaxed: Literal["straight", "start"] = "straight"
+    """Where it is free of stress but for the reference values: straight, or in the shape in which it starts."""
+    integration: Literal["full", "reduced"] = "full"
+    """Gauss points of an element: 5 for the axial and 3 for the bending strain, or 4 and 2."""
+    position: Vector2 = (0.0, 0.0)
+    """Where its first node starts, m."""
+    angle: float = 0.0
+    """Its direction at the start, rad."""
+    shape: tuple[tuple[float, float, float, float], ...] | None = None
+    """(x, y, slope_x, slope_y) of each node at the start, before it is turned by `angle` and moved to `position`; left
+    out: straight and unstrained."""
+    velocity: Vector2 = (0.0, 0.0)
+    """Initial velocity of the place `position`, m/s."""
+    angular_velocity: float = 0.0
+    """It starts turning about `position` as if rigid, rad/s."""
+
+    @model_validator(mode="after")
+    def _check(self) -> "Cable2D":
+        if self.shape is None:
+            return self
+        if len(self.shape) != self.elements + 1:
+            raise ValueError(f"shape of '{self.name}' has {len(self.shape)} nodes: {self.elements} elements have "
+                             f"{self.elements + 1}")  # fmt: skip
+        for k, (_, _, sx, sy) in enumerate(self.shape):
+            if sx == 0.0 and sy == 0.0:
+                raise ValueError(f"shape of '{self.name}': node {k} has slope zero, so that it has no direction; an "
+                                 "unstretched cable has slopes of length 1")  # fmt: skip
+        return self
+
+    def coordinate_records(self) -> Sequence[Coordinate]:
+        records = []
+        for k in range(self.elements + 1):
+            records += [
+                Coordinate(f"x{k}", "m", f"vx{k}", f"ax{k}"),
+                Coordinate(f"y{k}", "m", f"vy{k}", f"ay{k}"),
+                Coordinate(f"slope_x{k}", "1", f"d_slope_x{k}", f"dd_slope_x{k}", 1.0),
+                Coordinate(f"slope_y{k}", "1", f"d_slope_y{k}", f"dd_slope_y{k}", 1.0),
+            ]
+        return records
+
+    def start_shape(self) -> NDArray[np.float64]:
+        """x, y, slope_x, slope_y (nodes, 4) at the start."""
+        count = self.elements + 1
+        if self.shape is None:
+            own = np.zeros((count, 4))
+            own[:, 0], own[:, 2] = np.linspace(0.0, self.length, count), 1.0
+        else:
+            own = np.array(self.shape)
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        turn = np.array([[c, s], [-s, c]])
+        return np.hstack([own[:, :2] @ turn + np.asarray(self.position), own[:, 2:] @ turn])
+
+    def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """(q0, v0)."""
+        q = self.start_shape()
+        arm = q.copy()
+        arm[:, :2] -= self.position
+        v = self.angular_velocity * np.stack([-arm[:, 1], arm[:, 0], -arm[:, 3], arm[:, 2]], axis=1)
+        v[:, :2] += self.velocity
+        return tuple(q.ravel().tolist()), tuple(v.ravel().tolist())
+
+    def extent(self) -> Sequence[tuple[float, float]]:
+        places = self.start_shape()[:, :2]
+        return [(float(x), float(y)) for x, y in (places.min(axis=0), places.max(axis=0))]
+
+    def row(self, numbering: Numbering) -> Row:
+        return self.rows(numbering)[0]
+
+    def rows(self, numbering: Numbering) -> Sequence[Row]:
+        """One row an element."""
+        own = numbering.coordinates(self.name)
+        axial, bending = POINTS[self.integration]
+        fixed = (
+            self.length / self.elements, self.mass_per_length, self.axial_stiffness, self.bending_stiffness,
+            self.axial_damping, self.bending_damping, *numbering.gravity, float(axial), float(bending),
+        )  # fmt: skip
+        extra = (numbering.work("dampers"),)
+        relaxed = self._relaxed_strains()
+        return [Row((*fixed, *relaxed[e]), own[4 * e : 4 * e + NODAL], extra) for e in range(self.elements)]
+
+    def _relaxed_strains(self) -> NDArray[np.float64]:
+        """Axial strain and curvature without force (elements, 2 MOST_POINTS) at the Gauss points."""
+        found = np.zeros((self.elements, 2, MOST_POINTS))
+        for k, (count, reference) in enumerate(
+            zip(POINTS[self.integration], (self.reference_strain, self.reference_curvature), strict=True)
+        ):
+            found[:, k, :count] = reference
+            if self.relaxed == "start":
+                found[:, k, :count] += np.array(self.strains_at(self.start_shape(), gauss_places(count))[k])
+        return found.reshape(self.elements, -1)
+
+    def strains_at(self, nodes: NDArray[np.float64], places: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Axial strain and curvature (elements, places) at `places` in [0, 1] of every element, for nodes
+        (nodes, 4)."""
+        length = self.length / self.elements
+        vectors = np.stack([nodes[:-1, :2], nodes[:-1, 2:], nodes[1:, :2], nodes[1:, 2:]], axis=1)
+        first, second = (np.array([weights(float(x), length, d) for x in places]) for d in (1, 2))
+        a, b = np.einsum("pk,ekc->epc", first, vectors), np.einsum("pk,ekc->epc", second, vectors)
+        square = np.sum(a * a, axis=2)
+        return np.sqrt(square) - 1.0, (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / square
+
+    def find(self, s: float) -> tuple[int, float]:
+        """(element, place in [0, 1]) of the point at s m along the undeformed cable. Raises ModelError beyond it."""
+        if not -1e-12 * self.length <= s <= (1.0 + 1e-12) * self.length:
+            raise ModelError(f"'{self.name}' has no point at s = {s:g} m: it reaches from 0 to {self.length:g} m")
+        place = min(max(s / self.length, 0.0), 1.0) * self.elements
+        # a node counts as one, in spite of rounding
+        place = round(place) if abs(place - round(place)) < 1e-9 * self.elements else place
+        e = min(int(place), self.elements - 1)
+        return e, place - e
+
+    def material_point(self, point: tuple[float, float]) -> PointShape:
+        """The point (s, 0), s m along the undeformed cable. Raises ModelError beyond it, and off its axis."""
+        s, off = point
+        if off != 0.0:
+            raise ModelError(f"a material point of cable '{self.name}' lies on its axis, not {off:g} m off it: give "
+                             f"({s:g}, 0), and (0, {off:g}) as the point of a marker on it")  # fmt: skip
+        e, x = self.find(s)
+        length = self.length / self.elements
+        names = tuple(f"{what}{k}" for k in (e, e + 1) for what in ("x", "y", "slope_x", "slope_y"))
+        shape, slope = (np.kron(weights(x, length, d), np.eye(2)) for d in (0, 1))
+        return PointShape(None, names, (0.0, 0.0), (0.0, 0.0), shape, slope)

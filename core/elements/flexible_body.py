@@ -1,0 +1,67 @@
+"""What a flexible body is to the others: named coordinates, and material points that move with them.
+
+A new flexible body derives from `FlexibleBody` and says in `material_point` how a point of it moves. That is all that
+`MaterialPoint2D`, and with it every joint, force, contact and output, needs to know of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .base import BodyElement
+
+
+@dataclass(frozen=True)
+class PointShape:
+    """A material point as a function of its body's coordinates.
+
+    With the floating frame (R, theta) and n local coordinates w: place p = R + A(theta) (offset + shape w), tangent of
+    the body's axis A(theta) (tangent + slope w). Without a floating frame R = 0 and A = 1.
+    """
+
+    frame: tuple[str, str, str] | None
+    """Names of the body's coordinates x, y, angle of its floating frame."""
+    local: tuple[str, ...]
+    """Names of the n local coordinates that move the point."""
+    offset: tuple[float, float]
+    """m."""
+    tangent: tuple[float, float]
+    shape: NDArray[np.float64]
+    """(2, n)."""
+    slope: NDArray[np.float64]
+    """(2, n)."""
+
+    def place(self, frame: Sequence[float], local: Sequence[float]) -> tuple[float, float, float]:
+        """(x, y, angle of the tangent) for the frame's coordinates (x, y, angle) and the local ones (n,)."""
+        w, turn = np.asarray(local, dtype=float), _rotation(frame[2])
+        x, y = np.asarray(frame[:2]) + turn @ (np.asarray(self.offset) + self.shape @ w)
+        tx, ty = np.asarray(self.tangent) + self.slope @ w
+        return float(x), float(y), float(frame[2] + np.arctan2(ty, tx))
+
+    def rates(
+        self, frame: Sequence[float], local: Sequence[float], frame_rates: Sequence[float], rates: Sequence[float]
+    ) -> tuple[float, float, float]:
+        """Rates of `place`."""
+        w, dw, turn = np.asarray(local, dtype=float), np.asarray(rates, dtype=float), _rotation(frame[2])
+        ux, uy = np.asarray(self.offset) + self.shape @ w
+        moved = self.shape @ dw + frame_rates[2] * np.array([-uy, ux])
+        x, y = np.asarray(frame_rates[:2]) + turn @ moved
+        tx, ty = np.asarray(self.tangent) + self.slope @ w
+        dtx, dty = self.slope @ dw
+        return float(x), float(y), float(frame_rates[2] + (tx * dty - ty * dtx) / (tx * tx + ty * ty))
+
+
+class FlexibleBody(BodyElement):
+    """Base of the flexible bodies."""
+
+    def material_point(self, point: tuple[float, float]) -> PointShape:
+        """How the material point at `point` (in the undeformed body, m) moves. Raises ModelError for a point outside
+        the body."""
+        raise NotImplementedError(f"{type(self).__name__} must say how its material points move")
+
+
+def _rotation(angle: float) -> NDArray[np.float64]:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s], [s, c]])
