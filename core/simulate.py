@@ -83,6 +83,7 @@ def simulate(
             for t in times:
                 sim.run_to(t_end, until=float(t))
                 rows.append(sim.sample())
+                sim.report_progress(float(t))
             sim.run_to(t_end)
     except TlismniError as error:
         if isinstance(error, SimulationError):

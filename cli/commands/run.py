@@ -54,11 +54,17 @@ def run(
         check_file(path)
 
     from ...core import simulate
+    from ..recording import affordable_times, record_bytes
     from ..source import read_source
     from ..summary import print_summary, summarise
 
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
-    times = None if every is None else _times(scenario.t_end, every)
+    times = affordable_times(scenario) if every is None else _times(scenario.t_end, every)
+    if every is None and times is not None:
+        say(
+            f"all steps would fill about {record_bytes(scenario) / 1e9:.0f} GB: recording {len(times)} times "
+            "(--every chooses others)"
+        )
     with compile_notice(), progress_bar(scenario.name, scenario.t_end) as progress:
         result = simulate(
             scenario.model,
