@@ -36,8 +36,8 @@ Force = Annotated[
 __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
-    "AxialRod",
     "Attachment",
+    "AxialRod",
     "Body",
     "BodyElement",
     "Bushing2D",
