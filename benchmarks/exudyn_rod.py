@@ -8,8 +8,8 @@ import exudyn as exu
 import numpy as np
 from exudyn.itemInterface import (
     CoordinateSpringDamper,
-    Mass1D,
     MarkerNodeCoordinate,
+    Mass1D,
     Node1D,
     NodeGenericData,
     NodeGenericODE2,
@@ -72,7 +72,9 @@ def generic(elements: int, steps: int, solver: str, modified: bool) -> RodRun:
     ends = np.ones(n)
     ends[[0, -1]] = 0.5
     mass = MASS * le * diags_array([np.full(n - 1, 1 / 6), ends * 2 / 3, np.full(n - 1, 1 / 6)], offsets=[-1, 0, 1])
-    stiffness = STIFFNESS / le * diags_array([np.full(n - 1, -1.0), 2.0 * ends, np.full(n - 1, -1.0)], offsets=[-1, 0, 1])
+    stiffness = (
+        STIFFNESS / le * diags_array([np.full(n - 1, -1.0), 2.0 * ends, np.full(n - 1, -1.0)], offsets=[-1, 0, 1])
+    )
     containers = []
     for matrix in (mass, stiffness):
         container = exu.MatrixContainer()

@@ -1,14 +1,13 @@
 """How much of a run is recorded when nobody says: every step, unless that would fill the memory."""
 
-from collections.abc import Sequence
+import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..models import Scenario
 
-LARGEST_RECORD = 1e9
+LARGEST_RECORD = 5e8
 """Bytes of samples that a run may keep."""
-FEWEST_TIMES = 50
 ASSUMED_STEPS = 20_000
 """Of runs with error control, whose number of steps nobody knows before."""
 
@@ -21,12 +20,6 @@ def record_bytes(scenario: "Scenario") -> float:
     return 8.0 * 3.0 * coordinates * steps
 
 
-def affordable_times(scenario: "Scenario") -> Sequence[float] | None:
-    """None if all steps can be recorded, else times at equal distances that fit."""
-    needed = record_bytes(scenario)
-    if needed <= LARGEST_RECORD:
-        return None
-    step = scenario.options.get("step")
-    steps = scenario.t_end / step if step else ASSUMED_STEPS
-    count = max(FEWEST_TIMES, int(steps * LARGEST_RECORD / needed))
-    return [min(k * scenario.t_end / count, scenario.t_end) for k in range(count + 1)]
+def affordable_stride(scenario: "Scenario") -> int:
+    """1 if all steps can be recorded, else the number k of which every k-th can."""
+    return max(1, math.ceil(record_bytes(scenario) / LARGEST_RECORD))

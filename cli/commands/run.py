@@ -54,16 +54,17 @@ def run(
         check_file(path)
 
     from ...core import simulate
-    from ..recording import affordable_times, record_bytes
+    from ..recording import affordable_stride, record_bytes
     from ..source import read_source
     from ..summary import print_summary, summarise
 
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
-    times = affordable_times(scenario) if every is None else _times(scenario.t_end, every)
-    if every is None and times is not None:
+    times = None if every is None else _times(scenario.t_end, every)
+    stride = affordable_stride(scenario)
+    if times is None and stride > 1:
         say(
-            f"all steps would fill about {record_bytes(scenario) / 1e9:.0f} GB: recording {len(times)} times "
-            "(--every chooses others)"
+            f"all steps would fill about {record_bytes(scenario) / 1e9:.2g} GB: recording every {stride}th "
+            "(--every chooses times instead)"
         )
     with compile_notice(), progress_bar(scenario.name, scenario.t_end) as progress:
         result = simulate(
@@ -73,6 +74,7 @@ def run(
             scenario.rtol,
             scenario.atol,
             t_eval=times,
+            record=stride,
             progress=progress,
             step_records=steps is not None,
             **scenario.options,
