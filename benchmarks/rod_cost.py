@@ -134,9 +134,7 @@ def main() -> None:
         os.sched_setaffinity(0, {arguments.core})
     ours(Case(101, 400, 0))
     rows: list[Row] = []
-    print(
-        f"{'size':>7} {'ours us':>10} {'exudyn us':>10} {'ratio':>6} {'growth':>6} {'build s':>8} {'MB':>6}  exudyn's best"
-    )
+    print(f"{'size':>7} {'ours us':>10} {'exudyn us':>10} {'ratio':>6} {'growth':>6} {'build s':>8} {'MB':>6}  best")
     for case in (c for c in CASES if c.size in arguments.sizes):
         row = measure(case)
         growth = math.nan
