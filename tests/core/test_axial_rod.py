@@ -201,3 +201,17 @@ def test_another_body_strikes_while_a_massless_end_is_closed() -> None:
     node, approach = 0.5 * 1.5 * 0.2, first.approach_speed
     assert first.impulse == pytest.approx(approach * node * 2.0 / (node + 2.0), rel=1e-9)
     assert np.max(np.abs(result["energy.balance"])) < 1e-8
+
+
+def test_every_tenth_step_is_recorded_with_what_happens_at_contacts_and_the_end() -> None:
+    body = rod(10, velocity=1.0)
+    model, h = Model(bodies=[body], contacts=[wall(node="x10")]), 0.2 * 0.2 / body.wave_speed
+    every, some = (simulate(model, 0.2, "newmark", step=h, record=record) for record in (True, 10))
+    at = {t: k for k, t in enumerate(every.t)}
+    assert len(every) / 12 < len(some) < len(every) / 8 and some.t[-1] == every.t[-1]
+    assert {e.t for e in some.events} <= set(some.t) and some.events == every.events
+    for k, t in enumerate(some.t):
+        if np.sum(every.t == t) == 1:
+            assert np.array_equal(some.q[k], every.q[at[t]])
+    with pytest.raises(ModelError, match="number of steps between"):
+        simulate(model, 0.2, "newmark", step=h, record=-2)
