@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from .applied_load2d import AppliedForce2D, AppliedTorque2D
+from .axial_rod import AxialRod
 from .base import BodyElement, Element
 from .bushing2d import Bushing2D
 from .cable2d import Cable2D
@@ -24,7 +25,7 @@ from .revolute2d import Revolute2D
 from .spring_damper2d import SpringDamper2D
 
 Body = Annotated[
-    PointMass2D | RigidBody2D | LinearSystem | Cable2D | FloatingBeam2D | ReducedBody2D | MaterialPoint2D,
+    PointMass2D | RigidBody2D | LinearSystem | AxialRod | Cable2D | FloatingBeam2D | ReducedBody2D | MaterialPoint2D,
     Field(discriminator="type"),
 ]
 Joint = Annotated[Revolute2D | Prismatic2D | Clamp2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
@@ -36,6 +37,7 @@ __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
     "Attachment",
+    "AxialRod",
     "Body",
     "BodyElement",
     "Bushing2D",

@@ -23,8 +23,8 @@ STARTS = (
     (-0.66, -0.993), (-0.638, -1.023), (-0.634, -0.923), (-0.624, -0.927), (-0.591, -0.931), (-0.597, -1.011),
     (-0.547, -0.939), (-0.595, -1.018), (-0.554, -0.885), (-0.547, -0.892), (-0.631, -0.887), (-0.635, -0.892),
 )  # fmt: skip
-"""Angles of upper and lower rod, rad: none of the blows grazes, and small changes of the angles move no blow by more than
-1.05 s/rad (rounding grows as they do)."""
+"""Angles of upper and lower rod, rad: none of the blows grazes, and small changes of the angles move no blow by more
+than 1.05 s/rad (rounding grows as they do)."""
 COUNTS = tuple(round(160 * 2.0 ** (0.5 * j)) for j in range(14))
 QUICK_COUNTS = COUNTS[:10]
 NEWTON_TOLERANCE = 1e-15
