@@ -7,6 +7,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     bouncing_ball,
     chain,
     double_pendulum_wall,
+    flexible_slider_crank_stop,
     four_bar,
     hub_beam_stop,
     impact_oscillator,
