@@ -135,7 +135,8 @@ def main() -> None:
     ours(Case(101, 400, 0))
     rows: list[Row] = []
     print(
-        f"{'size':>7} {'ours us':>10} {'exudyn us':>10} {'ratio':>6} {'growth':>6} {'build s':>8} {'MB':>6}  exudyn's best"
+        f"{'size':>7} {'ours us':>10} {'exudyn us':>10} {'ratio':>6} {'growth':>6} {'build s':>8} {'MB':>6}  "
+        "exudyn's best"
     )
     for case in (c for c in CASES if c.size in arguments.sizes):
         row = measure(case)
