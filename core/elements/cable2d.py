@@ -15,6 +15,9 @@ from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
 from .cable_shape import POINTS, gauss_places, weights
 from .flexible_body import FlexibleBody, PointShape
 
+SLOPE_SCALE = 0.5
+"""Less than the 1 of angles, so that of a point's frame and a slope it is the frame that counts as dependent: its rows
+are linear in it."""
 FULL_PATTERN = tuple((i, j) for i in range(NODAL) for j in range(NODAL))
 
 
@@ -88,8 +91,8 @@ class Cable2D(FlexibleBody):
             records += [
                 Coordinate(f"x{k}", "m", f"vx{k}", f"ax{k}"),
                 Coordinate(f"y{k}", "m", f"vy{k}", f"ay{k}"),
-                Coordinate(f"slope_x{k}", "1", f"d_slope_x{k}", f"dd_slope_x{k}", 1.0),
-                Coordinate(f"slope_y{k}", "1", f"d_slope_y{k}", f"dd_slope_y{k}", 1.0),
+                Coordinate(f"slope_x{k}", "1", f"d_slope_x{k}", f"dd_slope_x{k}", SLOPE_SCALE),
+                Coordinate(f"slope_y{k}", "1", f"d_slope_y{k}", f"dd_slope_y{k}", SLOPE_SCALE),
             ]
         return records
 
