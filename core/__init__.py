@@ -2,6 +2,7 @@
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
+from .contact.disk_on_cable import DiskOnCable2D
 from .contact.disk_on_line import DiskOnLine2D, Line2D
 from .contact.friction import (
     AmbrosioFriction,
@@ -85,6 +86,7 @@ __all__ = [
     "CoordinateTerm",
     "CoulombFriction",
     "Disk2D",
+    "DiskOnCable2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
     "DiskOnLine2D",

@@ -19,6 +19,7 @@ from tlismni.core import (
     CoordinateTerm,
     CoulombFriction,
     Disk2D,
+    DiskOnCable2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
     DiskOnLine2D,
@@ -161,6 +162,9 @@ ELEMENTS = {
             ),
         ),
         st.builds(
+            DiskOnCable2D, name=st.just("x"), disk=disk, law=law, cable=st.just("rope"), thickness=positive
+        ),
+        st.builds(
             CoordinateContact, name=st.just("x"), law=law, offset=number,
             terms=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("y"), factor=positive)),
             slide=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("x"), factor=positive)),
@@ -211,7 +215,7 @@ def test_the_list_of_elements_above_is_complete():
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
         "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
-        "Clamp2D",
+        "Clamp2D", "DiskOnCable2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 
