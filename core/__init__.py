@@ -39,16 +39,21 @@ from .description import Model
 from .elements import (
     AppliedForce2D,
     AppliedTorque2D,
+    Attachment,
+    AxialRod,
     Bushing2D,
     Cable2D,
     Clamp2D,
     CoordinateDriver,
     CoordinateLoad,
     Distance2D,
+    FloatingBeam2D,
     LinearSystem,
     MaterialPoint2D,
     PointMass2D,
     Prismatic2D,
+    ReducedBody2D,
+    ReducedPoint,
     Revolute2D,
     RigidBody2D,
     SpringDamper2D,
@@ -63,6 +68,7 @@ from .model.channels import Channel, Input, Parameter
 from .model.markers import Marker2D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
 from .result import Result
+from .section_loads import axial_force, axial_strain, bending_moment, curvature, deformed_shape, section, stress
 from .simulate import simulate
 from .state import State
 from .system.redundancy import RedundantRow
@@ -72,6 +78,8 @@ __all__ = [
     "AmbrosioFriction",
     "AppliedForce2D",
     "AppliedTorque2D",
+    "Attachment",
+    "AxialRod",
     "BrownMcPheeFriction",
     "Bushing2D",
     "Cable2D",
@@ -95,6 +103,7 @@ __all__ = [
     "EquationError",
     "EquationSystem",
     "Event",
+    "FloatingBeam2D",
     "Flores",
     "ForceLaw",
     "FrictionLaw",
@@ -126,6 +135,8 @@ __all__ = [
     "Polynomial",
     "Prismatic2D",
     "Ramp",
+    "ReducedBody2D",
+    "ReducedPoint",
     "RedundantRow",
     "Result",
     "Revolute2D",
@@ -144,8 +155,15 @@ __all__ = [
     "TlismniError",
     "Tsuji",
     "ZhiyingQishao",
+    "axial_force",
+    "axial_strain",
+    "bending_moment",
+    "curvature",
+    "deformed_shape",
     "force_formula",
+    "section",
     "simulate",
     "sphere_on_plane",
     "sphere_on_sphere",
+    "stress",
 ]

@@ -17,6 +17,7 @@ from ..model.base import Name, Record
 from ..model.markers import GROUND
 from .bristle2d import act_bristles
 from .contact2d import Contact2D
+from .laws import ForceLaw
 from .normal2d import act
 from .sliding2d import act_sliding
 
@@ -104,6 +105,10 @@ class CoordinateContact(Contact2D):
         if self.friction is not None and not any(term.factor for term in self.slide):
             raise ValueError(f"contact '{self.name}' has friction but no slide terms: say along what it slides")
         return self
+
+    @property
+    def linear(self) -> bool:
+        return self.friction is None and not isinstance(self.law, ForceLaw)
 
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:
         return tuple(dict.fromkeys((term.body, term.coordinate) for term in (*self.terms, *self.slide)))

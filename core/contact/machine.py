@@ -12,6 +12,7 @@ from .force_contact import handle_force
 from .impact import EndlessImpact, Impact, strike
 from .laws import ForceLaw, ImpactLaw
 from .lcp import NoComplementarySolution
+from .massless import settle_massless
 from .modes import (
     APPROACH_SPEED,
     CLOSED,
@@ -42,13 +43,17 @@ ENERGY_GAIN = 1e-12
 
 def handle(sim: "Engine", pending: list[int]) -> None:
     """The contacts `pending` have events at the workspace's current point (the newest row of the history)."""
-    constraints = []
+    constraints, massless = [], []
     for k in pending:
         law = sim.assembly.contacts[k].law
         if isinstance(law, ForceLaw):
             handle_force(sim, k, law)
+        elif k in sim.assembly.massless_contacts:
+            massless.append(k)
         else:
             constraints.append(k)
+    if massless:
+        settle_massless(sim, massless)
     if constraints:
         settle(sim, constraints)
 
@@ -59,7 +64,7 @@ def settle(sim: "Engine", pending: list[int]) -> None:
     now = read(sim, contacts, pending)
     accelerations = float(np.max(np.abs(sim.workspace.arrays["a"][: sim.assembly.n]), initial=0.0))
     slide_values = sim.slide_values(contacts)
-    touching = Touching(sim, contacts)
+    touching = Touching(sim, contacts, sim.held())
     rounding = sim.rate_rounding()
     gap_rate, _ = touching.rates()
     approaching = (gap_rate < -rounding) & ((now.was == OPEN) | sim.formula.exact)

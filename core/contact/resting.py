@@ -171,9 +171,10 @@ class Resting:
         level = max(float(np.max(np.abs(arrays["a"][:n]), initial=0.0)), accelerations, 1e-300)
         self.none = NO_ACCELERATION * level
         self.size = np.max(np.abs(touching.normal), axis=1)
-        self.b_n = np.where(np.abs(b_n) <= self.none * self.size, 0.0, b_n)
+        noise_n, noise_t = touching.motion_noise(self.sim.force_noise())
+        self.b_n = np.where(np.abs(b_n) <= np.maximum(self.none * self.size, noise_n), 0.0, b_n)
         along = np.max(np.abs(touching.tangential), axis=1)
-        self.b_t = np.where(np.abs(b_t) <= self.none * along, 0.0, b_t)
+        self.b_t = np.where(np.abs(b_t) <= np.maximum(self.none * along, noise_t), 0.0, b_t)
 
     def _solve(self, direction: Vector, mu: Vector) -> ContactSolution:
         for _ in range(2):
@@ -264,6 +265,11 @@ class Resting:
         if not now.struck:
             # touching without force: as it was
             closed |= (now.was == CLOSED) & ~now.leaves & (np.abs(found.normal_motion) <= self.none)
+        idle = self.at_rest & ~closed & ~now.leaves & (self.b_n == 0.0) & (found.normal_motion == 0.0)
+        if np.any(idle):
+            # a node of an elastic body that has come to rest while its neighbours still approach; or a gap that was
+            # left open at this very instant, and that every step closes at once
+            closed |= idle & ((self.touching.free_jerks() < 0.0) | (self.sim.events_here > 2))
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]

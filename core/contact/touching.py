@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from ..integrate.engine import Engine
 
 
+NO_JERK = 1e-9
+"""Part of its terms below which the rate of a gap's acceleration is none."""
+
+
 @compiled
 def factor_joints(ws: Any) -> int:
     """[M Phi_q^T; Phi_q 0] of the present structure at the current point."""
@@ -154,6 +158,22 @@ class Touching:
                 loop="impact",
             )
         return self._rows("phidd")
+
+    def motion_noise(self, forces: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The most that errors (n,) of the forces change the free accelerations, each (contacts,), m/s^2."""
+        noise = np.abs(self._response) @ forces
+        count = len(self.contacts)
+        return noise[:count], noise[count:]
+
+    def free_jerks(self) -> NDArray[np.float64]:
+        """Rates of the gaps' free accelerations (contacts,), m/s^3, as the forces' dependence on the motion makes them:
+        M a' = -(K v + D a). What is not more than rounding is zero."""
+        sim, arrays = self.sim, self.sim.workspace.arrays
+        by_v, by_a = (1.0, 0.0, arrays["v"]), (0.0, 1.0, arrays["a"])
+        response = self._response[: len(self.contacts)]
+        jerks = -response @ (sim.tangent_product(*by_v) + sim.tangent_product(*by_a))
+        sizes = np.abs(response) @ (sim.tangent_product(*by_v, True) + sim.tangent_product(*by_a, True))
+        return np.where(np.abs(jerks) <= NO_JERK * sizes, 0.0, jerks)
 
     def _rows(self, level: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         x = self.sim.workspace.arrays[level]

@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from .applied_load2d import AppliedForce2D, AppliedTorque2D
+from .axial_rod import AxialRod
 from .base import BodyElement, Element
 from .bushing2d import Bushing2D
 from .cable2d import Cable2D
@@ -13,14 +14,20 @@ from .coordinate_driver import CoordinateDriver
 from .coordinate_load import CoordinateLoad
 from .distance2d import Distance2D
 from .flexible_body import FlexibleBody
+from .floating_beam2d import Attachment, FloatingBeam2D
+from .floating_body2d import FloatingBody2D
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
 from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
+from .reduced_body2d import ReducedBody2D, ReducedPoint
 from .revolute2d import Revolute2D
 from .spring_damper2d import SpringDamper2D
 
-Body = Annotated[PointMass2D | RigidBody2D | LinearSystem | Cable2D | MaterialPoint2D, Field(discriminator="type")]
+Body = Annotated[
+    PointMass2D | RigidBody2D | LinearSystem | AxialRod | Cable2D | FloatingBeam2D | ReducedBody2D | MaterialPoint2D,
+    Field(discriminator="type"),
+]
 Joint = Annotated[Revolute2D | Prismatic2D | Clamp2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
 Force = Annotated[
     SpringDamper2D | Bushing2D | AppliedForce2D | AppliedTorque2D | CoordinateLoad, Field(discriminator="type")
@@ -29,6 +36,8 @@ Force = Annotated[
 __all__ = [
     "AppliedForce2D",
     "AppliedTorque2D",
+    "Attachment",
+    "AxialRod",
     "Body",
     "BodyElement",
     "Bushing2D",
@@ -39,6 +48,8 @@ __all__ = [
     "Distance2D",
     "Element",
     "FlexibleBody",
+    "FloatingBeam2D",
+    "FloatingBody2D",
     "Force",
     "Joint",
     "LinearSystem",
@@ -47,6 +58,8 @@ __all__ = [
     "PlanarFrame",
     "PointMass2D",
     "Prismatic2D",
+    "ReducedBody2D",
+    "ReducedPoint",
     "Revolute2D",
     "RigidBody2D",
     "SpringDamper2D",

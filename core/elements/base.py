@@ -82,6 +82,16 @@ class Form:
     """Local (row, j) pairs where Phi_q may be nonzero."""
 
 
+@dataclass(frozen=True)
+class Part:
+    """Rows of one kernel that an element brings; they share its constraint rows."""
+
+    form: Form
+    rows: Sequence[Row]
+    massless: int = -1
+    """Coordinate without mass that the constraint row holds; a closed contact that moves it takes the row's place."""
+
+
 class Element(Record):
     """Base of everything in a model that has a kernel.
 
@@ -94,6 +104,11 @@ class Element(Record):
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ()
 
     name: Name
+
+    @property
+    def linear(self) -> bool:
+        """True if its residuals are linear in (q, v, a, multipliers) with constant coefficients."""
+        return False
 
     def form(self) -> Form:
         """Kernel, number of constraint rows and patterns of this element."""
@@ -115,6 +130,10 @@ class Element(Record):
     def rows(self, numbering: Numbering) -> Sequence[Row]:
         """Its rows, one after another in the tables, for elements that have several; they share its constraints."""
         return (self.row(numbering),)
+
+    def parts(self, numbering: Numbering) -> Sequence["Part"]:
+        """All that it brings into the tables, for elements with rows of several kernels."""
+        return (Part(self.form_in(numbering.bodies), self.rows(numbering)),)
 
     def internal_coordinates(self) -> Sequence[str]:
         """Names of its internal coordinates: states z of its own, each the velocity of a coordinate of unit mass,

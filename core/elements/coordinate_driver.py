@@ -64,6 +64,10 @@ class CoordinateDriver(Element):
             )
         return self
 
+    @property
+    def linear(self) -> bool:
+        return True
+
     def row(self, numbering: Numbering) -> Row:
         index = numbering.coordinate(self.body, self.coordinate)
         return Row((), (index,), (numbering.signal(self.motion), numbering.work("input")))

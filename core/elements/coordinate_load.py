@@ -40,6 +40,10 @@ class CoordinateLoad(Element):
     """"x", "y" or "angle" of a planar body, or the name of one of a LinearSystem's."""
     load: Signal
 
+    @property
+    def linear(self) -> bool:
+        return True
+
     def row(self, numbering: Numbering) -> Row:
         index = numbering.coordinate(self.body, self.coordinate)
         return Row((), (index,), (numbering.signal(self.load), numbering.work("input")))

@@ -132,6 +132,10 @@ class LinearSystem(BodyElement):
                              "kinetic energy")  # fmt: skip
         return self
 
+    @property
+    def linear(self) -> bool:
+        return True
+
     def form(self) -> Form:
         n = len(self.coordinates)
         return Form(type(self).kernel, 0, tuple((i, j) for i in range(n) for j in range(n)), ())

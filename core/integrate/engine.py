@@ -26,7 +26,7 @@ from ..stage import OUTER_LOOPS
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
-from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
+from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..system.partition import prepare
 from ..system.projection import bring_to_rest
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
@@ -44,6 +44,8 @@ from .watch import FORCE_ROUNDING, GAP_ROUNDING, remember
 logger = logging.getLogger(__name__)
 
 FIRST_TOUCH = 1e-8
+COORDINATE_NOISE = 1e-14
+"""Rounding of a coordinate after many steps, relative."""
 
 
 @contextmanager
@@ -295,14 +297,20 @@ class Engine:
     # ---- constraint contacts ------------------------------------------------------------------------------------
 
     def touching(self, pending: list[int]) -> list[int]:
-        """Constraint contacts without a gap at the workspace's point: closed ones, `pending`, and others that touch."""
+        """Constraint contacts without a gap at the workspace's point: closed ones, `pending`, and others that touch.
+        Those at massless ends are left out: they take no impulse."""
         level = GAP_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]))))
         return [
             k
             for k, contact in enumerate(self.assembly.contacts)
             if not isinstance(contact.law, ForceLaw)
+            and k not in self.assembly.massless_contacts
             and (k in pending or self.memory[k, MODE] == CLOSED or abs(self.gap(k)) <= level)
         ]
+
+    def held(self) -> frozenset[int]:
+        """Closed contacts at massless ends: to impacts of others they are joints."""
+        return frozenset(k for k in self.assembly.massless_contacts if self.memory[k, MODE] == CLOSED)
 
     def slide_values(self, contacts: list[int]) -> dict[int, float]:
         """Sliding distances of those contacts that have friction, m."""
@@ -323,6 +331,11 @@ class Engine:
         """True once a step has been made."""
         return self.t_internal > self.settings.t0
 
+    @property
+    def events_here(self) -> int:
+        """How often events have been handled at the present instant, without progress in time."""
+        return self._times_handled[1]
+
     def meet_constraints(self) -> None:
         """Bring positions and velocities onto the constraints of the present structure, by rounding's worth."""
         for residual, x in (("phi", "q"), ("phid", "v")):
@@ -341,10 +354,10 @@ class Engine:
         arrays, tolerance = self.workspace.arrays, self.no_force()
         found = []
         for k, contact in enumerate(self.assembly.contacts):
-            if self.memory[k, MODE] != CLOSED:
+            if self.memory[k, MODE] != CLOSED or k in self.assembly.massless_contacts:
                 continue
             force = -arrays["lam"][contact.row]
-            if force < -tolerance:
+            if force < -tolerance and force < -self._contact_noise(contact.row):
                 found.append(k)
             elif contact.coulomb is not None and self.memory[k, SLIDE] == STICKS:
                 limit = contact.coulomb.sticking_coefficient * force
@@ -352,9 +365,34 @@ class Engine:
                     found.append(k)
         return found
 
+    def _contact_noise(self, row: int) -> float:
+        """What rounding of the coordinates leaves in the force of the closed contact with this row, N."""
+        noise = self.force_noise()
+        rows, cols, values = self.workspace.jacobian()
+        here = np.flatnonzero((self.workspace.structure.active[rows] == row) & (values != 0.0))
+        return float(np.max(noise[cols[here]] / np.abs(values[here]), initial=0.0))
+
     def no_force(self) -> float:
         """Rounding of the multipliers: a force below this is none, N."""
         return FORCE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["lam"]), initial=0.0)))
+
+    def tangent_product(self, c_q: float, c_v: float, x: NDArray[np.float64], of_sizes: bool = False) -> Any:
+        """(c_v D + c_q K) x (n,), without the mass matrix; `of_sizes`: the same of the magnitudes of all terms."""
+        workspace, n = self.workspace, self.assembly.n
+        rows, cols = workspace.structure.rows, workspace.structure.cols
+        evaluate_tangent(workspace.record, c_q, c_v)
+        values = workspace.arrays["values"].copy()
+        evaluate_tangent(workspace.record, 0.0, 0.0)
+        here = np.flatnonzero((rows < n) & (cols < n))
+        terms = (values[here] - workspace.arrays["values"][here]) * x[cols[here]]
+        return np.bincount(rows[here], np.abs(terms) if of_sizes else terms, n)
+
+    def force_noise(self) -> NDArray[np.float64]:
+        """What rounding of the coordinates leaves in the forces (n,), N: in stiff bodies, coordinates that are nearly
+        equal make large forces that cancel each other. That of the largest travels to all of them as waves."""
+        largest = float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]), initial=0.0))
+        noise = np.full(self.assembly.n, COORDINATE_NOISE * largest)
+        return np.asarray(self.tangent_product(1.0, 0.0, noise, True))
 
     def presses(self, k: int) -> bool:
         """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""

@@ -17,6 +17,7 @@ from ..system.records import (
     ACCELERATION_TOLERANCE,
     ATOL,
     EXACTNESS,
+    LINEAR,
     MAX_INNER,
     MOST_CONDITION,
     NEWTON_TOLERANCE,
@@ -144,5 +145,6 @@ def set_control(
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     control[MAX_INNER] = 12.0
     control[PATIENCE] = float(fixed)
+    control[LINEAR] = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
     control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

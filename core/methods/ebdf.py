@@ -16,8 +16,8 @@ from ..compiled.views import mat, vec
 from ..stage.solver import weighted_norm
 from ..system.records import OK
 from .coefficients import bdf_coefficients, ebdf_coefficients, extrapolation_weights
-from .history import history_time
-from .multistep import bdf_stage, combine_stars, finish_stage, nodes, predict, weight_rows
+from .history import history_row, history_time
+from .multistep import bdf_stage, clear, combine_stars, finish_stage, nodes, predict, weight_rows
 from .records import CHOICE_SIZE, K
 
 NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED = range(7)
@@ -61,15 +61,14 @@ def ebdf_step(ws: Any, ms: Any, h: float) -> int:
         bar_lam[i] = lam[i]
 
     coefficients, extrapolation = table[ADVANCED], table[ADVANCED_EXTRAPOLATION]
-    for i in range(n):
-        q_star[i] = coefficients[0] * bar_q[i]
-        v_star[i] = coefficients[0] * bar_v[i]
+    clear(ws.q_star, n)
+    clear(ws.v_star, n)
     for i in range(ws.n):
         a[i] = extrapolation[0] * bar_a[i]
     for i in range(ws.m_ext):
         lam[i] = extrapolation[0] * bar_lam[i]
     c_v = h * coefficients[k]
-    combine_stars(ws, ms, coefficients[1:], 0, k - 1, c_v)
+    combine_stars(ws, ms, bar_q, bar_v, coefficients[1:], 0, k - 1, c_v)
     predict(ws, ms, extrapolation[1:], 0, k)
     status = finish_stage(ws, t_new + h, c_v)
     if status != OK:
@@ -87,7 +86,8 @@ def ebdf_step(ws: Any, ms: Any, h: float) -> int:
     for i in range(ws.m_ext):
         lam[i] = bar_lam[i]
     c_v = h * own
-    combine_stars(ws, ms, coefficients, 0, k, c_v)
+    newest = history_row(ws, ms, 0)
+    combine_stars(ws, ms, newest[:n], newest[n : 2 * n], coefficients[1:], 1, k - 1, c_v)
     status = finish_stage(ws, t_new, c_v)
     if status != OK:
         return status

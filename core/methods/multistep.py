@@ -41,10 +41,13 @@ def nodes(ms: Any, h: float, count: int, out: Any) -> bool:
 
 
 @internal
-def combine_stars(ws: Any, ms: Any, weights: Any, first: int, count: int, c_v: float) -> None:
-    """q*, v* from rows first ... first + count - 1 of the history with `weights`, added to what stands there.
+def combine_stars(ws: Any, ms: Any, base_q: Any, base_v: Any, weights: Any, first: int, count: int, c_v: float) -> None:
+    """q*, v* from rows first ... first + count - 1 of the history with `weights`, and from the point (base_q, base_v)
+    with what is missing of them to 1; added to what stands there.
 
-    On the way in q_star and v_star hold what other terms give to P_q and P_v.
+    On the way in q_star and v_star hold what other terms give to P_q and P_v. Only differences from the base are
+    weighted: the rounding of the weights then counts by how far the rows are apart, not by how far from the origin,
+    and so does not add up from step to step.
     """
     n = ws.n_ext
     q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
@@ -52,10 +55,11 @@ def combine_stars(ws: Any, ms: Any, weights: Any, first: int, count: int, c_v: f
         row = history_row(ws, ms, first + j)
         w = weights[j]
         for i in range(n):
-            q_star[i] += w * row[i]
-            v_star[i] += w * row[n + i]
+            q_star[i] += w * (row[i] - base_q[i])
+            v_star[i] += w * (row[n + i] - base_v[i])
     for i in range(n):
-        q_star[i] += c_v * v_star[i]
+        v_star[i] += base_v[i]
+        q_star[i] += base_q[i] + c_v * v_star[i]
 
 
 @internal
@@ -98,10 +102,11 @@ def finish_stage(ws: Any, t: float, c_v: float) -> int:
 def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolation: Any) -> int:
     """y_{n+1} = sum_j coefficients_j y_{n-j} + coefficients_k h y'_{n+1}."""
     n = ws.n_ext
+    newest = history_row(ws, ms, 0)
     c_v = h * coefficients[k]
     clear(ws.q_star, n)
     clear(ws.v_star, n)
-    combine_stars(ws, ms, coefficients, 0, k, c_v)
+    combine_stars(ws, ms, newest[:n], newest[n : 2 * n], coefficients[1:], 1, k - 1, c_v)
     clear(ws.a, ws.n)
     clear(ws.lam, ws.m_ext)
     predict(ws, ms, extrapolation, 0, k + 1)
@@ -110,18 +115,19 @@ def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolati
 
 @internal
 def difference_norm(ws: Any, ms: Any, q: Any, v: Any, weights: Any, first: int, count: int) -> float:
-    """Norm of the coordinates (q, v) less what `weights` make of the rows first ... first + count - 1 of the history;
-    the work accounts do not count."""
+    """Norm of the coordinates (q, v) less what `weights` (of sum 1) make of the rows first ... first + count - 1 of the
+    history; the work accounts do not count."""
     n = ws.n_ext
     difference = vec(ws.rhs, ws.n)
+    base = history_row(ws, ms, first)
     norm = 0.0
     for kind in range(2):
         for i in range(ws.n):
-            difference[i] = v[i] if kind else q[i]
-        for j in range(count):
+            difference[i] = (v[i] if kind else q[i]) - base[kind * n + i]
+        for j in range(1, count):
             row = history_row(ws, ms, first + j)
             for i in range(ws.n):
-                difference[i] -= weights[j] * row[kind * n + i]
+                difference[i] -= weights[j] * (row[kind * n + i] - base[kind * n + i])
         norm = max(norm, weighted_norm(difference, vec(ws.weight_v if kind else ws.weight_q, n), ws.n))
     return norm
 
@@ -132,10 +138,11 @@ def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
     n = ws.n_ext
     v, weight_v = vec(ws.v, n), vec(ws.weight_v, n)
     norm = difference_norm(ws, ms, vec(ws.q, n), v, weights, 0, count)
+    newest = history_row(ws, ms, 0)
     for i in range(n - ws.n_work, n):
-        off = v[i]
-        for j in range(count):
-            off -= weights[j] * history_row(ws, ms, j)[n + i]
+        off = v[i] - newest[n + i]
+        for j in range(1, count):
+            off -= weights[j] * (history_row(ws, ms, j)[n + i] - newest[n + i])
         norm = max(norm, abs(off) / weight_v[i])
     return norm
 

@@ -22,10 +22,12 @@ from ..system.records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
     FACTOR_AGE,
+    FACTOR_CV,
     FAILED_NORM,
     INNER,
     LAST_INNER,
     LAST_OUTER,
+    LINEAR,
     MAX_OUTER,
     NEWTON_TOLERANCE,
     NOT_FINITE,
@@ -198,6 +200,10 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
             return NOT_FINITE
         add_increment(ws, c_q, c_v)
         evaluate_constraints(ws)
+        if control[LINEAR] > 0.0 and c_v == rate[FACTOR_CV] and renewed == 0 and k == 0:
+            # the matrices are those of the equations: a second increment would be rounding
+            rate[LAST_OUTER], status = 1.0, OK
+            break
         if k > 0:
             status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
             if status == OUTER_SLOW:

@@ -1,6 +1,6 @@
 """Assembly: a model's elements as batches of flat tables, independent of which contacts are closed."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -84,6 +84,10 @@ class Assembly:
     """Typical magnitude of each coordinate, so that units do not choose the partition."""
     longest_step: float = np.inf
     """Step beyond which error control could miss what a time function does, s."""
+    replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
+    """Rows of massless ends, each with the contacts that take its place when they close."""
+    linear: bool = False
+    """All elements are linear with constant coefficients."""
     n_internal: int = 0
     """How many of the coordinates, the last ones, are internal ones of elements: states without a place, whose values
     are the velocities."""
@@ -91,6 +95,11 @@ class Assembly:
     """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
     user_error: list[BaseException] = field(default_factory=list)
     """An exception that a user's function raised inside the compiled loop."""
+
+    @property
+    def massless_contacts(self) -> frozenset[int]:
+        """Contacts at massless ends."""
+        return frozenset().union(*self.replaced_rows.values())
 
     @property
     def leap(self) -> NDArray[np.float64]:
@@ -149,18 +158,23 @@ def assemble(model: Model) -> Assembly:
     row_names: list[str] = []
     multipliers: list[Channel] = []
     contact_rows: dict[str, tuple[int, ...]] = {}
+    massless: dict[int, int] = {}
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
-        form = element.form_in(numbering.bodies)
-        rows = tuple(range(len(row_names), len(row_names) + form.constraint_rows))
-        row_names += [element.name] * form.constraint_rows
-        if element.name in contact_names:
-            contact_rows[element.name] = rows
+        for part in element.parts(numbering):
+            form = part.form
+            rows = tuple(range(len(row_names), len(row_names) + form.constraint_rows))
+            row_names += [element.name] * form.constraint_rows
+            if element.name in contact_names:
+                contact_rows[element.name] = rows
+            if part.massless >= 0:
+                massless[rows[0]] = part.massless
+            address = kernel_address(form.kernel)
+            for row in part.rows:
+                key = (address, len(row.coordinates))
+                forms[key] = form
+                grouped.setdefault(key, []).append((element, row, rows))
         multipliers += element.multiplier_channels()
-        for row in element.rows(numbering):
-            key = (kernel_address(form.kernel), len(row.coordinates))
-            forms[key] = form
-            grouped.setdefault(key, []).append((element, row, rows))
     batches = []
     for key, members in grouped.items():
         batches.append(
@@ -218,9 +232,36 @@ def assemble(model: Model) -> Assembly:
         multiplier_channels=multipliers,
         body_columns=columns,
         coordinate_scale=_coordinate_scale(model, columns, len(internal)),
+        replaced_rows=_replaced_rows(model, massless, batches),
+        linear=all(element.linear for element in model.elements()),
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
+
+
+def _replaced_rows(model: Model, massless: Mapping[int, int], batches: Sequence[Batch]) -> dict[int, frozenset[int]]:
+    """Each massless end's row with the contacts that move its coordinate. Raises ModelError for contacts that need a
+    mass there."""
+    found = {}
+    for row, coordinate in massless.items():
+        moving = [b.contact[np.any(b.coord == coordinate, axis=1)] for b in batches if np.any(b.contact >= 0)]
+        found[row] = frozenset(int(k) for k in np.concatenate([*moving, np.zeros(0, np.int64)]) if k >= 0)
+    for k, contact in enumerate(model.contacts):
+        ends = [row for row, contacts in found.items() if k in contacts]
+        if not ends:
+            continue
+        restitution = getattr(contact.law, "restitution", 0.0)
+        if isinstance(contact.law, ForceLaw) or restitution != 0.0 or contact.friction is not None:
+            raise ModelError(
+                f"contact '{contact.name}' is at a massless end, which takes no impulse: it must be a constraint "
+                "without friction and with restitution 0 (NewtonImpact), or the end must have mass"
+            )
+        if len(ends) > 1:
+            raise ModelError(
+                f"contact '{contact.name}' is between two massless ends: nothing says where they are while it is "
+                "closed; leave the mass at one of them"
+            )
+    return found
 
 
 def _internal_batch(internal: NDArray[np.int64]) -> Batch:

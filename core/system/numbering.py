@@ -48,7 +48,8 @@ class ModelNumbering:
             start += count
 
     def coordinates(self, body: str) -> tuple[int, ...]:
-        return self.index[body]
+        planar = body in self.initial_positions
+        return self.index[body][:GROUND_SLOTS] if planar else self.index[body]
 
     def coordinate(self, body: str, name: str) -> int:
         if body not in self.places:

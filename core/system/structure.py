@@ -70,8 +70,9 @@ def build_structure(
     (closed or acting) in the pattern of S, without the redundant rows `dropped`."""
     n, ground = assembly.n, assembly.ground
     closed_rows = {assembly.contacts[k].row for k in closed} | {assembly.contacts[k].slide_row for k in sticking}
+    left_out = dropped | {row for row, contacts in assembly.replaced_rows.items() if contacts & closed}
     active = np.array(
-        [row for row in range(assembly.m) if (row < assembly.m_joints and row not in dropped) or row in closed_rows],
+        [row for row in range(assembly.m) if (row < assembly.m_joints and row not in left_out) or row in closed_rows],
         dtype=np.int64,
     )
     matrix_row = np.full(assembly.m + 1, -1, dtype=np.int64)

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from tlismni.core.contact.laws import KelvinVoigt
 from tlismni.core.description import Model
-from tlismni.core.elements import CoordinateDriver, Distance2D, Prismatic2D, Revolute2D
+from tlismni.core.elements import CoordinateDriver, Distance2D, PlanarBody, Prismatic2D, Revolute2D
 from tlismni.models import ScenarioError, catalogue, load, names
 from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio, kelvin_voigt_restitution
 from tlismni.models.parameters import ScenarioParameter
@@ -17,9 +17,11 @@ WITH_CONTACT = ("bouncing_ball", "impact_oscillator", "pendulum_stop", "double_p
 
 
 def start_states(model: Model) -> States:
-    """The motion of all bodies at the start, as arrays of length 1."""
+    """The motion of all rigid bodies at the start, as arrays of length 1."""
     bodies = {}
     for b in model.bodies:
+        if not isinstance(b, PlanarBody):
+            continue
         q, v = b.initial_state()
         values = (*(*q, 0.0)[:3], *(*v, 0.0)[:3])
         bodies[b.name] = BodyStates(*(np.array([x]) for x in values))

@@ -2,8 +2,8 @@
 
 The scenario `double_pendulum_wall` with fixed steps, six blows in each run, against `DoublePendulum`. Every blow ends a
 step before its time, makes the velocities jump and starts the formula anew, so a starter or an event location of low
-order would show as that order. Errors are root mean squares over all blows of four starts (one run alone has steps at
-which an error changes its sign): of the times of the blows, and of their impulses.
+order would show as that order. Errors are root mean squares over all blows of twelve starts (one run alone has steps
+at which an error changes its sign): of the times of the blows, and of their impulses.
 """
 
 import math
@@ -19,16 +19,22 @@ from ...models import Scenario, load
 from .cases import OrderCase, order_cases
 from .double_pendulum import Blow, DoublePendulum
 
-STARTS = ((-0.5, -1.0), (-0.45, -1.05), (-0.55, -0.95), (-0.6, -1.0))
-"""Angles of upper and lower rod, rad: none of the blows grazes."""
-COUNTS = tuple(round(160 * 2.0 ** (0.5 * j)) for j in range(12))
+STARTS = (
+    (-0.66, -0.993), (-0.638, -1.023), (-0.634, -0.923), (-0.624, -0.927), (-0.591, -0.931), (-0.597, -1.011),
+    (-0.547, -0.939), (-0.595, -1.018), (-0.554, -0.885), (-0.547, -0.892), (-0.631, -0.887), (-0.635, -0.892),
+)  # fmt: skip
+"""Angles of upper and lower rod, rad: none of the blows grazes, and small changes of the angles move no blow by more
+than 1.05 s/rad (rounding grows as they do)."""
+COUNTS = tuple(round(160 * 2.0 ** (0.5 * j)) for j in range(14))
 QUICK_COUNTS = COUNTS[:10]
-NEWTON_TOLERANCE = 1e-13
+NEWTON_TOLERANCE = 1e-15
 QUANTITIES = ("time", "impulse")
-FLOOR = (2e-10, 2e-9)
-"""Rounding and NEWTON_TOLERANCE, added up over the steps: s, N s. Errors below are not read."""
+STANDSTILL = 3
+"""After so many refinements that do not bring the error down any more it is at rounding, and the case ends."""
+ROUNDING = 10.0
+"""What is not read then: errors below this multiple of the least one."""
 OCTAVE, POINTS = 2.0, 3
-"""An order is taken from the runs whose step is at most OCTAVE times the finest above FLOOR; at least POINTS."""
+"""An order is taken from the runs whose step is at most OCTAVE times the finest that is read; at least POINTS."""
 LOST = 0.2
 """An order that far below its theory, relative to it, counts as lost: methods of order 6 and more come to rounding with
 steps that are not small yet. A starter of order 4 or an event location of order 3 would show as these orders."""
@@ -45,9 +51,16 @@ class ImpactOrderRow:
     """Of times (s) and impulses (N s)."""
     failed: tuple[str, ...] = ()
 
+    def floor(self, quantity: int) -> float:
+        """Errors of a quantity below this may be rounding; 0 where no step comes to it."""
+        errors = [e[quantity] for e in self.errors]
+        least = min(errors, default=0.0)
+        return ROUNDING * least if least in errors[:-STANDSTILL] else 0.0
+
     def window(self, quantity: int) -> slice:
         """The runs from which the order of a quantity is taken."""
-        stop = next((k for k, e in enumerate(self.errors) if e[quantity] < FLOOR[quantity]), len(self.errors))
+        floor = self.floor(quantity)
+        stop = next((k for k, e in enumerate(self.errors) if e[quantity] < floor), len(self.errors))
         start = next((k for k in range(stop) if self.steps[k] <= 1.02 * OCTAVE * self.steps[stop - 1]), stop)
         return slice(min(start, max(0, stop - POINTS)), stop)
 
@@ -98,13 +111,16 @@ def impact_orders(
     return tuple(rows)
 
 
-def measure(case: OrderCase, counts: Sequence[int] = COUNTS) -> ImpactOrderRow:
+def measure(
+    case: OrderCase, counts: Sequence[int] = COUNTS, starts: Sequence[tuple[float, float]] = STARTS
+) -> ImpactOrderRow:
     """Run one case with each number of steps, until its errors are at rounding."""
     steps, errors, failed = [], [], []
-    t_end = _problems()[0][0].t_end
+    problems = tuple(_problem(start) for start in starts)
+    t_end = problems[0][0].t_end
     for count in counts:
         try:
-            found = _errors(case, t_end / count)
+            found = _errors(case, t_end / count, problems)
         except SimulationError as error:
             failed.append(str(error))
             continue
@@ -113,15 +129,19 @@ def measure(case: OrderCase, counts: Sequence[int] = COUNTS) -> ImpactOrderRow:
             continue
         steps.append(t_end / count)
         errors.append(found)
-        if all(error < floor for error, floor in zip(found, FLOOR, strict=True)):
+        row = ImpactOrderRow(case, tuple(steps), tuple(errors), tuple(failed))
+        if all(row.floor(quantity) > 0.0 for quantity in range(len(QUANTITIES))):
             break
     return ImpactOrderRow(case, tuple(steps), tuple(errors), tuple(failed))
 
 
-def _errors(case: OrderCase, h: float) -> tuple[float, float] | None:
+Problem = tuple[Scenario, tuple[Blow, ...]]
+
+
+def _errors(case: OrderCase, h: float, problems: Sequence[Problem]) -> tuple[float, float] | None:
     """Root mean square errors of times and impulses; None if some run has another number of blows."""
     times, impulses = [], []
-    for scenario, blows in _problems():
+    for scenario, blows in problems:
         result = simulate(
             scenario.model, scenario.t_end, case.setting.method, step=h, newton_tolerance=NEWTON_TOLERANCE,
             record=False, **case.setting.options,
@@ -135,7 +155,7 @@ def _errors(case: OrderCase, h: float) -> tuple[float, float] | None:
 
 
 @cache
-def _problems() -> tuple[tuple[Scenario, tuple[Blow, ...]], ...]:
-    """The scenarios and the blows of their references."""
-    scenarios = [load("double_pendulum_wall", upper_angle=a, lower_angle=b) for a, b in STARTS]
-    return tuple((scenario, DoublePendulum.of(scenario).solve(scenario.t_end).blows) for scenario in scenarios)
+def _problem(start: tuple[float, float]) -> Problem:
+    """The scenario from these angles, and the blows of its reference."""
+    scenario = load("double_pendulum_wall", upper_angle=start[0], lower_angle=start[1])
+    return scenario, DoublePendulum.of(scenario).solve(scenario.t_end).blows

@@ -1,0 +1,157 @@
+"""A planar body in a floating frame whose reduced matrices are given: from a finite element programme, say."""
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ..errors import ModelError
+from ..model.base import Positive, Record, Vector2
+from .flexible_body import PointShape
+from .floating_body2d import Array, FloatingBody2D, Invariants
+from .linear_system import SYMMETRY, Matrix, Vector
+
+
+class ReducedPoint(Record):
+    """A point of a reduced body to which something can be attached."""
+
+    point: Vector2
+    """Undeformed position in the frame, m."""
+    shape: Matrix
+    """Displacement for unit amplitudes, (2, n)."""
+    rotation: Vector | None = None
+    """Rotation for unit amplitudes, (n,), rad; left out: none."""
+
+
+class ReducedBody2D(FloatingBody2D):
+    """A flexible planar body as reduced matrices over n modes: r = R + A(theta) (u0 + S p).
+
+    Coordinates are those of the frame, `x`, `y`, `angle`, and the amplitudes `mode1` ... `moden`. The integrals are
+    over the mass of the undeformed body, with u0 from the frame's origin; u x v = u_x v_y - u_y v_x. The model's
+    gravity acts on it. A rigid motion has no place among the modes: the frame has it already.
+
+    Raises
+    ------
+    ModelError : for sizes that do not fit, matrices that are not symmetric (skew for `gyroscopic`), or a mass matrix of
+        frame and modes that is not positive definite.
+    """
+
+    type: Literal["ReducedBody2D"] = "ReducedBody2D"
+
+    inertia: Positive
+    """int u0.u0 dm, kg m^2, about the frame's origin."""
+    first_moment: Vector2 = (0.0, 0.0)
+    """int u0 dm, kg m."""
+    modal_mass: Annotated[Matrix, Field(min_length=1)]
+    """int S^T S dm, (n, n), with rotary inertia if it counts."""
+    centrifugal_mass: Matrix | None = None
+    """int S^T S dm without rotary inertia, (n, n); left out: modal_mass."""
+    stiffness: Matrix
+    """(n, n), symmetric."""
+    damping: Matrix | None = None
+    """(n, n); left out: none."""
+    modal_first_moment: Matrix | None = None
+    """int S dm, (2, n); left out: zero."""
+    modal_inertia: Vector | None = None
+    """int u0.S dm, (n,); left out: zero."""
+    modal_coupling: Vector | None = None
+    """int u0 x S dm, (n,); left out: zero."""
+    gyroscopic: Matrix | None = None
+    """int S_k x S_l dm, (n, n), skew; left out: zero, as where all points move along parallel lines."""
+    geometric_first_moment: tuple[Matrix, Matrix] | None = None
+    """int g_kl dm, x and y, each (n, n), of the second-order displacement g_kl p_k p_l / 2; left out: no stiffening."""
+    geometric_inertia: Matrix | None = None
+    """int u0.g_kl dm, (n, n); left out: zero."""
+    geometric_coupling: Matrix | None = None
+    """int u0 x g_kl dm, (n, n); left out: zero."""
+    points: tuple[ReducedPoint, ...] = ()
+    """Points to which joints and contacts can be attached by a MaterialPoint2D."""
+
+    @model_validator(mode="after")
+    def _check(self) -> "ReducedBody2D":
+        n = len(self.modal_mass)
+        square, row = (n, n), (n,)
+        sizes: dict[str, tuple[int, ...]] = {
+            "modal_mass": square, "centrifugal_mass": square, "stiffness": square, "damping": square,
+            "modal_first_moment": (2, n), "modal_inertia": row, "modal_coupling": row, "gyroscopic": square,
+            "geometric_first_moment": (2, n, n), "geometric_inertia": square, "geometric_coupling": square,
+            "amplitudes": row, "amplitude_rates": row,
+        }  # fmt: skip
+        for name, size in sizes.items():
+            self._check_size(name, getattr(self, name), size)
+        for point in self.points:
+            self._check_size(f"shape of the point {point.point}", point.shape, (2, n))
+            self._check_size(f"rotation of the point {point.point}", point.rotation, row)
+        symmetric = ("modal_mass", "centrifugal_mass", "stiffness", "geometric_inertia", "geometric_coupling")
+        for name in symmetric:
+            self._check_symmetry(name, getattr(self, name), 1.0)
+        for table in self.geometric_first_moment or ():
+            self._check_symmetry("geometric_first_moment", table, 1.0)
+        self._check_symmetry("gyroscopic", self.gyroscopic, -1.0)
+        least = float(np.linalg.eigvalsh(self._scaled_mass())[0])
+        if least <= SYMMETRY:
+            raise ValueError(f"the mass matrix of frame and modes of '{self.name}', scaled to a unit diagonal, has the "
+                             f"eigenvalue {least:.3g}: it must be positive definite; do the modes hold a rigid motion, "
+                             "which the frame has already?")  # fmt: skip
+        return self
+
+    def _check_size(self, name: str, value: Any, size: tuple[int, ...]) -> None:
+        if value is None:
+            return
+        try:
+            found: Any = np.array(value, dtype=float).shape
+        except ValueError:
+            found = "rows of different length"
+        if found != size:
+            raise ValueError(f"{name} of '{self.name}' has {found}, but modal_mass has n = {len(self.modal_mass)} rows:"
+                             f" {size} is needed")  # fmt: skip
+
+    def _check_symmetry(self, name: str, value: Any, sign: float) -> None:
+        x = np.zeros((1, 1)) if value is None else np.array(value)
+        wrong = np.abs(x - sign * x.T)
+        if wrong.max() > SYMMETRY * np.abs(x).max():
+            i, j = np.unravel_index(int(np.argmax(wrong)), x.shape)
+            kind = "symmetric" if sign > 0.0 else "skew"
+            raise ValueError(f"{name} of '{self.name}' must be {kind}; entries ({i}, {j}) and ({j}, {i}) are "
+                             f"{x[i, j]:g} and {x[j, i]:g}")  # fmt: skip
+
+    def _scaled_mass(self) -> Array:
+        full = self.invariants().mass_matrix(self.mass)
+        size = np.sqrt(np.maximum(np.diag(full), 1e-300))
+        return np.asarray(full / np.outer(size, size))
+
+    def mode_names(self) -> tuple[str, ...]:
+        return tuple(f"mode{k + 1}" for k in range(len(self.modal_mass)))
+
+    def invariants(self) -> Invariants:
+        n = len(self.modal_mass)
+        mass = np.array(self.modal_mass)
+        translational = mass if self.centrifugal_mass is None else np.array(self.centrifugal_mass)
+        return Invariants(
+            first_moment=np.array(self.first_moment),
+            inertia=self.inertia,
+            a=_or_zero(self.modal_inertia, (n,)),
+            b=_or_zero(self.modal_coupling, (n,)),
+            H=_or_zero(self.modal_first_moment, (2, n)),
+            N=translational + _or_zero(self.geometric_inertia, (n, n)),
+            Gamma=_or_zero(self.gyroscopic, (n, n)) + _or_zero(self.geometric_coupling, (n, n)),
+            mass=mass,
+            stiffness=np.array(self.stiffness),
+            damping=_or_zero(self.damping, (n, n)),
+            G=_or_zero(self.geometric_first_moment, (2, n, n)),
+        )
+
+    def material_point(self, point: Vector2) -> PointShape:
+        for given in self.points:
+            if np.allclose(given.point, point, rtol=1e-9, atol=1e-12):
+                n = len(self.modal_mass)
+                turn = np.vstack([np.zeros(n), _or_zero(given.rotation, (n,))])
+                return self.point_shape(np.array(given.point), np.array(given.shape), turn)
+        raise ModelError(
+            f"'{self.name}' has no point {tuple(point)}; `points` gives {[given.point for given in self.points]}"
+        )
+
+
+def _or_zero(value: Sequence[Any] | None, shape: tuple[int, ...]) -> Array:
+    return np.zeros(shape) if value is None else np.array(value, dtype=float)
