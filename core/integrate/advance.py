@@ -76,15 +76,15 @@ _REPAIRABLE = (REANALYZE, SINGULAR, INNER_DIVERGED, OUTER_SLOW, OUTER_DIVERGED)
 """Failures that a new partition and new orderings may cure."""
 
 
-def advance_to(sim: "Simulation", t: float, stop: float) -> None:
-    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`."""
+def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> None:
+    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending."""
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     repaired_at = math.nan
     chunk = max(1, CHUNK_STEPS * 100 // max(100, sim.assembly.n))
     while True:
         now = sim.t_internal
         if sim.pending:
-            if now > t:
+            if now > t or hold:
                 return
             sim._handle_pending()
             continue

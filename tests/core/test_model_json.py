@@ -20,6 +20,7 @@ from tlismni.core import (
     CoordinateTerm,
     CoulombFriction,
     Disk2D,
+    DiskOnCable2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
     DiskOnLine2D,
@@ -185,6 +186,9 @@ ELEMENTS = {
             ),
         ),
         st.builds(
+            DiskOnCable2D, name=st.just("x"), disk=disk, law=law, cable=st.just("rope"), thickness=positive
+        ),
+        st.builds(
             CoordinateContact, name=st.just("x"), law=law, offset=number,
             terms=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("y"), factor=positive)),
             slide=st.tuples(st.builds(CoordinateTerm, body=st.just("b"), coordinate=st.just("x"), factor=positive)),
@@ -235,7 +239,7 @@ def test_the_list_of_elements_above_is_complete():
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
         "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
-        "Clamp2D", "AxialRod", "ReducedBody2D", "FloatingBeam2D",
+        "Clamp2D", "AxialRod", "ReducedBody2D", "FloatingBeam2D", "DiskOnCable2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 
