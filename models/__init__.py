@@ -10,6 +10,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     cantilever,
     chain,
     double_pendulum_wall,
+    flexible_slider_crank_stop,
     four_bar,
     hub_beam_stop,
     impact_oscillator,
