@@ -2,6 +2,7 @@
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
+from .contact.disk_on_cable import DiskOnCable2D
 from .contact.disk_on_line import DiskOnLine2D, Line2D
 from .contact.friction import (
     AmbrosioFriction,
@@ -67,6 +68,7 @@ from .model.channels import Channel, Input, Parameter
 from .model.markers import Marker2D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
 from .result import Result
+from .section_loads import axial_force, axial_strain, bending_moment, curvature, deformed_shape, section, stress
 from .simulate import simulate
 from .state import State
 from .system.redundancy import RedundantRow
@@ -92,6 +94,7 @@ __all__ = [
     "CoordinateTerm",
     "CoulombFriction",
     "Disk2D",
+    "DiskOnCable2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
     "DiskOnLine2D",
@@ -152,8 +155,15 @@ __all__ = [
     "TlismniError",
     "Tsuji",
     "ZhiyingQishao",
+    "axial_force",
+    "axial_strain",
+    "bending_moment",
+    "curvature",
+    "deformed_shape",
     "force_formula",
+    "section",
     "simulate",
     "sphere_on_plane",
     "sphere_on_sphere",
+    "stress",
 ]

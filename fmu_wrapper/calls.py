@@ -43,6 +43,9 @@ def fmi_call(on_error: Any = THE_STATUS) -> Callable[[Function], Function]:
 class Calls:
     """The FMI calls of one instance. Buffers come by the buffer protocol and live only for the call."""
 
+    token_name = "guid"
+    """What the FMI version calls the text that ties description and binary together."""
+
     def __init__(self, slave: Slave) -> None:
         self.slave = slave
         self._states: dict[int, Snapshot] = {}
@@ -82,6 +85,13 @@ class Calls:
         if handle:
             self.kept(handle)
             del self._states[handle]
+
+    def write_state(self, handle: int, buffer: Any) -> None:
+        """Write the bytes of the snapshot under `handle` into `buffer`. Raises SnapshotError if it is too small."""
+        data = self.kept(handle).data
+        if len(buffer) < len(data):
+            raise SnapshotError(f"the buffer holds {len(buffer)} bytes, the stored state needs {len(data)}")
+        numbers_in(buffer, np.uint8)[: len(data)] = np.frombuffer(data, dtype=np.uint8)
 
     def free(self) -> None:
         """Drop what the instance holds."""

@@ -9,6 +9,7 @@ from . import log as logs
 from .calls import Calls
 from .errors import ExportError, FmuValueError, Status
 from .fmi2_calls import Fmi2Calls
+from .fmi3_calls import Fmi3Calls
 from .log import LogCallback
 from .slave import Slave
 from .variables import VariableTable
@@ -16,11 +17,11 @@ from .version import package_version
 
 MODEL_FILE, SETTINGS_FILE, PYTHON_FILE = "model.json", "settings.json", "python.json"
 
-INTERFACES: dict[int, type[Calls]] = {2: Fmi2Calls}
+INTERFACES: dict[int, type[Calls]] = {2: Fmi2Calls, 3: Fmi3Calls}
 """Calls by FMI major version."""
 
 
-def read_slave(resources: str | Path, *, token: str | None = None, **arguments: Any) -> Slave:
+def read_slave(resources: str | Path, *, token: str | None = None, token_name: str = "guid", **arguments: Any) -> Slave:
     """The slave of the FMU with these resources; `arguments` go to `Slave`.
 
     Raises
@@ -37,7 +38,7 @@ def read_slave(resources: str | Path, *, token: str | None = None, **arguments: 
         ) from None
     if token is not None and token != data["token"]:
         raise FmuValueError(
-            f"the guid given is '{token}', this FMU has '{data['token']}': "
+            f"the {token_name} given is '{token}', this FMU has '{data['token']}': "
             "modelDescription.xml and resources come from different exports"
         )
     model = Model.load(Path(resources) / MODEL_FILE)
@@ -49,8 +50,8 @@ def read_slave(resources: str | Path, *, token: str | None = None, **arguments: 
     return slave
 
 
-def create(interface: int, name: str, token: str, resources: str, logging_on: bool, log: LogCallback) -> Calls:
-    """The calls object that the C shim talks to.
+def create(interface: int, name: str, token: str, resources: str, log: LogCallback, **flags: bool) -> Calls:
+    """The calls object that the C shim talks to; `flags` (logging_on, event_mode, early_return) go to `Slave`.
 
     Raises
     ------
@@ -58,5 +59,6 @@ def create(interface: int, name: str, token: str, resources: str, logging_on: bo
     """
     if interface not in INTERFACES:
         raise FmuValueError(f"FMI {interface} is not served by tlismni {package_version()}")
-    slave = read_slave(resources, token=token, name=name, on_log=log, logging_on=logging_on)
-    return INTERFACES[interface](slave)
+    calls = INTERFACES[interface]
+    slave = read_slave(resources, token=token, token_name=calls.token_name, name=name, on_log=log, **flags)
+    return calls(slave)

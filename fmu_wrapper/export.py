@@ -10,18 +10,24 @@ import sys
 import tempfile
 import uuid
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from .description_parts import About
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
 from .libpython import library_record, python_record, shared_library
 from .model_description import fmi2_description
+from .model_description3 import fmi3_description
+from .settings import Settings
 from .slave import Slave
+from .variables import VariableTable
 from .version import package_version
 
 SHIM = {"win32": "tlismni_shim.dll", "darwin": "tlismni_shim.dylib"}.get(sys.platform, "tlismni_shim.so")
 HERE = Path(__file__).parent
+_ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
 _SYSTEMS = {"Linux": "linux", "Windows": "win", "Darwin": "darwin"}
 
 
@@ -43,7 +49,7 @@ def export_fmu(
     ----------
     source : Model, or Scenario, whose t_end and solver settings become the FMU's.
     path : the file to write, "x.fmu".
-    fmi_version : "2.0".
+    fmi_version : "2.0" or "3.0"; "2" and "3" mean the same.
     t_end : stop time of the default experiment, s.
     communication_step : preferred communication step, s; without it a round number of a hundredth to a
         thousandth of `t_end`.
@@ -61,10 +67,7 @@ def export_fmu(
     ModelError, FmuValueError : for a wrong model or setting.
     SourceError : for what is neither a Model nor a Scenario; an EquationSystem is code, not data.
     """
-    if fmi_version != "2.0":
-        known = str(fmi_version).startswith("3")
-        why = "FMI 3.0 is not written yet" if known else "there is no such FMI version"
-        raise ExportError(f"fmi_version '{fmi_version}': {why}; use fmi_version=\"2.0\"")
+    fmi_version = known_version(fmi_version)
     shim, path = shim_path(), Path(path)
     if not path.parent.is_dir():
         raise ExportError(f"'{path}' cannot be written: there is no folder '{path.parent}'")
@@ -76,16 +79,9 @@ def export_fmu(
         slave = Slave(slave.model, variables=slave.variables, **solver_data)
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
-    about = slave.model.description or getattr(source, "description", "") or slave.model.name
-    description = fmi2_description(
-        slave.variables,
-        slave.settings,
-        identifier=identifier,
-        name=slave.model.name,
-        token=token,
-        description=about,
-        generator=f"tlismni {package_version()}",
-    )
+    text = slave.model.description or getattr(source, "description", "") or slave.model.name
+    about = About(identifier, slave.model.name, token, text, f"tlismni {package_version()}")
+    description, platforms = VERSIONS[fmi_version]
     settings = {
         "token": token,
         "tlismni": package_version(),
@@ -93,13 +89,13 @@ def export_fmu(
         "variables": slave.variables.to_data(),
     }
     files = {
-        "modelDescription.xml": description,
+        "modelDescription.xml": description(slave.variables, slave.settings, about),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": _json(settings),
         f"resources/{PYTHON_FILE}": _json(python_record()),
         "resources/libpython.txt": library_record().encode(),
         "resources/boot.py": (HERE / "boot.py").read_bytes(),
-        f"binaries/{fmi2_platform()}/{identifier}{shim.suffix}": shim.read_bytes(),
+        f"binaries/{platforms()}/{identifier}{shim.suffix}": shim.read_bytes(),
     }
     if shared_library() is None:
         logging.getLogger(__name__).warning(
@@ -128,6 +124,28 @@ def fmi2_platform() -> str:
     if machine in ("x86_64", "amd64"):
         return f"{system}64"
     return f"{'aarch64' if machine == 'arm64' else machine}-{system}"
+
+
+def fmi3_platform() -> str:
+    """Folder name of this machine's binaries in an FMI 3.0 FMU."""
+    machine = platform.machine().lower()
+    system = {"Linux": "linux", "Windows": "windows", "Darwin": "darwin"}.get(platform.system(), "unknown")
+    return f"{_ARCHITECTURES.get(machine, machine)}-{system}"
+
+
+VERSIONS: dict[str, tuple[Callable[[VariableTable, Settings, About], bytes], Callable[[], str]]] = {
+    "2.0": (fmi2_description, fmi2_platform),
+    "3.0": (fmi3_description, fmi3_platform),
+}
+"""By FMI version: writer of the model description, and name of the folder of binaries."""
+
+
+def known_version(version: str) -> str:
+    """`version` as "2.0" or "3.0". Raises ExportError for others."""
+    full = {"2": "2.0", "3": "3.0"}.get(str(version), str(version))
+    if full not in VERSIONS:
+        raise ExportError(f"fmi_version '{version}': there is no such FMI version; use one of {list(VERSIONS)}")
+    return full
 
 
 def c_identifier(name: str) -> str:

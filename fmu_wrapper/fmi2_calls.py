@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .calls import Calls, fmi_call, numbers_in, references_in, text_of
-from .errors import DiscardError, SnapshotError, UnavailableError
+from .errors import DiscardError, UnavailableError
 from .variables import Kind
 
 LAST_SUCCESSFUL_TIME, TERMINATED = 2, 3  # fmi2StatusKind
@@ -130,10 +130,7 @@ class Fmi2Calls(Calls):
     @fmi_call()
     def fmi2SerializeFMUstate(self, handle: int, buffer: Any) -> None:
         """Write a stored state's bytes into `buffer`."""
-        data = self.kept(handle).data
-        if len(buffer) < len(data):
-            raise SnapshotError(f"the buffer holds {len(buffer)} bytes, the stored state needs {len(data)}")
-        numbers_in(buffer, np.uint8)[: len(data)] = np.frombuffer(data, dtype=np.uint8)
+        self.write_state(handle, buffer)
 
     @fmi_call(on_error=0)
     def fmi2DeSerializeFMUstate(self, buffer: Any, handle: int) -> int:

@@ -8,60 +8,24 @@
 
 from collections.abc import Sequence
 from ctypes import c_double, c_int
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 
 from .calls import numbers_in
-from .embedded import read_slave
-from .errors import Status
 from .fmi2_calls import Fmi2Calls
-from .slave import Slave
-
-WARNING = int(Status.WARNING)
+from .in_process_base import Direct
 
 
-class InProcess(FMU2Slave):
+class InProcess(Direct, FMU2Slave):  # type: ignore[misc]
     """An FMI 2.0 instance of fmpy whose calls go straight to a slave.
 
     fmpy's higher methods (getReal, doStep ...) work as they are: this class replaces the calls into a binary.
     Errors raise fmpy's FMICallException with the slave's message as a note.
     """
 
-    def __init__(self, slave: Slave) -> None:
-        # not super().__init__(), which loads a binary
-        self.instanceName = slave.name
-        self.modelIdentifier = slave.model.name
-        self.component = None
-        self.slave = slave
-        self._fmi = Fmi2Calls(slave)
-        self._strings: list[bytes] = []
-
-    @classmethod
-    def of(cls, unzipped: str | Path, **arguments: Any) -> "InProcess":
-        """The instance of an unzipped FMU; `arguments` (name, on_log, logging_on ...) go to `Slave`."""
-        return cls(read_slave(Path(unzipped) / "resources", **arguments))
-
-    def instantiate(self, visible: bool = False, callbacks: Any = None, loggingOn: bool = False) -> None:
-        """Nothing to do: the instance exists."""
-
-    def freeInstance(self) -> None:
-        """Drop the slave's data."""
-        self._fmi.free()
-
-    def _call(self, fname: str, *arguments: Any) -> int:
-        """Make the call `fname`, as fmpy does into a binary; `arguments` start with the component."""
-        adapt = getattr(self, f"_{fname}", None)
-        call = getattr(self._fmi, fname, None)
-        status = adapt(*arguments[1:]) if adapt else call(*arguments[1:]) if call else int(Status.ERROR)
-        if status > WARNING:
-            error = FMICallException(function=fname, status=status)
-            error.add_note(self.slave.log.last_problem)
-            raise error
-        return int(status)
+    calls = Fmi2Calls
 
     # where a call into C differs from `Fmi2Calls`: counts, pointers, strings
 
@@ -90,11 +54,7 @@ class InProcess(FMU2Slave):
         return self._fmi.fmi2SetBoolean(vr, value)
 
     def _fmi2GetString(self, vr: Any, count: int, value: Any) -> int:
-        strings = self._fmi.fmi2GetString(vr)
-        if strings is None:
-            return int(Status.ERROR)
-        value[:] = self._strings = strings
-        return int(Status.OK)
+        return self._get_strings(self._fmi.fmi2GetString, vr, value)
 
     def _fmi2SetString(self, vr: Any, count: int, value: Any) -> int:
         return self._fmi.fmi2SetString(vr, list(value))
@@ -106,27 +66,16 @@ class InProcess(FMU2Slave):
         return self._fmi.fmi2SetFMUstate(state.value or 0)
 
     def _fmi2FreeFMUstate(self, state: Any) -> int:
-        status = self._fmi.fmi2FreeFMUstate(state._obj.value or 0)
-        state._obj.value = None
-        return status
+        return self._free(self._fmi.fmi2FreeFMUstate, state)
 
     def _fmi2SerializedFMUstateSize(self, state: Any, size: Any) -> int:
-        count = self._fmi.fmi2SerializedFMUstateSize(state.value or 0)
-        size._obj.value = max(count, 0)
-        return int(Status.OK if count >= 0 else Status.ERROR)
+        return self._size(self._fmi.fmi2SerializedFMUstateSize, state, size)
 
     def _fmi2SerializeFMUstate(self, state: Any, buffer: Any, size: Any) -> int:
         return self._fmi.fmi2SerializeFMUstate(state.value or 0, buffer)
 
     def _fmi2DeSerializeFMUstate(self, buffer: Any, size: int, state: Any) -> int:
         return self._new_handle(state, self._fmi.fmi2DeSerializeFMUstate(buffer, state._obj.value or 0))
-
-    @staticmethod
-    def _new_handle(state: Any, handle: int) -> int:
-        if not handle:
-            return int(Status.ERROR)
-        state._obj.value = handle
-        return int(Status.OK)
 
     def _fmi2GetRealStatus(self, kind: int, value: Any) -> int:
         return self._status(self._fmi.fmi2GetRealStatus, kind, value, c_double)

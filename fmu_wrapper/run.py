@@ -1,7 +1,7 @@
 """The simulation under a slave: built from variable values, told its inputs, read into variable values."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -51,6 +51,15 @@ def effective(model: Model, settings: Settings, values: Values) -> tuple[Model, 
     own = {name: given.pop(name) for name in ("method", "rtol", "atol", "step")}
     options = {**settings.options, **given} if own["method"] == settings.method else {}
     return (model.with_parameters(changed) if changed else model), replace(settings, options=options, **own)
+
+
+@dataclass(frozen=True)
+class StepEnd:
+    """How a step ended: where (s), whether with an event that has not happened yet, whether before its time."""
+
+    time: float
+    event_due: bool = False
+    early: bool = False
 
 
 class Run:
@@ -117,9 +126,29 @@ class Run:
             self._simulation.set_inputs({self._input_names[i]: wanted[i].item() for i in changed})
             self._applied = wanted
 
-    def advance(self, t: float) -> None:
-        """Integrate to `t`, s."""
-        self._simulation.advance(t)
+    def advance(self, t: float, event_mode: bool = False, early_return: bool = False) -> StepEnd:
+        """Integrate to `t`, s, or to a contact event before it if `early_return`.
+
+        With `event_mode` a contact event at the end is left to `handle_event`. All others happen in here.
+        """
+        simulation = self._simulation
+        if not (event_mode or early_return):
+            simulation.advance(t)
+            return StepEnd(t)
+        while simulation.advance_to_event(t):
+            reached = float(simulation.t)
+            early = early_return and reached < t
+            if event_mode and (early or reached >= t):
+                return StepEnd(reached, event_due=True, early=early)
+            while simulation.handle_event():
+                pass
+            if early:
+                return StepEnd(reached, early=True)
+        return StepEnd(t)
+
+    def handle_event(self) -> bool:
+        """Let a contact event at the present time happen, if one is due. True if it entails another at once."""
+        return bool(self._simulation.handle_event())
 
     def read(self, values: Values) -> None:
         """Put the channels and the number of events into `values`.

@@ -1,11 +1,14 @@
 """The slave: one simulation behind a step interface as FMI co-simulation wants it, for FMI 2.0 and 3.0 alike.
 
-Phases: instantiated -> initialization -> step -> terminated; a failed step leads to `failed`, from where a stored
-state or a reset leads back. The methods raise; `calls.py` turns what they raise into FMI statuses.
+Phases: instantiated -> initialization -> step -> terminated; with event mode, initialization leads to `event`, a step
+that ends at an event to `event due`, and from both the way to `step` leads through event mode. A failed step leads to
+`failed`, from where a stored state or a reset leads back. The methods raise; `calls.py` turns what they raise into FMI
+statuses.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -15,26 +18,12 @@ from . import log as logs
 from .errors import CallOrderError, FmuValueError, SnapshotError, Status
 from .grid import check_step
 from .log import Log, LogCallback
-from .run import Run, SimulationFactory, build_simulation
+from .phases import EVENT_PHASES, RUNNING, SETTABLE, WAYS, Phase
+from .run import Run, SimulationFactory, StepEnd, build_simulation
 from .settings import Settings
-from .snapshot import Phase, Snapshot, identity
+from .snapshot import Snapshot, identity
 from .values import Values, check_values
 from .variables import TIME, Kind, Variable, VariableTable, build_table
-
-_WAYS = {
-    Phase.INSTANTIATED: "enter and exit initialization mode first",
-    Phase.INITIALIZATION: "exit initialization mode first",
-    Phase.STEP: "reset first",
-    Phase.FAILED: "the last step failed: set a stored state, or reset",
-    Phase.TERMINATED: "the run is terminated: reset, or set a stored state",
-}
-_SETTABLE = {
-    Phase.INSTANTIATED: frozenset(("parameter", "input")),
-    Phase.INITIALIZATION: frozenset(("parameter", "input")),
-    Phase.STEP: frozenset(("input",)),
-}
-_SETTING = tuple(_SETTABLE)
-_RUNNING = (Phase.INITIALIZATION, Phase.STEP, Phase.FAILED, Phase.TERMINATED)
 
 
 class Slave:
@@ -47,6 +36,8 @@ class Slave:
     variables : the variable table that an FMU was exported with; None builds it, which needs a simulation.
     on_log : called with status, category and message; None passes messages to `logging`.
     logging_on : True passes on all categories, False errors only.
+    event_mode : contact events at the end of a step are left to `update_discrete_states`, in event mode.
+    early_return : a step may end before its time, at a contact event.
     simulation_factory : makes the simulation; None is `tlismni.core.Simulation`.
     solver : `method`, `rtol`, `atol`, `step` and options of the method; they win over the scenario's.
 
@@ -65,12 +56,15 @@ class Slave:
         variables: VariableTable | None = None,
         on_log: LogCallback | None = None,
         logging_on: bool = False,
+        event_mode: bool = False,
+        early_return: bool = False,
         simulation_factory: SimulationFactory | None = None,
         **solver: Any,
     ) -> None:
         self.model, self.settings = Settings.of(source, **solver)
         self.name = name
         self.log = Log(on_log, logging_on)
+        self.event_mode, self.early_return = event_mode, early_return
         self._factory = simulation_factory
         if variables is None:
             channels = build_simulation(simulation_factory, self.model, self.settings).channels
@@ -129,7 +123,8 @@ class Slave:
         self._phase = Phase.INITIALIZATION
 
     def exit_initialization(self) -> None:
-        """Build the simulation at its start and go to step mode. On an error the slave stays in this mode.
+        """Build the simulation at its start; go to step mode, or to event mode if there is one. On an error the slave
+        stays in this mode.
 
         Raises
         ------
@@ -137,18 +132,50 @@ class Slave:
         """
         self._need("exit initialization mode", Phase.INITIALIZATION)
         self._refresh()
+        self._phase = Phase.EVENT if self.event_mode else Phase.STEP
+
+    def enter_event_mode(self) -> None:
+        """Go from step mode to event mode. Raises CallOrderError if this slave has none, or elsewhere."""
+        if not self.event_mode:
+            raise CallOrderError("this instance has no event mode: instantiate it with eventModeUsed = true")
+        self._need("enter event mode", Phase.STEP, Phase.EVENT_DUE)
+        self._phase = Phase.EVENT
+
+    def update_discrete_states(self) -> bool:
+        """Let the contact event at the present time happen, if one is due. True if it entails another at once.
+
+        Raises
+        ------
+        CallOrderError : outside event mode.
+        SimulationError, FmuError : the solver failed; the slave is in phase `failed`.
+        """
+        self._need("update discrete states", Phase.EVENT)
+        run = self._engine()
+        seen = len(run.events)
+        with self._failing():
+            run.apply_inputs(self._values)
+            again = run.handle_event()
+            run.read(self._values)
+        self._stale = False
+        self._log_events(run, seen)
+        return again
+
+    def enter_step_mode(self) -> None:
+        """Go from event mode to step mode. Raises CallOrderError elsewhere."""
+        self._need("enter step mode", Phase.EVENT)
         self._phase = Phase.STEP
 
     def terminate(self) -> None:
         """End the run; values can still be read."""
-        self._need("terminate", Phase.STEP, Phase.FAILED)
+        self._need("terminate", Phase.STEP, *EVENT_PHASES, Phase.FAILED)
         self._phase = Phase.TERMINATED
 
-    def do_step(self, t: float, h: float) -> None:
+    def do_step(self, t: float, h: float) -> StepEnd:
         """Advance from `t` by `h`, s, impacts included.
 
         `t` must be the slave's own time within rounding. The step ends at `t + h` in the master's rounding, so
-        that a master that counts its steps does not drift away from the slave.
+        that a master that counts its steps does not drift away from the slave; or at a contact event before, if the
+        slave was made with `early_return`. With `event_mode` an event at the end has not happened yet.
 
         Raises
         ------
@@ -160,15 +187,27 @@ class Slave:
         target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
         seen = len(run.events)
-        try:
+        with self._failing():
             run.apply_inputs(self._values)
-            run.advance(target)
+            end = run.advance(target, self.event_mode, self.early_return)
             run.read(self._values)
-        except BaseException:  # an interrupt from the keyboard leaves half a step too
+        self._set_time(end.time)
+        self._stale = False
+        if end.event_due:
+            self._phase = Phase.EVENT_DUE
+        self._log_events(run, seen)
+        return end
+
+    @contextmanager
+    def _failing(self) -> Iterator[None]:
+        """What goes wrong in here leaves half a step, an interrupt from the keyboard too."""
+        try:
+            yield
+        except BaseException:
             self._phase = Phase.FAILED
             raise
-        self._set_time(target)
-        self._stale = False
+
+    def _log_events(self, run: Run, seen: int) -> None:
         if self.log.wants(logs.EVENTS):
             for event in run.events[seen:]:
                 text = f"{event.kind} of contact '{event.contact}' at t = {event.t!r} s"
@@ -183,7 +222,7 @@ class Slave:
         ------
         CallOrderError, FmuValueError : and what the solver raises when start values must be computed.
         """
-        self._need("get values", *_RUNNING)
+        self._need("get values", *RUNNING)
         plan = self.variables.plan(kind, references)
         if self._stale and self._phase != Phase.FAILED and "output" in plan.roles:
             self._refresh()
@@ -199,8 +238,8 @@ class Slave:
         CallOrderError, FmuValueError
         """
         plan = self.variables.plan(kind, references)
-        self._need("set values", *_SETTING)
-        if not plan.roles <= _SETTABLE[self._phase]:
+        self._need("set values", *SETTABLE)
+        if not plan.roles <= SETTABLE[self._phase]:
             self._refuse(plan.variables)
         self._values.vectors[kind][plan.positions] = check_values(plan.variables, values)
         self._stale = True
@@ -212,7 +251,7 @@ class Slave:
         for v in variables:
             if v.role not in ("input", "parameter"):
                 raise FmuValueError(f"'{v.name}' is of role {v.role} and cannot be set")
-            if v.role not in _SETTABLE[self._phase]:
+            if v.role not in SETTABLE[self._phase]:
                 raise CallOrderError(f"parameter '{v.name}' is fixed after initialization: reset, then set it before")
 
     def set_by_name(self, values: Mapping[str, Any]) -> None:
@@ -263,6 +302,11 @@ class Slave:
             )
         if snapshot.identity != self.identity:
             raise SnapshotError("the stored state belongs to another model or other settings")
+        if snapshot.phase in EVENT_PHASES and not self.event_mode:
+            raise SnapshotError(
+                f"the state was stored in phase '{snapshot.phase}', and this instance has no event mode: instantiate "
+                "it with eventModeUsed = true"
+            )
         values = snapshot.values.copy()
         run = None
         if snapshot.simulation is not None:
@@ -287,7 +331,7 @@ class Slave:
 
     def _need(self, what: str, *phases: Phase) -> None:
         if self._phase not in phases:
-            raise CallOrderError(f"cannot {what} in phase '{self._phase}': {_WAYS[self._phase]}")
+            raise CallOrderError(f"cannot {what} in phase '{self._phase}': {WAYS[self._phase]}")
 
     def _build(self, values: Values, start_time: float) -> Run:
         return Run(self._factory, self.model, self.settings, values, start_time)

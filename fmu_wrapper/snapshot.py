@@ -4,12 +4,12 @@ import hashlib
 import json
 import zlib
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
 from typing import Any
 
 from ..core.description import Model
 from .errors import SnapshotError
+from .phases import Phase
 from .settings import Settings
 from .values import Values
 from .variables import VariableTable
@@ -19,16 +19,6 @@ FORMAT = 1
 MAGIC = b"tlismni-slave-state\n"
 LENGTHS = 4 * 8
 """Bytes of the lengths of head, values and simulation state and of the checksum: 8 each, little endian."""
-
-
-class Phase(StrEnum):
-    """Where a slave is in its life."""
-
-    INSTANTIATED = "instantiated"
-    INITIALIZATION = "initialization"
-    STEP = "step"
-    FAILED = "failed"
-    TERMINATED = "terminated"
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 CHUNK_STEPS = 20_000
+"""Steps between two reports of progress, of systems with up to 100 coordinates; larger ones report more often."""
 NO_STEP = 4e-16
 """Of the time: what is left before a stop or a breakpoint is rounding, and `run` makes no step of it."""
 MOST_HALVINGS = 40
@@ -75,14 +76,15 @@ _REPAIRABLE = (REANALYZE, SINGULAR, INNER_DIVERGED, OUTER_SLOW, OUTER_DIVERGED)
 """Failures that a new partition and new orderings may cure."""
 
 
-def advance_to(sim: "Simulation", t: float, stop: float) -> None:
-    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`."""
+def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> None:
+    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending."""
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     repaired_at = math.nan
+    chunk = max(1, CHUNK_STEPS * 100 // max(100, sim.assembly.n))
     while True:
         now = sim.t_internal
         if sim.pending:
-            if now > t:
+            if now > t or hold:
                 return
             sim._handle_pending()
             continue
@@ -97,7 +99,7 @@ def advance_to(sim: "Simulation", t: float, stop: float) -> None:
             return
         # while a contact slides, each step is looked at
         sliding = sliding_contacts(sim)
-        code = run(ws, ms, lc, 1 if sliding else CHUNK_STEPS)
+        code = run(ws, ms, lc, 1 if sliding else chunk)
         sim.flush()
         if sliding and code == CHUNK and sim.t_internal > now:
             refuse_passed_jam(sim, sliding)

@@ -45,7 +45,7 @@ class Simulation(Engine):
     start_tolerance : how far q0 and v0 may be moved to meet the constraints (relative).
     redundant : "drop": constraints that repeat others are left out of the equations but checked, and listed in the
         attribute of this name; "refuse": they are an error.
-    record : keep a sample at every step.
+    record : keep a sample at every step; a number k: at every k-th step.
     step_records : keep size, error, order and iterations of every step (`step_logs`).
     method_options : see the method.
 
@@ -72,10 +72,55 @@ class Simulation(Engine):
         ModelError : if t is not finite or before the present time.
         SimulationError : if the run fails; what was reached stays.
         """
+        self._advance_to(*self._goal(t))
+        self.t = float(t)
+
+    def _goal(self, t: float) -> tuple[float, float]:
+        """Where to go, and where the last step must end: inputs may change at `t`."""
         if not math.isfinite(t) or t < self.t:
             raise ModelError(f"cannot advance from t = {self.t!r} to {t!r}: the time must be finite and not earlier")
-        self._advance_to(float(t), float(t) if self.assembly.input_names else math.inf)
-        self.t = float(t)
+        return float(t), float(t) if self.assembly.input_names else math.inf
+
+    def advance_to_event(self, t: float) -> bool:
+        """Integrate to `t` (s) or to the first contact event before or at it; True if there is one.
+
+        The present time is then the event's, and `values` are those before it: `handle_event` lets it happen, and so
+        does going on. Events at the present time happen first. With `handle_event` after each, the run is the same as
+        that of `advance`, bit for bit.
+
+        Raises
+        ------
+        ModelError, SimulationError : as `advance`.
+        """
+        start, (target, stop) = self.t, self._goal(t)
+        with self._failures():
+            while True:
+                while self.event_due:
+                    self._handle_pending()
+                advance.advance_to(self, target, stop, hold=True)
+                if not self.pending or self.t_internal > target:
+                    self.t = target
+                    return False
+                if self.t_internal > start:
+                    self.t = self.t_internal
+                    return True
+
+    @property
+    def event_due(self) -> bool:
+        """True if the present time is that of a contact event that has not happened yet."""
+        return bool(self.pending) and self.t_internal == self.t
+
+    def handle_event(self) -> bool:
+        """Let a contact event at the present time happen, if one is due. True if it entails another at once.
+
+        Raises
+        ------
+        SimulationError : if it cannot.
+        """
+        with self._failures():
+            if self.event_due:
+                self._handle_pending()
+        return self.event_due
 
     def run_to(self, t_end: float, until: float | None = None) -> None:
         """Integrate to `until` (or `t_end`); no step goes beyond `t_end`."""

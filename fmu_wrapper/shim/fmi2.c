@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "instance.h"
+#include "forward.h"
 
 typedef Instance *fmi2Component;
 typedef void *fmi2ComponentEnvironment;
@@ -52,22 +52,6 @@ static void log_to_host(const Instance *self, int status, const char *category, 
     free(format);
 }
 
-/* Return the status of a method; its arguments are made with Python's lock. */
-#define FORWARD(c, method, ...)                                   \
-    do {                                                          \
-        int gil;                                                  \
-        if (!instance_enter(c, &gil)) {                           \
-            return STATUS_ERROR;                                  \
-        }                                                         \
-        int status = instance_status(c, method, __VA_ARGS__);     \
-        python_leave(gil);                                        \
-        return status;                                            \
-    } while (0)
-
-#define IN(array, count) view_of(array, (count) * sizeof *(array))
-#define OUT(array, count) writable_view_of(array, (count) * sizeof *(array))
-#define HANDLE(state) ((unsigned long long)(uintptr_t)(state))
-
 /* version and logging */
 
 EXPORT const char *fmi2GetTypesPlatform(void) {
@@ -98,7 +82,7 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
         instance_report(&model, "fmi2Instantiate: this FMU does co-simulation only, type %d was asked", type);
         return NULL;
     }
-    return instance_new(&model, 2, "fmi2Instantiate", name, guid, resources, logging_on);
+    return instance_new(&model, 2, false, false, "fmi2Instantiate", name, guid, resources, logging_on);
 }
 
 EXPORT void fmi2FreeInstance(fmi2Component c) {
@@ -158,45 +142,14 @@ EXPORT fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], 
     FORWARD(c, "fmi2SetString", "(NN)", IN(vr, n), list_of_strings(value, n));
 }
 
-/* The pointers stay valid until the next call of this function: the instance keeps the bytes objects. */
 EXPORT fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2String value[]) {
-    int gil, status = STATUS_ERROR;
-    if (!instance_enter(c, &gil)) {
-        return STATUS_ERROR;
-    }
-    PyObject *strings = instance_call(c, "fmi2GetString", "(N)", IN(vr, n));
-    if (strings && py.PyList_Size(strings) == (Py_ssize_t)n) {
-        for (size_t i = 0; i < n; i++) {
-            value[i] = py.PyBytes_AsString(py.PyList_GetItem(strings, (Py_ssize_t)i));
-        }
-        status = STATUS_OK;
-    }
-    py.PyErr_Clear(); /* PyList_Size complains about the None of an error that was logged */
-    py.Py_DecRef(c->strings);
-    c->strings = strings;
-    python_leave(gil);
-    return status;
+    return forward_get_strings(c, "fmi2GetString", vr, n, value);
 }
 
 /* state: the pointer that the host holds is a number, not an address */
 
-/* Store the handle that a call answered with. */
-static fmi2Status store_handle(PyObject *answer, fmi2FMUstate *state) {
-    long long handle = instance_number(answer, 0);
-    if (handle) {
-        *state = (fmi2FMUstate)(uintptr_t)handle;
-    }
-    return handle ? STATUS_OK : STATUS_ERROR;
-}
-
 EXPORT fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    int gil;
-    if (!instance_enter(c, &gil)) {
-        return STATUS_ERROR;
-    }
-    fmi2Status status = store_handle(instance_call(c, "fmi2GetFMUstate", "(K)", HANDLE(*state)), state);
-    python_leave(gil);
-    return status;
+    return forward_get_state(c, "fmi2GetFMUstate", state);
 }
 
 EXPORT fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
@@ -204,23 +157,11 @@ EXPORT fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
 }
 
 EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    fmi2FMUstate handle = state ? *state : NULL;
-    if (!handle) {
-        return STATUS_OK;
-    }
-    *state = NULL;
-    FORWARD(c, "fmi2FreeFMUstate", "(K)", HANDLE(handle));
+    return forward_free_state(c, "fmi2FreeFMUstate", state);
 }
 
 EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    int gil;
-    if (!instance_enter(c, &gil)) {
-        return STATUS_ERROR;
-    }
-    long long bytes = instance_number(instance_call(c, "fmi2SerializedFMUstateSize", "(K)", HANDLE(state)), -1);
-    python_leave(gil);
-    *size = bytes < 0 ? 0 : (size_t)bytes;
-    return bytes < 0 ? STATUS_ERROR : STATUS_OK;
+    return forward_state_size(c, "fmi2SerializedFMUstateSize", state, size);
 }
 
 EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
@@ -229,14 +170,7 @@ EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi
 
 EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                           fmi2FMUstate *state) {
-    int gil;
-    if (!instance_enter(c, &gil)) {
-        return STATUS_ERROR;
-    }
-    PyObject *answer = instance_call(c, "fmi2DeSerializeFMUstate", "(NK)", IN(bytes, size), HANDLE(*state));
-    fmi2Status status = store_handle(answer, state);
-    python_leave(gil);
-    return status;
+    return forward_read_state(c, "fmi2DeSerializeFMUstate", bytes, size, state);
 }
 
 /* steps */

@@ -133,9 +133,15 @@ static PyObject *boot(Instance *self, const char *function, const char *source, 
     return result;
 }
 
+/* What the host asked of an instance. */
+typedef struct {
+    int interface; /* FMI major version */
+    bool event_mode, early_return, logging_on;
+} Asked;
+
 /* Make the Python side of `self`. */
-static bool populate(Instance *self, int interface, const char *function, const char *token,
-                     const char *resources, bool logging_on) {
+static bool populate(Instance *self, const Asked *asked, const char *function, const char *token,
+                     const char *resources) {
     char message[MESSAGE], path[MESSAGE];
     int gil;
     snprintf(path, sizeof path, "%s/boot.py", resources);
@@ -152,8 +158,9 @@ static bool populate(Instance *self, int interface, const char *function, const 
     } else {
         PyObject *capsule = py.PyCapsule_New(self, CAPSULE, NULL);
         PyObject *log = capsule ? py.PyCFunction_NewEx(&log_method, capsule, NULL) : NULL;
-        PyObject *arguments = log ? py.Py_BuildValue("(isssiN)", interface, self->name, token, resources,
-                                                     (int)logging_on, log) : NULL;
+        PyObject *arguments = log ? py.Py_BuildValue("(isssiNii)", asked->interface, self->name, token, resources,
+                                                     (int)asked->logging_on, log, (int)asked->event_mode,
+                                                     (int)asked->early_return) : NULL;
         self->calls = boot(self, function, source, path, arguments);
         py.Py_DecRef(arguments);
         py.Py_DecRef(capsule);
@@ -163,8 +170,8 @@ static bool populate(Instance *self, int interface, const char *function, const 
     return self->calls != NULL;
 }
 
-Instance *instance_new(const Instance *model, int interface, const char *function, const char *name,
-                       const char *token, const char *resource_location, bool logging_on) {
+Instance *instance_new(const Instance *model, int interface, bool event_mode, bool early_return, const char *function,
+                       const char *name, const char *token, const char *resource_location, bool logging_on) {
     Instance *self = malloc(sizeof *self);
     if (!self) {
         return NULL;
@@ -179,7 +186,8 @@ Instance *instance_new(const Instance *model, int interface, const char *functio
         instance_report(self, "%s: the resource location is NULL: the URI of the FMU's resources folder is needed",
                         function);
     } else if (self->name) {
-        made = populate(self, interface, function, token ? token : "", resources, logging_on);
+        Asked asked = {interface, event_mode, early_return, logging_on};
+        made = populate(self, &asked, function, token ? token : "", resources);
     }
     free(resources);
     if (!made) {

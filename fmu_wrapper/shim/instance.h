@@ -14,7 +14,7 @@ typedef void (*HostLogger)(const Instance *, int status, const char *category, c
 
 struct Instance {
     unsigned magic;
-    PyObject *calls;    /* Fmi2Calls */
+    PyObject *calls;    /* Fmi2Calls or Fmi3Calls */
     PyObject *strings;  /* list of bytes that the last "get string" gave: the host holds pointers into them */
     HostLogger log;
     void (*logger)(void); /* the host's callback, of the type that `log` knows; NULL for none */
@@ -23,9 +23,9 @@ struct Instance {
 };
 
 /* A new instance, or NULL with a line in the host's log. Takes over nothing; `model` is filled in by the caller
- * with `log`, `logger`, `environment` and is copied. */
-Instance *instance_new(const Instance *model, int interface, const char *function, const char *name,
-                       const char *token, const char *resource_location, bool logging_on);
+ * with `log`, `logger`, `environment` and is copied. `event_mode` and `early_return` are FMI 3.0's. */
+Instance *instance_new(const Instance *model, int interface, bool event_mode, bool early_return, const char *function,
+                       const char *name, const char *token, const char *resource_location, bool logging_on);
 
 /* Free an instance; NULL is allowed. */
 void instance_free(Instance *self);

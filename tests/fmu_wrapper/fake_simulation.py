@@ -79,21 +79,33 @@ class FakeSimulation:
         return self._state.push / self.mass - self.gravity
 
     def advance(self, t: float) -> None:
+        while self.advance_to_event(t):
+            self.handle_event()
+
+    def advance_to_event(self, t: float) -> bool:
         if t >= self.fail_at:
             raise SimulationError("the outer loop diverged at t = 0.5 s: use smaller steps", t=0.5, loop="outer")
-        while True:
-            s, a = self._state, self._acceleration()
-            fall = (-s.v - math.sqrt(max(s.v * s.v - 2.0 * a * s.y, 0.0))) / a if a < 0.0 else math.inf
-            if s.t + fall > t:
-                break
-            speed = self.restitution * -(s.v + a * fall)
-            if speed < 1e-6:
+        self.handle_event()
+        s, a = self._state, self._acceleration()
+        fall = (-s.v - math.sqrt(max(s.v * s.v - 2.0 * a * s.y, 0.0))) / a if a < 0.0 else math.inf
+        if s.t + fall <= t:
+            speed = s.v + a * fall
+            if self.restitution * -speed < 1e-6:
                 self._state = replace(s, t=t, y=0.0, v=0.0)
-                return
-            self.events.append(Event(s.t + fall, "impact", "floor", impulse=2.0 * self.mass * speed))
-            self._state = FakeState(s.t + fall, 0.0, speed, s.push, s.bounces + 1)
+                return False
+            self._state = replace(s, t=s.t + fall, y=0.0, v=speed)
+            return True
         h = t - s.t
         self._state = replace(s, t=t, y=s.y + s.v * h + 0.5 * a * h * h, v=s.v + a * h)
+        return False
+
+    def handle_event(self) -> bool:
+        s = self._state
+        if s.y == 0.0 and s.v < 0.0:  # an impact is due
+            speed = self.restitution * -s.v
+            self.events.append(Event(s.t, "impact", "floor", impulse=2.0 * self.mass * speed))
+            self._state = replace(s, v=speed, bounces=s.bounces + 1)
+        return False
 
     def values(self) -> np.ndarray:
         s = self._state

@@ -1,0 +1,57 @@
+"""modelDescription.xml for FMI 3.0 co-simulation."""
+
+from .description_parts import (
+    About,
+    add,
+    add_categories,
+    add_experiment,
+    add_units,
+    attributes,
+    finish,
+    start,
+)
+from .settings import Settings
+from .variables import VariableTable
+
+CAPABILITIES = {
+    "needsExecutionTool": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canGetAndSetFMUState": "true",
+    "canSerializeFMUState": "true",
+    "providesDirectionalDerivatives": "false",
+    "providesAdjointDerivatives": "false",
+    "providesPerElementDependencies": "false",
+    "canHandleVariableCommunicationStepSize": "true",
+    "maxOutputDerivativeOrder": "0",
+    "providesIntermediateUpdate": "false",
+    "mightReturnEarlyFromDoStep": "true",
+    "canReturnEarlyAfterIntermediateUpdate": "false",
+    "hasEventMode": "true",
+    "providesEvaluateDiscreteStates": "false",
+}
+
+_TYPES = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "string": "String"}
+
+
+def fmi3_description(table: VariableTable, settings: Settings, about: About) -> bytes:
+    """The file's bytes."""
+    root = start("3.0", "instantiationToken", about)
+    add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES)
+    add_units(root, table)
+    add_categories(root)
+    add_experiment(root, settings)
+    variables = add(root, "ModelVariables")
+    for variable in table.variables:
+        own = attributes(variable) | {"unit": variable.unit, "min": variable.minimum, "max": variable.maximum}
+        if variable.kind == "string":
+            element = add(variables, "String", **own)
+            if variable.start is not None:
+                add(element, "Start", value=variable.start)
+        else:
+            add(variables, _TYPES[variable.kind], **own, start=variable.start)
+    structure = add(root, "ModelStructure")
+    for part in ("Output", "InitialUnknown"):
+        for variable in table.variables:
+            if variable.role == "output":
+                add(structure, part, valueReference=variable.reference)
+    return finish(root)
