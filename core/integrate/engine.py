@@ -370,6 +370,10 @@ class Engine:
         noise = self.force_noise()
         rows, cols, values = self.workspace.jacobian()
         here = np.flatnonzero((self.workspace.structure.active[rows] == row) & (values != 0.0))
+        if not np.any(
+            noise[cols[here]]
+        ):  # on frames without stiffness of their own, which hand on the forces of others
+            return float(np.max(noise, initial=0.0) / np.max(np.abs(values[here]), initial=1.0))
         return float(np.max(noise[cols[here]] / np.abs(values[here]), initial=0.0))
 
     def no_force(self) -> float:

@@ -101,6 +101,20 @@ def test_impulse_does_not_depend_on_the_tolerances() -> None:
     assert loose == pytest.approx(tight, rel=1e-5)
 
 
+@pytest.mark.parametrize("formulation", ["floating", "ancf"])
+def test_an_undamped_beam_goes_through_its_first_blows(formulation: str) -> None:
+    """Right after the impact nothing presses the tip against the stop, but the rest of the beam still approaches: the
+    contact stays closed until that arrives."""
+    s = load("hub_beam_stop", formulation=formulation, elements=4, damping_time=0.0)
+    result = simulate(s.model, 0.011, s.method, s.rtol, s.atol, **s.options)
+    impact, close, leave = result.events[:3]
+    assert [e.kind for e in (impact, close, leave)] == ["impact", "close", "open"]
+    assert close.t == impact.t and leave.t > impact.t + 1e-6
+    closed = (result["stop.in_contact"] > 0.0) & (result.t < leave.t)
+    assert result["stop.normal_force"][closed].max() > 1.0
+    assert np.abs(result["energy.balance"]).max() < 1e-5
+
+
 # ---- flexible_slider_crank_stop ----------------------------------------
 
 
