@@ -1,8 +1,9 @@
 """A rope on a pin falls on the ground: a hundred impacts of its nodes, and where its energy goes.
 
 The rope is let go horizontally and swings down; a node in its middle strikes the ground first, then one after the
-other. Every node is a contact with restitution 0: it loses its own speed, and what bounces comes from the rope behind it. The ledger
-knows where the energy is at any time: in the motion, in height, in strain, lost at the impacts, lost in the material.
+other. Every node is a contact with restitution 0: it loses its own speed, and what bounces comes from the rope behind
+it. The ledger knows where the energy is at any time: in the motion, in height, in strain, lost at the impacts, lost in
+the material.
 """
 
 import sys
