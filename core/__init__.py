@@ -62,13 +62,21 @@ from .equations.errors import EquationError
 from .equations.system import EquationSystem, GapContact
 from .errors import ConsistencyError, ModelError, SimulationError, TlismniError
 from .events import Event
+from .flexible.section_loads import (
+    axial_force,
+    axial_strain,
+    bending_moment,
+    curvature,
+    deformed_shape,
+    section,
+    stress,
+)
 from .integrate.simulation import Simulation
 from .methods.registry import METHODS
 from .model.channels import Channel, Input, Parameter
 from .model.markers import Marker2D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
 from .result import Result
-from .section_loads import axial_force, axial_strain, bending_moment, curvature, deformed_shape, section, stress
 from .simulate import simulate
 from .state import State
 from .system.redundancy import RedundantRow

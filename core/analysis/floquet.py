@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
-from ..integrate.advance import NO_STEP
+from ..integrate.records import NO_STEP
 from ..integrate.simulation import Simulation
 from .variation import Variation
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from ..contact.laws import ImpactLaw
 from ..errors import ModelError, SimulationError
-from ..integrate.advance import NO_STEP, aim
+from ..integrate.advance import aim
 from ..integrate.engine import user_errors
-from ..integrate.records import CHUNK, EVENT, REACHED
+from ..integrate.records import CHUNK, EVENT, NO_STEP, REACHED
 from ..integrate.simulation import Simulation
 from ..linalg import SingularMatrixError
 from .flight import STEP_LEFT, SUBSTEP, fly

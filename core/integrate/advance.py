@@ -35,6 +35,7 @@ from .records import (
     FIXED_STEP,
     FULL,
     NEAR_SINGULAR,
+    NO_STEP,
     REACHED,
     REPARTITION,
     STEP_SIZE,
@@ -54,8 +55,6 @@ logger = logging.getLogger(__name__)
 
 CHUNK_STEPS = 20_000
 """Steps between two reports of progress, of systems with up to 100 coordinates; larger ones report more often."""
-NO_STEP = 4e-16
-"""Of the time: what is left before a stop or a breakpoint is rounding, and `run` makes no step of it."""
 MOST_HALVINGS = 40
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)

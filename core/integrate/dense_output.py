@@ -14,6 +14,7 @@ from ..methods.multistep import rows_available
 from ..stage.project import project
 from ..system.evaluate import evaluate_residuals
 from ..system.records import OK, SINGULAR
+from .records import NO_STEP
 
 
 @internal
@@ -90,7 +91,12 @@ def query(ws: Any, ms: Any, t: float) -> int:
             evaluate_residuals(ws)
             return OK
     if rows_available(ms) < 2:
-        return SINGULAR
+        # an event just before a communication point, with no step between the two
+        if abs(t - history_time(ms, 0)) > NO_STEP * abs(t):
+            return SINGULAR
+        recall(ws, ms, 0)
+        evaluate_residuals(ws)
+        return OK
     interpolate(ws, ms, t)
     if ms.exact == 0:
         evaluate_residuals(ws)

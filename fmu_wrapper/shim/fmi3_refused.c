@@ -10,14 +10,17 @@
 #endif
 
 typedef uint32_t fmi3ValueReference;
+typedef int fmi3Status;
+typedef int fmi3IntervalQualifier;
+typedef int fmi3DependencyKind;
 
-#define REFUSED(name, ...)                        \
-    EXPORT int name(Instance *c, __VA_ARGS__) {   \
-        FORWARD(c, "refuse", "(s)", #name);       \
+#define REFUSED(name, ...)                               \
+    EXPORT fmi3Status name(Instance *c, __VA_ARGS__) {   \
+        FORWARD(c, "refuse", "(s)", #name);              \
     }
-#define REFUSED_PLAIN(name)                       \
-    EXPORT int name(Instance *c) {                \
-        FORWARD(c, "refuse", "(s)", #name);       \
+#define REFUSED_PLAIN(name)                              \
+    EXPORT fmi3Status name(Instance *c) {                \
+        FORWARD(c, "refuse", "(s)", #name);              \
     }
 #define REFERENCES const fmi3ValueReference vr[], size_t n
 
@@ -44,8 +47,9 @@ REFUSED(fmi3SetBinary, REFERENCES, const size_t sizes[], const uint8_t *const va
 
 REFUSED(fmi3GetClock, REFERENCES, bool value[])
 REFUSED(fmi3SetClock, REFERENCES, const bool value[])
-REFUSED(fmi3GetIntervalDecimal, REFERENCES, double interval[], int qualifier[])
-REFUSED(fmi3GetIntervalFraction, REFERENCES, uint64_t counter[], uint64_t resolution[], int qualifier[])
+REFUSED(fmi3GetIntervalDecimal, REFERENCES, double interval[], fmi3IntervalQualifier qualifier[])
+REFUSED(fmi3GetIntervalFraction, REFERENCES, uint64_t counter[], uint64_t resolution[],
+        fmi3IntervalQualifier qualifier[])
 REFUSED(fmi3GetShiftDecimal, REFERENCES, double shift[])
 REFUSED(fmi3GetShiftFraction, REFERENCES, uint64_t counter[], uint64_t resolution[])
 REFUSED(fmi3SetIntervalDecimal, REFERENCES, const double interval[])
@@ -60,7 +64,7 @@ REFUSED_PLAIN(fmi3EnterConfigurationMode)
 REFUSED_PLAIN(fmi3ExitConfigurationMode)
 REFUSED(fmi3GetNumberOfVariableDependencies, fmi3ValueReference vr, size_t *count)
 REFUSED(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t element[], fmi3ValueReference independent[],
-        size_t independent_element[], int kind[], size_t count)
+        size_t independent_element[], fmi3DependencyKind kind[], size_t count)
 
 /* derivatives */
 

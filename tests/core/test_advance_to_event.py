@@ -77,3 +77,28 @@ def test_a_time_before_the_present_is_refused():
     sim.advance(0.1)
     with pytest.raises(ModelError, match=r"cannot advance from t = 0.1 to 0.05"):
         sim.advance_to_event(0.05)
+
+
+def test_an_event_within_rounding_of_a_communication_point():
+    """A model with inputs ends its steps at these points: the event may lie before one by less than any step."""
+
+    def stopped(target):
+        sim = simulation("pendulum_stop")
+        sim.advance(0.48)
+        sim.advance(target)
+        return sim
+
+    event = 0.49
+    for margin in (0.0, 1e-6, 1e-9, 1e-12):  # where the step ends moves the event by its error
+        event = stopped(event * (1.0 + margin)).events[0].t
+    angle = [c.name for c in stopped(0.48).channels].index("pendulum.angle")
+    near = 0
+    for ulps in range(-8, 9):
+        target = event + ulps * np.spacing(event)
+        sim = stopped(target)
+        near += bool(sim.events) and 0.0 < target - sim.events[0].t < 4e-16 * target
+        assert sim.values()[angle] == pytest.approx(-np.pi / 2.0, rel=1e-11)
+        sim.set_inputs({sim.assembly.input_names[0]: 1e-9 * ulps})
+        sim.advance(0.5)
+        assert len(sim.events) == 1
+    assert near  # the case was met

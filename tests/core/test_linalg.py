@@ -411,3 +411,27 @@ def test_wrong_rows_are_refused(changes, message):
     arguments = {"m": 2, "n": 2, "indptr": [0, 1, 2], "indices": [0, 1], "data": [1.0, 1.0], **changes}
     with pytest.raises(ValueError, match=message):
         pivot_rows(**arguments)
+
+
+@pytest.mark.parametrize("kind", ["chain", "grid"])
+def test_large_matrices_are_ordered_for_neighbours_without_more_fill(kind: str) -> None:
+    """A chain keeps its order up to a reversal, a grid the order of least fill; both are solved to rounding."""
+    n = 5000 if kind == "chain" else 70 * 70
+    if kind == "chain":
+        shuffled = np.random.default_rng(1).permutation(n)
+        i, j = shuffled[:-1], shuffled[1:]
+    else:
+        nodes = np.arange(n).reshape(70, 70)
+        i = np.concatenate([nodes[:-1].ravel(), nodes[:, :-1].ravel()])
+        j = np.concatenate([nodes[1:].ravel(), nodes[:, 1:].ravel()])
+    rows, cols = np.concatenate([np.arange(n), i, j]), np.concatenate([np.arange(n), j, i])
+    values = np.concatenate([np.full(n, 4.5), np.full(2 * len(i), -1.0)])
+    solver = Factorization(n, rows, cols, np.arange(len(rows)))
+    solver.analyze(values)
+    exact = np.linspace(-1.0, 1.0, n)
+    b = np.bincount(rows, values * exact[cols], n)
+    assert np.max(np.abs(solver.solve(b) - exact)) < 1e-12
+    if kind == "chain":
+        assert solver.fill < 3 * n
+        place = solver.analysis()[1]
+        assert np.max(np.abs(np.diff(place[shuffled]))) == 1

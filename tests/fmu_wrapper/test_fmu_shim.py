@@ -71,6 +71,28 @@ def test_functions_have_the_types_of_the_standard(tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.skipif(CC is None, reason="needs a C compiler")
+def test_functions_of_fmi3_are_all_there_with_the_types_of_the_standard(tmp_path):
+    """Each function of the standard's header is defined, and its definition fits the header's type."""
+    headers = Path(fmpy.__file__).parent / "c-code"
+    names = re.findall(r"^FMI3_Export fmi3\w+TYPE\s+(fmi3\w+);", (headers / "fmi3Functions.h").read_text(), re.M)
+    assert len(names) == 75
+    pointers = "\n".join(f"{name}TYPE *p_{name} = {name};" for name in names)
+    (tmp_path / "there.c").write_text(f'#include "fmi3Functions.h"\n{pointers}\nint main(void) {{ return 0; }}\n')
+    flags = ["-Wall", "-Werror", f"-I{headers}"]
+    there = [CC, *flags, "-o", str(tmp_path / "there"), str(tmp_path / "there.c"), str(shim_path())]
+    done = subprocess.run(there, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    # our definitions and the header's declarations in one file: the compiler compares them
+    text = "".join((SHIM / name).read_text() for name in ("fmi3.c", "fmi3_refused.c"))
+    text = re.sub(r"typedef Instance \*fmi3Instance;|typedef (?!void \(\*)[^;(]*fmi3\w+;|typedef void[^;]*;", "", text)
+    source = tmp_path / "fits.c"
+    source.write_text(f'#include "fmi3Functions.h"\n{text}'.replace("Instance *c", "fmi3Instance c"))
+    fits = [CC, "-std=c11", *flags, "-Wno-unused", f"-I{SHIM}", "-fsyntax-only", str(source)]
+    done = subprocess.run(fits, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
 def test_links_to_no_python():
     library = shim_path().read_bytes()
     assert b"libpython3.%d.so" in library  # looked for at run time

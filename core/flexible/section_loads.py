@@ -12,9 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .elements.flexible_body import FlexibleBody, Section
-from .errors import ModelError
-from .result import Result
+from ..elements.flexible_body import FlexibleBody, Section
+from ..errors import ModelError
+from ..result import Result
 
 Floats = NDArray[np.float64]
 
