@@ -48,6 +48,15 @@ def test_export(tlismni: Command, tmp_path: Path) -> None:
     assert starts["solver.method"] == "irk"
 
 
+@pytest.mark.parametrize(("given", "version"), [("2", "2.0"), ("3", "3.0"), ("3.0", "3.0")])
+def test_export_of_a_version(tlismni: Command, tmp_path: Path, given: str, version: str) -> None:
+    import fmpy
+
+    done = tlismni("export", "pendulum_stop", "-o", tmp_path / "p.fmu", "--fmi", given, "--json")
+    assert done.code == 0 and done.json["fmi"] == version
+    assert fmpy.read_model_description(str(tmp_path / "p.fmu")).fmiVersion == version
+
+
 def test_export_refuses_other_suffixes_and_versions(tlismni: Command, tmp_path: Path) -> None:
     assert tlismni("export", "chain", "-o", tmp_path / "chain.zip").code == 2
     done = tlismni("export", "chain", "-o", tmp_path / "chain.fmu", "--fmi", "4.0")
@@ -68,6 +77,12 @@ def test_fmu_and_slave_are_the_same_through_an_impact(tlismni: Command, tmp_path
         "pendulum_stop.fmu", "pendulum_stop_cosim.png", "pendulum_stop_fmu.csv", "pendulum_stop_slave.csv",
     ]  # fmt: skip
     assert (tmp_path / "pendulum_stop_fmu.csv").read_bytes() == (tmp_path / "pendulum_stop_slave.csv").read_bytes()
+
+
+def test_the_fmu_of_version_3_and_the_slave_are_the_same(tlismni: Command) -> None:
+    done = tlismni("cosim", "pendulum_stop", "--fmi", "3", "--t-end", 0.6, "-c", 0.02, "--json")
+    assert done.code == 0
+    assert done.json["identical"] is True and done.json["events"] == 1 and done.json["outputs"] > 20
 
 
 def test_one_bit_is_a_difference(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:
