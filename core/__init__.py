@@ -2,6 +2,7 @@
 
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
+from .contact.disk_on_cable import DiskOnCable2D
 from .contact.disk_on_line import DiskOnLine2D, Line2D
 from .contact.friction import (
     AmbrosioFriction,
@@ -61,6 +62,15 @@ from .equations.errors import EquationError
 from .equations.system import EquationSystem, GapContact
 from .errors import ConsistencyError, ModelError, SimulationError, TlismniError
 from .events import Event
+from .flexible.section_loads import (
+    axial_force,
+    axial_strain,
+    bending_moment,
+    curvature,
+    deformed_shape,
+    section,
+    stress,
+)
 from .integrate.simulation import Simulation
 from .methods.registry import METHODS
 from .model.channels import Channel, Input, Parameter
@@ -92,6 +102,7 @@ __all__ = [
     "CoordinateTerm",
     "CoulombFriction",
     "Disk2D",
+    "DiskOnCable2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
     "DiskOnLine2D",
@@ -152,8 +163,15 @@ __all__ = [
     "TlismniError",
     "Tsuji",
     "ZhiyingQishao",
+    "axial_force",
+    "axial_strain",
+    "bending_moment",
+    "curvature",
+    "deformed_shape",
     "force_formula",
+    "section",
     "simulate",
     "sphere_on_plane",
     "sphere_on_sphere",
+    "stress",
 ]

@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Mapping
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,7 @@ def simulate(
     step: float | None = None,
     t_eval: ArrayLike | None = None,
     t0: float = 0.0,
-    record: bool = True,
+    record: bool | int = True,
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Result:
@@ -41,7 +41,8 @@ def simulate(
     rtol, atol : tolerances of the error control, on coordinates and velocities; atol may be a mapping by kind.
     step : fixed step in s instead of error control.
     t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.
-    record : False records only start and end (for timing).
+    record : False records only start and end (for timing); a number k records every k-th step, what happens at
+        contacts, and the end: for models so large that all steps would fill the memory.
     progress : called with the time reached, now and then.
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
@@ -69,7 +70,9 @@ def simulate(
         )
     times = None if t_eval is None else _check_times(t_eval, t0, t_end)
     started = time.perf_counter()
-    sim = Simulation(system, method, rtol, atol, step=step, t0=t0, record=record and times is None, **options)
+    sim = Simulation(
+        system, method, rtol, atol, step=step, t0=t0, record=_check_stride(record) if times is None else 0, **options
+    )
     sim.progress = progress
     rows = []
     try:
@@ -79,10 +82,13 @@ def simulate(
             sim.run_to(t_end)
             if not record:
                 rows.append(sim.sample())
+            elif record > 1:
+                sim.record_end()
         else:
             for t in times:
                 sim.run_to(t_end, until=float(t))
                 rows.append(sim.sample())
+                sim.report_progress(float(t))
             sim.run_to(t_end)
     except TlismniError as error:
         if isinstance(error, SimulationError):
@@ -98,6 +104,12 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
     steps = np.concatenate(sim.step_logs) if sim.step_logs else None
     stats = {**sim.stats, "wall_time": wall_time}
     return Result(samples, sim.table, sim.events, stats, sim.fallbacks, steps, sim.redundant)
+
+
+def _check_stride(record: bool | int) -> int:
+    if not isinstance(record, Integral) or record < 0:
+        raise ModelError(f"record = {record!r} must be True, False, or the number of steps between two samples")
+    return int(record)
 
 
 def _check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:

@@ -5,8 +5,12 @@ A new scenario is one file with its parameter table and its builder, and its imp
 
 from . import (  # noqa: F401  (importing a scenario's file puts it in the catalogue)
     bouncing_ball,
+    cable_ground,
+    cable_pendulum,
+    cantilever,
     chain,
     double_pendulum_wall,
+    flexible_slider_crank_stop,
     four_bar,
     hub_beam_stop,
     impact_oscillator,

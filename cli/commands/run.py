@@ -54,11 +54,18 @@ def run(
         check_file(path)
 
     from ...core import simulate
+    from ..recording import affordable_stride, record_bytes
     from ..source import read_source
     from ..summary import print_summary, summarise
 
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     times = None if every is None else _times(scenario.t_end, every)
+    stride = affordable_stride(scenario)
+    if times is None and stride > 1:
+        say(
+            f"all steps would fill about {record_bytes(scenario) / 1e9:.2g} GB: recording every {stride}th "
+            "(--every chooses times instead)"
+        )
     with compile_notice(), progress_bar(scenario.name, scenario.t_end) as progress:
         result = simulate(
             scenario.model,
@@ -67,6 +74,7 @@ def run(
             scenario.rtol,
             scenario.atol,
             t_eval=times,
+            record=stride,
             progress=progress,
             step_records=steps is not None,
             **scenario.options,

@@ -9,6 +9,7 @@ from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
 from .study_contact import CONTACT_EXAMPLES, STIFFNESS_EXAMPLES, contact, stiffness
+from .study_damping import DAMPING_EXAMPLES, damping
 
 ORDERS_EXAMPLES = (
     "Examples:\n\n  tlismni study orders --plot orders.png\n\n"
@@ -32,6 +33,7 @@ app = typer.Typer(
 
 app.command("contact", epilog=CONTACT_EXAMPLES)(contact)
 app.command("stiffness", epilog=STIFFNESS_EXAMPLES)(stiffness)
+app.command("damping", epilog=DAMPING_EXAMPLES)(damping)
 
 Methods = Annotated[
     list[str] | None, typer.Option("--method", "-m", help="Only this method; may be repeated (see `tlismni methods`).")

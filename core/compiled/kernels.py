@@ -19,6 +19,8 @@ RESIDUAL = 0  # add to r, phi, phid, phidd at the current (t, q, v, a, lam)
 TANGENT = 1  # add M + c_v D + c_q K and Phi_q to the sparse values
 ENERGY = 2  # add to energy[KINETIC, POTENTIAL, STRAIN]
 POWER = 3  # write the power of dissipation and input into the work entries of a
+# Asked of the system, not of a kernel: RESIDUAL of those kernels only that have constraint rows; r means nothing then.
+CONSTRAINTS = 4
 
 BATCH = np.dtype(
     [

@@ -6,12 +6,13 @@ from pydantic import Field
 
 from .contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
 from .coordinate_contact import CoordinateContact
+from .disk_on_cable import DiskOnCable2D
 from .disk_on_line import DiskOnLine2D
 from .segment2d import DiskOnSegment2D
 
-CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, DiskOnSegment2D, DiskOnLine2D, CoordinateContact)
+CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, DiskOnSegment2D, DiskOnLine2D, DiskOnCable2D, CoordinateContact)
 
 Contact = Annotated[
-    DiskOnHalfPlane2D | DiskOnDisk2D | DiskOnSegment2D | DiskOnLine2D | CoordinateContact,
+    DiskOnHalfPlane2D | DiskOnDisk2D | DiskOnSegment2D | DiskOnLine2D | DiskOnCable2D | CoordinateContact,
     Field(discriminator="type"),
 ]

@@ -15,7 +15,7 @@ from .complementarity import RANK, ContactSolution, farthest, independent, solve
 from .lcp import NoComplementarySolution
 from .modes import CLOSED, IDLE, STICKS
 from .painleve import no_solution, painleve
-from .settling import AT_LIMIT, Settling, unresolved_speed
+from .settling import AT_LIMIT, Settling, comes_back, unresolved_speed
 from .touching import Touching
 
 if TYPE_CHECKING:
@@ -265,11 +265,11 @@ class Resting:
         if not now.struck:
             # touching without force: as it was
             closed |= (now.was == CLOSED) & ~now.leaves & (np.abs(found.normal_motion) <= self.none)
-        idle = self.at_rest & ~closed & ~now.leaves & (self.b_n == 0.0) & (found.normal_motion == 0.0)
+        idle = self.at_rest & ~closed & ~now.leaves
         if np.any(idle):
-            # a node of an elastic body that has come to rest while its neighbours still approach; or a gap that was
-            # left open at this very instant, and that every step closes at once
-            closed |= idle & ((self.touching.free_jerks() < 0.0) | (self.sim.events_here > 2))
+            # or left open at this very instant, and every step closes them at once
+            again = (self.b_n == 0.0) & (found.normal_motion == 0.0) & (self.sim.events_here > 2)
+            closed |= idle & (again | comes_back(self.sim, self.touching.free_jerks(), found.normal_motion))
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]

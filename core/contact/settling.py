@@ -23,10 +23,23 @@ AT_LIMIT = 1e-9
 """Friction within this part of its limit has reached it."""
 
 
+def unresolved_height(sim: "Engine") -> float:
+    """Height of a gap that cannot be told from zero, m."""
+    return UNRESOLVED * max(1.0, float(np.max(np.abs(sim.workspace.arrays["q"][: sim.assembly.n]))))
+
+
 def unresolved_speed(sim: "Engine", falls: Vector) -> Vector:
     """Speed of separation below which a gap with the acceleration -falls (m/s^2) cannot be seen to open, m/s."""
-    size = max(1.0, float(np.max(np.abs(sim.workspace.arrays["q"][: sim.assembly.n]))))
-    return np.asarray(np.sqrt(2.0 * UNRESOLVED * size * np.maximum(falls, 0.0)))
+    return np.asarray(np.sqrt(2.0 * unresolved_height(sim) * np.maximum(falls, 0.0)))
+
+
+def comes_back(sim: "Engine", jerks: Vector, motion: Vector) -> Flags:
+    """Gaps at rest that, with these accelerations (m/s^2) and their rates (m/s^3), do not open, or less than could be
+    told from zero before they close again: a node of an elastic body that has come to rest while its neighbours still
+    approach. g = b t^2/2 + j t^3/6, j < 0, is highest at t = -2 b/j."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        height = np.where(jerks < 0.0, 2.0 * np.maximum(motion, 0.0) ** 3 / (3.0 * jerks**2), np.inf)
+    return np.asarray(height <= unresolved_height(sim))
 
 
 @dataclass

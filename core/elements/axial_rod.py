@@ -145,6 +145,16 @@ class AxialRod(BodyElement):
     def linear(self) -> bool:
         return True
 
+    def matrices(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Mass and stiffness (N + 1, N + 1), dense."""
+        size = self.elements + 1
+        mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
+        for e, (m_ii, m_ij, m_jj, k, *_) in enumerate(self._parameters(0.0).tolist()):
+            here = np.ix_((e, e + 1), (e, e + 1))
+            mass[here] += [[m_ii, m_ij], [m_ij, m_jj]]
+            stiffness[here] += [[k, -k], [-k, k]]
+        return mass, stiffness
+
     def coordinate_records(self) -> Sequence[Coordinate]:
         return _coordinates(self.elements + 1, self.length)
 

@@ -13,8 +13,11 @@ from ..model.base import NonNegative, Positive, Vector2
 from .base import Coordinate, Numbering, Row
 from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
 from .cable_shape import POINTS, gauss_places, weights
-from .flexible_body import FlexibleBody, PointShape
+from .flexible_body import FlexibleBody, PointShape, Section
 
+SLOPE_SCALE = 0.5
+"""Less than the 1 of angles, so that of a point's frame and a slope it is the frame that counts as dependent: its rows
+are linear in it."""
 FULL_PATTERN = tuple((i, j) for i in range(NODAL) for j in range(NODAL))
 
 
@@ -88,8 +91,8 @@ class Cable2D(FlexibleBody):
             records += [
                 Coordinate(f"x{k}", "m", f"vx{k}", f"ax{k}"),
                 Coordinate(f"y{k}", "m", f"vy{k}", f"ay{k}"),
-                Coordinate(f"slope_x{k}", "1", f"d_slope_x{k}", f"dd_slope_x{k}", 1.0),
-                Coordinate(f"slope_y{k}", "1", f"d_slope_y{k}", f"dd_slope_y{k}", 1.0),
+                Coordinate(f"slope_x{k}", "1", f"d_slope_x{k}", f"dd_slope_x{k}", SLOPE_SCALE),
+                Coordinate(f"slope_y{k}", "1", f"d_slope_y{k}", f"dd_slope_y{k}", SLOPE_SCALE),
             ]
         return records
 
@@ -175,3 +178,34 @@ class Cable2D(FlexibleBody):
         names = tuple(f"{what}{k}" for k in (e, e + 1) for what in ("x", "y", "slope_x", "slope_y"))
         shape, slope = (np.kron(weights(x, length, d), np.eye(2)) for d in (0, 1))
         return PointShape(None, names, (0.0, 0.0), (0.0, 0.0), shape, slope)
+
+    def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:
+        """Strains and forces at `points`; of two elements that meet there the one behind counts."""
+        length = self.length / self.elements
+        found = [self.find(float(s)) for s in points]
+        first, second = (np.array([weights(x, length, d) for _, x in found]) for d in (1, 2))
+        ends = np.array([[e, e + 1] for e, _ in found])
+        # vectors r0, s0, r1, s1 of the element of each point: (N, points, 4, 2)
+        nodal = [x.reshape(len(x), -1, 2, 2)[:, ends].reshape(len(x), len(found), 4, 2) for x in (q, v)]
+        a, b, da, db = (np.einsum("pk,npkc->npc", w, x) for x in nodal for w in (first, second))
+        square = np.sum(a * a, axis=2)
+        size = np.sqrt(square)
+        bend = (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / square
+        stretching = np.sum(a * da, axis=2)
+        bending = da[..., 0] * b[..., 1] - da[..., 1] * b[..., 0] + a[..., 0] * db[..., 1] - a[..., 1] * db[..., 0]
+        bending = (bending - 2.0 * bend * stretching) / square
+        strain0, bend0 = self._relaxed_at(found)
+        return Section(
+            size - 1.0,
+            bend,
+            self.axial_stiffness * (size - 1.0 - strain0) + self.axial_damping * stretching / size,
+            self.bending_stiffness * (bend - bend0) + self.bending_damping * bending,
+        )
+
+    def _relaxed_at(self, found: Sequence[tuple[int, float]]) -> tuple[Any, Any]:
+        """Axial strain and curvature without force at points (element, place)."""
+        if self.relaxed == "straight":
+            return self.reference_strain, self.reference_curvature
+        strain, bend = self.strains_at(self.start_shape(), [x for _, x in found])
+        own = [e for e, _ in found], range(len(found))
+        return self.reference_strain + strain[own], self.reference_curvature + bend[own]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import ModelError
 from .base import BodyElement
 
 
@@ -53,6 +54,20 @@ class PointShape:
         return float(x), float(y), float(frame_rates[2] + (tx * dty - ty * dtx) / (tx * tx + ty * ty))
 
 
+@dataclass(frozen=True)
+class Section:
+    """What the cross-sections at some points do over time, each (N, points)."""
+
+    axial_strain: NDArray[np.float64]
+    """1."""
+    curvature: NDArray[np.float64]
+    """1/m."""
+    axial_force: NDArray[np.float64]
+    """N, tension positive."""
+    bending_moment: NDArray[np.float64]
+    """N m."""
+
+
 class FlexibleBody(BodyElement):
     """Base of the flexible bodies."""
 
@@ -60,6 +75,16 @@ class FlexibleBody(BodyElement):
         """How the material point at `point` (in the undeformed body, m) moves. Raises ModelError for a point outside
         the body."""
         raise NotImplementedError(f"{type(self).__name__} must say how its material points move")
+
+    def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:
+        """Strains and internal forces at `points` (s along the undeformed axis, m), from the history of its coordinates
+        and their rates, each (N, n) in the order of `coordinate_records`.
+
+        Raises
+        ------
+        ModelError : for a point outside the body, or if it does not tell them.
+        """
+        raise ModelError(f"'{self.name}' is a {type(self).__name__}, which does not tell its internal forces")
 
 
 def _rotation(angle: float) -> NDArray[np.float64]:

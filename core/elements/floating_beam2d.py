@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Record, Vector2
 from .beam_modes import Array, BoundaryConditions, Grid, bending, make_grid, stretching
-from .flexible_body import PointShape
+from .flexible_body import PointShape, Section
 from .floating_body2d import FloatingBody2D, Invariants
 
 ELEMENTS_PER_MODE = 4
@@ -100,14 +100,36 @@ class FloatingBeam2D(FloatingBody2D):
 
     def material_point(self, point: Vector2) -> PointShape:
         modes, (s, y) = beam_modes(self), point
-        if not -1e-9 * self.length <= s <= self.length * (1.0 + 1e-9):
-            raise ModelError(f"point {tuple(point)} of '{self.name}': the beam runs from 0 to {self.length:g} m")
+        self._refuse_beyond(s)
         (wy, slope), (ux, strain) = (
             [(modes.grid.shape(np.array([s]), k) @ x)[0] for k in range(2)] for x in (modes.w, modes.u)
         )
         return self.point_shape(
             np.array([s - modes.origin, y]), np.array([ux - y * slope, wy]), np.array([strain, slope])
         )
+
+    def section(self, points: Array, q: Array, v: Array) -> Section:
+        """Strains and internal forces; the axial force is NaN where the beam has no axial modes to tell it.
+
+        Modal damping is that of the strain rates: a mode with damping ratio zeta and frequency w has the internal force
+        of its amplitude + (2 zeta/w) times its rate.
+        """
+        for s in points:
+            self._refuse_beyond(float(s))
+        modes = beam_modes(self)
+        p, dp = q[:, 3:], v[:, 3:]
+        lag = 2.0 * np.broadcast_to(np.asarray(self.damping_ratio, dtype=float), p.shape[1:]) / np.sqrt(modes.squares)
+        bent, stretched = modes.grid.shape(points, 2) @ modes.w, modes.grid.shape(points, 1) @ modes.u
+        tells = self.axial_stiffness is not None and bool(np.any(modes.u))
+        axial = (p + lag * dp) @ stretched.T * (self.axial_stiffness or 0.0)
+        return Section(
+            p @ stretched.T, p @ bent.T, axial if tells else np.full_like(axial, np.nan),
+            self.bending_stiffness * (p + lag * dp) @ bent.T,
+        )  # fmt: skip
+
+    def _refuse_beyond(self, s: float) -> None:
+        if not -1e-9 * self.length <= s <= self.length * (1.0 + 1e-9):
+            raise ModelError(f"'{self.name}' has no point at s = {s:g} m: it reaches from 0 to {self.length:g} m")
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,7 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 CHUNK_STEPS = 20_000
+"""Steps between two reports of progress, of systems with up to 100 coordinates; larger ones report more often."""
 MOST_HALVINGS = 40
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
@@ -78,6 +79,7 @@ def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> 
     """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending."""
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     repaired_at = math.nan
+    chunk = max(1, CHUNK_STEPS * 100 // max(100, sim.assembly.n))
     while True:
         now = sim.t_internal
         if sim.pending:
@@ -96,7 +98,7 @@ def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> 
             return
         # while a contact slides, each step is looked at
         sliding = sliding_contacts(sim)
-        code = run(ws, ms, lc, 1 if sliding else CHUNK_STEPS)
+        code = run(ws, ms, lc, 1 if sliding else chunk)
         sim.flush()
         if sliding and code == CHUNK and sim.t_internal > now:
             refuse_passed_jam(sim, sliding)

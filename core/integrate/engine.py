@@ -85,7 +85,7 @@ class Engine:
         newton_tolerance: float | None = None,
         start_tolerance: float = START_TOLERANCE,
         redundant: str = "drop",
-        record: bool = False,
+        record: bool | int = False,
         step_records: bool = False,
         **method_options: Any,
     ) -> None:
@@ -370,6 +370,10 @@ class Engine:
         noise = self.force_noise()
         rows, cols, values = self.workspace.jacobian()
         here = np.flatnonzero((self.workspace.structure.active[rows] == row) & (values != 0.0))
+        if not np.any(
+            noise[cols[here]]
+        ):  # on frames without stiffness of their own, which hand on the forces of others
+            return float(np.max(noise, initial=0.0) / np.max(np.abs(values[here]), initial=1.0))
         return float(np.max(noise[cols[here]] / np.abs(values[here]), initial=0.0))
 
     def no_force(self) -> float:
@@ -457,6 +461,12 @@ class Engine:
         if logged:
             self.step_logs.append(self.log_buffer[:logged].copy())
             self.log_cursor[0] = 0
+
+    def record_end(self) -> None:
+        """Record the present time, unless the newest sample is of it."""
+        self.flush()
+        if not self.samples or self.samples[-1][-1, 0] < self.t:
+            self.samples.append(self.sample()[None, :])
 
     def report_progress(self, t: float) -> None:
         """Tell whoever listens how far the run has come."""

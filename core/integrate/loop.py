@@ -152,7 +152,7 @@ def accept(ws: Any, ms: Any, lc: Any) -> None:
     ivec(ws.counters, COUNTERS_SIZE)[STEPS] += 1
     if lc.log_capacity > 0:
         _write_log(ws, ms, lc)
-    if lc.capacity > 0:
+    if lc.capacity > 0 and ivec(ws.counters, COUNTERS_SIZE)[STEPS] % lc.stride == 0:
         cursor = ivec(lc.cursor, 1)
         write_sample(ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
         cursor[0] += 1

@@ -12,6 +12,7 @@ LOOP = np.dtype(
             "leap",                             # (n,) float64: how far a step may move each coordinate
             "watch",                            # (n_contacts, 3) float64: gap, rate, acceleration at the newest row
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
+            "stride",                           # steps from one recorded sample to the next
             "cursor",                           # (1,) int64: samples in the buffer
             "log", "log_capacity",              # per-step records; capacity 0: none are wanted
             "log_cursor",                       # (1,) int64

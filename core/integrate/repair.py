@@ -2,6 +2,9 @@
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..errors import ConsistencyError, SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
@@ -21,6 +24,7 @@ def repair(sim: "Simulation") -> bool:
     ------
     SimulationError : if the constraints depend on one another there.
     """
+    matrix, structure = sim.workspace.arrays["values"].copy(), sim.workspace.structure
     recall(sim.workspace.record, sim._method.record, 0)
     rate = sim.workspace.arrays["rate"]
     condition = float(rate[CONDITION])
@@ -31,6 +35,8 @@ def repair(sim: "Simulation") -> bool:
             _move_multipliers(sim)
         else:
             rate[CHOICE_CONDITION] = condition
+            if structure is sim.workspace.structure:
+                _order_as_in_stages(sim, matrix)
     except (ConsistencyError, SingularMatrixError) as error:
         raise SimulationError(
             f"at t = {sim.t_internal:.9g} s the constraints cannot be partitioned: {error}",
@@ -38,6 +44,15 @@ def repair(sim: "Simulation") -> bool:
             loop="inner",
         ) from error
     return changed
+
+
+def _order_as_in_stages(sim: "Simulation", matrix: NDArray[np.float64]) -> None:
+    """Pivots of the stages' matrix from the values that it had last: where the stiffness outweighs the mass by many
+    orders of magnitude, those of the mass matrix alone may be the wrong ones."""
+    try:
+        sim.workspace.structure.kkt.analyze(matrix)
+    except SingularMatrixError:
+        sim.workspace.structure.kkt.analyze(sim.workspace.arrays["values"])
 
 
 def _move_multipliers(sim: "Simulation") -> None:

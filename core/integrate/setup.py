@@ -73,9 +73,12 @@ def _clock(formula: Formula, settings: Settings, longest_step: float) -> NDArray
 
 
 def build_loop(
-    assembly: Assembly, formula: Formula, settings: Settings, record: bool, step_records: bool
+    assembly: Assembly, formula: Formula, settings: Settings, record: int, step_records: bool
 ) -> ArrayRecord:
-    """The LOOP record of a run; buffers have room for one row only where nothing is to be recorded."""
+    """The LOOP record of a run; buffers have room for one row only where nothing is to be recorded.
+
+    `record` : every so many steps a sample; 0: none.
+    """
     length = sample_length(assembly.n, assembly.m, len(assembly.contacts), len(assembly.work_names))
     capacity = max(16, min(4096, _LARGEST_BUFFER // length)) if record else 0
     log_capacity = _LOG_ROWS if step_records else 0
@@ -97,6 +100,7 @@ def build_loop(
             "starter": step_address(STARTER if settings.step is None else FINE_STARTER),
             "rows": formula.rows,
             "capacity": capacity,
+            "stride": max(int(record), 1),
             "sample_length": length,
         },
     )

@@ -45,7 +45,7 @@ class Simulation(Engine):
     start_tolerance : how far q0 and v0 may be moved to meet the constraints (relative).
     redundant : "drop": constraints that repeat others are left out of the equations but checked, and listed in the
         attribute of this name; "refuse": they are an error.
-    record : keep a sample at every step.
+    record : keep a sample at every step; a number k: at every k-th step.
     step_records : keep size, error, order and iterations of every step (`step_logs`).
     method_options : see the method.
 

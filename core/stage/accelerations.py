@@ -31,7 +31,7 @@ def solve_accelerations(ws: Any) -> int:
     evaluate_tangent(ws, 0.0, 0.0)
     if factor(lu_at(ws.kkt_query), ws.values) != 0:
         return REANALYZE
-    previous = np.inf
+    previous, norm, size = np.inf, np.inf, 0.0
     for _ in range(10):
         evaluate_residuals(ws)
         solve_increment(ws, ws.kkt_query)
@@ -41,7 +41,7 @@ def solve_accelerations(ws: Any) -> int:
             lam[active[i]] += increment[n + i]
         norm, size = _largest(increment, n), _largest(a, n)
         if norm <= 1e-14 * (1.0 + size) or norm >= previous:
-            evaluate_residuals(ws)
-            return OK if norm <= 1e-8 * (1.0 + size) else OUTER_SLOW
+            break
         previous = norm
-    return OUTER_SLOW
+    evaluate_residuals(ws)
+    return OK if norm <= 1e-8 * (1.0 + size) else OUTER_SLOW

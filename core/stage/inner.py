@@ -10,7 +10,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
-from ..system.evaluate import constraint_norm, evaluate_residuals
+from ..system.evaluate import constraint_norm, evaluate_constraints, evaluate_residuals
 from ..system.records import (
     ACCELERATION_TOLERANCE,
     CONDITION,
@@ -57,16 +57,25 @@ def rounding_level(ws: Any, x_address: int) -> float:
 
 
 @internal
-def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> int:
+def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float, part: bool = False) -> int:
     """Correct q_d, v_d, a_d until the constraints hold to the tolerances times `slack`.
 
     `acceleration_slack` is that of a_d: infinite while the outer loop still moves the accelerations.
 
-    Expects the residuals of the current point; leaves those of the corrected one. The tolerances are absolute
-    for quantities up to 1 and relative to the largest entry of q, v, a beyond.
+    Expects the residuals of the current point, or if `part` only what `evaluate_constraints` leaves; leaves the
+    residuals of the corrected one. The tolerances are absolute for quantities up to 1 and relative to the largest
+    entry of q, v, a beyond.
     """
-    if ws.m_act == 0:
-        return OK
+    before = ivec(ws.counters, COUNTERS_SIZE)[INNER]
+    status = OK if ws.m_act == 0 else _meet(ws, lu_address, slack, acceleration_slack)
+    if ws.part_first != 0 and (part or ivec(ws.counters, COUNTERS_SIZE)[INNER] > before):
+        evaluate_residuals(ws)
+    return status
+
+
+@internal
+def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> int:
+    """The corrections; leaves what `evaluate_constraints` does."""
     control = vec(ws.control, CONTROL_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
     enough_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
@@ -111,7 +120,7 @@ def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float
             correct_dependent(ws, lu_address, ws.phid, ws.v)
         if correct_a:
             correct_dependent(ws, lu_address, ws.phidd, ws.a)
-        evaluate_residuals(ws)
+        evaluate_constraints(ws)
     met = constraint_norm(ws, ws.phi) <= enough_p and constraint_norm(ws, ws.phid) <= enough_v
     if met and constraint_norm(ws, ws.phidd) <= enough_a:
         return OK

@@ -17,7 +17,7 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
-from ..system.evaluate import evaluate_residuals
+from ..system.evaluate import evaluate_constraints, evaluate_residuals
 from ..system.records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
@@ -47,6 +47,8 @@ from .matrices import refactor
 # Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
 MOST_OUTER = 3
 MOST_INNER = 3
+# The same where constraints are cheap beside the residuals.
+MOST_CHEAP_INNER = 12
 # A rate that was measured at an earlier stage is trusted less at each stage that does not measure it anew.
 LEAST_RATE = 0.02
 RATE_GROWTH = 1.5
@@ -104,7 +106,8 @@ def prepare_attempt(ws: Any, c_q: float, c_v: float, attempt: int, most_outer: i
     rate = vec(ws.rate, RATE_SIZE)
     if attempt > 0:
         evaluate_prediction(ws, c_q, c_v)
-    if attempt > 0 or rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > MOST_INNER:
+    most_inner = MOST_INNER if ws.part_first == 0 else MOST_CHEAP_INNER
+    if attempt > 0 or rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > most_inner:
         status = refactor(ws, c_q, c_v)
         if status != OK:
             return status
@@ -187,7 +190,7 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
     slack = inner_slack(control)
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
-        status = inner_loop(ws, ws.lu_d, slack, np.inf)
+        status = inner_loop(ws, ws.lu_d, slack, np.inf, k > 0)
         if status != OK:
             return status
         solve_increment(ws, ws.kkt)
@@ -196,7 +199,7 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         if not np.isfinite(norm):
             return NOT_FINITE
         add_increment(ws, c_q, c_v)
-        evaluate_residuals(ws)
+        evaluate_constraints(ws)
         if control[LINEAR] > 0.0 and c_v == rate[FACTOR_CV] and renewed == 0 and k == 0:
             # the matrices are those of the equations: a second increment would be rounding
             rate[LAST_OUTER], status = 1.0, OK
@@ -219,6 +222,6 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         status = OUTER_SLOW
     if status != OK:
         return status
-    status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
+    status = inner_loop(ws, ws.lu_d, 1.0, 1.0, True)
     rate[LAST_INNER] = counters[INNER] - start_inner
     return status

@@ -5,19 +5,23 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import compiled, internal
-from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, batch_at, call_kernel
+from ..compiled.kernels import CONSTRAINTS, ENERGY, POWER, RESIDUAL, TANGENT, batch_at, call_kernel
 from ..compiled.views import ivec, vec
 from .records import COUNTERS_SIZE, EVALUATIONS, call_evaluate
 
 
 @internal
 def all_kernels(ws: Any, job: int) -> None:
-    """Ask every kernel for `job` at the current point."""
+    """Ask every kernel for `job` at the current point; for CONSTRAINTS those with constraint rows for RESIDUAL."""
     kernels = ivec(ws.kernels, ws.n_kernels)
     batches = ivec(ws.batches, ws.n_kernels)
     t = vec(ws.t, 1)[0]
     for k in range(ws.n_kernels):
-        call_kernel(kernels[k], job, t, batch_at(batches[k]))
+        batch = batch_at(batches[k])
+        if job != CONSTRAINTS:
+            call_kernel(kernels[k], job, t, batch)
+        elif batch.nrow > 0:
+            call_kernel(kernels[k], RESIDUAL, t, batch)
 
 
 @compiled
@@ -28,6 +32,16 @@ def evaluate_residuals(ws: Any) -> None:
         r[i] = 0.0
     call_evaluate(ws.evaluate_function, ws, RESIDUAL)
     ivec(ws.counters, COUNTERS_SIZE)[EVALUATIONS] += 1
+
+
+@internal
+def evaluate_constraints(ws: Any) -> None:
+    """The constraints at all levels, where that is much cheaper than all residuals: then r means nothing
+    (`ws.part_first` tells)."""
+    if ws.part_first == 0:
+        evaluate_residuals(ws)
+    else:
+        call_evaluate(ws.evaluate_function, ws, CONSTRAINTS)
 
 
 @compiled

@@ -28,6 +28,8 @@ _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
 )  # fmt: skip
 
+CHEAP = 0.5
+"""Share of the entries of all elements up to which evaluating those with constraint rows counts as cheap."""
 MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
 
@@ -100,7 +102,7 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0,
                 "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
-                "n_work": len(a.work_names), "row_length": row_length,
+                "n_work": len(a.work_names), "row_length": row_length, "part_first": int(_constraints_are_cheap(a)),
                 "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
@@ -221,6 +223,12 @@ class Workspace:
         structure, n = self.structure, self.assembly.n
         here = np.flatnonzero((structure.rows >= n) & (structure.cols < n))
         return structure.rows[here] - n, structure.cols[here], self.arrays["values"][here]
+
+
+def _constraints_are_cheap(assembly: Assembly) -> bool:
+    sizes = np.array([batch.coord.shape[0] * batch.coord.shape[1] ** 2 for batch in assembly.batches], dtype=float)
+    bound = np.array([batch.row.size > 0 for batch in assembly.batches], dtype=bool)
+    return bool(sizes[bound].sum() < CHEAP * sizes.sum())
 
 
 def _release(law: Any) -> int:

@@ -131,3 +131,14 @@ def _first_problem() -> Any:
     from tlismni.validation.study.contact_failure import PROBLEMS
 
     return PROBLEMS[:1]
+
+
+def test_damping(tlismni: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+    from tlismni.validation.study import damping
+
+    monkeypatch.setattr(damping, "problems", lambda: (damping._rod(1.0, 20),))
+    done = tlismni("study", "damping", "--quick", "--json", "--plot", str(tmp_path / "d.png"))
+    assert done.code == 0 and (tmp_path / "d.png").stat().st_size > 10_000
+    assert {row["method"] for row in done.json["rows"]} == {"hht", "hht_ggl"}
+    (claim,) = done.json["claims"]
+    assert claim["name"] == "C5" and claim["verdict"] == "does not hold here"

@@ -17,6 +17,7 @@ from tlismni.core import (
     Polynomial,
     simulate,
 )
+from tlismni.core.flexible import rod_fields
 from tlismni.core.system.evaluate import evaluate_residuals, evaluate_tangent
 from tlismni.core.system.workspace import Workspace
 
@@ -201,3 +202,43 @@ def test_another_body_strikes_while_a_massless_end_is_closed() -> None:
     node, approach = 0.5 * 1.5 * 0.2, first.approach_speed
     assert first.impulse == pytest.approx(approach * node * 2.0 / (node + 2.0), rel=1e-9)
     assert np.max(np.abs(result["energy.balance"])) < 1e-8
+
+
+def test_every_tenth_step_is_recorded_with_what_happens_at_contacts_and_the_end() -> None:
+    body = rod(10, velocity=1.0)
+    model, h = Model(bodies=[body], contacts=[wall(node="x10")]), 0.2 * 0.2 / body.wave_speed
+    every, some = (simulate(model, 0.2, "newmark", step=h, record=record) for record in (True, 10))
+    at = {t: k for k, t in enumerate(every.t)}
+    assert len(every) / 12 < len(some) < len(every) / 8 and some.t[-1] == every.t[-1]
+    assert {e.t for e in some.events} <= set(some.t) and some.events == every.events
+    for k, t in enumerate(some.t):
+        if np.sum(every.t == t) == 1:
+            assert np.array_equal(some.q[k], every.q[at[t]])
+    with pytest.raises(ModelError, match="number of steps between"):
+        simulate(model, 0.2, "newmark", step=h, record=-2)
+
+
+def test_fields_along_the_rod() -> None:
+    """A wave of compression of length c t at the wall's end: stress E v/c behind its front, none before it."""
+    body = rod(80, velocity=0.5, mass_matrix="lumped", relaxation_time=1e-5)
+    h = 0.2 * body.length / 80 / body.wave_speed
+    touch = 0.1 / 0.5
+    result = simulate(
+        Model(bodies=[body], contacts=[wall(node="x80")]), touch + 1.0 / body.wave_speed, "newmark", step=h
+    )
+    fields = rod_fields(result, body)
+    theory = -body.axial_stiffness * 0.5 / body.wave_speed
+    assert fields.axial_force.shape == (len(result), 80) and fields.position.shape == (len(result), 81)
+    behind, before = fields.middle > 1.3, fields.middle < 0.7
+    assert np.allclose(fields.axial_force[-1, behind], theory, rtol=0.1)
+    assert np.max(np.abs(fields.axial_force[-1, before])) < 0.02 * abs(theory)
+    assert np.allclose(fields.velocity[-1, 60:], 0.0, atol=0.06) and np.allclose(
+        fields.velocity[-1, :20], 0.5, atol=0.01
+    )
+    assert fields.displacement[-1, 0] == pytest.approx(0.5 * result.t[-1], rel=1e-6)
+    assert np.allclose(fields.stress(1e-3), 1e3 * fields.axial_force)
+    assert len(rod_fields(result, body, 50).t) < 0.2 * len(result)
+    with pytest.raises(ModelError, match="no channels of a rod"):
+        rod_fields(result, rod(81))
+    with pytest.raises(ModelError, match="must be positive"):
+        fields.stress(0.0)

@@ -22,7 +22,10 @@ from tlismni.core import (
     Revolute2D,
     RigidBody2D,
     Table,
+    deformed_shape,
+    section,
     simulate,
+    stress,
 )
 
 LENGTH, MASS, STIFFNESS = 1.5, 2.0, 7.0
@@ -147,6 +150,28 @@ def test_clamped_beam_under_weight_and_force_settles_where_theory_says():
     assert result["clamp.force_y"][-1] == pytest.approx(weight + force, rel=1e-5)
     assert result["clamp.torque"][-1] == pytest.approx((0.5 * weight + force) * LENGTH, rel=1e-5)
     assert np.abs(result["energy.balance"]).max() < 1e-9
+    x = np.array([0.0, 0.3, 0.75, 1.2])
+    moment = -(0.5 * weight * (LENGTH - x) ** 2 / LENGTH + force * (LENGTH - x))
+    found = section(result, s, x, [60.0])
+    assert found.bending_moment[0] == pytest.approx(moment, abs=0.03 * weight * LENGTH)
+    assert found.curvature[0] == pytest.approx(found.bending_moment[0] / STIFFNESS, rel=1e-9)
+    assert np.all(np.isnan(found.axial_force))  # it keeps its length: nothing tells
+    assert deformed_shape(result, s, [LENGTH], [60.0])[0, 0] == pytest.approx([LENGTH, -expected], rel=2e-4)
+
+
+def test_a_pull_along_the_beam_shows_as_axial_force():
+    s = beam(
+        axial_stiffness=50.0, modes=1, attachments=(Attachment(position=LENGTH, direction="axial"),), damping_ratio=0.7
+    )
+    tip = MaterialPoint2D(name="tip", body="beam", point=(LENGTH, 0.0))
+    pull = AppliedForce2D(name="pull", marker=on("tip"), force_x=Constant(value=0.2))
+    clamp = Clamp2D(name="clamp", a=GROUND, b=on("beam"))
+    result = simulate(Model(gravity=(0.0, 0.0), bodies=[s, tip], joints=[clamp], forces=[pull]), 30.0, "irk")
+    found = section(result, s, [0.1, 1.0], [30.0])
+    assert found.axial_force[0] == pytest.approx([0.2, 0.2], rel=1e-5)
+    assert found.axial_strain[0] == pytest.approx([0.004, 0.004], rel=1e-5)
+    surface = stress(result, s, [1.0], area=1e-4, second_moment=1e-9, height=0.01, times=[30.0])
+    assert surface[0, 0] == pytest.approx(2000.0, rel=1e-5)
 
 
 # ---- material points ----------------------------------------
@@ -176,7 +201,7 @@ def test_points_off_the_axis_turn_with_the_section():
     below, axis = s.material_point((0.6, -0.05)), s.material_point((0.6, 0.0))
     assert below.offset == (0.6, -0.05)
     assert np.allclose(below.shape[0], 0.05 * axis.slope[1]) and np.array_equal(below.shape[1], axis.shape[1])
-    with pytest.raises(ModelError, match=r"runs from 0 to 1.5 m"):
+    with pytest.raises(ModelError, match=r"no point at s = 1.6 m: it reaches from 0 to 1.5 m"):
         s.material_point((1.6, 0.0))
 
 

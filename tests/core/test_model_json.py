@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
+    AxialRod,
     Bushing2D,
     Cable2D,
     Clamp2D,
@@ -19,11 +20,13 @@ from tlismni.core import (
     CoordinateTerm,
     CoulombFriction,
     Disk2D,
+    DiskOnCable2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
     DiskOnLine2D,
     DiskOnSegment2D,
     Distance2D,
+    FloatingBeam2D,
     Flores,
     Gonthier,
     HalfPlane2D,
@@ -46,6 +49,8 @@ from tlismni.core import (
     Polynomial,
     Prismatic2D,
     Ramp,
+    ReducedBody2D,
+    ReducedPoint,
     Revolute2D,
     RigidBody2D,
     Segment2D,
@@ -115,6 +120,26 @@ ELEMENTS = {
             MaterialPoint2D, name=st.just("x"), body=st.just("rope"),
             point=st.tuples(st.floats(0.0, 1.0), st.just(0.0)),
         ),
+        st.builds(
+            AxialRod, name=st.just("x"), elements=st.integers(3, 5), length=positive, axial_stiffness=positive,
+            mass_per_length=positive, mass_matrix=st.sampled_from(["consistent", "lumped"]), relaxation_time=positive,
+            position=number, velocity=number, massless_ends=st.sampled_from([(), ("left",), ("left", "right")]),
+        ),
+        st.builds(
+            ReducedBody2D, name=st.just("x"), mass=positive, inertia=positive,
+            stiffness=positive.map(lambda k: ((k,),)),
+            modal_mass=positive.map(lambda m: ((m,),)), damping=st.none() | number.map(lambda c: ((c,),)),
+            points=st.just((ReducedPoint(point=(1.0, 0.0), shape=((0.0,), (1.0,))),)),
+            position=vector, angle=number, velocity=vector, angular_velocity=number,
+        ),
+        st.builds(
+            FloatingBeam2D, name=st.just("x"), mass=st.floats(0.1, 10.0), length=st.floats(0.1, 10.0),
+            bending_stiffness=positive, axial_stiffness=positive, modes=st.integers(1, 3),
+            axial_modes=st.integers(0, 2),
+            boundary_conditions=st.sampled_from(["cantilever", "simply_supported", "free"]),
+            damping_ratio=st.floats(0.0, 0.1), geometric_stiffening=st.booleans(), position=vector, angle=number,
+            velocity=vector, angular_velocity=number,
+        ),
     ],
     "joints": [
         st.builds(Revolute2D, name=st.just("x"), a=marker, b=marker),
@@ -159,6 +184,9 @@ ELEMENTS = {
                 Line2D, nodes=st.lists(st.builds(Marker2D, point=vector), min_size=2, max_size=4).map(tuple),
                 radius=positive, rounding=st.floats(0.1, 1.0),
             ),
+        ),
+        st.builds(
+            DiskOnCable2D, name=st.just("x"), disk=disk, law=law, cable=st.just("rope"), thickness=positive
         ),
         st.builds(
             CoordinateContact, name=st.just("x"), law=law, offset=number,
@@ -211,7 +239,7 @@ def test_the_list_of_elements_above_is_complete():
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
         "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
-        "Clamp2D",
+        "Clamp2D", "AxialRod", "ReducedBody2D", "FloatingBeam2D", "DiskOnCable2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

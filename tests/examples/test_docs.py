@@ -75,6 +75,13 @@ def test_the_page_of_exponents_runs() -> None:
     assert names["orbit"].multipliers == pytest.approx([0.75307082, 0.74949563], abs=1e-7)
 
 
+def test_the_page_of_flexible_bodies_runs() -> None:
+    names: dict[str, Any] = {}
+    for block in blocks("flexible.md", "python"):
+        exec(block, names)
+    assert [e.kind for e in names["result"].events][:2] == ["impact", "close"]
+
+
 def test_the_model_file_is_one() -> None:
     (text,) = blocks("model-files.md", "json")
     model = Model.from_json(text)

@@ -91,6 +91,19 @@ def test_block_on_the_belt_sticks_and_slips_when_the_closed_form_says() -> None:
     assert f["largest_energy_balance"] < 1e-8
 
 
+def test_rod_bounces_off_the_wall_as_st_venant_says() -> None:
+    f = figures("rod_wall")
+    assert f["duration"] == pytest.approx(f["expected_duration"], rel=0.01)
+    assert f["force"] == pytest.approx(f["expected_force"], rel=1e-3)
+    assert f["loss"] == pytest.approx(f["expected_loss"], rel=1e-6) and f["massless_loss"] == 0.0
+    assert f["impulse"] == pytest.approx(2.0, rel=0.01)
+    fields = f["fields"]
+    # half way through the contact the rod stands still, under the same stress everywhere
+    middle = np.argmin(np.abs(fields.t - f["touch"] - f["unit"]))
+    assert np.max(np.abs(fields.velocity[middle, 20:])) < 0.2 * 0.1
+    assert np.mean(fields.axial_force[middle]) == pytest.approx(-f["expected_force"], rel=0.02)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_example_draws_its_figure(name: str, tmp_path: Path) -> None:
     path = tmp_path / "figure.png"

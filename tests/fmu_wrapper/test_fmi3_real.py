@@ -1,4 +1,4 @@
-"""FMI 3.0 with the solver: bit for bit the simulation, impacts at their instants, states across processes, C host."""
+"""FMI 3.0 with the solver: bit for bit the simulation, impacts at their instants, states elsewhere, a C host."""
 
 import json
 import os

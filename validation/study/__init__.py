@@ -4,6 +4,7 @@ from .cases import Setting, contenders, order_cases
 from .claims import Claim
 from .contact_claim import fourth_claim
 from .contact_failure import ContactRow, contact_study
+from .damping import DampingRow, damping_study, fifth_claim
 from .impact_orders import ImpactOrderRow, impact_orders
 from .iterations import IterationStudy, iteration_study
 from .orders import OrderRow, order_table
@@ -16,6 +17,7 @@ __all__ = [
     "STIFFNESS_CASES",
     "Claim",
     "ContactRow",
+    "DampingRow",
     "ImpactOrderRow",
     "IterationStudy",
     "OrderRow",
@@ -25,6 +27,8 @@ __all__ = [
     "Swing",
     "contact_study",
     "contenders",
+    "damping_study",
+    "fifth_claim",
     "fourth_claim",
     "impact_orders",
     "iteration_study",

@@ -29,8 +29,8 @@ COUNTS = tuple(round(160 * 2.0 ** (0.5 * j)) for j in range(14))
 QUICK_COUNTS = COUNTS[:10]
 NEWTON_TOLERANCE = 1e-15
 QUANTITIES = ("time", "impulse")
-STANDSTILL = 3
-"""After so many refinements that do not bring the error down any more it is at rounding, and the case ends."""
+NOISY = (1e-9, 1e-8)
+"""Errors (s, N s) from which on a refinement by an octave that does not halve them shows rounding."""
 ROUNDING = 10.0
 """What is not read then: errors below this multiple of the least one."""
 OCTAVE, POINTS = 2.0, 3
@@ -54,8 +54,10 @@ class ImpactOrderRow:
     def floor(self, quantity: int) -> float:
         """Errors of a quantity below this may be rounding; 0 where no step comes to it."""
         errors = [e[quantity] for e in self.errors]
-        least = min(errors, default=0.0)
-        return ROUNDING * least if least in errors[:-STANDSTILL] else 0.0
+        for k in range(len(errors) - 2):
+            if errors[k] < NOISY[quantity] and errors[k + 2] > 0.5 * errors[k]:
+                return ROUNDING * min(errors)
+        return 0.0
 
     def window(self, quantity: int) -> slice:
         """The runs from which the order of a quantity is taken."""

@@ -1,0 +1,126 @@
+"""What a flexible body does along its length, from the result of a run: shape, strain, force, moment, stress.
+
+Every function takes the result, the body's record and points (s along the undeformed axis, m), and gives one row a
+sample and one column a point; with `times` one row a time, interpolated between the samples.
+
+A body takes part by two methods of `FlexibleBody`: `material_point` tells how its points move, which is all that
+`deformed_shape` needs, and `section` turns the history of its coordinates into a `Section`.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..elements.flexible_body import FlexibleBody, Section
+from ..errors import ModelError
+from ..result import Result
+
+Floats = NDArray[np.float64]
+
+
+def deformed_shape(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+    """Places x, y of the points over time, (N, points, 2), m. Raises ModelError for a point outside the body."""
+    q, _ = _history(result, body, times)
+    index = {name: k for k, name in enumerate(body.coordinate_names)}
+    places = []
+    for s in _points(points):
+        shape = body.material_point((float(s), 0.0))
+        w = q[:, [index[name] for name in shape.local]]
+        x, y = np.asarray(shape.offset)[:, None] + shape.shape @ w.T
+        if shape.frame is not None:
+            rx, ry, angle = (q[:, index[name]] for name in shape.frame)
+            c, sn = np.cos(angle), np.sin(angle)
+            x, y = rx + c * x - sn * y, ry + sn * x + c * y
+        places.append(np.stack([x, y], axis=1))
+    return np.stack(places, axis=1)
+
+
+def section(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Section:
+    """Strain, curvature, axial force and bending moment at once, each (N, points).
+
+    Raises
+    ------
+    ModelError : for a point outside the body, or a body that does not tell its internal forces.
+    """
+    return body.section(_points(points), *_history(result, body, times))
+
+
+def axial_strain(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+    """Strain of the axis (N, points), 1."""
+    return section(result, body, points, times).axial_strain
+
+
+def curvature(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+    """Curvature (N, points), 1/m: turning of the cross-section per undeformed length."""
+    return section(result, body, points, times).curvature
+
+
+def axial_force(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+    """Axial force (N, points), N, tension positive, damping included."""
+    return section(result, body, points, times).axial_force
+
+
+def bending_moment(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+    """Bending moment (N, points), N m, positive where it turns the far side counter-clockwise, damping included."""
+    return section(result, body, points, times).bending_moment
+
+
+def stress(
+    result: Result,
+    body: FlexibleBody,
+    points: ArrayLike,
+    *,
+    area: float,
+    second_moment: float,
+    height: float,
+    times: ArrayLike | None = None,
+) -> Floats:
+    """Normal stress (N, points), Pa, at `height` above the axis: N/A - M height/I.
+
+    Parameters
+    ----------
+    area : of the cross-section, m^2. second_moment : I, m^4.
+    height : of the fibre over the axis, m, on the left-hand side when looking along it; half the section's height and
+        minus that are its surfaces.
+
+    Raises
+    ------
+    ModelError : for an area or a second moment that is not positive.
+    """
+    for name, value in (("area", area), ("second_moment", second_moment)):
+        if not value > 0.0:
+            raise ModelError(f"{name} = {value!r} of the cross-section of '{body.name}' must be positive")
+    found = section(result, body, points, times)
+    return found.axial_force / area - found.bending_moment * height / second_moment
+
+
+def _points(points: ArrayLike) -> Floats:
+    found = np.atleast_1d(np.asarray(points, dtype=float))
+    if found.ndim != 1:
+        raise ModelError(f"points must be a list of places along the body in m, not an array of shape {found.shape}")
+    return found
+
+
+def _history(result: Result, body: FlexibleBody, times: ArrayLike | None) -> tuple[Floats, Floats]:
+    """Coordinates and rates of the body (N, n): at the samples, or at `times` by cubics between them."""
+    records = body.coordinate_records()
+    q = _columns(result, body.name, [record.name for record in records])
+    v = _columns(result, body.name, [record.rate for record in records])
+    if times is None:
+        return q, v
+    wanted, t = np.atleast_1d(np.asarray(times, dtype=float)), result.t
+    if len(t) == 0 or wanted.min() < t[0] or wanted.max() > t[-1]:
+        raise ModelError(f"times reach from {wanted.min():g} to {wanted.max():g} s, but the result from "
+                         f"{t[0] if len(t) else 0.0:g} to {t[-1] if len(t) else 0.0:g} s")  # fmt: skip
+    # at an impact, where two samples have the same time, the one after it counts
+    k = np.clip(np.searchsorted(t, wanted, side="right") - 1, 0, max(len(t) - 2, 0))
+    nxt = np.minimum(k + 1, len(t) - 1)
+    h = (t[nxt] - t[k])[:, None]
+    x = np.divide((wanted - t[k])[:, None], h, out=np.zeros_like(h), where=h > 0.0)
+    a = (1 + 2 * x) * (1 - x) ** 2 * q[k] + x**2 * (3 - 2 * x) * q[nxt]
+    return a + h * (x * (1 - x) ** 2 * v[k] - x**2 * (1 - x) * v[nxt]), (1 - x) * v[k] + x * v[nxt]
+
+
+def _columns(result: Result, body: str, names: Sequence[str]) -> Floats:
+    return np.stack([result[f"{body}.{name}"] for name in names], axis=1)
