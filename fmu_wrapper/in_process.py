@@ -18,7 +18,7 @@ from .fmi2_calls import Fmi2Calls
 from .in_process_base import Direct
 
 
-class InProcess(Direct, FMU2Slave):  # type: ignore[misc]
+class InProcess(Direct, FMU2Slave):
     """An FMI 2.0 instance of fmpy whose calls go straight to a slave.
 
     fmpy's higher methods (getReal, doStep ...) work as they are: this class replaces the calls into a binary.

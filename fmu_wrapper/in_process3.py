@@ -25,7 +25,7 @@ def _buffer(pointer: Any, size: Any) -> Any:
     return (c_uint8 * count).from_address(addressof(pointer.contents)) if count else b""
 
 
-class InProcess3(Direct, FMU3Slave):  # type: ignore[misc]
+class InProcess3(Direct, FMU3Slave):
     """An FMI 3.0 instance of fmpy whose calls go straight to a slave.
 
     Errors raise fmpy's FMICallException with the slave's message as a note.
