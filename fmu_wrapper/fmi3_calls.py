@@ -17,7 +17,6 @@ NO_TYPE = "this FMU has no variables of this type: its variables are of type Flo
 NO_CLOCKS = "this FMU has no clocks"
 NO_STRUCTURE = "this FMU has no structural parameters, and no dependencies per element"
 NO_MODEL_EXCHANGE = "this FMU does co-simulation only"
-NO_DERIVATIVES = "no directional or adjoint derivatives (providesDirectionalDerivatives = false)"
 
 _TYPES = ("Float32", "Int8", "UInt8", "Int16", "UInt16", "UInt32", "UInt64", "Binary")
 _CLOCKS = (
@@ -38,8 +37,6 @@ REFUSED: dict[str, str] = {
     **{f"fmi3{name}": NO_CLOCKS for name in _CLOCKS},
     **{f"fmi3{name}": NO_STRUCTURE for name in _STRUCTURE},
     **{f"fmi3{name}": NO_MODEL_EXCHANGE for name in _MODEL_EXCHANGE},
-    "fmi3GetDirectionalDerivative": NO_DERIVATIVES,
-    "fmi3GetAdjointDerivative": NO_DERIVATIVES,
     "fmi3GetOutputDerivatives": "no output derivatives (maxOutputDerivativeOrder = 0)",
     "fmi3EvaluateDiscreteStates": "providesEvaluateDiscreteStates = false: use fmi3UpdateDiscreteStates",
 }
@@ -171,6 +168,26 @@ class Fmi3Calls(Calls):
     def fmi3SetString(self, vr: Any, value: Sequence[bytes | None]) -> None:
         """Set String variables."""
         self.slave.set("string", references_in(vr), [text_of(v, "a string value") for v in value])
+
+    @fmi_call()
+    def fmi3GetDirectionalDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
+        """Derivatives of outputs along a direction of inputs, into the buffer `sensitivity`."""
+        self.directional_derivative(unknowns, knowns, seed, sensitivity)
+
+    @fmi_call()
+    def fmi3GetAdjointDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
+        """Derivatives with respect to each input of the outputs' sum with weights `seed`, into `sensitivity`."""
+        outputs, inputs = references_in(unknowns), references_in(knowns)
+        weights, room = numbers_in(seed, np.float64), numbers_in(sensitivity, np.float64)
+        if len(weights) != len(outputs) or len(room) != len(inputs):
+            raise FmuValueError(
+                f"a seed of {len(weights)} numbers and room for {len(room)} sensitivities were given for "
+                f"{len(outputs)} unknowns and {len(inputs)} knowns"
+            )
+        room[:] = [
+            weights @ self.slave.directional_derivative(outputs, inputs[i : i + 1], np.ones(1))
+            for i in range(len(room))
+        ]
 
     # state
 

@@ -96,7 +96,7 @@ def test_description(host):
     assert host.description.fmiVersion == "3.0"
     flags = host.description.coSimulation
     assert flags.hasEventMode and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
-    assert flags.canHandleVariableCommunicationStepSize and not flags.providesDirectionalDerivative
+    assert flags.canHandleVariableCommunicationStepSize
     kinds = {v.name: (v.type, v.causality, v.variability, v.start) for v in host.description.modelVariables}
     assert kinds["solver.method"] == ("String", "parameter", "fixed", "ebdf")
     assert kinds["push"] == ("Float64", "input", "continuous", "1.0")
@@ -252,6 +252,15 @@ def test_all_kinds_of_values(make_host):
     assert fmu.getVersion() == "3.0"
 
 
+def test_derivatives(host):
+    fmu = host.started()
+    fmu.doStep(0.0, 0.25)
+    before, outputs = host.read(fmu), [host.vr["ball.ay"], host.vr["ball.y"]]
+    assert fmu.getDirectionalDerivative(outputs, [host.vr["push"]], [3.0]) == pytest.approx([1.5, 0.0], rel=1e-14)
+    assert fmu.getAdjointDerivative(outputs, [host.vr["push"]], [4.0, 7.0], 1) == pytest.approx([2.0], rel=1e-14)
+    assert host.read(fmu) == before
+
+
 # errors
 
 
@@ -284,8 +293,12 @@ def test_all_kinds_of_values(make_host):
         (lambda f, vr: f.getBinary([0]), "fmi3GetBinary: UnavailableError: this FMU has no variables of this type"),
         (lambda f, vr: f.getClock([0]), "fmi3GetClock: UnavailableError: this FMU has no clocks"),
         (lambda f, vr: f.enterConfigurationMode(), "fmi3EnterConfigurationMode: UnavailableError: this FMU has no st"),
-        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["push"]], [1.0]),
-         "fmi3GetDirectionalDerivative: UnavailableError: no directional"),
+        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["mass"]], [1.0]),
+         "fmi3GetDirectionalDerivative: FmuValueError: 'mass' is of role parameter"),
+        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["push"]], [1.0, 2.0]),
+         "fmi3GetDirectionalDerivative: FmuValueError: a seed of 2 numbers was given for 1 inputs"),
+        (lambda f, vr: f.getAdjointDerivative([vr["ball.y"]], [vr["push"]], [1.0, 2.0], 1),
+         "fmi3GetAdjointDerivative: FmuValueError: a seed of 2 numbers and room for 1 sensitivities"),
         (lambda f, vr: f.getOutputDerivatives([vr["ball.y"]], [1]), "fmi3GetOutputDerivatives: UnavailableError: no"),
     ],
 )  # fmt: skip
