@@ -4,6 +4,7 @@ from ..core.contact.coordinate_contact import CoordinateContact, CoordinateTerm
 from ..core.contact.laws import NewtonImpact
 from ..core.description import Model
 from ..core.elements import AxialRod, CoordinateDriver, LinearSystem
+from ..core.elements.axial_rod import MassMatrix
 from ..core.model.signals import Polynomial
 from .parameters import ScenarioParameter
 from .registry import scenario
@@ -22,7 +23,7 @@ PARAMETERS = (
 def mass_on_rod(
     *,
     elements: int,
-    mass_matrix: str,
+    mass_matrix: MassMatrix,
     massless_contact: bool,
     length: float,
     young_modulus: float,

@@ -1,9 +1,12 @@
 """A short rod strikes a longer one at rest: the waves decide what is given back."""
 
+from typing import Any
+
 from ..core.contact.coordinate_contact import CoordinateContact, CoordinateTerm
 from ..core.contact.laws import NewtonImpact
 from ..core.description import Model
 from ..core.elements import AxialRod
+from ..core.elements.axial_rod import MassMatrix
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .rods import rod_options, rod_parameters
@@ -21,7 +24,7 @@ PARAMETERS = (
 def rod_rod(
     *,
     elements: int,
-    mass_matrix: str,
+    mass_matrix: MassMatrix,
     massless_contact: bool,
     length: float,
     young_modulus: float,
@@ -39,7 +42,7 @@ def rod_rod(
     Theory (St. Venant): contact lasts 2 L1/c, L1 the shorter length, and the velocities of the centres of mass separate
     with L1/L2 of the speed of approach.
     """
-    rod = {
+    rod: dict[str, Any] = {
         "axial_stiffness": young_modulus * area, "mass_per_length": density * area, "mass_matrix": mass_matrix,
         "relaxation_time": relaxation_time,
     }  # fmt: skip

@@ -4,6 +4,7 @@ from ..core.contact.coordinate_contact import CoordinateContact, CoordinateTerm
 from ..core.contact.laws import NewtonImpact
 from ..core.description import Model
 from ..core.elements import AxialRod
+from ..core.elements.axial_rod import MassMatrix
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .rods import rod_options, rod_parameters
@@ -20,7 +21,7 @@ PARAMETERS = (
 def rod_wall(
     *,
     elements: int,
-    mass_matrix: str,
+    mass_matrix: MassMatrix,
     massless_contact: bool,
     length: float,
     young_modulus: float,

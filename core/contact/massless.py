@@ -13,10 +13,10 @@ from ..events import Event
 from .modes import APPROACH_SPEED, CLOSED, LARGEST_APPROACH, MODE, OPEN
 
 if TYPE_CHECKING:
-    from ..integrate.engine import Engine
+    from ..integrate.contact_side import ContactSide
 
 
-def settle_massless(sim: "Engine", pending: list[int]) -> None:
+def settle_massless(sim: "ContactSide", pending: list[int]) -> None:
     """The contacts `pending` (numbers), all at massless ends, have events at the workspace's current point: closed
     ones whose force became zero open, open ones that approach close."""
     memory, rows = sim.memory, [sim.assembly.contacts[k].row for k in pending]

@@ -19,7 +19,7 @@ from .complementarity import IMMOVABLE, Delassus
 from .modes import ACTIVE, CLOSED, MODE, OPEN, RATIO, SLIDE, STICKS
 
 if TYPE_CHECKING:
-    from ..integrate.engine import Engine
+    from ..integrate.contact_side import ContactSide
 
 
 NO_JERK = 1e-9
@@ -52,7 +52,7 @@ class Touching:
     normal, tangential : rows of the Jacobians of gaps and sliding distances, (contacts, n); without friction: zeros.
     """
 
-    def __init__(self, sim: "Engine", contacts: list[int], held: frozenset[int] = frozenset()) -> None:
+    def __init__(self, sim: "ContactSide", contacts: list[int], held: frozenset[int] = frozenset()) -> None:
         self.sim, self.contacts = sim, contacts
         self.infos = [sim.assembly.contacts[k] for k in contacts]
         workspace, memory = sim.workspace, sim.memory

@@ -21,6 +21,7 @@ from .base import BodyElement, Coordinate, Form, Numbering, Part, Row
 from .massless_end import massless_end_kernel
 
 End = Literal["left", "right"]
+MassMatrix = Literal["consistent", "lumped"]
 CONSISTENT, LUMPED = (1.0 / 3.0, 1.0 / 6.0), (0.5, 0.0)
 """Diagonal and off-diagonal entry of an element's mass matrix, in parts of its mass."""
 
@@ -106,7 +107,7 @@ class AxialRod(BodyElement):
     """EA, N."""
     mass_per_length: Positive
     """rho A, kg/m."""
-    mass_matrix: Literal["consistent", "lumped"] = "consistent"
+    mass_matrix: MassMatrix = "consistent"
     """Of the elements: consistent with the linear shape functions, or half of the mass at each node."""
     relaxation_time: NonNegative = 0.0
     """tau of the viscous stress E tau strain rate (Kelvin and Voigt), s."""

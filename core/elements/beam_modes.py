@@ -68,7 +68,7 @@ class Direction:
 
     stiffness: Array
     mass: Array
-    free: Array
+    free: NDArray[np.intp]
     rigid: Array
     """(unknowns, rigid motions)."""
 

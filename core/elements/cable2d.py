@@ -176,7 +176,7 @@ class Cable2D(FlexibleBody):
         e, x = self.find(s)
         length = self.length / self.elements
         names = tuple(f"{what}{k}" for k in (e, e + 1) for what in ("x", "y", "slope_x", "slope_y"))
-        shape, slope = (np.kron(weights(x, length, d), np.eye(2)) for d in (0, 1))
+        shape, slope = (np.asarray(np.kron(weights(x, length, d), np.eye(2)), dtype=np.float64) for d in (0, 1))
         return PointShape(None, names, (0.0, 0.0), (0.0, 0.0), shape, slope)
 
     def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:

@@ -192,8 +192,11 @@ def assemble(model: Model) -> Assembly:
     internal = np.arange(numbering.n - len(numbering.internal_names), numbering.n)
     if len(internal):
         batches.append(_internal_batch(internal))
-    rest = (np.zeros(len(internal)),) * 2
-    states = [*(body.start_in(numbering.bodies) for body in model.bodies), rest]
+    rest = ((0.0,) * len(internal),) * 2
+    states: list[tuple[Sequence[float], Sequence[float]]] = [
+        *(body.start_in(numbering.bodies) for body in model.bodies),
+        rest,
+    ]
     columns, names = [], []
     for body in model.bodies:
         for coordinate, index in zip(body.coordinate_records(), numbering.index[body.name], strict=False):

@@ -30,10 +30,10 @@ class ModelNumbering:
         self.internals: dict[str, tuple[int, ...]] = {}
         self.internal_names: list[str] = []
         for element in model.elements():
-            own = element.internal_coordinates()
+            states = element.internal_coordinates()
             first = n_bodies + len(self.internal_names)
-            self.internals[element.name] = tuple(range(first, first + len(own)))
-            self.internal_names += [f"{element.name}.{name}" for name in own]
+            self.internals[element.name] = tuple(range(first, first + len(states)))
+            self.internal_names += [f"{element.name}.{name}" for name in states]
         self.n = n = n_bodies + len(self.internal_names)
         self.index[GROUND] = (n, n + 1, n + 2)
         start = 0

@@ -144,7 +144,9 @@ def amplitudes(t: NDArray[np.float64], x: NDArray[np.float64]) -> tuple[NDArray[
     """Frequencies (Hz) and amplitudes of x at equal distances in t, with a Hann window."""
     weight = np.hanning(len(x))
     found = 2.0 * np.abs(np.fft.rfft(weight * (x - np.mean(x)))) / np.sum(weight)
-    return np.fft.rfftfreq(len(x), float(t[1] - t[0])), found
+    return np.asarray(np.fft.rfftfreq(len(x), float(t[1] - t[0])), dtype=np.float64), np.asarray(
+        found, dtype=np.float64
+    )
 
 
 def fifth_claim(rows: Sequence[DampingRow]) -> tuple[str, list[str]]:

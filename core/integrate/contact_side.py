@@ -1,0 +1,249 @@
+"""What the contact state machine may ask of a run and do with it, at the workspace's current point."""
+
+import logging
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact.laws import ForceLaw
+from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, RATE_ROUNDING, SLIDE, SLIDE_START, STICKS
+from ..contact.touching import Touching
+from ..errors import ConsistencyError, SimulationError
+from ..events import Event
+from ..methods.registry import Formula
+from ..stage.accelerations import solve_accelerations
+from ..system.assembly import Assembly
+from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.partition import prepare
+from ..system.projection import bring_to_rest
+from ..system.records import OK
+from ..system.redundancy import RedundantRow, choose_rows, describe
+from ..system.workspace import Workspace
+from .records import STEP_SIZE
+from .settings import Settings
+from .watch import FORCE_ROUNDING, GAP_ROUNDING
+
+logger = logging.getLogger(__name__)
+
+FIRST_TOUCH = 1e-8
+COORDINATE_NOISE = 1e-14
+"""Rounding of a coordinate after many steps, relative."""
+
+
+class ContactSide:
+    """The part of `Engine` that event handling is made of."""
+
+    settings: Settings
+    formula: Formula
+    assembly: Assembly
+    workspace: Workspace
+    events: list[Event]
+    redundant: tuple[RedundantRow, ...]
+    method_arrays: dict[str, NDArray[Any]]
+    clock: NDArray[np.float64]
+    _times_handled: tuple[float, int]
+
+    @property
+    def memory(self) -> NDArray[np.float64]:
+        """Contact memories, one row a contact."""
+        return self.workspace.arrays["memory"]
+
+    @property
+    def t_internal(self) -> float:
+        """Time of the newest accepted step, which may be beyond `t`."""
+        return float(self.method_arrays["times"][self.method_arrays["ring"][0]])
+
+    def gap(self, k: int) -> float:
+        """Gap of contact k at the workspace's point, m."""
+        return float(self.workspace.arrays["phi"][self.assembly.contacts[k].row])
+
+    def gap_rate(self, k: int) -> float:
+        """Its rate, m/s."""
+        return float(self.workspace.arrays["phid"][self.assembly.contacts[k].row])
+
+    def kinetic_energy(self) -> float:
+        """Kinetic energy at the workspace's point, J."""
+        evaluate_energy(self.workspace.record)
+        return float(self.workspace.arrays["energy"][0])
+
+    def add_input_work(self, work: float) -> None:
+        """Work that driven constraints did during an impact, to its account."""
+        if "input" in self.assembly.work_names:
+            self.workspace.arrays["v"][self.assembly.work_index("input")] += work
+
+    def contact_accounts(self, k: int) -> tuple[float, float]:
+        """Impulse (N s) and dissipation (J) of contact k so far."""
+        contact, v = self.assembly.contacts[k], self.workspace.arrays["v"]
+        return (
+            float(v[contact.impulse_account]),
+            float(v[contact.dissipation_account] + self.memory[k, LOSS_JUMP]),
+        )
+
+    def elastic_energy(self, k: int, contact: Any) -> float:
+        """Elastic energy that the force law of contact k holds, J."""
+        return float(contact.law.elastic_energy(max(-self.gap(k), 0.0)))
+
+    def effective_mass(self, k: int) -> float:
+        """Mass that contact k feels: normal impulse for a unit change of the gap's rate, joints included, kg."""
+        before = self.memory[k].copy()
+        closed = np.flatnonzero(self.memory[: len(self.assembly.contacts), MODE] == CLOSED)
+        try:
+            return 1.0 / float(Touching(self, [k], frozenset(int(j) for j in closed)).a.nn[0, 0])
+        finally:
+            self.memory[k] = before
+            self.use_modes()
+
+    def start_small(self, speed: float) -> None:
+        """Begin a contact with a step in which it closes by FIRST_TOUCH of the mechanism's size, so that the error
+        control sees the force grow: a step over the whole contact would find no force at its stages."""
+        size = float(np.max(self.assembly.coordinate_scale, initial=1.0))
+        self.clock[STEP_SIZE] = min(self.clock[STEP_SIZE], FIRST_TOUCH * size / speed)
+
+    def add_event(self, event: Event) -> None:
+        """Record an event."""
+        logger.debug("%s", event)
+        self.events.append(event)
+
+    def use_modes(self, accelerations: bool = True) -> None:
+        """Take the structure of the present modes; solve for (a, lam) unless told not to."""
+        modes = self.memory[: len(self.assembly.contacts), MODE]
+        closed = frozenset(int(k) for k in np.flatnonzero(modes == CLOSED))
+        engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
+        sticking = frozenset(
+            k for k in closed if self.assembly.contacts[k].coulomb is not None and self.memory[k, SLIDE] == STICKS
+        )
+        if self.workspace.key != (closed, engaged, sticking):
+            self.workspace.engage(closed, engaged, sticking)
+        if choose_rows(self.workspace):
+            self.note_redundant()
+        prepare(self.workspace)
+        if accelerations:
+            self.solve_accelerations()
+
+    def note_redundant(self) -> None:
+        """Other rows are left out than before: add them to what the result tells."""
+        found = describe(self.workspace)
+        logger.info("at t = %.9g s other redundant rows are left out of the equations: %s", self.t_internal, found)
+        self.redundant += tuple(row for row in found if row not in self.redundant)
+
+    def solve_accelerations(self) -> None:
+        """Accelerations, multipliers and the rates of the work accounts at the workspace's point."""
+        arrays = self.workspace.arrays
+        if solve_accelerations(self.workspace.record) != OK:
+            raise ConsistencyError(
+                f"no accelerations and multipliers at t = {arrays['t'][0]:.9g} s: the augmented system "
+                "[M Phi_q^T; Phi_q 0] is singular or a force is not finite there"
+            )
+        evaluate_power(self.workspace.record)
+        # with the rates of the work accounts: Newmark's formula integrates them from here
+        arrays["aux"][:] = arrays["a"]
+
+    # ---- constraint contacts ------------------------------------------------------------------------------------
+
+    def touching(self, pending: list[int]) -> list[int]:
+        """Constraint contacts without a gap at the workspace's point: closed ones, `pending`, and others that touch.
+        Those at massless ends are left out: they take no impulse."""
+        level = GAP_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]))))
+        return [
+            k
+            for k, contact in enumerate(self.assembly.contacts)
+            if not isinstance(contact.law, ForceLaw)
+            and k not in self.assembly.massless_contacts
+            and (k in pending or self.memory[k, MODE] == CLOSED or abs(self.gap(k)) <= level)
+        ]
+
+    def held(self) -> frozenset[int]:
+        """Closed contacts at massless ends: to impacts of others they are joints."""
+        return frozenset(k for k in self.assembly.massless_contacts if self.memory[k, MODE] == CLOSED)
+
+    def slide_values(self, contacts: list[int]) -> dict[int, float]:
+        """Sliding distances of those contacts that have friction, m."""
+        found = {}
+        for k in contacts:
+            row, memory = self.assembly.contacts[k].slide_row, self.memory[k]
+            if row >= 0:
+                sticks = memory[MODE] == CLOSED and memory[SLIDE] == STICKS
+                found[k] = float(self.workspace.arrays["phi"][row] + (memory[SLIDE_START] if sticks else 0.0))
+        return found
+
+    def rate_rounding(self) -> float:
+        """Rate of a gap or a sliding distance below which it is none, m/s."""
+        return RATE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["v"][: self.assembly.n]))))
+
+    @property
+    def started(self) -> bool:
+        """True once a step has been made."""
+        return self.t_internal > self.settings.t0
+
+    @property
+    def events_here(self) -> int:
+        """How often events have been handled at the present instant, without progress in time."""
+        return self._times_handled[1]
+
+    def meet_constraints(self) -> None:
+        """Bring positions and velocities onto the constraints of the present structure, by rounding's worth."""
+        for residual, x in (("phi", "q"), ("phid", "v")):
+            evaluate_residuals(self.workspace.record)
+            if not bring_to_rest(self.workspace, residual, x):
+                raise SimulationError(
+                    f"at t = {self.t_internal:.9g} s the closed contacts cannot be met together with the joints",
+                    t=self.t_internal,
+                    loop="contact",
+                )
+        evaluate_residuals(self.workspace.record)
+
+    def unsettled(self) -> list[int]:
+        """Constraint contacts whose mode does not fit the forces at the workspace's point: closed ones that pull or are
+        held beyond their friction, and touching ones that would overlap."""
+        arrays, tolerance = self.workspace.arrays, self.no_force()
+        found = []
+        for k, contact in enumerate(self.assembly.contacts):
+            if self.memory[k, MODE] != CLOSED or k in self.assembly.massless_contacts:
+                continue
+            force = -arrays["lam"][contact.row]
+            if force < -tolerance and force < -self._contact_noise(contact.row):
+                found.append(k)
+            elif contact.coulomb is not None and self.memory[k, SLIDE] == STICKS:
+                limit = contact.coulomb.sticking_coefficient * force
+                if abs(arrays["lam"][contact.slide_row]) > limit * (1.0 + 1e-9) + tolerance:
+                    found.append(k)
+        return found
+
+    def _contact_noise(self, row: int) -> float:
+        """What rounding of the coordinates leaves in the force of the closed contact with this row, N."""
+        noise = self.force_noise()
+        rows, cols, values = self.workspace.jacobian()
+        here = np.flatnonzero((self.workspace.structure.active[rows] == row) & (values != 0.0))
+        if not np.any(
+            noise[cols[here]]
+        ):  # on frames without stiffness of their own, which hand on the forces of others
+            return float(np.max(noise, initial=0.0) / np.max(np.abs(values[here]), initial=1.0))
+        return float(np.max(noise[cols[here]] / np.abs(values[here]), initial=0.0))
+
+    def no_force(self) -> float:
+        """Rounding of the multipliers: a force below this is none, N."""
+        return FORCE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["lam"]), initial=0.0)))
+
+    def tangent_product(self, c_q: float, c_v: float, x: NDArray[np.float64], of_sizes: bool = False) -> Any:
+        """(c_v D + c_q K) x (n,), without the mass matrix; `of_sizes`: the same of the magnitudes of all terms."""
+        workspace, n = self.workspace, self.assembly.n
+        rows, cols = workspace.structure.rows, workspace.structure.cols
+        evaluate_tangent(workspace.record, c_q, c_v)
+        values = workspace.arrays["values"].copy()
+        evaluate_tangent(workspace.record, 0.0, 0.0)
+        here = np.flatnonzero((rows < n) & (cols < n))
+        terms = (values[here] - workspace.arrays["values"][here]) * x[cols[here]]
+        return np.bincount(rows[here], np.abs(terms) if of_sizes else terms, n)
+
+    def force_noise(self) -> NDArray[np.float64]:
+        """What rounding of the coordinates leaves in the forces (n,), N: in stiff bodies, coordinates that are nearly
+        equal make large forces that cancel each other. That of the largest travels to all of them as waves."""
+        largest = float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]), initial=0.0))
+        noise = np.full(self.assembly.n, COORDINATE_NOISE * largest)
+        return np.asarray(self.tangent_product(1.0, 0.0, noise, True))
+
+    def presses(self, k: int) -> bool:
+        """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""
+        self.solve_accelerations()
+        return bool(self.workspace.arrays["phidd"][self.assembly.contacts[k].row] < 0.0)
