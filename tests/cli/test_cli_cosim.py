@@ -57,6 +57,31 @@ def test_export_of_a_version(tlismni: Command, tmp_path: Path, given: str, versi
     assert fmpy.read_model_description(str(tmp_path / "p.fmu")).fmiVersion == version
 
 
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_info(tlismni: Command, tmp_path: Path, version: str) -> None:
+    path = tmp_path / "p.fmu"
+    tlismni("export", "pendulum_stop", "-o", path, "--fmi", version, "--method", "irk", "--rtol", 1e-5)
+    found = tlismni("info", path, "--json").json
+    assert (
+        found["fmi"] == version and found["model"] == "pendulum_stop" and found["t_end"] == load("pendulum_stop").t_end
+    )
+    assert found["solver"]["method"] == "irk" and found["tolerance"] == 1e-5
+    assert len(found["binaries"]) == 1 and found["python"]["version"].startswith("3.")
+    assert ("event mode" in found["capabilities"]) == (version == "3.0")
+    assert {"state", "serialised state", "directional derivatives"} <= set(found["capabilities"])
+    torque = next(v for v in found["variables"] if v["name"] == "torque")
+    assert (torque["causality"], torque["unit"], torque["reference"]) == ("input", "N.m", 1_000_000)
+    shown = tlismni("info", path)
+    assert shown.code == 0 and all(name in shown.out for name in ("FMI " + version, "stop.normal_force", "torque"))
+
+
+def test_info_of_what_is_no_fmu(tlismni: Command, tmp_path: Path) -> None:
+    (tmp_path / "x.fmu").write_text("no archive")
+    done = tlismni("info", tmp_path / "x.fmu")
+    assert done.code == 1 and "x.fmu' is no FMU" in done.cause
+    assert tlismni("info", tmp_path / "absent.fmu").code == 2
+
+
 def test_export_refuses_other_suffixes_and_versions(tlismni: Command, tmp_path: Path) -> None:
     assert tlismni("export", "chain", "-o", tmp_path / "chain.zip").code == 2
     done = tlismni("export", "chain", "-o", tmp_path / "chain.fmu", "--fmi", "4.0")
