@@ -14,8 +14,8 @@ from ..models import Scenario
 from .errors import Failure
 
 GETTERS = {
-    "2.0": {"Real": "getReal", "Integer": "getInteger", "Boolean": "getBoolean"},
-    "3.0": {"Float64": "getFloat64", "Int32": "getInt32", "Boolean": "getBoolean"},
+    "2.0": {"Real": "getReal", "Integer": "getInteger", "Enumeration": "getInteger", "Boolean": "getBoolean"},
+    "3.0": {"Float64": "getFloat64", "Int32": "getInt32", "Enumeration": "getInt64", "Boolean": "getBoolean"},
 }
 """By FMI version and type of variable, fmpy's method that asks for values."""
 SHORTEST, LONGEST = 0.2, 1.8

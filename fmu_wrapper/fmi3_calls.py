@@ -13,7 +13,9 @@ from .calls import Calls, fmi_call, numbers_in, references_in, text_of
 from .errors import FmuValueError, UnavailableError
 from .variables import Kind
 
-NO_TYPE = "this FMU has no variables of this type: its variables are of type Float64, Int32, Boolean and String"
+NO_TYPE = (
+    "this FMU has no variables of this type: its variables are of type Float64, Int32, Boolean, String and Enumeration"
+)
 NO_CLOCKS = "this FMU has no clocks"
 NO_STRUCTURE = "this FMU has no structural parameters, and no dependencies per element"
 NO_MODEL_EXCHANGE = "this FMU does co-simulation only"
@@ -119,6 +121,14 @@ class Fmi3Calls(Calls):
             raise FmuValueError(f"room for {len(room)} values was given for {len(found)} scalar variables")
         room[:] = found
 
+    def _check_type(self, vr: Any, enumerations: bool) -> None:
+        """Refuse Int32 variables among enumerations, and the other way round: their functions differ."""
+        plan = self.slave.variables.plan("integer", references_in(vr))
+        if (not enumerations) in plan.enumerations:
+            names = [v.name for v in plan.variables if (v.enumeration is not None) != enumerations]
+            own = "Int32, not enumerations: use the functions for Int32" if enumerations else "enumerations: use Int64"
+            raise FmuValueError(f"{names} are {own}")
+
     @fmi_call()
     def fmi3GetFloat64(self, vr: Any, value: Any) -> None:
         """Float64 values into the buffer `value`."""
@@ -127,11 +137,13 @@ class Fmi3Calls(Calls):
     @fmi_call()
     def fmi3GetInt32(self, vr: Any, value: Any) -> None:
         """Int32 values into the buffer `value`."""
+        self._check_type(vr, False)
         self._get("integer", vr, value, np.int32)
 
     @fmi_call()
     def fmi3GetInt64(self, vr: Any, value: Any) -> None:
         """Values of enumerations into the buffer `value`."""
+        self._check_type(vr, True)
         self._get("integer", vr, value, np.int64)
 
     @fmi_call()
@@ -152,11 +164,13 @@ class Fmi3Calls(Calls):
     @fmi_call()
     def fmi3SetInt32(self, vr: Any, value: Any) -> None:
         """Set Int32 variables."""
+        self._check_type(vr, False)
         self.slave.set("integer", references_in(vr), numbers_in(value, np.int32))
 
     @fmi_call()
     def fmi3SetInt64(self, vr: Any, value: Any) -> None:
         """Set enumerations."""
+        self._check_type(vr, True)
         self.slave.set("integer", references_in(vr), numbers_in(value, np.int64))
 
     @fmi_call()

@@ -245,6 +245,7 @@ def test_all_kinds_of_values(make_host):
     fmu.enterInitializationMode(tolerance=1e-3, stopTime=1.0)
     assert fmu.getInt32([vr["solver.order"], vr["solver.events"]]) == [5, 0]
     assert fmu.getBoolean([vr["solver.light"], vr["floor.in_contact"]]) == [True, False]
+    assert fmu.getInt64([vr["floor.state"]]) == [0]
     assert fmu.getString([vr["solver.method"], vr["solver.variant"]]) == ["ebdf", "grün %d"]
     assert fmu.getFloat64([vr["mass"], vr["ball.ay"], vr["solver.rtol"]]) == [1.0, 2.0 / 0.5 - 9.81, 1e-3]
     assert fmu.getFloat64([]) == [] and fmu.getString([]) == []
@@ -277,6 +278,8 @@ def test_derivatives(host):
         (lambda f, vr: f.setFloat64([vr["push"]], [1.0, 2.0]), "fmi3SetFloat64: FmuValueError: 2 values were given"),
         (lambda f, vr: f.getFloat64([vr["ball.y"]], 2), "fmi3GetFloat64: FmuValueError: room for 2 values was given"),
         (lambda f, vr: f.getFloat64([vr["solver.events"]]), "fmi3GetFloat64: FmuValueError: value reference 100 is"),
+        (lambda f, vr: f.getInt32([vr["floor.state"]]), "fmi3GetInt32: FmuValueError: ['floor.state'] are enumer"),
+        (lambda f, vr: f.getInt64([vr["solver.events"]]), "fmi3GetInt64: FmuValueError: ['solver.events'] are Int32"),
         (lambda f, vr: f.setFloat64([vr["mass"]], [1.0]), "fmi3SetFloat64: CallOrderError: parameter 'mass' is fixed"),
         (lambda f, vr: f.enterInitializationMode(), "fmi3EnterInitializationMode: CallOrderError: cannot setup in ph"),
         (lambda f, vr: f.exitInitializationMode(), "fmi3ExitInitializationMode: CallOrderError: cannot exit"),
