@@ -76,10 +76,11 @@ def test_the_page_of_exponents_runs() -> None:
 
 
 def test_the_page_of_flexible_bodies_runs() -> None:
-    names: dict[str, Any] = {}
     for block in blocks("flexible.md", "python"):
+        names: dict[str, Any] = {}
         exec(block, names)
-    assert [e.kind for e in names["result"].events][:2] == ["impact", "close"]
+        if "rod" in names:
+            assert [e.kind for e in names["result"].events] == ["impact", "close", "open"]
 
 
 def test_the_model_file_is_one() -> None:
