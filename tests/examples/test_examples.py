@@ -119,3 +119,12 @@ def test_every_example_draws_its_figure(name: str, tmp_path: Path) -> None:
     path = tmp_path / "figure.png"
     example(name).plot(figures(name), path)
     assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_rope_on_the_ground_loses_energy_at_impacts_and_in_the_material_only() -> None:
+    f = figures("cable_ground")
+    assert f["impacts"] > 8
+    assert f["largest_balance"] < 2e-3 * f["start"]
+    assert f["deepest"] > -1e-8
+    assert 0.0 < f["lost_at_impacts"] < f["start"] and 0.0 < f["lost_in_material"] < f["start"]
+    assert abs(f["shapes"][0, -1, 0] - 1.0) < 1e-12 and f["shapes"][:, :, 1].min() > -0.05
