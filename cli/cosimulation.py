@@ -13,7 +13,11 @@ from ..fmu_wrapper import Slave
 from ..models import Scenario
 from .errors import Failure
 
-TYPES = {"Real": "real", "Integer": "integer", "Boolean": "boolean"}
+GETTERS = {
+    "2.0": {"Real": "getReal", "Integer": "getInteger", "Enumeration": "getInteger", "Boolean": "getBoolean"},
+    "3.0": {"Float64": "getFloat64", "Int32": "getInt32", "Enumeration": "getInt64", "Boolean": "getBoolean"},
+}
+"""By FMI version and type of variable, fmpy's method that asks for values."""
 SHORTEST, LONGEST = 0.2, 1.8
 """Bounds of irregular communication steps, as multiples of the nominal one."""
 
@@ -110,20 +114,25 @@ def drive_fmu(fmu: Path, unzipped: Path, times: NDArray[np.float64]) -> Columns:
     fmpy.extract(str(fmu), unzipdir=str(unzipped))
     messages: list[str] = []
 
-    def listen(environment: Any, instance: bytes, status: int, category: bytes, message: bytes) -> None:
-        messages.append(message.decode(errors="replace"))
+    def listen(*arguments: Any) -> None:
+        messages.append(arguments[-1].decode(errors="replace"))  # the message comes last in both versions
 
-    outputs = [v for v in description.modelVariables if v.causality == "output" and v.type in TYPES]
+    getters = GETTERS[description.fmiVersion]
+    outputs = [v for v in description.modelVariables if v.causality == "output" and v.type in getters]
+    experiment = {"startTime": float(times[0]), "stopTime": float(times[-1])}
     try:
         instance = instantiate_fmu(str(unzipped), description, "CoSimulation", logger=listen)
         try:
-            instance.setupExperiment(startTime=float(times[0]), stopTime=float(times[-1]))
-            instance.enterInitializationMode()
+            if description.fmiVersion == "2.0":
+                instance.setupExperiment(**experiment)
+                instance.enterInitializationMode()
+            else:
+                instance.enterInitializationMode(**experiment)
             instance.exitInitializationMode()
-            rows = [_read(instance, outputs)]
+            rows = [_read(instance, outputs, getters)]
             for t, h in zip(times[:-1], np.diff(times), strict=True):
                 instance.doStep(currentCommunicationPoint=float(t), communicationStepSize=float(h))
-                rows.append(_read(instance, outputs))
+                rows.append(_read(instance, outputs, getters))
             instance.terminate()
         finally:
             instance.freeInstance()
@@ -133,16 +142,12 @@ def drive_fmu(fmu: Path, unzipped: Path, times: NDArray[np.float64]) -> Columns:
     return _columns([v.name for v in outputs], rows)
 
 
-def _read(instance: Any, outputs: list[Any]) -> list[float]:
+def _read(instance: Any, outputs: list[Any], getters: dict[str, str]) -> list[float]:
     values: dict[str, float] = {}
-    for kind, get in (
-        ("Real", instance.getReal),
-        ("Integer", instance.getInteger),
-        ("Boolean", instance.getBoolean),
-    ):
+    for kind, getter in getters.items():
         of_kind = [v for v in outputs if v.type == kind]
         if of_kind:
-            found = get([v.valueReference for v in of_kind])
+            found = getattr(instance, getter)([v.valueReference for v in of_kind])
             values.update((v.name, float(x)) for v, x in zip(of_kind, found, strict=True))
     return [values[v.name] for v in outputs]
 

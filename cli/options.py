@@ -102,8 +102,11 @@ Irregular = Annotated[bool, typer.Option("--irregular", help="Steps of 0.2 to 1.
 ExudynStep = Annotated[
     float | None, typer.Option("--exudyn-step", callback=positive, help="exudyn's step in s; chosen if left out.")
 ]
-FmiVersion = Annotated[str, typer.Option("--fmi", help="Version of the FMI standard.")]
+FmiVersion = Annotated[str, typer.Option("--fmi", help="Version of the FMI standard: 2 or 3.")]
 FmuFile = Annotated[Path, typer.Option("--output", "-o", help="The FMU to write, .fmu.")]
+ExistingFmu = Annotated[
+    Path, typer.Argument(metavar="FMU", exists=True, dir_okay=False, help="An FMU, .fmu; of any origin.")
+]
 FmuFolder = Annotated[
     Path | None, typer.Option("--output", "-o", metavar="DIR", help="Leave FMU, CSV files and figure here.")
 ]

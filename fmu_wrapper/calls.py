@@ -86,6 +86,16 @@ class Calls:
             self.kept(handle)
             del self._states[handle]
 
+    def directional_derivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
+        """The derivatives of `unknowns` along `seed` in `knowns` into the buffer `sensitivity`."""
+        found = self.slave.directional_derivative(
+            references_in(unknowns), references_in(knowns), numbers_in(seed, np.float64)
+        )
+        room = numbers_in(sensitivity, np.float64)
+        if len(room) != len(found):
+            raise FmuValueError(f"room for {len(room)} sensitivities was given for {len(found)} unknowns")
+        room[:] = found
+
     def write_state(self, handle: int, buffer: Any) -> None:
         """Write the bytes of the snapshot under `handle` into `buffer`. Raises SnapshotError if it is too small."""
         data = self.kept(handle).data

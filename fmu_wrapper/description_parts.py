@@ -64,6 +64,17 @@ def add_units(root: Any, table: VariableTable) -> None:
             add(element, "BaseUnit", **base.exponents, factor=factor)
 
 
+def enumerations(table: VariableTable) -> dict[str, tuple[str, ...]]:
+    """The enumeration types of all variables: name, and names of the values 0, 1, ..."""
+    return {v.enumeration: v.items for v in table.variables if v.enumeration is not None}
+
+
+def add_items(parent: Any, items: tuple[str, ...]) -> None:
+    """The items of an enumeration."""
+    for value, name in enumerate(items):
+        add(parent, "Item", name=name, value=value)
+
+
 def add_categories(root: Any) -> None:
     """The log categories."""
     categories = add(root, "LogCategories")

@@ -137,12 +137,12 @@ class Fmi2Calls(Calls):
         """Answers with the handle of the stored state made from bytes, or 0 after an error."""
         return self.keep(self.slave.snapshot_from_bytes(bytes(buffer)), handle)
 
-    # what this slave does not do
-
     @fmi_call()
-    def fmi2GetDirectionalDerivative(self) -> None:
-        """Refused."""
-        raise UnavailableError("no directional derivatives (providesDirectionalDerivative = false)")
+    def fmi2GetDirectionalDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
+        """Derivatives of outputs along a direction of inputs, into the buffer `sensitivity`."""
+        self.directional_derivative(unknowns, knowns, seed, sensitivity)
+
+    # what this slave does not do
 
     @fmi_call()
     def fmi2SetRealInputDerivatives(self) -> None:

@@ -13,11 +13,12 @@ from .calls import Calls, fmi_call, numbers_in, references_in, text_of
 from .errors import FmuValueError, UnavailableError
 from .variables import Kind
 
-NO_TYPE = "this FMU has no variables of this type: its variables are of type Float64, Int32, Boolean and String"
+NO_TYPE = (
+    "this FMU has no variables of this type: its variables are of type Float64, Int32, Boolean, String and Enumeration"
+)
 NO_CLOCKS = "this FMU has no clocks"
 NO_STRUCTURE = "this FMU has no structural parameters, and no dependencies per element"
 NO_MODEL_EXCHANGE = "this FMU does co-simulation only"
-NO_DERIVATIVES = "no directional or adjoint derivatives (providesDirectionalDerivatives = false)"
 
 _TYPES = ("Float32", "Int8", "UInt8", "Int16", "UInt16", "UInt32", "UInt64", "Binary")
 _CLOCKS = (
@@ -38,8 +39,6 @@ REFUSED: dict[str, str] = {
     **{f"fmi3{name}": NO_CLOCKS for name in _CLOCKS},
     **{f"fmi3{name}": NO_STRUCTURE for name in _STRUCTURE},
     **{f"fmi3{name}": NO_MODEL_EXCHANGE for name in _MODEL_EXCHANGE},
-    "fmi3GetDirectionalDerivative": NO_DERIVATIVES,
-    "fmi3GetAdjointDerivative": NO_DERIVATIVES,
     "fmi3GetOutputDerivatives": "no output derivatives (maxOutputDerivativeOrder = 0)",
     "fmi3EvaluateDiscreteStates": "providesEvaluateDiscreteStates = false: use fmi3UpdateDiscreteStates",
 }
@@ -122,6 +121,14 @@ class Fmi3Calls(Calls):
             raise FmuValueError(f"room for {len(room)} values was given for {len(found)} scalar variables")
         room[:] = found
 
+    def _check_type(self, vr: Any, enumerations: bool) -> None:
+        """Refuse Int32 variables among enumerations, and the other way round: their functions differ."""
+        plan = self.slave.variables.plan("integer", references_in(vr))
+        if (not enumerations) in plan.enumerations:
+            names = [v.name for v in plan.variables if (v.enumeration is not None) != enumerations]
+            own = "Int32, not enumerations: use the functions for Int32" if enumerations else "enumerations: use Int64"
+            raise FmuValueError(f"{names} are {own}")
+
     @fmi_call()
     def fmi3GetFloat64(self, vr: Any, value: Any) -> None:
         """Float64 values into the buffer `value`."""
@@ -130,11 +137,13 @@ class Fmi3Calls(Calls):
     @fmi_call()
     def fmi3GetInt32(self, vr: Any, value: Any) -> None:
         """Int32 values into the buffer `value`."""
+        self._check_type(vr, False)
         self._get("integer", vr, value, np.int32)
 
     @fmi_call()
     def fmi3GetInt64(self, vr: Any, value: Any) -> None:
         """Values of enumerations into the buffer `value`."""
+        self._check_type(vr, True)
         self._get("integer", vr, value, np.int64)
 
     @fmi_call()
@@ -155,11 +164,13 @@ class Fmi3Calls(Calls):
     @fmi_call()
     def fmi3SetInt32(self, vr: Any, value: Any) -> None:
         """Set Int32 variables."""
+        self._check_type(vr, False)
         self.slave.set("integer", references_in(vr), numbers_in(value, np.int32))
 
     @fmi_call()
     def fmi3SetInt64(self, vr: Any, value: Any) -> None:
         """Set enumerations."""
+        self._check_type(vr, True)
         self.slave.set("integer", references_in(vr), numbers_in(value, np.int64))
 
     @fmi_call()
@@ -171,6 +182,26 @@ class Fmi3Calls(Calls):
     def fmi3SetString(self, vr: Any, value: Sequence[bytes | None]) -> None:
         """Set String variables."""
         self.slave.set("string", references_in(vr), [text_of(v, "a string value") for v in value])
+
+    @fmi_call()
+    def fmi3GetDirectionalDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
+        """Derivatives of outputs along a direction of inputs, into the buffer `sensitivity`."""
+        self.directional_derivative(unknowns, knowns, seed, sensitivity)
+
+    @fmi_call()
+    def fmi3GetAdjointDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
+        """Derivatives with respect to each input of the outputs' sum with weights `seed`, into `sensitivity`."""
+        outputs, inputs = references_in(unknowns), references_in(knowns)
+        weights, room = numbers_in(seed, np.float64), numbers_in(sensitivity, np.float64)
+        if len(weights) != len(outputs) or len(room) != len(inputs):
+            raise FmuValueError(
+                f"a seed of {len(weights)} numbers and room for {len(room)} sensitivities were given for "
+                f"{len(outputs)} unknowns and {len(inputs)} knowns"
+            )
+        room[:] = [
+            weights @ self.slave.directional_derivative(outputs, inputs[i : i + 1], np.ones(1))
+            for i in range(len(room))
+        ]
 
     # state
 

@@ -93,8 +93,10 @@ class InProcess(Direct, FMU2Slave):
     def _fmi2GetStringStatus(self, kind: int, value: Any) -> int:
         return self._fmi.fmi2GetStringStatus(kind)
 
-    def _fmi2GetDirectionalDerivative(self, *arguments: Any) -> int:
-        return self._fmi.fmi2GetDirectionalDerivative()
+    def _fmi2GetDirectionalDerivative(
+        self, unknowns: Any, n: int, knowns: Any, m: int, seed: Any, sensitivity: Any
+    ) -> int:
+        return self._fmi.fmi2GetDirectionalDerivative(unknowns, knowns, seed, sensitivity)
 
     def _fmi2SetRealInputDerivatives(self, *arguments: Any) -> int:
         return self._fmi.fmi2SetRealInputDerivatives()

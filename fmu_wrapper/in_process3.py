@@ -38,6 +38,8 @@ class InProcess3(Direct, FMU3Slave):
     def _adapted(self, fname: str) -> Any:
         if fname in REFUSED:
             return lambda *arguments: self._fmi.refuse(fname)
+        if fname in ("fmi3GetDirectionalDerivative", "fmi3GetAdjointDerivative"):
+            return lambda *arguments: getattr(self._fmi, fname)(*arguments[::2])  # without the counts
         if fname.startswith(("fmi3Get", "fmi3Set")):
             return lambda vr, count, value, values: getattr(self._fmi, fname)(vr, value)
         return None

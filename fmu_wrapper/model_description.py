@@ -5,8 +5,10 @@ from .description_parts import (
     add,
     add_categories,
     add_experiment,
+    add_items,
     add_units,
     attributes,
+    enumerations,
     finish,
     start,
 )
@@ -23,7 +25,7 @@ CAPABILITIES = {
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
-    "providesDirectionalDerivative": "false",
+    "providesDirectionalDerivative": "true",
 }
 
 _TYPES = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "string": "String"}
@@ -34,11 +36,18 @@ def fmi2_description(table: VariableTable, settings: Settings, about: About) -> 
     root = start("2.0", "guid", about, numberOfEventIndicators="0")
     add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES)
     add_units(root, table)
+    if types := enumerations(table):
+        definitions = add(root, "TypeDefinitions")
+        for name, items in types.items():
+            add_items(add(add(definitions, "SimpleType", name=name), "Enumeration"), items)
     add_categories(root)
     add_experiment(root, settings)
     variables = add(root, "ModelVariables")
     for variable in table.variables:
         element = add(variables, "ScalarVariable", **attributes(variable))
+        if variable.enumeration is not None:
+            add(element, "Enumeration", declaredType=variable.enumeration, start=variable.start)
+            continue
         limits = {"min": variable.minimum, "max": variable.maximum}
         add(element, _TYPES[variable.kind], start=variable.start, unit=variable.unit, **limits)
     structure = add(root, "ModelStructure")

@@ -5,8 +5,10 @@ from .description_parts import (
     add,
     add_categories,
     add_experiment,
+    add_items,
     add_units,
     attributes,
+    enumerations,
     finish,
     start,
 )
@@ -18,8 +20,8 @@ CAPABILITIES = {
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
-    "providesDirectionalDerivatives": "false",
-    "providesAdjointDerivatives": "false",
+    "providesDirectionalDerivatives": "true",
+    "providesAdjointDerivatives": "true",
     "providesPerElementDependencies": "false",
     "canHandleVariableCommunicationStepSize": "true",
     "maxOutputDerivativeOrder": "0",
@@ -38,6 +40,10 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About) -> 
     root = start("3.0", "instantiationToken", about)
     add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES)
     add_units(root, table)
+    if types := enumerations(table):
+        definitions = add(root, "TypeDefinitions")
+        for name, items in types.items():
+            add_items(add(definitions, "EnumerationType", name=name), items)
     add_categories(root)
     add_experiment(root, settings)
     variables = add(root, "ModelVariables")
@@ -47,6 +53,8 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About) -> 
             element = add(variables, "String", **own)
             if variable.start is not None:
                 add(element, "Start", value=variable.start)
+        elif variable.enumeration is not None:
+            add(variables, "Enumeration", **attributes(variable), declaredType=variable.enumeration)
         else:
             add(variables, _TYPES[variable.kind], **own, start=variable.start)
     structure = add(root, "ModelStructure")

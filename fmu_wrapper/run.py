@@ -1,16 +1,18 @@
 """The simulation under a slave: built from variable values, told its inputs, read into variable values."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..core.description import Model
+from .derivatives import along
 from .errors import FmuError
 from .settings import Settings
 from .values import Values
-from .variables import EVENTS, VariableTable
+from .variables import EVENTS, Variable, VariableTable
 
 SimulationFactory = Callable[..., Any]
 
@@ -117,6 +119,16 @@ class Run:
     def events(self) -> Sequence[Any]:
         """Events so far."""
         return self._simulation.events
+
+    def inputs(self) -> dict[str, float]:
+        """The input values that the simulation has been told, by name."""
+        return dict(zip(self._input_names, self.applied, strict=True))
+
+    def derivatives(self, outputs: Sequence[Variable], direction: Mapping[str, float]) -> npt.NDArray[np.float64]:
+        """Derivatives of real outputs along `direction`, by input name, at the present time."""
+        column = {name: i for i, name in enumerate(self._names)}
+        found = along(self._simulation, self.inputs(), direction)
+        return found[[column[v.name] for v in outputs]]
 
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""

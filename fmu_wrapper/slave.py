@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import log as logs
+from .derivatives import check_knowns, check_unknowns
 from .errors import CallOrderError, FmuValueError, SnapshotError, Status
 from .grid import check_step
 from .log import Log, LogCallback
@@ -271,6 +272,33 @@ class Slave:
             return self.variables.by_name[name]
         except KeyError:
             raise FmuValueError(f"no variable '{name}'; there are {sorted(self.variables.by_name)}") from None
+
+    def directional_derivative(
+        self,
+        unknowns: npt.NDArray[np.uint32],
+        knowns: npt.NDArray[np.uint32],
+        seed: npt.NDArray[np.float64],
+    ) -> npt.NDArray[np.float64]:
+        """Derivatives of the outputs behind `unknowns` along `seed` in the inputs behind `knowns`, at the present time.
+
+        Coordinates, velocities and contact modes are held: the derivatives are those of accelerations and forces.
+
+        Raises
+        ------
+        CallOrderError : outside initialization, step and event mode.
+        FmuValueError : for other variables than real outputs and inputs, a wrong seed.
+        SimulationError : if accelerations cannot be computed.
+        """
+        self._need("get derivatives", Phase.INITIALIZATION, Phase.STEP, *EVENT_PHASES)
+        outputs, inputs = (self.variables.plan("real", references).variables for references in (unknowns, knowns))
+        check_unknowns(outputs)
+        check_knowns(inputs, seed)
+        if self._stale:
+            self._refresh()
+        direction: dict[str, float] = {}
+        for variable, x in zip(inputs, seed.tolist(), strict=True):
+            direction[variable.name] = direction.get(variable.name, 0.0) + x
+        return self._engine().derivatives(outputs, direction)
 
     # state
 

@@ -37,7 +37,10 @@ PLANS_KEPT = 256  # a master asks for the same few lists of references over and 
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of the slave. `block` says where its value lives, `start` is None for outputs and time."""
+    """One variable of the slave. `block` says where its value lives, `start` is None for outputs and time.
+
+    Of an integer that is a choice, `enumeration` names the type and `items` the values 0, 1, ...
+    """
 
     reference: int
     name: str
@@ -49,15 +52,19 @@ class Variable:
     start: float | int | bool | str | None = None
     minimum: float | None = None
     maximum: float | None = None
+    enumeration: str | None = None
+    items: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A list of value references, looked up: their variables, positions among their kind, and roles."""
+    """A list of value references, looked up: their variables, positions among their kind, roles, and whether they are
+    enumerations."""
 
     variables: tuple[Variable, ...]
     positions: npt.NDArray[np.intp]
     roles: frozenset[Role]
+    enumerations: frozenset[bool]
 
 
 class VariableTable:
@@ -101,7 +108,8 @@ class VariableTable:
         if plan is None:
             variables = tuple(self._find(kind, int(r)) for r in references)
             positions = np.array([self.position[v.reference] for v in variables], dtype=np.intp)
-            plan = Plan(variables, positions, frozenset(v.role for v in variables))
+            enumerations = frozenset(v.enumeration is not None for v in variables)
+            plan = Plan(variables, positions, frozenset(v.role for v in variables), enumerations)
             if len(self._plans) >= PLANS_KEPT:
                 self._plans.clear()
             self._plans[key] = plan
@@ -128,7 +136,7 @@ class VariableTable:
     @classmethod
     def from_data(cls, data: Iterable[Mapping[str, Any]]) -> "VariableTable":
         """The table in JSON data made by `to_data`."""
-        return cls(Variable(**record) for record in data)
+        return cls(Variable(**{**record, "items": tuple(record["items"])}) for record in data)
 
 
 def kind_of(value: object) -> Kind | None:
@@ -177,6 +185,8 @@ def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -
                     "channel",
                     c.unit if c.kind == "real" else None,
                     c.description,
+                    enumeration=c.enumeration.name if c.enumeration else None,
+                    items=c.enumeration.items if c.enumeration else (),
                 )
                 for i, c in enumerate(channels)
             ),

@@ -10,6 +10,7 @@ from ..options import (
     ComparisonStep,
     Debug,
     EndTime,
+    FmiVersion,
     FmuFolder,
     Irregular,
     Json,
@@ -35,6 +36,7 @@ def cosim(
     source: Source,
     communication_step: ComparisonStep = 0.01,
     irregular: Irregular = False,
+    fmi: FmiVersion = "2.0",
     folder: FmuFolder = None,
     sets: Set = None,
     t_end: EndTime = None,
@@ -64,7 +66,7 @@ def cosim(
         place = Path(temporary) if folder is None else folder
         place.mkdir(parents=True, exist_ok=True)
         with compile_notice(), status_line("exporting the FMU") as tell:
-            fmu = export_fmu(scenario, place / f"{scenario.name}.fmu", communication_step=communication_step)
+            fmu = export_fmu(scenario, place / f"{scenario.name}.fmu", fmi, communication_step=communication_step)
             found = compare(scenario, fmu, Path(temporary) / "unzipped", times, tell)
         files = [] if folder is None else [fmu, *_write(folder, scenario, found)]
     figures = {**_figures(scenario, found, irregular), "files": [str(path) for path in files]}

@@ -22,6 +22,7 @@ from ..targets import check_file
 
 EXAMPLES = (
     "Examples:\n\n  tlismni export pendulum_stop -o pendulum.fmu\n\n"
+    "  tlismni export pendulum_stop -o pendulum3.fmu --fmi 3\n\n"
     "  tlismni export my_model.json -o ball.fmu --t-end 2 --method ebdf --option k=3 --set restitution=0.5"
 )
 
@@ -47,8 +48,10 @@ def export(
     check_file(output)
 
     from ...fmu_wrapper import export_fmu
+    from ...fmu_wrapper.export import known_version
     from ..source import read_source, solver_settings
 
+    fmi = known_version(fmi)
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     output.parent.mkdir(parents=True, exist_ok=True)
     with compile_notice():

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
-from ..model.channels import Channel
+from ..model.channels import Channel, Enumeration
 from ..system.assembly import Assembly
+
+CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
 
 
 class SampleLayout:
@@ -119,7 +121,10 @@ class ChannelTable:
                 Channel(f"{name}.in_contact", "1", "true while the contact carries force", "boolean"),
                 InContact(layout.mode + k),
             ),
-            (Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer"), layout.mode + k),
+            (
+                Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer", CONTACT_STATE),
+                layout.mode + k,
+            ),
         ]
 
         if friction:

@@ -48,10 +48,19 @@ class Parameter(Record):
 
 
 @dataclass(frozen=True)
+class Enumeration:
+    """Names of the values 0, 1, ... of an integer channel, and of the set of them."""
+
+    name: str
+    items: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Channel:
-    """One column of the results: name, unit, kind of value."""
+    """One column of the results: name, unit, kind of value; for an integer that is a choice, what its values mean."""
 
     name: str
     unit: str
     description: str
     kind: Literal["real", "integer", "boolean"] = "real"
+    enumeration: Enumeration | None = None

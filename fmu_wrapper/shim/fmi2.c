@@ -205,14 +205,16 @@ EXPORT fmi2Status fmi2GetStringStatus(fmi2Component c, fmi2StatusKind kind, fmi2
     FORWARD(c, "fmi2GetStringStatus", "(i)", kind);
 }
 
-/* what this FMU does not do, as its capability flags say: refused, with a line in the log */
+/* derivatives of outputs along a direction of inputs */
 
 EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
                                                const fmi2ValueReference known[], size_t knowns,
                                                const fmi2Real seed[], fmi2Real sensitivity[]) {
-    (void)unknown, (void)unknowns, (void)known, (void)knowns, (void)seed, (void)sensitivity;
-    FORWARD(c, "fmi2GetDirectionalDerivative", "()");
+    FORWARD(c, "fmi2GetDirectionalDerivative", "(NNNN)", IN(unknown, unknowns), IN(known, knowns), IN(seed, knowns),
+            OUT(sensitivity, unknowns));
 }
+
+/* what this FMU does not do, as its capability flags say: refused, with a line in the log */
 
 EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                                               const fmi2Integer order[], const fmi2Real value[]) {

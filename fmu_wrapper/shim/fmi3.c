@@ -132,6 +132,19 @@ EXPORT fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference vr[], s
     FORWARD(c, "fmi3SetString", "(NN)", IN(vr, n), list_of_strings(value, values));
 }
 
+/* derivatives of outputs with respect to inputs */
+
+#define DERIVATIVE(name)                                                                                            \
+    EXPORT fmi3Status name(fmi3Instance c, const fmi3ValueReference unknown[], size_t unknowns,                     \
+                           const fmi3ValueReference known[], size_t knowns, const fmi3Float64 seed[], size_t seeds, \
+                           fmi3Float64 sensitivity[], size_t sensitivities) {                                       \
+        FORWARD(c, #name, "(NNNN)", IN(unknown, unknowns), IN(known, knowns), IN(seed, seeds),                      \
+                OUT(sensitivity, sensitivities));                                                                   \
+    }
+
+DERIVATIVE(fmi3GetDirectionalDerivative)
+DERIVATIVE(fmi3GetAdjointDerivative)
+
 /* state */
 
 EXPORT fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {

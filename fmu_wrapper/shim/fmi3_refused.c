@@ -1,5 +1,5 @@
 /* The functions of FMI 3.0 that this FMU has not, as its model description says: types of variables that it does not
- * use, clocks, structural parameters, model exchange, scheduled execution, derivatives. Each is there, since importers
+ * use, clocks, structural parameters, model exchange, scheduled execution, derivatives in time. Each is there, since importers
  * look up all of them, and answers Error with a line in the log; `refuse` (fmi3_calls.py) knows why. */
 
 #include "forward.h"
@@ -66,14 +66,8 @@ REFUSED(fmi3GetNumberOfVariableDependencies, fmi3ValueReference vr, size_t *coun
 REFUSED(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t element[], fmi3ValueReference independent[],
         size_t independent_element[], fmi3DependencyKind kind[], size_t count)
 
-/* derivatives */
+/* derivatives in time */
 
-REFUSED(fmi3GetDirectionalDerivative, const fmi3ValueReference unknown[], size_t unknowns,
-        const fmi3ValueReference known[], size_t knowns, const double seed[], size_t seeds, double sensitivity[],
-        size_t sensitivities)
-REFUSED(fmi3GetAdjointDerivative, const fmi3ValueReference unknown[], size_t unknowns,
-        const fmi3ValueReference known[], size_t knowns, const double seed[], size_t seeds, double sensitivity[],
-        size_t sensitivities)
 REFUSED(fmi3GetOutputDerivatives, REFERENCES, const int32_t order[], double value[], size_t values)
 
 /* model exchange */

@@ -48,6 +48,40 @@ def test_export(tlismni: Command, tmp_path: Path) -> None:
     assert starts["solver.method"] == "irk"
 
 
+@pytest.mark.parametrize(("given", "version"), [("2", "2.0"), ("3", "3.0"), ("3.0", "3.0")])
+def test_export_of_a_version(tlismni: Command, tmp_path: Path, given: str, version: str) -> None:
+    import fmpy
+
+    done = tlismni("export", "pendulum_stop", "-o", tmp_path / "p.fmu", "--fmi", given, "--json")
+    assert done.code == 0 and done.json["fmi"] == version
+    assert fmpy.read_model_description(str(tmp_path / "p.fmu")).fmiVersion == version
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_info(tlismni: Command, tmp_path: Path, version: str) -> None:
+    path = tmp_path / "p.fmu"
+    tlismni("export", "pendulum_stop", "-o", path, "--fmi", version, "--method", "irk", "--rtol", 1e-5)
+    found = tlismni("info", path, "--json").json
+    assert (
+        found["fmi"] == version and found["model"] == "pendulum_stop" and found["t_end"] == load("pendulum_stop").t_end
+    )
+    assert found["solver"]["method"] == "irk" and found["tolerance"] == 1e-5
+    assert len(found["binaries"]) == 1 and found["python"]["version"].startswith("3.")
+    assert ("event mode" in found["capabilities"]) == (version == "3.0")
+    assert {"state", "serialised state", "directional derivatives"} <= set(found["capabilities"])
+    torque = next(v for v in found["variables"] if v["name"] == "torque")
+    assert (torque["causality"], torque["unit"], torque["reference"]) == ("input", "N.m", 1_000_000)
+    shown = tlismni("info", path)
+    assert shown.code == 0 and all(name in shown.out for name in ("FMI " + version, "stop.normal_force", "torque"))
+
+
+def test_info_of_what_is_no_fmu(tlismni: Command, tmp_path: Path) -> None:
+    (tmp_path / "x.fmu").write_text("no archive")
+    done = tlismni("info", tmp_path / "x.fmu")
+    assert done.code == 1 and "x.fmu' is no FMU" in done.cause
+    assert tlismni("info", tmp_path / "absent.fmu").code == 2
+
+
 def test_export_refuses_other_suffixes_and_versions(tlismni: Command, tmp_path: Path) -> None:
     assert tlismni("export", "chain", "-o", tmp_path / "chain.zip").code == 2
     done = tlismni("export", "chain", "-o", tmp_path / "chain.fmu", "--fmi", "4.0")
@@ -68,6 +102,12 @@ def test_fmu_and_slave_are_the_same_through_an_impact(tlismni: Command, tmp_path
         "pendulum_stop.fmu", "pendulum_stop_cosim.png", "pendulum_stop_fmu.csv", "pendulum_stop_slave.csv",
     ]  # fmt: skip
     assert (tmp_path / "pendulum_stop_fmu.csv").read_bytes() == (tmp_path / "pendulum_stop_slave.csv").read_bytes()
+
+
+def test_the_fmu_of_version_3_and_the_slave_are_the_same(tlismni: Command) -> None:
+    done = tlismni("cosim", "pendulum_stop", "--fmi", "3", "--t-end", 0.6, "-c", 0.02, "--json")
+    assert done.code == 0
+    assert done.json["identical"] is True and done.json["events"] == 1 and done.json["outputs"] > 20
 
 
 def test_one_bit_is_a_difference(tlismni: Command, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from tlismni.core.errors import ModelError, SimulationError
 from tlismni.core.events import Event
-from tlismni.core.model.channels import Channel
+from tlismni.core.model.channels import Channel, Enumeration
 
 CHANNELS = (
     Channel("ball.y", "m", "height"),
@@ -18,6 +18,7 @@ CHANNELS = (
     Channel("ball.ay", "m/s2", "acceleration"),
     Channel("floor.in_contact", "1", "never, in this model", "boolean"),
     Channel("floor.mode", "1", "bounces so far", "integer"),
+    Channel("floor.state", "1", "one of two", "integer", Enumeration("FloorState", ("untouched", "touched"))),
 )
 
 
@@ -110,7 +111,7 @@ class FakeSimulation:
     def values(self) -> np.ndarray:
         s = self._state
         y = math.nan if s.t >= self.nan_at else s.y
-        return np.array([y, s.v, self._acceleration(), 0.0, s.bounces])
+        return np.array([y, s.v, self._acceleration(), 0.0, s.bounces, min(s.bounces, 1)])
 
     def state(self) -> FakeState:
         return self._state

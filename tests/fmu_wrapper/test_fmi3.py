@@ -96,7 +96,7 @@ def test_description(host):
     assert host.description.fmiVersion == "3.0"
     flags = host.description.coSimulation
     assert flags.hasEventMode and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
-    assert flags.canHandleVariableCommunicationStepSize and not flags.providesDirectionalDerivative
+    assert flags.canHandleVariableCommunicationStepSize
     kinds = {v.name: (v.type, v.causality, v.variability, v.start) for v in host.description.modelVariables}
     assert kinds["solver.method"] == ("String", "parameter", "fixed", "ebdf")
     assert kinds["push"] == ("Float64", "input", "continuous", "1.0")
@@ -245,11 +245,21 @@ def test_all_kinds_of_values(make_host):
     fmu.enterInitializationMode(tolerance=1e-3, stopTime=1.0)
     assert fmu.getInt32([vr["solver.order"], vr["solver.events"]]) == [5, 0]
     assert fmu.getBoolean([vr["solver.light"], vr["floor.in_contact"]]) == [True, False]
+    assert fmu.getInt64([vr["floor.state"]]) == [0]
     assert fmu.getString([vr["solver.method"], vr["solver.variant"]]) == ["ebdf", "grün %d"]
     assert fmu.getFloat64([vr["mass"], vr["ball.ay"], vr["solver.rtol"]]) == [1.0, 2.0 / 0.5 - 9.81, 1e-3]
     assert fmu.getFloat64([]) == [] and fmu.getString([]) == []
     fmu.setFloat64([], [])
     assert fmu.getVersion() == "3.0"
+
+
+def test_derivatives(host):
+    fmu = host.started()
+    fmu.doStep(0.0, 0.25)
+    before, outputs = host.read(fmu), [host.vr["ball.ay"], host.vr["ball.y"]]
+    assert fmu.getDirectionalDerivative(outputs, [host.vr["push"]], [3.0]) == pytest.approx([1.5, 0.0], rel=1e-14)
+    assert fmu.getAdjointDerivative(outputs, [host.vr["push"]], [4.0, 7.0], 1) == pytest.approx([2.0], rel=1e-14)
+    assert host.read(fmu) == before
 
 
 # errors
@@ -268,6 +278,8 @@ def test_all_kinds_of_values(make_host):
         (lambda f, vr: f.setFloat64([vr["push"]], [1.0, 2.0]), "fmi3SetFloat64: FmuValueError: 2 values were given"),
         (lambda f, vr: f.getFloat64([vr["ball.y"]], 2), "fmi3GetFloat64: FmuValueError: room for 2 values was given"),
         (lambda f, vr: f.getFloat64([vr["solver.events"]]), "fmi3GetFloat64: FmuValueError: value reference 100 is"),
+        (lambda f, vr: f.getInt32([vr["floor.state"]]), "fmi3GetInt32: FmuValueError: ['floor.state'] are enumer"),
+        (lambda f, vr: f.getInt64([vr["solver.events"]]), "fmi3GetInt64: FmuValueError: ['solver.events'] are Int32"),
         (lambda f, vr: f.setFloat64([vr["mass"]], [1.0]), "fmi3SetFloat64: CallOrderError: parameter 'mass' is fixed"),
         (lambda f, vr: f.enterInitializationMode(), "fmi3EnterInitializationMode: CallOrderError: cannot setup in ph"),
         (lambda f, vr: f.exitInitializationMode(), "fmi3ExitInitializationMode: CallOrderError: cannot exit"),
@@ -284,8 +296,12 @@ def test_all_kinds_of_values(make_host):
         (lambda f, vr: f.getBinary([0]), "fmi3GetBinary: UnavailableError: this FMU has no variables of this type"),
         (lambda f, vr: f.getClock([0]), "fmi3GetClock: UnavailableError: this FMU has no clocks"),
         (lambda f, vr: f.enterConfigurationMode(), "fmi3EnterConfigurationMode: UnavailableError: this FMU has no st"),
-        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["push"]], [1.0]),
-         "fmi3GetDirectionalDerivative: UnavailableError: no directional"),
+        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["mass"]], [1.0]),
+         "fmi3GetDirectionalDerivative: FmuValueError: 'mass' is of role parameter"),
+        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["push"]], [1.0, 2.0]),
+         "fmi3GetDirectionalDerivative: FmuValueError: a seed of 2 numbers was given for 1 inputs"),
+        (lambda f, vr: f.getAdjointDerivative([vr["ball.y"]], [vr["push"]], [1.0, 2.0], 1),
+         "fmi3GetAdjointDerivative: FmuValueError: a seed of 2 numbers and room for 1 sensitivities"),
         (lambda f, vr: f.getOutputDerivatives([vr["ball.y"]], [1]), "fmi3GetOutputDerivatives: UnavailableError: no"),
     ],
 )  # fmt: skip

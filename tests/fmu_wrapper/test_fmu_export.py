@@ -50,6 +50,7 @@ def test_variables_and_value_references(fake_fmu):
         "ball.ay": (2_000_002, "Real", "output", "continuous", "m/s2", None),
         "floor.in_contact": (2_000_003, "Boolean", "output", "discrete", None, None),
         "floor.mode": (2_000_004, "Integer", "output", "discrete", None, None),
+        "floor.state": (2_000_005, "Enumeration", "output", "discrete", None, None),
     }
     outputs = {name for name, row in found.items() if row[2] == "output"}
     assert {u.variable.name for u in description.outputs} == outputs
@@ -65,6 +66,14 @@ def test_units_have_base_units(fake_fmu):
     assert base["1"] == {}
 
 
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_enumerations_name_their_values(fake_fmu, version):
+    description = fmpy.read_model_description(fake_fmu(fmi_version=version))
+    state = next(v for v in description.modelVariables if v.name == "floor.state")
+    assert state.declaredType.name == "FloorState"
+    assert [(item.name, item.value) for item in state.declaredType.items] == [("untouched", "0"), ("touched", "1")]
+
+
 def test_default_experiment_and_capabilities(fake_fmu):
     description = fmpy.read_model_description(fake_fmu(t_end=2.5, rtol=1e-7))
     experiment = description.defaultExperiment
@@ -72,7 +81,7 @@ def test_default_experiment_and_capabilities(fake_fmu):
     assert given == [0.0, 2.5, 1e-7, 0.01]
     flags = description.coSimulation
     assert flags.canHandleVariableCommunicationStepSize and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
-    assert not flags.canInterpolateInputs and not flags.providesDirectionalDerivative and not flags.needsExecutionTool
+    assert not flags.canInterpolateInputs and flags.providesDirectionalDerivative and not flags.needsExecutionTool
 
 
 def test_a_scenario_gives_its_settings(fake_fmu, model):

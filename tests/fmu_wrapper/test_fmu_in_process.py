@@ -252,8 +252,12 @@ def test_all_kinds_of_values(make_host, fake_fmu):
         (lambda f, vr: f.deserializeFMUState(b"some bytes"), "fmi2DeSerializeFMUstate: SnapshotError: these 10 bytes"),
         (lambda f, vr: f.setDebugLogging(True, ["logPoems"]),
          "fmi2SetDebugLogging: FmuValueError: unknown log categories ['logPoems']; known are"),
-        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["push"]], [1.0]),
-         "fmi2GetDirectionalDerivative: UnavailableError: no directional derivatives"),
+        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["mass"]], [1.0]),
+         "fmi2GetDirectionalDerivative: FmuValueError: 'mass' is of role parameter: derivatives are with respect to"),
+        (lambda f, vr: f.getDirectionalDerivative([vr["push"]], [vr["push"]], [1.0]),
+         "fmi2GetDirectionalDerivative: FmuValueError: 'push' is of role input: derivatives are those of outputs"),
+        (lambda f, vr: f.getDirectionalDerivative([vr["ball.y"]], [vr["push"]], [math.nan]),
+         "fmi2GetDirectionalDerivative: FmuValueError: the seed [nan] is not finite"),
         (lambda f, vr: f.setRealInputDerivatives([vr["push"]], [1], [1.0]), "fmi2SetRealInputDerivatives: Unavail"),
         (lambda f, vr: f.getRealOutputDerivatives([vr["ball.y"]], [1]), "fmi2GetRealOutputDerivatives: Unavailable"),
         (lambda f, vr: f.cancelStep(), "fmi2CancelStep: UnavailableError: steps never run in the background"),
@@ -269,6 +273,16 @@ def test_errors_are_statuses_with_one_line_in_the_log_and_the_instance_lives_on(
     assert messages.errors[0].startswith(message)
     assert host.read(fmu) == before
     fmu.doStep(0.0, 0.125)
+
+
+def test_directional_derivatives(host):
+    fmu = host.started()
+    fmu.doStep(0.0, 0.25)
+    before = host.read(fmu)
+    outputs = [host.vr[name] for name in ("ball.ay", "ball.y", "ball.ay")]
+    assert fmu.getDirectionalDerivative(outputs, [host.vr["push"]], [3.0]) == pytest.approx([1.5, 0.0, 1.5], rel=1e-14)
+    assert fmu.getDirectionalDerivative(outputs, [], []) == [0.0] * 3
+    assert host.read(fmu) == before
 
 
 def test_a_failed_step(make_host, fake_fmu, messages):

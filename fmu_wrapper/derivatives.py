@@ -1,0 +1,62 @@
+"""Derivatives of outputs with respect to inputs at the present time.
+
+Inputs are forces: at given coordinates, velocities and contact modes, accelerations and multipliers solve
+
+    [M Phi_q^T; Phi_q 0] [a; lambda] = [Q + B u; gamma]
+
+so that every output is an affine function of the inputs u, closed contacts and joints included. The difference between
+the outputs at u + d and u - d is therefore the derivative to rounding, however large d is; no truncation enters.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import FmuValueError
+from .variables import Variable
+
+
+def check_knowns(knowns: tuple[Variable, ...], seed: npt.NDArray[np.float64]) -> None:
+    """Refuse what is no input, and a seed that is not one finite number each, with FmuValueError."""
+    for variable in knowns:
+        if variable.role != "input":
+            raise FmuValueError(
+                f"'{variable.name}' is of role {variable.role}: derivatives are with respect to inputs only"
+            )
+    if len(seed) != len(knowns):
+        raise FmuValueError(f"a seed of {len(seed)} numbers was given for {len(knowns)} inputs")
+    if not np.isfinite(seed).all():
+        raise FmuValueError(f"the seed {seed.tolist()} is not finite")
+
+
+def check_unknowns(unknowns: tuple[Variable, ...]) -> None:
+    """Refuse what is no output, with FmuValueError."""
+    for variable in unknowns:
+        if variable.role != "output":
+            raise FmuValueError(f"'{variable.name}' is of role {variable.role}: derivatives are those of outputs only")
+
+
+def along(simulation: Any, inputs: Mapping[str, float], direction: Mapping[str, float]) -> npt.NDArray[np.float64]:
+    """Derivatives of all channels (N,) along `direction`, at the values `inputs`, both by input name. The simulation is
+    left as it was, bit for bit.
+
+    Raises
+    ------
+    SimulationError : if the accelerations cannot be computed.
+    """
+    size = max((abs(x) for x in direction.values()), default=0.0)
+    if size == 0.0:
+        return np.zeros(len(simulation.channels))
+    # as large as the inputs themselves, or 1 in their unit, so that rounding of the outputs does not show
+    step = (1.0 + max(abs(inputs[name]) for name in direction)) / size
+    state = simulation.state()
+    try:
+        sides = []
+        for sign in (1.0, -1.0):
+            simulation.set_inputs({name: inputs[name] + sign * step * x for name, x in direction.items()})
+            sides.append(np.array(simulation.values(), dtype=np.float64))
+    finally:
+        simulation.restore(state)
+    return np.asarray((sides[0] - sides[1]) / (2.0 * step))

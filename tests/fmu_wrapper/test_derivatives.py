@@ -1,0 +1,84 @@
+"""Derivatives of outputs with respect to inputs: by hand, in open and in closed contact; asking leaves no trace."""
+
+import numpy as np
+import pytest
+from fmu_helpers import ball_model
+from tlismni.core.errors import TlismniError
+from tlismni.fmu_wrapper import CallOrderError, Slave
+from tlismni.models import load
+
+
+def started(source, **parameters):
+    slave = Slave(source)
+    slave.set_by_name(parameters)
+    slave.enter_initialization()
+    slave.exit_initialization()
+    return slave
+
+
+def derivatives(slave, known, *unknowns, seed=1.0):
+    def references(*names):
+        return np.array([slave.variables.by_name[n].reference for n in names], dtype=np.uint32)
+
+    return slave.directional_derivative(references(*unknowns), references(known), np.array([seed]))
+
+
+def test_pendulum_in_the_air_and_on_the_stop():
+    """In the air the torque accelerates the pendulum; on the stop it is held by the normal force and the bearing.
+
+    The slopes follow from two values of the torque each, since everything is linear in it; and from each other: on
+    the stop the moments of torque and normal force about the bearing are in balance.
+    """
+    scenario = load("pendulum_stop", restitution=0.0)
+    slave = started(scenario)
+    names = ("pendulum.angular_acceleration", "stop.normal_force", "pin.force_x", "pin.force_y")
+    seen = set()
+    for k in range(30):
+        slope = derivatives(slave, "torque", *names)
+        closed = slave["stop.mode"] == 1
+        seen.add(closed)
+        rows = []
+        for torque in (-0.25, 0.5):
+            slave.set_by_name({"torque": torque})
+            rows.append([slave[n] for n in names])
+        slave.set_by_name({"torque": 0.0})
+        secant = (np.array(rows[1]) - rows[0]) / 0.75
+        np.testing.assert_allclose(slope, secant, rtol=1e-7, atol=1e-9 * np.max(np.abs(secant)))
+        if closed:
+            assert abs(slope[0]) < 1e-12 and abs(slope[1]) > 0.1
+        else:
+            assert slope[0] > 0.1 and slope[1] == 0.0
+        slave.do_step(k * 0.05, 0.05)
+    assert seen == {True, False}
+
+
+def test_a_ball_in_the_air_and_at_rest():
+    """1/m in the air; on the floor no acceleration, and the floor carries what is not pushed up."""
+    slave = started(ball_model("b", height=0.0), restitution=0.0)
+    slave.do_step(0.0, 0.5)
+    assert slave["floor.mode"] == 1
+    found = derivatives(slave, "push", "ball.ay", "floor.normal_force", seed=2.0)
+    np.testing.assert_allclose(found, [0.0, -2.0], rtol=1e-12, atol=1e-12)
+    slave = started(ball_model("b", height=1.0))
+    found = derivatives(slave, "push", "ball.ay", "floor.normal_force", "ball.vy", seed=2.0)
+    np.testing.assert_allclose(found, [1.0, 0.0, 0.0], rtol=1e-12, atol=0.0)
+
+
+def test_asking_leaves_no_trace():
+    asked, other = (started(load("pendulum_stop", restitution=0.5)) for _ in range(2))
+    for k in range(20):
+        derivatives(asked, "torque", "pendulum.angular_acceleration", seed=1e6)
+        for slave in (asked, other):
+            slave.do_step(k * 0.05, 0.05)
+        assert asked.snapshot().data == other.snapshot().data
+
+
+def test_when_and_of_what():
+    slave = Slave(load("pendulum_stop"))
+    with pytest.raises(CallOrderError, match="cannot get derivatives in phase 'instantiated'"):
+        derivatives(slave, "torque", "pendulum.angular_acceleration")
+    slave.enter_initialization()
+    assert derivatives(slave, "torque", "pendulum.angular_acceleration")[0] > 0.1
+    for known, unknown in (("restitution", "stop.gap"), ("torque", "stop.mode"), ("torque", "time")):
+        with pytest.raises(TlismniError):
+            derivatives(slave, known, unknown)
