@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from tlismni.core import Model, simulate
 from tlismni.fmu_wrapper.export import HERE, SHIM
@@ -76,10 +77,13 @@ def test_the_page_of_exponents_runs() -> None:
 
 
 def test_the_page_of_flexible_bodies_runs() -> None:
-    names: dict[str, Any] = {}
+    found: list[dict[str, Any]] = []
     for block in blocks("flexible.md", "python"):
-        exec(block, names)
-    assert [e.kind for e in names["result"].events][:2] == ["impact", "close"]
+        found.append({})
+        exec(block, found[-1])
+    rod, cable, *_ = found
+    assert [e.kind for e in rod["result"].events][:2] == ["impact", "close"]
+    assert abs(cable["places"][:, -1] - np.stack([cable["result"]["tip.x"], cable["result"]["tip.y"]], 1)).max() < 1e-12
 
 
 def test_the_model_file_is_one() -> None:
