@@ -77,13 +77,15 @@ def test_the_page_of_exponents_runs() -> None:
 
 
 def test_the_page_of_flexible_bodies_runs() -> None:
-    found: list[dict[str, Any]] = []
+    """Each block by itself; the rod strikes the wall, the cable and the beam hang and swing."""
+    results = []
     for block in blocks("flexible.md", "python"):
-        found.append({})
-        exec(block, found[-1])
-    rod, cable, *_ = found
-    assert [e.kind for e in rod["result"].events][:2] == ["impact", "close"]
-    assert abs(cable["places"][:, -1] - np.stack([cable["result"]["tip.x"], cable["result"]["tip.y"]], 1)).max() < 1e-12
+        names: dict[str, Any] = {}
+        exec(block, names)
+        results.append(names["result"])
+    assert [e.kind for e in results[0].events][:2] == ["impact", "close"]
+    for result in results[1:]:
+        assert not result.events and np.abs(result["energy.balance"]).max() < 1e-3
 
 
 def test_the_model_file_is_one() -> None:
