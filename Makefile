@@ -35,6 +35,7 @@ lint: $(VENV)/.installed-dev
 bench: $(VENV)/.installed-dev
 	cd benchmarks && ../$(BIN)/python chain_speed.py
 	cd benchmarks && ../$(BIN)/python work_precision.py
+	cd benchmarks && ../$(BIN)/python rod_cost.py
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -1,7 +1,7 @@
 """exudyn's side of rod_cost.py: the rod as one GenericODE2 object, or as a chain of Mass1D and springs."""
 
 from dataclasses import dataclass
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import exudyn as exu
@@ -58,10 +58,10 @@ def _solve(mbs: Any, elements: int, steps: int, solver: str, modified: bool) -> 
     ti.discontinuous.useRecommendedStepSize = False
     s.solution.file.write = False
     s.linearSolver.solverType = getattr(exu.LinearSolverType, solver)
-    start = perf_counter()
+    start = process_time()
     if not mbs.SolveDynamic(s, storeSolver=True):
         raise SystemExit(f"exudyn failed: {elements} elements, {solver}")
-    taken = perf_counter() - start
+    taken = process_time() - start
     return RodRun(taken, mbs.sys["dynamicSolver"].it.newtonStepsCount / ti.numberOfSteps)
 
 

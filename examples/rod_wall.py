@@ -34,8 +34,8 @@ def run() -> dict[str, Any]:
     scenario, result = strike(massless=False)
     _, massless = strike(massless=True)
     p = scenario.parameters
-    wave = math.sqrt(p["young_modulus"] / p["density"])
-    force = p["area"] * p["velocity"] * math.sqrt(p["young_modulus"] * p["density"])
+    wave = math.sqrt(p["youngs_modulus"] / p["density"])
+    force = p["area"] * p["velocity"] * math.sqrt(p["youngs_modulus"] * p["density"])
     energy = 0.5 * p["density"] * p["area"] * p["length"] * p["velocity"] ** 2
     touch, leave = (next(e.t for e in result.events if e.kind == kind) for kind in ("close", "open"))
     plateau = (result.t > touch + 0.5 / wave) & (result.t < touch + 1.5 / wave)

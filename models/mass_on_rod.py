@@ -26,10 +26,10 @@ def mass_on_rod(
     mass_matrix: MassMatrix,
     massless_contact: bool,
     length: float,
-    young_modulus: float,
+    youngs_modulus: float,
     density: float,
     area: float,
-    relaxation_time: float,
+    damping_time: float,
     step: float | None,
     mass_ratio: float,
     gap: float,
@@ -42,8 +42,8 @@ def mass_on_rod(
     5.8996 for 4, 7.4076 for 6.
     """
     rod = AxialRod(
-        name="rod", elements=elements, length=length, axial_stiffness=young_modulus * area,
-        mass_per_length=density * area, mass_matrix=mass_matrix, relaxation_time=relaxation_time,
+        name="rod", elements=elements, length=length, axial_stiffness=youngs_modulus * area,
+        mass_per_length=density * area, mass_matrix=mass_matrix, relaxation_time=damping_time,
         massless_ends=("left",) if massless_contact else (),
     )  # fmt: skip
     mass = LinearSystem(

@@ -27,10 +27,10 @@ def rod_rod(
     mass_matrix: MassMatrix,
     massless_contact: bool,
     length: float,
-    young_modulus: float,
+    youngs_modulus: float,
     density: float,
     area: float,
-    relaxation_time: float,
+    damping_time: float,
     step: float | None,
     length_ratio: float,
     gap: float,
@@ -43,8 +43,8 @@ def rod_rod(
     with L1/L2 of the speed of approach.
     """
     rod: dict[str, Any] = {
-        "axial_stiffness": young_modulus * area, "mass_per_length": density * area, "mass_matrix": mass_matrix,
-        "relaxation_time": relaxation_time,
+        "axial_stiffness": youngs_modulus * area, "mass_per_length": density * area, "mass_matrix": mass_matrix,
+        "relaxation_time": damping_time,
     }  # fmt: skip
     striker = AxialRod(
         name="striker", elements=elements, length=length, position=-length - gap, velocity=velocity,

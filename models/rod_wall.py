@@ -24,10 +24,10 @@ def rod_wall(
     mass_matrix: MassMatrix,
     massless_contact: bool,
     length: float,
-    young_modulus: float,
+    youngs_modulus: float,
     density: float,
     area: float,
-    relaxation_time: float,
+    damping_time: float,
     step: float | None,
     gap: float,
     velocity: float,
@@ -39,8 +39,8 @@ def rod_wall(
     The data are those of the impacting bar of the siconos project's examples.
     """
     rod = AxialRod(
-        name="rod", elements=elements, length=length, axial_stiffness=young_modulus * area,
-        mass_per_length=density * area, mass_matrix=mass_matrix, relaxation_time=relaxation_time, velocity=velocity,
+        name="rod", elements=elements, length=length, axial_stiffness=youngs_modulus * area,
+        mass_per_length=density * area, mass_matrix=mass_matrix, relaxation_time=damping_time, velocity=velocity,
         massless_ends=("right",) if massless_contact else (),
     )  # fmt: skip
     end = f"x{elements}"

@@ -23,10 +23,10 @@ def rod_parameters(elements: int = 50, mass_matrix: str = "consistent") -> tuple
             "massless_contact", False, "-", "no mass at the contact node: closing takes no energy"
         ),
         ScenarioParameter("length", 1.0, "m", "of the rod", 0.0, exclusive=True),
-        ScenarioParameter("young_modulus", 210e9, "Pa", "of the rod", 0.0, exclusive=True),
-        ScenarioParameter("density", 7800.0, "kg/m3", "of the rod", 0.0, exclusive=True),
+        ScenarioParameter("youngs_modulus", 210e9, "Pa", "of the rod", 0.0, exclusive=True),
+        ScenarioParameter("density", 7800.0, "kg/m^3", "of the rod", 0.0, exclusive=True),
         ScenarioParameter("area", 3.14e-4, "m2", "cross-section of the rod", 0.0, exclusive=True),
-        ScenarioParameter("relaxation_time", 0.0, "s", "viscous stress over E times strain rate", 0.0),
+        ScenarioParameter("damping_time", 0.0, "s", "damping of the rod = this time times its stiffness", 0.0),
         ScenarioParameter(
             "step", None, "s", "time step; none: a wave passes 0.2 of an element, but at most 20 000 steps", 0.0,
             exclusive=True, optional=True,

@@ -15,9 +15,11 @@ from pydantic import Field, model_validator
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..errors import ModelError
 from ..model.base import NonNegative, Positive
 from ..model.channels import Channel
-from .base import BodyElement, Coordinate, Form, Numbering, Part, Row
+from .base import Coordinate, Form, Numbering, Part, Row
+from .flexible_body import FlexibleBody, PointShape, Section
 from .massless_end import massless_end_kernel
 
 End = Literal["left", "right"]
@@ -84,12 +86,13 @@ def axial_rod_kernel(job: int, t: float, b: Any) -> None:
             e += count
 
 
-class AxialRod(BodyElement):
+class AxialRod(FlexibleBody):
     """An elastic rod along the x axis, in linear bar elements.
 
     Its coordinates are the positions `x0` (left end) to `xN` (right end) of its nodes, so that a CoordinateContact
     between a node and a wall, or between nodes of two rods, has a gap that is a distance. Channels are `NAME.xk`,
-    `NAME.vxk`, `NAME.axk`. The model's gravity acts on it along x.
+    `NAME.vxk`, `NAME.axk`. The gravity of the model acts on it along x. Its material points are (s, 0), s m from the
+    left end of the unstrained rod; they stay on the axis.
 
     Raises
     ------
@@ -188,6 +191,37 @@ class AxialRod(BodyElement):
             form = Form(massless_end_kernel, 1, (), ((0, 0), (0, 1)))
             found.append(Part(form, (Row((rest,), (node, neighbour)),), massless=node))
         return found
+
+    def material_point(self, point: tuple[float, float]) -> PointShape:
+        """The point (s, 0), s m along the unstrained rod. Raises ModelError beyond it, and off its axis."""
+        if point[1] != 0.0:
+            raise ModelError(f"point {point} of '{self.name}' is off the axis: a rod has points (s, 0) only")
+        (e,), (xi,) = self._places(np.array([float(point[0])]))
+        shape = np.array([[1.0 - xi, xi], [0.0, 0.0]])
+        return PointShape(None, (f"x{e}", f"x{e + 1}"), (0.0, 0.0), (1.0, 0.0), shape, np.zeros((2, 2)))
+
+    def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:
+        """Strain and axial force of the elements at `points`; at a node those of the element to its right."""
+        length = self.length / self.elements
+        e, _ = self._places(points)
+        strain = (q[:, e + 1] - q[:, e]) / length - 1.0
+        rate = (v[:, e + 1] - v[:, e]) / length
+        tau = np.full(self.elements, self.relaxation_time)
+        for end in self.massless_ends:
+            tau[0 if end == "left" else -1] = 0.0
+        nothing = np.zeros_like(strain)
+        return Section(strain, nothing, self.axial_stiffness * (strain + tau[e] * rate), nothing)
+
+    def _places(self, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Elements and places in them, 0 to 1. Raises ModelError for points beyond the rod."""
+        outside = points[~((points >= 0.0) & (points <= self.length))]
+        if len(outside):
+            raise ModelError(
+                f"point {outside[0]:g} m lies outside '{self.name}', which reaches from 0 to {self.length:g} m"
+            )
+        x = points / self.length * self.elements
+        e = np.minimum(x.astype(np.int64), self.elements - 1)
+        return e, x - e
 
     def multiplier_channels(self) -> Sequence[Channel]:
         text = (

@@ -146,7 +146,7 @@ def bending(
     rigid = np.zeros((last + 2, 2 if boundary == "free" else 0))
     if boundary == "free":
         rigid[0::2, 0], rigid[0::2, 1], rigid[1::2, 1] = 1.0, grid.nodes - origin, 1.0
-    return Direction(stiffness * n2.T @ (w * n2), mass, np.setdiff1d(np.arange(last + 2), held), rigid)
+    return Direction(stiffness * n2.T @ (w * n2), mass, np.setdiff1d(np.arange(last + 2, dtype=np.intp), held), rigid)
 
 
 def stretching(grid: Grid, stiffness: float, density: float, boundary: BoundaryConditions) -> Direction:
@@ -157,5 +157,5 @@ def stretching(grid: Grid, stiffness: float, density: float, boundary: BoundaryC
     rigid = np.zeros((unknowns, 1 if boundary == "free" else 0))
     if boundary == "free":
         rigid[0::2, 0] = 1.0
-    free = np.arange(unknowns) if boundary == "free" else np.arange(1, unknowns)
+    free = np.arange(0 if boundary == "free" else 1, unknowns, dtype=np.intp)
     return Direction(stiffness * n1.T @ (w * n1), density * n0.T @ (w * n0), free, rigid)

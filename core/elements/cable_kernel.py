@@ -53,8 +53,8 @@ def _at(table: Any, n: int, k: int, u: Any) -> Any:
 
 
 @internal
-def _add_axial(par: Any, u: Any, du: Any, c_q: float, c_v: float, tangent: bool, f: Any, g: Any) -> None:
-    """Axial forces on d, s0, s1 into f (3, 2), and if `tangent` their derivatives into g (3, 3, 2, 2)."""
+def _add_axial(par: Any, u: Any, du: Any, c_q: float, c_v: float, g: Any) -> None:
+    """Derivatives of the axial forces on d, s0, s1 into g (3, 3, 2, 2)."""
     n = int(par[AXIAL_POINTS])
     stiffness, damping, length = par[AXIAL], par[AXIAL_DAMPING], par[LENGTH]
     for k in range(n):
@@ -65,12 +65,6 @@ def _add_axial(par: Any, u: Any, du: Any, c_q: float, c_v: float, tangent: bool,
         w = SHARE[n, k] * length
         rate = tx * vx + ty * vy
         force = w * (stiffness * (size - 1.0 - par[STRAIN + k]) + damping * rate)
-        if not tangent:
-            for i in range(3):
-                h = FIRST[n, k, i]
-                f[i, 0] += h * force * tx
-                f[i, 1] += h * force * ty
-            continue
         # rows of t_q: (I - t t^T)/|r'|; times the velocity
         turn = (tx * vy - ty * vx) / size
         across = c_q * force / size
@@ -90,8 +84,8 @@ def _add_axial(par: Any, u: Any, du: Any, c_q: float, c_v: float, tangent: bool,
 
 
 @internal
-def _add_bending(par: Any, u: Any, du: Any, c_q: float, c_v: float, tangent: bool, f: Any, g: Any) -> None:
-    """Bending forces on d, s0, s1 into f (3, 2), and if `tangent` their derivatives into g (3, 3, 2, 2)."""
+def _add_bending(par: Any, u: Any, du: Any, c_q: float, c_v: float, g: Any) -> None:
+    """Derivatives of the bending forces on d, s0, s1 into g (3, 3, 2, 2)."""
     n = int(par[BENDING_POINTS])
     stiffness, damping, length = par[BENDING], par[BENDING_DAMPING], par[LENGTH]
     for k in range(n):
@@ -107,12 +101,6 @@ def _add_bending(par: Any, u: Any, du: Any, c_q: float, c_v: float, tangent: boo
         kax, kay, kbx, kby = by * s - z * ax, -bx * s - z * ay, -ay * s, ax * s
         rate = kax * dax + kay * day + kbx * dbx + kby * dby
         moment = w * (stiffness * (cross * s - par[CURVATURE + k]) + damping * rate)
-        if not tangent:
-            for i in range(3):
-                h, h2 = FIRST[n, k, i], SECOND[n, k, i] / length
-                f[i, 0] += moment * (h * kax + h2 * kbx)
-                f[i, 1] += moment * (h * kay + h2 * kby)
-            continue
         y = 2.0 * s * s
         cube = 8.0 * cross * s * s * s
         aaxx = -y * (2.0 * by * ax + cross) + cube * ax * ax
@@ -145,36 +133,71 @@ def _add_bending(par: Any, u: Any, du: Any, c_q: float, c_v: float, tangent: boo
 
 
 @internal
-def _residual(b: Any, u: Any, du: Any, f: Any, g: Any) -> None:
+def _residual(b: Any) -> None:
+    """Scalars instead of small arrays, and no rates without damping: this is what most of the time goes into."""
     par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL)
     q, v, a, r = (
         vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended), vec(b.r, b.n_extended)
     )  # fmt: skip
     for e in range(b.count):
-        coord, length = coords[e], par[e, LENGTH]
-        _gather(q, coord, length, u)
-        _gather(v, coord, length, du)
-        f[:] = 0.0
-        _add_axial(par[e], u, du, 0.0, 0.0, False, f, g)
-        _add_bending(par[e], u, du, 0.0, 0.0, False, f, g)
+        c, length = coords[e], par[e, LENGTH]
+        x0, y0, x1, y1, x2, y2, x3, y3 = c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]
+        s = 1.0 / length
+        # d, s0, s1 and their rates
+        ux0, uy0 = (q[x2] - q[x0]) * s, (q[y2] - q[y0]) * s
+        ux1, uy1, ux2, uy2 = q[x1], q[y1], q[x3], q[y3]
+        damped = par[e, AXIAL_DAMPING] != 0.0 or par[e, BENDING_DAMPING] != 0.0
+        vx0, vy0, vx1, vy1, vx2, vy2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        if damped:
+            vx0, vy0 = (v[x2] - v[x0]) * s, (v[y2] - v[y0]) * s
+            vx1, vy1, vx2, vy2 = v[x1], v[y1], v[x3], v[y3]
+        fx0, fy0, fx1, fy1, fx2, fy2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        n = int(par[e, AXIAL_POINTS])
+        for k in range(n):
+            h0, h1, h2 = FIRST[n, k, 0], FIRST[n, k, 1], FIRST[n, k, 2]
+            ax, ay = h0 * ux0 + h1 * ux1 + h2 * ux2, h0 * uy0 + h1 * uy1 + h2 * uy2
+            size = math.sqrt(ax * ax + ay * ay)
+            force = par[e, AXIAL] * (size - 1.0 - par[e, STRAIN + k])
+            if damped:
+                dax, day = h0 * vx0 + h1 * vx1 + h2 * vx2, h0 * vy0 + h1 * vy1 + h2 * vy2
+                force += par[e, AXIAL_DAMPING] * (ax * dax + ay * day) / size
+            force *= SHARE[n, k] * length / size
+            px, py = force * ax, force * ay
+            fx0, fy0, fx1, fy1 = fx0 + h0 * px, fy0 + h0 * py, fx1 + h1 * px, fy1 + h1 * py
+            fx2, fy2 = fx2 + h2 * px, fy2 + h2 * py
+        n = int(par[e, BENDING_POINTS])
+        for k in range(n):
+            h0, h1, h2 = FIRST[n, k, 0], FIRST[n, k, 1], FIRST[n, k, 2]
+            g0, g1, g2 = SECOND[n, k, 0] * s, SECOND[n, k, 1] * s, SECOND[n, k, 2] * s
+            ax, ay = h0 * ux0 + h1 * ux1 + h2 * ux2, h0 * uy0 + h1 * uy1 + h2 * uy2
+            bx, by = g0 * ux0 + g1 * ux1 + g2 * ux2, g0 * uy0 + g1 * uy1 + g2 * uy2
+            w = 1.0 / (ax * ax + ay * ay)
+            bend = (ax * by - ay * bx) * w
+            kax, kay, kbx, kby = w * (by - 2.0 * bend * ax), -w * (bx + 2.0 * bend * ay), -w * ay, w * ax
+            moment = par[e, BENDING] * (bend - par[e, CURVATURE + k])
+            if damped:
+                dax, day = h0 * vx0 + h1 * vx1 + h2 * vx2, h0 * vy0 + h1 * vy1 + h2 * vy2
+                dbx, dby = g0 * vx0 + g1 * vx1 + g2 * vx2, g0 * vy0 + g1 * vy1 + g2 * vy2
+                moment += par[e, BENDING_DAMPING] * (kax * dax + kay * day + kbx * dbx + kby * dby)
+            moment *= SHARE[n, k] * length
+            kax, kay, kbx, kby = moment * kax, moment * kay, moment * kbx, moment * kby
+            fx0, fy0 = fx0 + h0 * kax + g0 * kbx, fy0 + h0 * kay + g0 * kby
+            fx1, fy1 = fx1 + h1 * kax + g1 * kbx, fy1 + h1 * kay + g1 * kby
+            fx2, fy2 = fx2 + h2 * kax + g2 * kbx, fy2 + h2 * kay + g2 * kby
         mass = par[e, MASS] * length
-        for i in range(4):
-            li = mass if i % 2 == 0 else mass * length
-            for c in range(2):
-                total = -li * WEIGHT[i] * par[e, GRAVITY_X + c]
-                for j in range(4):
-                    lj = 1.0 if j % 2 == 0 else length
-                    total += li * lj * MASS_MATRIX[i, j] * a[coord[2 * j + c]]
-                r[coord[2 * i + c]] += total
-        for c in range(2):
-            r[coord[c]] -= f[0, c] / length
-            r[coord[4 + c]] += f[0, c] / length
-            r[coord[2 + c]] += f[1, c]
-            r[coord[6 + c]] += f[2, c]
+        for axis in range(2):
+            i0, i1, i2, i3 = c[axis], c[2 + axis], c[4 + axis], c[6 + axis]
+            a0, a1, a2, a3 = a[i0], length * a[i1], a[i2], length * a[i3]
+            f0, f1, f2 = (fx0, fx1, fx2) if axis == 0 else (fy0, fy1, fy2)
+            g, m = mass * par[e, GRAVITY_X + axis], mass / 420.0
+            r[i0] += m * (156.0 * a0 + 22.0 * a1 + 54.0 * a2 - 13.0 * a3) - 0.5 * g - f0 * s
+            r[i1] += length * (m * (22.0 * a0 + 4.0 * a1 + 13.0 * a2 - 3.0 * a3) - g / 12.0) + f1
+            r[i2] += m * (54.0 * a0 + 13.0 * a1 + 156.0 * a2 - 22.0 * a3) - 0.5 * g + f0 * s
+            r[i3] += length * (m * (4.0 * a3 - 13.0 * a0 - 3.0 * a1 - 22.0 * a2) + g / 12.0) + f2
 
 
 @internal
-def _tangent(b: Any, u: Any, du: Any, f: Any, g: Any) -> None:
+def _tangent(b: Any, u: Any, du: Any, g: Any) -> None:
     par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL)
     q, v, values = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.values, b.n_values)
     slots = imat(b.slot_s, b.count, NODAL * NODAL)
@@ -186,8 +209,8 @@ def _tangent(b: Any, u: Any, du: Any, f: Any, g: Any) -> None:
             _gather(q, coord, length, u)
             _gather(v, coord, length, du)
             g[:] = 0.0
-            _add_axial(par[e], u, du, c_q, c_v, True, f, g)
-            _add_bending(par[e], u, du, c_q, c_v, True, f, g)
+            _add_axial(par[e], u, du, c_q, c_v, g)
+            _add_bending(par[e], u, du, c_q, c_v, g)
         for i in range(4):
             li = 1.0 if i % 2 == 0 else length
             # node vector i moves d (by -1/L or 1/L), s0 or s1
@@ -266,11 +289,11 @@ def _dissipated(b: Any, u: Any, du: Any) -> None:
 
 @internal
 def cable2d_kernel(job: int, t: float, b: Any) -> None:
-    u, du, f, g = np.empty((3, 2)), np.empty((3, 2)), np.empty((3, 2)), np.zeros((3, 3, 2, 2))
+    u, du, g = np.empty((3, 2)), np.empty((3, 2)), np.zeros((3, 3, 2, 2))
     if job == RESIDUAL:
-        _residual(b, u, du, f, g)
+        _residual(b)
     elif job == TANGENT:
-        _tangent(b, u, du, f, g)
+        _tangent(b, u, du, g)
     elif job == ENERGY:
         _energies(b, u)
     elif job == POWER:

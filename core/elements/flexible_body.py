@@ -18,8 +18,8 @@ from .base import BodyElement
 class PointShape:
     """A material point as a function of its body's coordinates.
 
-    With the floating frame (R, theta) and n local coordinates w: place p = R + A(theta) (offset + shape w), tangent of
-    the body's axis A(theta) (tangent + slope w). Without a floating frame R = 0 and A = 1.
+    With the floating frame (R, theta) and n local coordinates w: place p = R + A(theta) u with u = offset + shape w +
+    second(w, w)/2, tangent of the body's axis A(theta) (tangent + slope w). Without a floating frame R = 0 and A = 1.
     """
 
     frame: tuple[str, str, str] | None
@@ -33,11 +33,18 @@ class PointShape:
     """(2, n)."""
     slope: NDArray[np.float64]
     """(2, n)."""
+    second: NDArray[np.float64] | None = None
+    """Displacement of second order (2, n, n), symmetric; None: none."""
+
+    def local_place(self, local: NDArray[np.float64]) -> NDArray[np.float64]:
+        """u (2, N) in the floating frame for local coordinates (N, n)."""
+        u = np.asarray(self.offset)[:, None] + self.shape @ local.T
+        return u if self.second is None else u + 0.5 * np.einsum("ckl,tk,tl->ct", self.second, local, local)
 
     def place(self, frame: Sequence[float], local: Sequence[float]) -> tuple[float, float, float]:
         """(x, y, angle of the tangent) for the frame's coordinates (x, y, angle) and the local ones (n,)."""
         w, turn = np.asarray(local, dtype=float), _rotation(frame[2])
-        x, y = np.asarray(frame[:2]) + turn @ (np.asarray(self.offset) + self.shape @ w)
+        x, y = np.asarray(frame[:2]) + turn @ self.local_place(w[None, :])[:, 0]
         tx, ty = np.asarray(self.tangent) + self.slope @ w
         return float(x), float(y), float(frame[2] + np.arctan2(ty, tx))
 
@@ -46,8 +53,10 @@ class PointShape:
     ) -> tuple[float, float, float]:
         """Rates of `place`."""
         w, dw, turn = np.asarray(local, dtype=float), np.asarray(rates, dtype=float), _rotation(frame[2])
-        ux, uy = np.asarray(self.offset) + self.shape @ w
+        ux, uy = self.local_place(w[None, :])[:, 0]
         moved = self.shape @ dw + frame_rates[2] * np.array([-uy, ux])
+        if self.second is not None:
+            moved = moved + self.second @ dw @ w
         x, y = np.asarray(frame_rates[:2]) + turn @ moved
         tx, ty = np.asarray(self.tangent) + self.slope @ w
         dtx, dty = self.slope @ dw

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Record, Vector2
-from .beam_modes import Array, BoundaryConditions, Grid, bending, make_grid, stretching
+from .beam_modes import GAUSS_POINTS, Array, BoundaryConditions, Grid, bending, make_grid, stretching
 from .flexible_body import PointShape, Section
 from .floating_body2d import FloatingBody2D, Invariants
 
@@ -64,8 +64,8 @@ class FloatingBeam2D(FloatingBody2D):
     damping_ratio: NonNegative | tuple[NonNegative, ...] = 0.0
     """Of all modes, or one of each."""
     geometric_stiffening: bool = False
-    """Whether the beam shortens as it bends, so that centrifugal forces, axial acceleration and weight stiffen it.
-    Forces at its points do not."""
+    """Whether the beam shortens as it bends, so that centrifugal forces, axial acceleration, weight and axial forces at
+    its points stiffen it."""
     elements: Annotated[int, Field(ge=2, le=2000)] | None = None
     """Finite elements behind the modes; left out: four a mode, twenty at least."""
 
@@ -104,8 +104,9 @@ class FloatingBeam2D(FloatingBody2D):
         (wy, slope), (ux, strain) = (
             [(modes.grid.shape(np.array([s]), k) @ x)[0] for k in range(2)] for x in (modes.w, modes.u)
         )
+        second = modes.foreshortening(s) if self.geometric_stiffening else None
         return self.point_shape(
-            np.array([s - modes.origin, y]), np.array([ux - y * slope, wy]), np.array([strain, slope])
+            np.array([s - modes.origin, y]), np.array([ux - y * slope, wy]), np.array([strain, slope]), second
         )
 
     def section(self, points: Array, q: Array, v: Array) -> Section:
@@ -175,6 +176,19 @@ class BeamModes:
             damping=np.diag(2.0 * ratio * np.sqrt(self.squares) * self.modal_mass),
             G=np.array([shortening, np.zeros((n, n))]),
         )
+
+    def foreshortening(self, s: float) -> Array:
+        """g of the point at s, (2, n, n): that of the axis."""
+        grid = self.grid
+        # points and weights from the origin to s, element by element
+        low, high = min(s, self.origin), max(s, self.origin)
+        cuts = np.unique(np.clip(grid.nodes, low, high))
+        z, w = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        half = 0.5 * np.diff(cuts)
+        points = (cuts[:-1, None] + half[:, None] * (z + 1.0)).ravel()
+        weights = (half[:, None] * w).ravel() * np.sign(self.origin - s)
+        slope = grid.shape(points, 1) @ self.w
+        return np.array([slope.T @ (weights[:, None] * slope), np.zeros(2 * slope.shape[1:])])
 
     def _slope(self) -> Array:
         return self.grid.shape(self.grid.points, 1) @ self.w

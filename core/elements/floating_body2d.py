@@ -79,11 +79,11 @@ class FloatingBody2D(PlanarBody, FlexibleBody):
         """Names of the amplitudes."""
         raise NotImplementedError(f"{type(self).__name__} must name its modes")
 
-    def point_shape(self, offset: Array, shape: Array, slope: Array) -> PointShape:
-        """A point at `offset` (2,), moved by `shape` (2, n), on an axis along x whose tangent `slope` (2, n) turns."""
-        return PointShape(
-            ("x", "y", "angle"), self.mode_names(), (float(offset[0]), float(offset[1])), (1.0, 0.0), shape, slope
-        )
+    def point_shape(self, offset: Array, shape: Array, slope: Array, second: Array | None = None) -> PointShape:
+        """A point at `offset` (2,), moved by `shape` (2, n) and by `second` (2, n, n) in second order, on an axis along
+        x whose tangent `slope` (2, n) turns."""
+        place = (float(offset[0]), float(offset[1]))
+        return PointShape(("x", "y", "angle"), self.mode_names(), place, (1.0, 0.0), shape, slope, second)
 
     amplitude_unit: ClassVar[str] = "m"
 

@@ -1,6 +1,7 @@
 """The frame of a material point of a flexible body: a massless body with x, y, angle, tied to it by three rows.
 
-Phi = (p_f - p, angle - theta - arg t) with p = R + A(theta) (u0 + S w) and t = t0 + T w, see `flexible_body.py`.
+Phi = (p_f - p, angle - theta - arg t) with p = R + A(theta) u, u = u0 + S w + g(w, w)/2 and t = t0 + T w, see
+`flexible_body.py`; S + g(w, .) is what u changes by.
 The frame has no mass of its own, so the multipliers are the load on the frame, handed on to the flexible body.
 The derivatives of arg t: arg_k = (t x T_k)/|t|^2, arg_kj = (T_j x T_k)/|t|^2 - 2 (t . T_j)(t x T_k)/|t|^4.
 """
@@ -9,7 +10,9 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Literal, cast
 
-from ..compiled.jit import internal
+import numpy as np
+
+from ..compiled.jit import inlined, internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Name, Vector2
@@ -23,13 +26,26 @@ FIXED = 6
 """Coordinates before the local ones: x, y, angle of the point's frame and of the floating frame."""
 
 
+@inlined
+def along_row(par: Any, e: int, first: int, n: int, k: int, x: Any, coord: Any) -> Any:
+    """Row k of g_x and g_y, which stand from column `first` on, times the local part of x."""
+    gx, gy = 0.0, 0.0
+    for j in range(n):
+        y = x[coord[e, FIXED + j]]
+        gx += par[e, first + k * n + j] * y
+        gy += par[e, first + (n + k) * n + j] * y
+    return gx, gy
+
+
 @internal
 def material_point2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT:
         return
     width = b.ncoord
     n = width - FIXED
-    par = mat(b.par, b.count, b.npar)  # u0, t0, then S_x, S_y, T_x, T_y (n each)
+    # u0, t0, then S_x, S_y, T_x, T_y (n each), then 1 if g is not zero, g_x and g_y (n x n each)
+    par = mat(b.par, b.count, b.npar)
+    own_x, own_y = np.empty(n), np.empty(n)
     coord, row = imat(b.coord, b.count, width), imat(b.row, b.count, 3)
     q, v, a = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended)
     lam, r, values = vec(b.lam, b.m_extended), vec(b.r, b.n_extended), vec(b.values, b.n_values)
@@ -41,8 +57,16 @@ def material_point2d_kernel(job: int, t: float, b: Any) -> None:
         ix, iy, ia, jx, jy, ja = coord[e, 0], coord[e, 1], coord[e, 2], coord[e, 3], coord[e, 4], coord[e, 5]
         k0, k1, k2 = row[e, 0], row[e, 1], row[e, 2]
         ux, uy, tx, ty = par[e, 0], par[e, 1], par[e, 2], par[e, 3]
+        curved = 4 + 4 * n
         for k in range(n):
             w = q[coord[e, FIXED + k]]
+            own_x[k], own_y[k] = par[e, 4 + k], par[e, 4 + n + k]
+            if par[e, curved] != 0.0:
+                gx, gy = along_row(par, e, curved + 1, n, k, q, coord)
+                ux += 0.5 * gx * w
+                uy += 0.5 * gy * w
+                own_x[k] += gx
+                own_y[k] += gy
             ux += par[e, 4 + k] * w
             uy += par[e, 4 + n + k] * w
             tx += par[e, 4 + 2 * n + k] * w
@@ -57,11 +81,15 @@ def material_point2d_kernel(job: int, t: float, b: Any) -> None:
             dux, duy, ddux, dduy, dtx, dty, ddtx, ddty = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for k in range(n):
                 i = coord[e, FIXED + k]
-                sx, sy, wx, wy = par[e, 4 + k], par[e, 4 + n + k], par[e, 4 + 2 * n + k], par[e, 4 + 3 * n + k]
+                sx, sy, wx, wy = own_x[k], own_y[k], par[e, 4 + 2 * n + k], par[e, 4 + 3 * n + k]
                 dux += sx * v[i]
                 duy += sy * v[i]
                 ddux += sx * a[i]
                 dduy += sy * a[i]
+                if par[e, curved] != 0.0:
+                    gx, gy = along_row(par, e, curved + 1, n, k, v, coord)
+                    ddux += gx * v[i]
+                    dduy += gy * v[i]
                 dtx += wx * v[i]
                 dty += wy * v[i]
                 ddtx += wx * a[i]
@@ -94,7 +122,7 @@ def material_point2d_kernel(job: int, t: float, b: Any) -> None:
             at = (FIXED - 1) * width
             values[slot_s[e, at + FIXED - 1]] += c_q * (x * lx + y * ly)
             for k in range(n):
-                sx, sy, wx, wy = par[e, 4 + k], par[e, 4 + n + k], par[e, 4 + 2 * n + k], par[e, 4 + 3 * n + k]
+                sx, sy, wx, wy = own_x[k], own_y[k], par[e, 4 + 2 * n + k], par[e, 4 + 3 * n + k]
                 arm = c_q * (fy * sx - fx * sy)
                 values[slot_s[e, at + FIXED + k]] -= arm
                 values[slot_s[e, (FIXED + k) * width + FIXED - 1]] -= arm
@@ -102,7 +130,10 @@ def material_point2d_kernel(job: int, t: float, b: Any) -> None:
                 for j in range(n):
                     zx, zy = par[e, 4 + 2 * n + j], par[e, 4 + 3 * n + j]
                     second = (zx * wy - zy * wx) / square - 2.0 * across * (tx * zx + ty * zy) / square
-                    values[slot_s[e, (FIXED + k) * width + FIXED + j]] -= c_q * la * second
+                    second *= la
+                    if par[e, curved] != 0.0:
+                        second += fx * par[e, curved + 1 + k * n + j] + fy * par[e, curved + 1 + (n + k) * n + j]
+                    values[slot_s[e, (FIXED + k) * width + FIXED + j]] -= c_q * second
             for transposed in range(2):
                 slot = slot_jt if transposed else slot_j
                 values[slot[e, 0]] += 1.0
@@ -114,7 +145,7 @@ def material_point2d_kernel(job: int, t: float, b: Any) -> None:
                 values[slot[e, 2 * width + 2]] += 1.0
                 values[slot[e, 2 * width + 5]] -= 1.0
                 for k in range(n):
-                    sx, sy, wx, wy = par[e, 4 + k], par[e, 4 + n + k], par[e, 4 + 2 * n + k], par[e, 4 + 3 * n + k]
+                    sx, sy, wx, wy = own_x[k], own_y[k], par[e, 4 + 2 * n + k], par[e, 4 + 3 * n + k]
                     values[slot[e, FIXED + k]] -= c * sx - s * sy
                     values[slot[e, width + FIXED + k]] -= s * sx + c * sy
                     values[slot[e, 2 * width + FIXED + k]] -= (tx * wy - ty * wx) / square
@@ -171,7 +202,11 @@ class MaterialPoint2D(PlanarFrame):
         shape = self._shape(numbering.bodies)
         frame = [numbering.coordinate(self.body, name) for name in shape.frame or ()] or numbering.coordinates(GROUND)
         local = [numbering.coordinate(self.body, name) for name in shape.local]
-        parameters = (*shape.offset, *shape.tangent, *shape.shape.ravel(), *shape.slope.ravel())
+        n = len(local)
+        second = np.zeros((2, n, n)) if shape.second is None else shape.second
+        curved = float(shape.second is not None)
+        linear = (*shape.offset, *shape.tangent, *shape.shape.ravel(), *shape.slope.ravel())
+        parameters = (*linear, curved, *second.ravel())
         return Row(parameters, (*numbering.coordinates(self.name), *frame, *local))
 
     def _shape(self, bodies: Mapping[str, BodyElement]) -> PointShape:

@@ -57,13 +57,16 @@ def rod_fields(result: Result, rod: AxialRod, most_times: int | None = None) -> 
     rows = slice(None, None, step)
     position = np.column_stack([result[f"{rod.name}.x{k}"][rows] for k in range(nodes)])
     velocity = np.column_stack([result[f"{rod.name}.vx{k}"][rows] for k in range(nodes)])
-    s, length = rod.nodes, rod.length / rod.elements
-    strain = np.diff(position, axis=1) / length - 1.0
-    tau = np.full(rod.elements, rod.relaxation_time)
-    for end in rod.massless_ends:
-        tau[0 if end == "left" else -1] = 0.0
-    rate = np.diff(velocity, axis=1) / length
+    s = rod.nodes
+    middle = 0.5 * (s[1:] + s[:-1])
+    found = rod.section(middle, position, velocity)
     return RodFields(
-        result.t[rows], s, 0.5 * (s[1:] + s[:-1]), position, velocity, position - (rod.position + s), strain,
-        rod.axial_stiffness * (strain + tau * rate),
-    )  # fmt: skip
+        result.t[rows],
+        s,
+        middle,
+        position,
+        velocity,
+        position - (rod.position + s),
+        found.axial_strain,
+        found.axial_force,
+    )

@@ -27,7 +27,7 @@ def deformed_shape(result: Result, body: FlexibleBody, points: ArrayLike, times:
     for s in _points(points):
         shape = body.material_point((float(s), 0.0))
         w = q[:, [index[name] for name in shape.local]]
-        x, y = np.asarray(shape.offset)[:, None] + shape.shape @ w.T
+        x, y = shape.local_place(w)
         if shape.frame is not None:
             rx, ry, angle = (q[:, index[name]] for name in shape.frame)
             c, sn = np.cos(angle), np.sin(angle)

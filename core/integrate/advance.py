@@ -122,7 +122,8 @@ def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> 
             repaired_at = sim.t_internal
             repair(sim)
         elif code in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
-            continue
+            if code == REANALYZE:  # the matrix of the shorter step has other pivots
+                repaired_at = math.nan
         else:
             _fail(sim, code)
 

@@ -5,16 +5,23 @@ import math
 import numpy as np
 import pytest
 from tlismni.core import (
+    AppliedForce2D,
     AxialRod,
+    Constant,
     CoordinateContact,
     CoordinateDriver,
     CoordinateTerm,
     KelvinVoigt,
+    Marker2D,
+    MaterialPoint2D,
     Model,
     ModelError,
     NewtonImpact,
     PointMass2D,
     Polynomial,
+    Simulation,
+    axial_force,
+    deformed_shape,
     simulate,
 )
 from tlismni.core.flexible import rod_fields
@@ -242,3 +249,37 @@ def test_fields_along_the_rod() -> None:
         rod_fields(result, rod(81))
     with pytest.raises(ModelError, match="must be positive"):
         fields.stress(0.0)
+
+
+def test_material_points_and_section_loads() -> None:
+    """A point on the rod moves with its element, a force on it acts on its nodes; beyond the rod there is none."""
+    body = rod(8, velocity=0.3)
+    point = MaterialPoint2D(name="p", body="rod", point=(1.15, 0.0))
+    push = AppliedForce2D(name="push", marker=Marker2D(body="p"), force_x=Constant(value=3.0))
+    result = simulate(Model(gravity=(0.0, 0.0), bodies=[body, point], forces=[push]), 0.05, "newmark", step=2.5e-4)
+    mixed = 0.4 * result["rod.x4"] + 0.6 * result["rod.x5"]
+    assert np.max(np.abs(result["p.x"] - mixed)) < 1e-12 and np.max(np.abs(result["p.y"])) < 1e-12
+    momentum = result.v[:, :9] @ np.append(0.5, np.append(np.ones(7), 0.5)) * 1.5 * 0.25
+    assert np.max(np.abs(momentum - 3.0 * 0.3 - 3.0 * result.t)) < 1e-9
+    assert np.max(np.abs(result["energy.balance"])) < 1e-6
+    places = np.array([0.05, 1.15, 2.0])
+    force, fields = axial_force(result, body, places), rod_fields(result, body)
+    assert np.array_equal(force, fields.axial_force[:, [0, 4, 7]])
+    assert np.allclose(deformed_shape(result, body, [1.15])[:, 0, 0], result["p.x"], atol=1e-12)
+    for wrong, text in (((2.1, 0.0), "outside"), ((1.0, 0.1), "off the axis")):
+        with pytest.raises(ModelError, match=text):
+            body.material_point(wrong)
+
+
+def test_a_run_goes_on_bit_for_bit_from_a_state_stored_while_a_massless_end_is_closed() -> None:
+    body = rod(10, massless_ends=("right",), velocity=1.0)
+    model, h = Model(gravity=(0.0, 0.0), bodies=[body], contacts=[wall(node="x10")]), 0.2 * 0.2 / body.wave_speed
+    first, again = (Simulation(model, "newmark", step=h) for _ in range(2))
+    first.run_to(0.2, until=0.12)
+    state = first.state()
+    assert first.memory[0, 0] == 1.0
+    first.run_to(0.2)
+    again.restore(state)
+    again.run_to(0.2)
+    assert [e.kind for e in first.events] == ["close", "open"] and first.events == again.events
+    assert np.array_equal(first.values(), again.values())

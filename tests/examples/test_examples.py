@@ -104,8 +104,27 @@ def test_rod_bounces_off_the_wall_as_st_venant_says() -> None:
     assert np.mean(fields.axial_force[middle]) == pytest.approx(-f["expected_force"], rel=0.02)
 
 
+def test_hub_is_thrown_back_by_the_same_impulse_in_all_formulations() -> None:
+    f = figures("hub_beam_stop")
+    impulses = np.array(list(f["impulses"].values()))
+    assert np.ptp(impulses) < 3e-3 * impulses.mean()
+    # what hub and beam carry, by points along the beam; in the floating frame these do not shorten as it bends
+    assert f["start"] == pytest.approx(f["expected_start"], rel=1e-6)
+    assert f["impulses"]["floating frame, CCM"] == pytest.approx(f["expected_impulse"], rel=1e-3)
+    assert f["largest_energy_balance"] < 1e-5 * f["energy"]
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_example_draws_its_figure(name: str, tmp_path: Path) -> None:
     path = tmp_path / "figure.png"
     example(name).plot(figures(name), path)
     assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_rope_on_the_ground_loses_energy_at_impacts_and_in_the_material_only() -> None:
+    f = figures("cable_ground")
+    assert f["impacts"] > 8
+    assert f["largest_balance"] < 2e-3 * f["start"]
+    assert f["deepest"] > -1e-8
+    assert 0.0 < f["lost_at_impacts"] < f["start"] and 0.0 < f["lost_in_material"] < f["start"]
+    assert abs(f["shapes"][0, -1, 0] - 1.0) < 1e-12 and f["shapes"][:, :, 1].min() > -0.05

@@ -29,10 +29,10 @@ COUNTS = tuple(round(160 * 2.0 ** (0.5 * j)) for j in range(14))
 QUICK_COUNTS = COUNTS[:10]
 NEWTON_TOLERANCE = 1e-15
 QUANTITIES = ("time", "impulse")
-NOISY = (1e-9, 1e-8)
-"""Errors (s, N s) from which on a refinement by an octave that does not halve them shows rounding."""
-ROUNDING = 10.0
-"""What is not read then: errors below this multiple of the least one."""
+NOISY = (1e-10, 1e-9)
+"""Errors (s, N s) below which rounding and NEWTON_TOLERANCE may show."""
+ROUNDING = 20.0
+"""Of a case that comes there, errors below this multiple of its least one are not read: they may be rounding."""
 OCTAVE, POINTS = 2.0, 3
 """An order is taken from the runs whose step is at most OCTAVE times the finest that is read; at least POINTS."""
 LOST = 0.2
@@ -53,11 +53,8 @@ class ImpactOrderRow:
 
     def floor(self, quantity: int) -> float:
         """Errors of a quantity below this may be rounding; 0 where no step comes to it."""
-        errors = [e[quantity] for e in self.errors]
-        for k in range(len(errors) - 2):
-            if errors[k] < NOISY[quantity] and errors[k + 2] > 0.5 * errors[k]:
-                return ROUNDING * min(errors)
-        return 0.0
+        least = min((e[quantity] for e in self.errors), default=math.inf)
+        return ROUNDING * least if least < NOISY[quantity] else 0.0
 
     def window(self, quantity: int) -> slice:
         """The runs from which the order of a quantity is taken."""
@@ -116,7 +113,7 @@ def impact_orders(
 def measure(
     case: OrderCase, counts: Sequence[int] = COUNTS, starts: Sequence[tuple[float, float]] = STARTS
 ) -> ImpactOrderRow:
-    """Run one case with each number of steps, until its errors are at rounding."""
+    """Run one case with each number of steps."""
     steps, errors, failed = [], [], []
     problems = tuple(_problem(start) for start in starts)
     t_end = problems[0][0].t_end
@@ -131,9 +128,6 @@ def measure(
             continue
         steps.append(t_end / count)
         errors.append(found)
-        row = ImpactOrderRow(case, tuple(steps), tuple(errors), tuple(failed))
-        if all(row.floor(quantity) > 0.0 for quantity in range(len(QUANTITIES))):
-            break
     return ImpactOrderRow(case, tuple(steps), tuple(errors), tuple(failed))
 
 
