@@ -107,8 +107,8 @@ def test_rod_bounces_off_the_wall_as_st_venant_says() -> None:
 def test_hub_is_thrown_back_by_the_same_impulse_in_all_formulations() -> None:
     f = figures("hub_beam_stop")
     impulses = np.array(list(f["impulses"].values()))
-    assert np.ptp(impulses) < 3e-3 * impulses.mean()
-    # what hub and beam carry, by points along the beam; in the floating frame these do not shorten as it bends
+    assert np.ptp(impulses) < 1e-3 * impulses.mean()
+    # what hub and beam carry, by points along the beam
     assert f["start"] == pytest.approx(f["expected_start"], rel=1e-6)
     assert f["impulses"]["floating frame, CCM"] == pytest.approx(f["expected_impulse"], rel=1e-3)
     assert f["largest_energy_balance"] < 1e-5 * f["energy"]
