@@ -8,13 +8,13 @@ so that every output is an affine function of the inputs u, closed contacts and 
 the outputs at u + d and u - d is therefore the derivative to rounding, however large d is; no truncation enters.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .errors import FmuValueError
+from .errors import FmuError, FmuValueError
 from .variables import Variable
 
 
@@ -50,13 +50,22 @@ def along(simulation: Any, inputs: Mapping[str, float], direction: Mapping[str, 
     if size == 0.0:
         return np.zeros(len(simulation.channels))
     # as large as the inputs themselves, or 1 in their unit, so that rounding of the outputs does not show
-    step = (1.0 + max(abs(inputs[name]) for name in direction)) / size
+    step = 1.0 + max(abs(inputs[name]) for name in direction)
     state = simulation.state()
     try:
         sides = []
         for sign in (1.0, -1.0):
-            simulation.set_inputs({name: inputs[name] + sign * step * x for name, x in direction.items()})
+            simulation.set_inputs({name: inputs[name] + sign * step * (x / size) for name, x in direction.items()})
             sides.append(np.array(simulation.values(), dtype=np.float64))
     finally:
         simulation.restore(state)
-    return np.asarray((sides[0] - sides[1]) / (2.0 * step))
+    with np.errstate(all="ignore"):  # what is not finite is reported below
+        found = (sides[0] - sides[1]) / (2.0 * step) * size
+    return np.asarray(found)
+
+
+def check_finite(outputs: Sequence[Variable], found: npt.NDArray[np.float64]) -> None:
+    """Refuse derivatives that are not finite, with FmuError."""
+    bad = [f"{v.name}: {x}" for v, x in zip(outputs, found, strict=True) if not np.isfinite(x)]
+    if bad:
+        raise FmuError(f"derivatives are not finite ({', '.join(bad)}): inputs or seed are too large for the outputs")

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from .description_parts import About
+from .documentation import documentation
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
 from .libpython import library_record, python_record, shared_library
@@ -90,6 +91,7 @@ def export_fmu(
     }
     files = {
         "modelDescription.xml": description(slave.variables, slave.settings, about),
+        "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": _json(settings),
         f"resources/{PYTHON_FILE}": _json(python_record()),

@@ -7,8 +7,7 @@ statuses.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,18 +15,16 @@ import numpy.typing as npt
 
 from . import log as logs
 from .derivatives import check_knowns, check_unknowns
-from .errors import CallOrderError, FmuValueError, SnapshotError, Status
+from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
-from .log import Log, LogCallback
-from .phases import EVENT_PHASES, RUNNING, SETTABLE, WAYS, Phase
-from .run import Run, SimulationFactory, StepEnd, build_simulation
-from .settings import Settings
-from .snapshot import Snapshot, identity
-from .values import Values, check_values
-from .variables import TIME, Kind, Variable, VariableTable, build_table
+from .phases import EVENT_PHASES, RUNNING, SETTABLE, Phase
+from .run import Run, StepEnd
+from .slave_state import SlaveState
+from .values import check_values
+from .variables import Kind, Variable
 
 
-class Slave:
+class Slave(SlaveState):
     """A model with its solver as a co-simulation slave.
 
     Parameters
@@ -49,53 +46,7 @@ class Slave:
     >>> slave.do_step(0.0, 0.01); slave["ball.y"]    # doctest: +SKIP
     """
 
-    def __init__(
-        self,
-        source: Any,
-        *,
-        name: str = "slave",
-        variables: VariableTable | None = None,
-        on_log: LogCallback | None = None,
-        logging_on: bool = False,
-        event_mode: bool = False,
-        early_return: bool = False,
-        simulation_factory: SimulationFactory | None = None,
-        **solver: Any,
-    ) -> None:
-        self.model, self.settings = Settings.of(source, **solver)
-        self.name = name
-        self.log = Log(on_log, logging_on)
-        self.event_mode, self.early_return = event_mode, early_return
-        self._factory = simulation_factory
-        if variables is None:
-            channels = build_simulation(simulation_factory, self.model, self.settings).channels
-            variables = build_table(self.model, self.settings, channels)
-        self.variables = variables
-        self.identity = identity(self.model, self.settings, variables)
-        self._run: Run | None = None
-        self.reset()
-
     # life
-
-    @property
-    def phase(self) -> Phase:
-        """Where the slave is in its life."""
-        return self._phase
-
-    @property
-    def time(self) -> float:
-        """The slave's own time, s."""
-        return self._time
-
-    def reset(self) -> None:
-        """Back to the state of a new slave: start values, no experiment, phase `instantiated`."""
-        self._phase = Phase.INSTANTIATED
-        self._values = Values(self.variables)
-        self._start_time = self._time = 0.0
-        self._stop_time: float | None = None
-        self._rtol_given = False
-        self._run = None
-        self._stale = True
 
     def setup(self, start_time: float = 0.0, stop_time: float | None = None, tolerance: float | None = None) -> None:
         """Fix the experiment: times in s; `tolerance` is taken as rtol unless `solver.rtol` is set by name.
@@ -188,25 +139,19 @@ class Slave:
         target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
         seen = len(run.events)
-        with self._failing():
+        try:  # not `_failing`: a context manager at every step is dear
             run.apply_inputs(self._values)
             end = run.advance(target, self.event_mode, self.early_return)
             run.read(self._values)
+        except BaseException:
+            self._phase = Phase.FAILED
+            raise
         self._set_time(end.time)
         self._stale = False
         if end.event_due:
             self._phase = Phase.EVENT_DUE
         self._log_events(run, seen)
         return end
-
-    @contextmanager
-    def _failing(self) -> Iterator[None]:
-        """What goes wrong in here leaves half a step, an interrupt from the keyboard too."""
-        try:
-            yield
-        except BaseException:
-            self._phase = Phase.FAILED
-            raise
 
     def _log_events(self, run: Run, seen: int) -> None:
         if self.log.wants(logs.EVENTS):
@@ -299,83 +244,3 @@ class Slave:
         for variable, x in zip(inputs, seed.tolist(), strict=True):
             direction[variable.name] = direction.get(variable.name, 0.0) + x
         return self._engine().derivatives(outputs, direction)
-
-    # state
-
-    def snapshot(self) -> Snapshot:
-        """The whole state. Raises CallOrderError after a failed step, whose state is worthless."""
-        self._need("get the state", *(p for p in Phase if p != Phase.FAILED))
-        return Snapshot(
-            phase=self._phase,
-            start_time=self._start_time,
-            stop_time=self._stop_time,
-            time=self._time,
-            rtol_given=self._rtol_given,
-            values=self._values.copy(),
-            applied=() if self._run is None else self._run.applied,
-            simulation=None if self._run is None else self._run.state(),
-            identity=self.identity,
-        )
-
-    def restore(self, snapshot: Snapshot) -> None:
-        """Take over a state that `snapshot` gave, here or in another slave of the same model and settings.
-
-        Raises
-        ------
-        SnapshotError : if it is no snapshot, or belongs to another model or other settings.
-        """
-        if not isinstance(snapshot, Snapshot):
-            raise SnapshotError(
-                f"a Snapshot is needed to restore, not {type(snapshot).__name__}; bytes go through snapshot_from_bytes"
-            )
-        if snapshot.identity != self.identity:
-            raise SnapshotError("the stored state belongs to another model or other settings")
-        if snapshot.phase in EVENT_PHASES and not self.event_mode:
-            raise SnapshotError(
-                f"the state was stored in phase '{snapshot.phase}', and this instance has no event mode: instantiate "
-                "it with eventModeUsed = true"
-            )
-        values = snapshot.values.copy()
-        run = None
-        if snapshot.simulation is not None:
-            run = self._run
-            if run is None or run.key != Run.key_of(values, snapshot.start_time):
-                run = self._build(values, snapshot.start_time)
-            try:
-                run.restore(snapshot.simulation, snapshot.applied)
-            except BaseException:  # what is left may be half of each
-                self._phase = Phase.FAILED
-                raise
-        self._run, self._values = run, values
-        self._phase, self._rtol_given = snapshot.phase, snapshot.rtol_given
-        self._start_time, self._stop_time, self._time = snapshot.start_time, snapshot.stop_time, snapshot.time
-        self._stale = run is None or snapshot.applied != tuple(values[v] for v in self.variables.block("input"))
-
-    def snapshot_from_bytes(self, data: bytes) -> Snapshot:
-        """The snapshot whose `.data` is `data`. Raises SnapshotError if it is none, or not of this slave's kind."""
-        return Snapshot.from_data(data, self.variables, self.identity)
-
-    # inside
-
-    def _need(self, what: str, *phases: Phase) -> None:
-        if self._phase not in phases:
-            raise CallOrderError(f"cannot {what} in phase '{self._phase}': {WAYS[self._phase]}")
-
-    def _build(self, values: Values, start_time: float) -> Run:
-        return Run(self._factory, self.model, self.settings, values, start_time)
-
-    def _engine(self) -> Run:
-        if self._run is None:
-            self._run = self._build(self._values, self._start_time)
-        return self._run
-
-    def _refresh(self) -> None:
-        """Make the outputs fit the parameters and inputs."""
-        run = self._engine()
-        run.apply_inputs(self._values)
-        run.read(self._values)
-        self._stale = False
-
-    def _set_time(self, t: float) -> None:
-        self._time = t
-        self._values[self.variables.by_reference[TIME]] = t

@@ -5,7 +5,7 @@ CLOSED = 1.0  # CCM: the gap is a constraint
 ACTIVE = 2.0  # CCFM: the force law acts
 RELEASED = 3.0  # CCFM: the force has reached zero while the shapes still overlap
 
-MODE_NAMES = {OPEN: "open", CLOSED: "closed", ACTIVE: "active", RELEASED: "released"}
+MODE_NAMES: dict[float, str] = {OPEN: "open", CLOSED: "closed", ACTIVE: "active", RELEASED: "released"}
 
 # how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
 STICKS = 0.0  # its sliding distance is a constraint

@@ -96,6 +96,26 @@ def test_every_scenario_validates_in_both_versions(tmp_path, name):
         assert validate_fmu(str(export_fmu(scenario, tmp_path / "x.fmu", version))) == [], version
 
 
+@pytest.mark.parametrize(
+    "name", ["bouncing_ball", "double_pendulum_wall", "newtons_cradle", "slider_crank_stop", "stick_slip"]
+)
+def test_scenarios_through_the_binary_are_the_simulation(tmp_path, name):
+    """All real channels, bit for bit, over an irregular grid that passes the first events."""
+    scenario = load(name)
+    fmu = Fmu3(scenario, tmp_path)
+    instance, simulation = fmu.instance(), simulation_of(scenario)
+    columns = [c.name for c in simulation.channels if c.kind == "real"]
+    real = [k for k, c in enumerate(simulation.channels) if c.kind == "real"]
+    t, end = 0.0, min(scenario.t_end, 1.0)
+    for h in end / 12 * np.random.default_rng(4).uniform(0.5, 1.5, 12):
+        instance.doStep(t, h)
+        simulation.advance(t + h)
+        t = t + h
+        assert instance.getFloat64([fmu.vr[c] for c in columns]) == simulation.values()[real].tolist()
+    assert instance.getInt32([fmu.vr["solver.events"]]) == [len(simulation.events)]
+    instance.freeInstance()
+
+
 @pytest.mark.parametrize("irregular", [False, True], ids=["fixed", "irregular"])
 def test_fmpy_gives_the_simulation_bit_for_bit(ball, irregular):
     signal = None

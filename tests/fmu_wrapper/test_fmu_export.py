@@ -74,6 +74,19 @@ def test_enumerations_name_their_values(fake_fmu, version):
     assert [(item.name, item.value) for item in state.declaredType.items] == [("untouched", "0"), ("touched", "1")]
 
 
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_the_documentation_names_parts_and_variables(fake_fmu, version):
+    source = ball_model().model_copy(update={"description": "a <ball> & a floor"})
+    path = fake_fmu(fmi_version=version, source=source)
+    with zipfile.ZipFile(path) as archive:
+        page = archive.read("documentation/index.html").decode()
+    root = etree.HTML(page)
+    assert page.startswith("<!DOCTYPE html>") and root.findtext("body/p") == "a <ball> & a floor"
+    cells = {cell.text for cell in root.iter("td")}
+    assert {v.name for v in fmpy.read_model_description(path).modelVariables} - {"time"} <= cells
+    assert {"DiskOnHalfPlane2D", "AppliedForce2D", "PointMass2D", "FloorState", "N", "ebdf"} <= cells
+
+
 def test_default_experiment_and_capabilities(fake_fmu):
     description = fmpy.read_model_description(fake_fmu(t_end=2.5, rtol=1e-7))
     experiment = description.defaultExperiment

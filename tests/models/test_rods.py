@@ -79,7 +79,7 @@ def test_a_massless_contact_node_takes_no_energy_and_calms_the_force(mass_matrix
     assert result["energy.impact_loss"][-1] == 0.0 and result.events[0].approach_speed == pytest.approx(SPEED)
     stored = result["energy.kinetic"] + result["energy.strain"]
     assert np.max(np.abs(stored / ENERGY - 1.0)) < 1e-8
-    assert np.max(np.abs(plateau(result))) < 0.02
+    assert np.max(np.abs(plateau(result))) < (0.02 if mass_matrix == "consistent" else 1e-3)
     if mass_matrix == "consistent":
         assert np.max(np.abs(plateau(run("rod_wall", elements=50)))) > 0.1
     assert duration(result) == pytest.approx(2.0, abs=0.05)
