@@ -33,6 +33,8 @@ def plot_damping(rows: Sequence[DampingRow], path: Path) -> Path:
                         1e-3 * row.frequencies, np.maximum(row.spectrum, FLOOR), color=str(0.95 - shade), linewidth=1.0,
                         label=f"alpha = {row.alpha:g}",
                     )  # fmt: skip
+                if not any(r.method == method for r in here):
+                    panel.text(0.5, 0.5, "no run comes to its end", ha="center", va="center", transform=panel.transAxes)
                 panel.set_title(f"{label}: HHT {NAMES[method]}", fontsize=9)
                 panel.set_xlabel("frequency, kHz")
                 panel.set_ylabel("amplitude / mean force")
@@ -44,7 +46,7 @@ def plot_damping(rows: Sequence[DampingRow], path: Path) -> Path:
                 )  # fmt: skip
             line[2].set_xlabel("-alpha")
             line[2].set_ylabel("rms / mean force")
-            line[2].set_ylim(bottom=0.0)
+            line[2].set_ylim(0.0, 1.1 * max((r.rms for r in here), default=1.0))
             line[2].legend(fontsize=8)
         axes[0][0].legend(fontsize=7)
         figure.savefig(path)
