@@ -26,8 +26,8 @@ from tlismni.models import load
 
 REPEATS = 3
 STEP = 1e-3
-TOLERANCE = 1e-8
-"""Of our Newton iteration, on coordinates and velocities."""
+TOLERANCE = 1e-6
+"""Of our Newton iteration, on coordinates and velocities, as of exudyn's."""
 LARGEST_DENSE = 40
 """Elements beyond which a dense factorisation is out of the question."""
 
@@ -40,8 +40,8 @@ class Case:
     steps: int
 
 
-# the same window of the motion for all: later steps take fewer factorisations
-CASES = (Case(8, 160), Case(32, 160), Case(128, 160), Case(512, 160), Case(4096, 160))
+# later steps take fewer factorisations: the same window for those that are compared; at 4096 exudyn ends soon after it
+CASES = (Case(8, 1000), Case(32, 160), Case(128, 160), Case(512, 160), Case(4096, 40))
 
 
 @dataclass(frozen=True)
