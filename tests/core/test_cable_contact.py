@@ -21,6 +21,7 @@ from tlismni.core import (
     PointMass2D,
     Revolute2D,
     RigidBody2D,
+    curvature,
     simulate,
 )
 from tlismni.core.contact.modes import ACTIVE, CLOSED
@@ -98,21 +99,47 @@ def check_passage(result, elements):
 
 
 def test_a_mass_slides_over_element_borders_as_a_constraint():
-    """Plastic contact: after it has closed it stays closed over all borders, the force goes on there, and the energy
-    balance holds."""
+    """Plastic contact: the gap stays closed over the borders in contact, the force changes there no more than in the
+    steps beside, and the energy balance holds."""
     result = simulate(bridge(NewtonImpact(restitution=0.0)), 0.5, rtol=1e-6)
     borders = check_passage(result, 6)
     force, inside = result["c.normal_force"], result["c.in_contact"] > 0.5
     largest = force.max()
     for k in borders:
         if inside[k] and inside[k + 1]:
-            # as far as the force moves in the steps beside the border
-            near = np.abs(np.diff(force[max(k - 6, 0) : k + 8]))
+            # as far as the force moves in the steps beside this one
+            near = np.delete(np.abs(np.diff(force[max(k - 6, 0) : k + 8])), min(k, 6))
             assert abs(force[k + 1] - force[k]) < 3.0 * np.max(near) + 1e-3 * largest
     assert np.abs(result["c.gap"][inside]).max() < 1e-9
     assert abs(result["energy.balance"][-1]) < 1e-4
     assert events(result, "close")
     assert not [e for e in events(result, "impact") if e.t > 0.3 and e.energy_loss > 1e-3]
+
+
+def test_a_constraint_force_jumps_at_borders_by_mass_and_curvature():
+    """Where the foot passes from cubic to cubic: |dN| <= m v^2 |d kappa|, less because the cable gives way, with its
+    sign; no more than rounding and a step's change where the curvature goes on."""
+    model = bridge(NewtonImpact(restitution=0.0), speed=1.0, mass=1.0)
+    result = simulate(model, 1.4, rtol=1e-6)
+    force, inside, dt = result["c.normal_force"], result["c.in_contact"] > 0.5, np.diff(result.t)
+    found = 0
+    for node in range(1, 6):
+        (x, y), (tx, ty) = (
+            [result[f"cable.{what}{axis}{node}"] for axis in ("x", "y")] for what in ("", "slope_")
+        )  # fmt: skip
+        past = (result["ball.x"] - x) * tx + (result["ball.y"] - y) * ty > 0.0
+        before, behind = curvature(result, model.bodies[1], 2.0 * node / 6.0 + np.array([-1e-7, 1e-7])).T
+        for k in np.flatnonzero(past[1:] != past[:-1]):
+            if not (inside[k] and inside[k + 1] and dt[k] > 0.0):
+                continue
+            square = sum((result[f"ball.v{a}"][k] - result[f"cable.v{a}{node}"][k]) ** 2 for a in ("x", "y"))
+            largest = 1.0 * square * (behind[k] - before[k]) * (1.0 if past[k + 1] else -1.0)
+            # as far as the force moves in the steps beside this one
+            near = np.delete(np.abs(np.diff(force[max(k - 6, 0) : k + 8])), min(k, 6)).max()
+            share = (force[k + 1] - force[k]) / largest
+            assert -3.0 * near / abs(largest) < share < 0.5 + 3.0 * near / abs(largest)
+            found += 1
+    assert found >= 4
 
 
 def test_a_mass_slides_over_element_borders_with_a_contact_force():

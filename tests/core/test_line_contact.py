@@ -336,20 +336,49 @@ def test_ball_on_a_rope_keeps_the_balance(law, friction):
         assert max(residuals(result)) < 1e-8
 
 
-def test_force_goes_on_from_piece_to_piece():
-    """Over the nodes of a bent line the force of a constraint stays continuous but for its curvature, which jumps by
-    the line's: |dN| = m v^2 |d kappa|, and a force law's does not jump at all."""
-    nodes = tuple(Marker2D(point=(x, 0.1 * x * (x - 4.0))) for x in np.linspace(0.0, 4.0, 9))
+BENT = np.array([(x, 0.1 * x * (x - 4.0)) for x in np.linspace(0.0, 4.0, 9)])
+
+
+def hollow(law):
+    """A ball of radius 0.2 that slides down a bent line."""
+    nodes = tuple(Marker2D(point=tuple(place)) for place in BENT)
     ball = PointMass2D(name="ball", mass=1.0, position=(0.12, 0.25), velocity=(0.5, 0.0))
-    line = DiskOnLine2D(
-        name="c", line=Line2D(nodes=nodes, rounding=1.0), disk=Disk2D(marker=on("ball"), radius=0.2),
-        law=KelvinVoigt(stiffness=1e4, damping=200.0),
-    )  # fmt: skip
-    result = simulate(Model(bodies=[ball], contacts=[line], gravity=(0.0, -G)), 1.2, rtol=1e-8, max_step=1e-4)
+    disk = Disk2D(marker=on("ball"), radius=0.2)
+    line = DiskOnLine2D(name="c", line=Line2D(nodes=nodes, rounding=1.0), disk=disk, law=law)
+    return Model(bodies=[ball], contacts=[line], gravity=(0.0, -G))
+
+
+def test_force_goes_on_from_piece_to_piece():
+    """Over the nodes of a bent line a force law's force does not jump at all."""
+    result = simulate(hollow(KelvinVoigt(stiffness=1e4, damping=200.0)), 1.2, rtol=1e-8, max_step=1e-4)
     pressed = (result.t > 0.3) & (result["ball.x"] < 3.5)
     force = result["c.normal_force"][pressed]
     assert result["ball.x"][pressed].max() > 2.0
     assert np.abs(np.diff(force)).max() < 0.02 * force.max()
+
+
+def test_constraint_force_jumps_with_the_curvature_alone():
+    """N = m (g n_y + v^2 kappa) along the whole line, with kappa = k/(1 - r k) of the path of the disk's centre beside
+    a line of curvature k: at the borders of the pieces it jumps by m v^2 d kappa."""
+    result = simulate(hollow(NewtonImpact(restitution=0.0)), 1.2, rtol=1e-8)
+    points, tangents = drawn(BENT, 1.0)
+    length = np.linalg.norm(tangents, axis=-1)
+    normals = np.stack([-tangents[..., 1], tangents[..., 0]], axis=-1) / length[..., None]
+    bend = 400.0 * (tangents[:, 1:2] - tangents[:, :1])  # of a quadratic: constant
+    curve = (tangents[..., 0] * bend[..., 1] - tangents[..., 1] * bend[..., 0]) / length**3
+    path, centres = curve / (1.0 - 0.2 * curve), points + 0.2 * normals
+    close = next(e.t for e in events(result, "close"))
+    resting = result.t > close
+    x, force = result["ball.x"][resting], result["c.normal_force"][resting]
+    square = (result["ball.vx"] ** 2 + result["ball.vy"] ** 2)[resting]
+    piece = np.searchsorted(centres[:, -1, 0], x)
+    exact = [
+        G * np.interp(place, centres[p, :, 0], normals[p, :, 1]) + v2 * np.interp(place, centres[p, :, 0], path[p])
+        for place, v2, p in zip(x, square, piece, strict=True)
+    ]
+    assert np.abs(force - exact).max() < 1e-6 * force.max()
+    jumps = path[1:, 0] - path[:-1, -1]
+    assert len(set(piece)) >= 5 and np.abs(jumps[piece[0] : piece[-1]]).max() > 0.1  # the first: from straight to bent
 
 
 # ---- the record -----------------------------------------------------------------------------------------------------
