@@ -161,6 +161,11 @@ class AxialRod(FlexibleBody):
             stiffness[here] += [[k, -k], [-k, k]]
         return mass, stiffness
 
+    def weight(self, gravity: float) -> NDArray[np.float64]:
+        """Forces (N + 1,) on the nodes, N, of gravity along x, m/s^2."""
+        table = self._parameters(gravity)
+        return np.append(table[:, 6], 0.0) + np.append(0.0, table[:, 7])
+
     def coordinate_records(self) -> Sequence[Coordinate]:
         return _coordinates(self.elements + 1, self.length)
 
@@ -222,6 +227,8 @@ class AxialRod(FlexibleBody):
                 f"point {outside[0]:g} m lies outside '{self.name}', which reaches from 0 to {self.length:g} m"
             )
         x = points / self.length * self.elements
+        # a node counts as one, in spite of rounding
+        x = np.where(np.abs(x - np.round(x)) < 1e-9 * self.elements, np.round(x), x)
         e = np.minimum(x.astype(np.int64), self.elements - 1)
         return e, x - e
 

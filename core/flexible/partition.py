@@ -19,13 +19,21 @@ from ..errors import ModelError
 from .reduction import craig_bampton
 
 
-def partition_rod(rod: AxialRod, region: int, modes: int) -> tuple[LinearSystem, NDArray[np.float64]]:
+def partition_rod(
+    rod: AxialRod, region: int, modes: int, gravity: float = 0.0
+) -> tuple[LinearSystem, NDArray[np.float64]]:
     """A rod whose last `region` elements stay, while those before them are reduced to `modes` modes.
+
+    Parameters
+    ----------
+    gravity : along x, m/s^2; as the model's gravity does not act on a LinearSystem, the weight is a force of the body.
 
     Returns
     -------
     body : LinearSystem of the rod's name with coordinates `u0` .. `u{region}`, displacements (m) of the nodes from the
-        border of the region to the rod's right end, then `z1` .. `z{modes}`, modal amplitudes.
+        border of the region to the rod's right end, then `z1` .. `z{modes}`, modal amplitudes. Displacements are those
+        of the rod whose left end is at 0; they start at its `position`. The potential energy of the weight is zero
+        without displacements.
     basis : displacements of all nodes of the rod from them, (elements + 1, region + 1 + modes).
 
     Raises
@@ -48,6 +56,8 @@ def partition_rod(rod: AxialRod, region: int, modes: int) -> tuple[LinearSystem,
         mass=_rows(found.mass),
         stiffness=_rows(found.stiffness),
         damping=_rows(rod.relaxation_time * found.stiffness) if rod.relaxation_time else None,
+        force=tuple((found.basis.T @ rod.weight(gravity)).tolist()) if gravity else None,
+        position=(*(rod.position,) * (region + 1), *(0.0,) * modes),
         velocity=(*(rod.velocity,) * (region + 1), *(0.0,) * modes),
         units=(*("m",) * (region + 1), *("-",) * modes),
         scales=(rod.length,) * size,

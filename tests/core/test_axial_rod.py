@@ -269,6 +269,10 @@ def test_material_points_and_section_loads() -> None:
     force, fields = axial_force(result, body, places), rod_fields(result, body)
     assert np.array_equal(force, fields.axial_force[:, [0, 4, 7]])
     assert np.allclose(deformed_shape(result, body, [1.15])[:, 0, 0], result["p.x"], atol=1e-12)
+    fine = rod(100)  # a node is a node in spite of rounding: 0.29 * 100 is less than 29
+    assert 0.58 / 2.0 * 100 < 29.0 and fine.material_point((0.58, 0.0)).local[0] == "x29"
+    assert all(fine.material_point((k * 0.02, 0.0)).local[0] == f"x{k}" for k in range(100))
+    assert fine.material_point((0.59, 0.0)).shape[0] == pytest.approx([0.5, 0.5])
     for wrong, text in (((2.1, 0.0), "outside"), ((1.0, 0.1), "off the axis")):
         with pytest.raises(ModelError, match=text):
             body.material_point(wrong)

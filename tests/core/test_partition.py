@@ -10,6 +10,7 @@ from tlismni.core import (
     AxialRod,
     CoordinateContact,
     CoordinateTerm,
+    KelvinVoigt,
     Model,
     ModelError,
     NewtonImpact,
@@ -126,6 +127,32 @@ def test_until_the_border_sends_an_echo_the_region_alone_decides_the_force() -> 
     t = GAP / 0.1 + np.linspace(0.01, 0.35, 200) / WAVE
     few, many = (np.interp(t, r.t, r["wall.normal_force"]) for r in (partitioned(20, 5), full()))
     assert np.max(np.abs(few - many)) < 0.01 * THEORY
+
+
+@pytest.mark.parametrize("mass_matrix", ["consistent", "lumped"])
+def test_a_partitioned_rod_has_the_weight_and_the_place_of_the_full_one(mass_matrix: str) -> None:
+    """Thrown, it falls on a spring at its end under gravity along x: with all modes the same motion; with few of them
+    the same total weight."""
+    rod = ROD.model_copy(update={"elements": 12, "position": 0.3, "velocity": 0.1, "mass_matrix": mass_matrix})
+    law, results = KelvinVoigt(stiffness=1e5, damping=0.0), []
+    part, basis = partition_rod(rod, 4, 8, gravity=-300.0)
+    wide = 0.3 + rod.length
+    for body, node, offset in ((rod, "x12", wide), (part, "u4", 0.3)):
+        term = CoordinateTerm(body="rod", coordinate=node)
+        spring = CoordinateContact(name="spring", offset=-offset, terms=(term,), law=law)
+        model = Model(gravity=(-300.0, 0.0), bodies=[body], contacts=[spring])
+        results.append(simulate(model, 4e-3, "newmark", step=4e-6))
+    full, part_result = results
+    places = basis @ np.stack([part_result[f"rod.{name}"] for name in part.coordinates])
+    exact = np.stack([full[f"rod.x{k}"] for k in range(13)]) - rod.nodes[:, None]
+    moved = np.abs(exact - 0.3).max()
+    assert np.abs(exact[:, 0] - 0.3).max() < 1e-12 and moved > 5e-4
+    assert np.abs(places - exact).max() < 1e-6 * moved
+    assert full["spring.normal_force"].max() > 0.0
+    few, _ = partition_rod(rod, 4, 1, gravity=-300.0)
+    rigid = np.array([1.0] * 5 + [0.0])
+    assert rigid @ np.array(few.force) == pytest.approx(-300.0 * ROD.mass_per_length * ROD.length, rel=1e-12)
+    assert partition_rod(rod, 4, 1)[0].force is None
 
 
 def test_local_impulse_comes_to_that_of_the_whole_rod_with_the_regions_size() -> None:
