@@ -86,13 +86,42 @@ def stress(
 
     Raises
     ------
-    ModelError : for an area or a second moment that is not positive.
+    ModelError : for an area or a second moment that is not positive, or a body that does not tell its axial force, as a
+        FloatingBeam2D without axial modes: `bending_stress` is what is known of it.
     """
-    for name, value in (("area", area), ("second_moment", second_moment)):
+    _positive(body, area=area, second_moment=second_moment)
+    found = section(result, body, points, times)
+    if found.axial_force.size and np.all(np.isnan(found.axial_force)):
+        raise ModelError(
+            f"stress in '{body.name}' needs its axial force, which a {body.type} tells only with axial_modes (or an "
+            "axial attachment) and axial_stiffness: give it these, or ask for bending_stress, the part of bending alone"
+        )
+    return found.axial_force / area - found.bending_moment * height / second_moment
+
+
+def bending_stress(
+    result: Result,
+    body: FlexibleBody,
+    points: ArrayLike,
+    *,
+    second_moment: float,
+    height: float,
+    times: ArrayLike | None = None,
+) -> Floats:
+    """Normal stress of bending alone (N, points), Pa: -M height/I, `stress` without its part of the axial force.
+
+    Raises
+    ------
+    ModelError : for a second moment that is not positive.
+    """
+    _positive(body, second_moment=second_moment)
+    return -bending_moment(result, body, points, times) * height / second_moment
+
+
+def _positive(body: FlexibleBody, **values: float) -> None:
+    for name, value in values.items():
         if not value > 0.0:
             raise ModelError(f"{name} = {value!r} of the cross-section of '{body.name}' must be positive")
-    found = section(result, body, points, times)
-    return found.axial_force / area - found.bending_moment * height / second_moment
 
 
 def _points(points: ArrayLike) -> Floats:
@@ -110,11 +139,14 @@ def _history(result: Result, body: FlexibleBody, times: ArrayLike | None) -> tup
     if times is None:
         return q, v
     wanted, t = np.atleast_1d(np.asarray(times, dtype=float)), result.t
-    if len(t) == 0 or wanted.min() < t[0] or wanted.max() > t[-1]:
+    if wanted.ndim != 1 or len(wanted) == 0:
+        raise ModelError(f"times must be a list of at least one time in s, not an array of shape {wanted.shape}; leave "
+                         "them out for all samples")  # fmt: skip
+    if len(t) == 0 or not (wanted.min() >= t[0] and wanted.max() <= t[-1]):
         raise ModelError(f"times reach from {wanted.min():g} to {wanted.max():g} s, but the result from "
                          f"{t[0] if len(t) else 0.0:g} to {t[-1] if len(t) else 0.0:g} s")  # fmt: skip
     # at an impact, where two samples have the same time, the one after it counts
-    k = np.clip(np.searchsorted(t, wanted, side="right") - 1, 0, max(len(t) - 2, 0))
+    k = np.clip(np.searchsorted(t, wanted, side="right") - 1, 0, len(t) - 1)
     nxt = np.minimum(k + 1, len(t) - 1)
     h = (t[nxt] - t[k])[:, None]
     x = np.divide((wanted - t[k])[:, None], h, out=np.zeros_like(h), where=h > 0.0)

@@ -22,6 +22,7 @@ from tlismni.core import (
     Revolute2D,
     RigidBody2D,
     Table,
+    bending_stress,
     deformed_shape,
     section,
     simulate,
@@ -193,6 +194,24 @@ def test_a_pull_along_the_beam_shows_as_axial_force():
     assert found.axial_strain[0] == pytest.approx([0.004, 0.004], rel=1e-5)
     surface = stress(result, s, [1.0], area=1e-4, second_moment=1e-9, height=0.01, times=[30.0])
     assert surface[0, 0] == pytest.approx(2000.0, rel=1e-5)
+
+
+def test_stress_without_axial_modes_is_that_of_bending_alone():
+    """A weight F at a cantilever's tip: +-F (L - s) h/I at the surfaces, the upper one is pulled. The whole stress is
+    not known."""
+    s = beam(attachments=(Attachment(position=LENGTH),), damping_ratio=0.5)
+    tip = MaterialPoint2D(name="tip", body="beam", point=(LENGTH, 0.0))
+    weight = AppliedForce2D(name="weight", marker=on("tip"), force_y=Constant(value=-0.2))
+    clamp = Clamp2D(name="clamp", a=GROUND, b=on("beam"))
+    result = simulate(Model(gravity=(0.0, 0.0), bodies=[s, tip], joints=[clamp], forces=[weight]), 30.0, "irk")
+    for height in (0.01, -0.01):
+        found = bending_stress(result, s, [0.0, 0.5], second_moment=1e-9, height=height, times=[30.0])
+        exact = 0.2 * np.array([LENGTH, LENGTH - 0.5]) * height / 1e-9
+        assert found[0] == pytest.approx(exact, rel=1e-3)
+    with pytest.raises(ModelError, match=r"axial_modes .* and axial_stiffness"):
+        stress(result, s, [0.5], area=1e-4, second_moment=1e-9, height=0.01)
+    with pytest.raises(ModelError, match="second_moment = -1"):
+        bending_stress(result, s, [0.5], second_moment=-1.0, height=0.01)
 
 
 # ---- material points ----------------------------------------

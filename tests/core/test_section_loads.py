@@ -15,6 +15,7 @@ from tlismni.core import (
     axial_force,
     axial_strain,
     bending_moment,
+    bending_stress,
     curvature,
     deformed_shape,
     simulate,
@@ -87,6 +88,54 @@ def test_stress_of_a_bent_and_stretched_section():
         assert np.allclose(found, force / area - 2.0 * side * 6.0 * moment / (width * height**2), rtol=1e-12)
 
 
+def test_stress_is_the_strain_of_a_fibre():
+    """Young's modulus times what a fibre on the left (height > 0) or right of the axis is longer than at first, by the
+    places of its ends."""
+    width, height, modulus, half = 0.02, 0.05, 2e6, 1e-4
+    area, inertia = width * height, width * height**3 / 12.0
+    stiff = {"axial_stiffness": modulus * area, "bending_stiffness": modulus * inertia}
+    shape = ((0, 0, 1.01, 0), (1.01, 0.1, 1.0, 0.3), (2.0, 0.5, 1.0, 0.5))
+    cable = Cable2D(**straight(2, shape=shape, **stiff))
+    result = run(cable)
+    inner = POINTS[1:5]  # within the first element
+    for h in (-0.5 * height, 0.0, 0.5 * height):
+        ends = []
+        for s in (inner - half, inner + half):
+            here, low, high = (deformed_shape(result, cable, s + d)[0] for d in (0.0, -half, half))
+            along = (high - low) / np.linalg.norm(high - low, axis=1)[:, None]
+            ends.append(here + h * np.stack([-along[:, 1], along[:, 0]], axis=1))
+        strain = np.linalg.norm(ends[1] - ends[0], axis=1) / (2.0 * half) - 1.0
+        found = stress(result, cable, inner, area=area, second_moment=inertia, height=h)[0]
+        assert np.abs(found / modulus - strain).max() < 1e-5
+        bent = bending_stress(result, cable, inner, second_moment=inertia, height=h)[0]
+        assert np.abs(bent - found + axial_force(result, cable, inner)[0] / area).max() < 1e-9 * modulus
+        assert np.abs(bent).min() > 1e-4 * modulus or h == 0.0
+
+
+def test_at_the_time_of_an_impact_the_state_after_it_counts():
+    """Two samples have that time; also when it is the last one, as where the first impact ends the run."""
+    cable = Cable2D(**straight(2, axial_damping=5.0, velocity=(1.0, 0.0)))
+    result = run(cable)
+    t, q, v = np.array([0.0, 0.5, 0.5]), np.repeat(result.q, 3, axis=0), np.repeat(result.v, 3, axis=0)
+    v[2, :4] = 0.0  # its first node stops: compression rates, and so a force of the damping
+    stopped = _Sampled(t, {name: q[:, k] for k, name in enumerate(cable.coordinate_names)}
+                       | {r.rate: v[:, k] for k, r in enumerate(cable.coordinate_records())})  # fmt: skip
+    exact = axial_force(stopped, cable, [0.2])
+    assert exact[0, 0] == exact[1, 0] != exact[2, 0]
+    assert axial_force(stopped, cable, [0.2], times=[0.5])[0, 0] == exact[2, 0]
+    assert axial_force(stopped, cable, [0.2], times=[0.0])[0, 0] == exact[0, 0]
+
+
+class _Sampled:
+    """A result of given samples of one body."""
+
+    def __init__(self, t, columns):
+        self.t, self.columns = t, columns
+
+    def __getitem__(self, name):
+        return self.columns[name.split(".")[1]]
+
+
 def test_weight_of_a_hanging_cable():
     cable = Cable2D(**straight(4, angle=-0.5 * math.pi, axial_damping=40.0, bending_stiffness=50.0))
     result = run(cable, 1.5, gravity=(0.0, -9.81), clamp=True, method="irk", rtol=1e-6)
@@ -103,3 +152,8 @@ def test_bad_questions():
         stress(result, cable, [0.5], area=1.0, second_moment=0.0, height=0.1)
     with pytest.raises(ModelError, match="but the result from 0 to 0"):
         curvature(result, cable, [0.5], times=[1.0])
+    for times in ([], [[0.0]]):
+        with pytest.raises(ModelError, match="at least one time"):
+            curvature(result, cable, [0.5], times=times)
+    with pytest.raises(ModelError, match="reach from nan"):
+        curvature(result, cable, [0.5], times=[math.nan])
