@@ -85,11 +85,8 @@ class FloatingBody2D(PlanarBody, FlexibleBody):
         place = (float(offset[0]), float(offset[1]))
         return PointShape(("x", "y", "angle"), self.mode_names(), place, (1.0, 0.0), shape, slope, second)
 
-    amplitude_unit: ClassVar[str] = "m"
-
     def coordinate_records(self) -> Sequence[Coordinate]:
-        unit = self.amplitude_unit
-        return (X, Y, ANGLE, *(Coordinate(name, unit, f"d_{name}", f"dd_{name}") for name in self.mode_names()))
+        return (X, Y, ANGLE, *(Coordinate(name, "m", f"d_{name}", f"dd_{name}") for name in self.mode_names()))
 
     def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0)."""

@@ -29,12 +29,13 @@ class ReducedBody2D(FloatingBody2D):
 
     Coordinates are those of the frame, `x`, `y`, `angle`, and the amplitudes `mode1` ... `moden`. The integrals are
     over the mass of the undeformed body, with u0 from the frame's origin; u x v = u_x v_y - u_y v_x. The model's
-    gravity acts on it. A rigid motion has no place among the modes: the frame has it already.
+    gravity acts on it. A rigid motion has no place among the modes: the frame has it already. Its points have no term
+    of second order: loads at them do not stiffen the body, unlike its inertia with the geometric integrals.
 
     Raises
     ------
-    ModelError : for sizes that do not fit, matrices that are not symmetric (skew for `gyroscopic`), or a mass matrix of
-        frame and modes that is not positive definite.
+    ModelError : for sizes that do not fit, matrices that are not symmetric (skew for `gyroscopic`), a mass matrix of
+        frame and modes that is not positive definite, or stiffness or damping with a negative eigenvalue.
     """
 
     type: Literal["ReducedBody2D"] = "ReducedBody2D"
@@ -48,9 +49,9 @@ class ReducedBody2D(FloatingBody2D):
     centrifugal_mass: Matrix | None = None
     """int S^T S dm without rotary inertia, (n, n); left out: modal_mass."""
     stiffness: Matrix
-    """(n, n), symmetric."""
+    """(n, n), symmetric, without negative eigenvalues."""
     damping: Matrix | None = None
-    """(n, n); left out: none."""
+    """(n, n); its symmetric part without negative eigenvalues; left out: none."""
     modal_first_moment: Matrix | None = None
     """int S dm, (2, n); left out: zero."""
     modal_inertia: Vector | None = None
@@ -94,6 +95,8 @@ class ReducedBody2D(FloatingBody2D):
             raise ValueError(f"the mass matrix of frame and modes of '{self.name}', scaled to a unit diagonal, has the "
                              f"eigenvalue {least:.3g}: it must be positive definite; do the modes hold a rigid motion, "
                              "which the frame has already?")  # fmt: skip
+        self._check_sign("stiffness", self.stiffness, "no strain has negative energy")
+        self._check_sign("damping", self.damping, "it would put energy in")
         return self
 
     def _check_size(self, name: str, value: Any, size: tuple[int, ...]) -> None:
@@ -115,6 +118,14 @@ class ReducedBody2D(FloatingBody2D):
             kind = "symmetric" if sign > 0.0 else "skew"
             raise ValueError(f"{name} of '{self.name}' must be {kind}; entries ({i}, {j}) and ({j}, {i}) are "
                              f"{x[i, j]:g} and {x[j, i]:g}")  # fmt: skip
+
+    def _check_sign(self, name: str, value: Any, why: str) -> None:
+        if value is None:
+            return
+        found = np.linalg.eigvalsh(0.5 * (np.array(value) + np.array(value).T))
+        if found[0] < -SYMMETRY * np.abs(found).max():
+            raise ValueError(f"{name} of '{self.name}' has, in its symmetric part, the negative eigenvalue "
+                             f"{found[0]:.3g}: {why}")  # fmt: skip
 
     def _scaled_mass(self) -> Array:
         full = self.invariants().mass_matrix(self.mass)

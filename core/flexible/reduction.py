@@ -33,10 +33,6 @@ class Reduction:
     basis: Matrix
     frequencies: NDArray[np.float64]
 
-    def reduce(self, matrix: ArrayLike) -> Matrix:
-        """T^T A T (r, r) of another matrix A (n, n) of the structure, e.g. its damping."""
-        return np.asarray(self.basis.T @ np.asarray(matrix, dtype=float) @ self.basis)
-
 
 def craig_bampton(mass: ArrayLike, stiffness: ArrayLike, kept: Sequence[int], modes: int) -> Reduction:
     """Keep the coordinates `kept`, and `modes` modes of all others.

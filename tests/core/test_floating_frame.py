@@ -203,6 +203,12 @@ def test_joints_and_contacts_take_the_frame_as_a_body():
     assert np.abs(result["energy.balance"]).max() < 1e-5
 
 
+def test_gyroscopic_damping_does_no_work_and_is_accepted():
+    body, _ = particles(damping=((0.0, 5.0), (-5.0, 0.0)), amplitude_rates=(0.3, -0.2))
+    result = simulate(Model(gravity=(0.0, 0.0), bodies=[body]), 0.2)
+    assert abs(result["energy.dissipation"][-1]) < 1e-15 and np.abs(result["energy.balance"]).max() < 1e-6
+
+
 # ---- what is refused ------------------------------------------------------------------------------------------------
 
 
@@ -212,6 +218,8 @@ def test_joints_and_contacts_take_the_frame_as_a_body():
         ({"stiffness": ((1.0,),)}, r"stiffness of 's' has \(1, 1\), but modal_mass has n = 2 rows: \(2, 2\)"),
         ({"stiffness": ((1.0, 2.0), (3.0,))}, "rows of different length"),
         ({"stiffness": ((1.0, 2.0), (1.0, 3.0))}, r"stiffness of 's' must be symmetric; entries \(0, 1\) and \(1, 0\)"),
+        ({"stiffness": ((1.0, 2.0), (2.0, 1.0))}, "stiffness of 's' has.* the negative eigenvalue -1:"),
+        ({"damping": ((1.0, 5.0), (-5.0, -0.1))}, "damping of 's' has.* the negative eigenvalue -0.1:"),
         ({"gyroscopic": ((1.0, 2.0), (2.0, 3.0))}, "gyroscopic of 's' must be skew"),
         ({"modal_inertia": (1.0,)}, r"modal_inertia of 's' has \(1,\).*\(2,\) is needed"),
         ({"amplitudes": (1.0,)}, "amplitudes of 's'"),

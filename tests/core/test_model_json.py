@@ -128,7 +128,7 @@ ELEMENTS = {
         st.builds(
             ReducedBody2D, name=st.just("x"), mass=positive, inertia=positive,
             stiffness=positive.map(lambda k: ((k,),)),
-            modal_mass=positive.map(lambda m: ((m,),)), damping=st.none() | number.map(lambda c: ((c,),)),
+            modal_mass=positive.map(lambda m: ((m,),)), damping=st.none() | positive.map(lambda c: ((c,),)),
             points=st.just((ReducedPoint(point=(1.0, 0.0), shape=((0.0,), (1.0,))),)),
             position=vector, angle=number, velocity=vector, angular_velocity=number,
         ),
