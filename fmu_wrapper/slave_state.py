@@ -133,10 +133,21 @@ class SlaveState:
         return self._run
 
     def _refresh(self) -> None:
-        """Make the outputs fit the parameters and inputs."""
-        run = self._engine()
-        run.apply_inputs(self._values)
-        run.read(self._values)
+        """Make the outputs fit the parameters and inputs.
+
+        What goes wrong leaves a simulation that may have taken an input and not restarted, and that would hold the
+        input for applied: in initialization it is dropped and built anew when next needed, later the slave is `failed`.
+        """
+        try:
+            run = self._engine()
+            run.apply_inputs(self._values)
+            run.read(self._values)
+        except BaseException:
+            if self._phase == Phase.INITIALIZATION:
+                self._run = None
+            else:
+                self._phase = Phase.FAILED
+            raise
         self._stale = False
 
     def _set_time(self, t: float) -> None:
