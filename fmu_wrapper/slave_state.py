@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
 from .log import Log, LogCallback
 from .phases import EVENT_PHASES, WAYS, Phase
@@ -39,6 +40,7 @@ class SlaveState:
             channels = build_simulation(simulation_factory, self.model, self.settings).channels
             variables = build_table(self.model, self.settings, channels)
         self.variables = variables
+        self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
         self._run: Run | None = None
         self.reset()
