@@ -1,11 +1,14 @@
 """Derivatives of outputs with respect to inputs at the present time.
 
-Inputs are forces: at given coordinates, velocities and contact modes, accelerations and multipliers solve
+Of inputs that are forces: at given coordinates, velocities and contact modes, accelerations and multipliers solve
 
     [M Phi_q^T; Phi_q 0] [a; lambda] = [Q + B u; gamma]
 
 so that every output is an affine function of the inputs u, closed contacts and joints included. The difference between
 the outputs at u + d and u - d is therefore the derivative to rounding, however large d is; no truncation enters.
+
+An input that drives a motion, Phi = q - u, is refused: it stands in Phi, which held coordinates do not feel, so that
+all would come out as zero although the next step moves them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,16 +17,37 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.description import Model
+from ..core.model.signals import InputSignal
 from .errors import FmuError, FmuValueError
 from .variables import Variable
 
 
-def check_knowns(knowns: tuple[Variable, ...], seed: npt.NDArray[np.float64]) -> None:
-    """Refuse what is no input, and a seed that is not one finite number each, with FmuValueError."""
+def driven_motions(model: Model) -> dict[str, list[str]]:
+    """The inputs that a constraint of `model` follows, by name, with the names of the drivers that do."""
+    drivers: dict[str, list[str]] = {}
+    for element in model.elements():
+        for signal in element.signals() if element.constraint_rows else ():
+            if isinstance(signal, InputSignal):
+                drivers.setdefault(signal.channel, []).append(element.name)
+    return drivers
+
+
+def check_knowns(
+    knowns: tuple[Variable, ...], seed: npt.NDArray[np.float64], drivers: Mapping[str, Sequence[str]]
+) -> None:
+    """Refuse what is no input or drives a motion (`drivers` as `driven_motions` gives them), and a seed that is not one
+    finite number each, with FmuValueError."""
     for variable in knowns:
         if variable.role != "input":
             raise FmuValueError(
                 f"'{variable.name}' is of role {variable.role}: derivatives are with respect to inputs only"
+            )
+        if variable.name in drivers:
+            raise FmuValueError(
+                f"input '{variable.name}' is the motion of {list(drivers[variable.name])}: derivatives are those with "
+                "respect to forces and torques at held coordinates, and a motion moves these; take the difference of "
+                "two steps from a stored state, or move the body by an input of a CoordinateLoad"
             )
     if len(seed) != len(knowns):
         raise FmuValueError(f"a seed of {len(seed)} numbers was given for {len(knowns)} inputs")

@@ -12,13 +12,14 @@ from .variables import Variable, VariableTable
 @dataclass(frozen=True)
 class About:
     """What a description says of the FMU as a whole. `identifier` is the file name of the binary, `token` ties the
-    description to the resources."""
+    description to the resources; `derivatives` says whether there are those with respect to all inputs."""
 
     identifier: str
     name: str
     token: str
     description: str
     generator: str
+    derivatives: bool
 
 
 def start(version: str, token_name: str, about: About, **more: str) -> Any:

@@ -15,6 +15,7 @@ from typing import Any
 
 from fmpy.fmi3 import FMU3Slave
 
+from .errors import FmuValueError
 from .fmi3_calls import REFUSED, Fmi3Calls
 from .in_process_base import Direct
 
@@ -67,6 +68,9 @@ class InProcess3(Direct, FMU3Slave):
         return int(self._fmi.fmi3UpdateDiscreteStates(*(_one(answer) for answer in answers)))
 
     def _fmi3GetString(self, vr: Any, count: int, value: Any, values: int) -> int:
+        if count != values:
+            error = FmuValueError(f"room for {values} values was given for {count} scalar variables")
+            return int(self._fmi.report("fmi3GetString", error))
         return self._get_strings(self._fmi.fmi3GetString, vr, value)
 
     def _fmi3SetString(self, vr: Any, count: int, value: Any, values: int) -> int:

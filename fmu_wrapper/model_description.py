@@ -25,7 +25,6 @@ CAPABILITIES = {
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
-    "providesDirectionalDerivative": "true",
 }
 
 _TYPES = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "string": "String"}
@@ -34,7 +33,8 @@ _TYPES = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "string": 
 def fmi2_description(table: VariableTable, settings: Settings, about: About) -> bytes:
     """The file's bytes."""
     root = start("2.0", "guid", about, numberOfEventIndicators="0")
-    add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES)
+    derivatives = {"providesDirectionalDerivative": about.derivatives}
+    add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES, **derivatives)
     add_units(root, table)
     if types := enumerations(table):
         definitions = add(root, "TypeDefinitions")

@@ -20,8 +20,6 @@ CAPABILITIES = {
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
-    "providesDirectionalDerivatives": "true",
-    "providesAdjointDerivatives": "true",
     "providesPerElementDependencies": "false",
     "canHandleVariableCommunicationStepSize": "true",
     "maxOutputDerivativeOrder": "0",
@@ -38,7 +36,8 @@ _TYPES = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "string":
 def fmi3_description(table: VariableTable, settings: Settings, about: About) -> bytes:
     """The file's bytes."""
     root = start("3.0", "instantiationToken", about)
-    add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES)
+    derivatives = dict.fromkeys(("providesDirectionalDerivatives", "providesAdjointDerivatives"), about.derivatives)
+    add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES, **derivatives)
     add_units(root, table)
     if types := enumerations(table):
         definitions = add(root, "TypeDefinitions")

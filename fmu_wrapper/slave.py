@@ -1,9 +1,9 @@
 """The slave: one simulation behind a step interface as FMI co-simulation wants it, for FMI 2.0 and 3.0 alike.
 
 Phases: instantiated -> initialization -> step -> terminated; with event mode, initialization leads to `event`, a step
-that ends at an event to `event due`, and from both the way to `step` leads through event mode. A failed step leads to
-`failed`, from where a stored state or a reset leads back. The methods raise; `calls.py` turns what they raise into FMI
-statuses.
+that ends at an event to `event due`, and from both the way to `step` leads through event mode. A failed step, or an
+input for which outputs cannot be computed, leads to `failed`, from where a stored state or a reset leads back. The
+methods raise; `calls.py` turns what they raise into FMI statuses.
 """
 
 import math
@@ -166,7 +166,9 @@ class Slave(SlaveState):
 
         Raises
         ------
-        CallOrderError, FmuValueError : and what the solver raises when start values must be computed.
+        CallOrderError, FmuValueError : nothing happened.
+        ModelError, ConsistencyError, SimulationError, FmuError : outputs cannot be computed for the parameters and
+            inputs set; after initialization mode the slave is in phase `failed`.
         """
         self._need("get values", *RUNNING)
         plan = self.variables.plan(kind, references)
@@ -231,13 +233,15 @@ class Slave(SlaveState):
         Raises
         ------
         CallOrderError : outside initialization, step and event mode.
-        FmuValueError : for other variables than real outputs and inputs, a wrong seed.
-        SimulationError : if accelerations cannot be computed.
+        FmuValueError : for other variables than real outputs and inputs, for an input that drives a motion, a wrong
+            seed.
+        SimulationError : if accelerations cannot be computed; if that is so for the inputs set, the slave is in phase
+            `failed`, as in `get`.
         """
         self._need("get derivatives", Phase.INITIALIZATION, Phase.STEP, *EVENT_PHASES)
         outputs, inputs = (self.variables.plan("real", references).variables for references in (unknowns, knowns))
         check_unknowns(outputs)
-        check_knowns(inputs, seed)
+        check_knowns(inputs, seed, self.drivers)
         if self._stale:
             self._refresh()
         direction: dict[str, float] = {}

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
 from .log import Log, LogCallback
 from .phases import EVENT_PHASES, WAYS, Phase
@@ -39,6 +40,7 @@ class SlaveState:
             channels = build_simulation(simulation_factory, self.model, self.settings).channels
             variables = build_table(self.model, self.settings, channels)
         self.variables = variables
+        self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
         self._run: Run | None = None
         self.reset()
@@ -133,10 +135,21 @@ class SlaveState:
         return self._run
 
     def _refresh(self) -> None:
-        """Make the outputs fit the parameters and inputs."""
-        run = self._engine()
-        run.apply_inputs(self._values)
-        run.read(self._values)
+        """Make the outputs fit the parameters and inputs.
+
+        What goes wrong leaves a simulation that may have taken an input and not restarted, and that would hold the
+        input for applied: in initialization it is dropped and built anew when next needed, later the slave is `failed`.
+        """
+        try:
+            run = self._engine()
+            run.apply_inputs(self._values)
+            run.read(self._values)
+        except BaseException:
+            if self._phase == Phase.INITIALIZATION:
+                self._run = None
+            else:
+                self._phase = Phase.FAILED
+            raise
         self._stale = False
 
     def _set_time(self, t: float) -> None:

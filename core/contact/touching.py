@@ -27,10 +27,16 @@ NO_JERK = 1e-9
 
 
 @compiled
-def factor_joints(ws: Any) -> int:
+def evaluate_joints(ws: Any) -> None:
     """[M Phi_q^T; Phi_q 0] of the present structure at the current point."""
     evaluate_residuals(ws)
     evaluate_tangent(ws, 0.0, 0.0)
+
+
+@compiled
+def factor_joints(ws: Any) -> int:
+    """The same matrix as `evaluate_joints`, and its factors with the pivots that the structure has."""
+    evaluate_joints(ws)
     return int(factor(lu_at(ws.kkt_query), ws.values))
 
 
@@ -99,21 +105,18 @@ class Touching:
 
     def _factor(self) -> None:
         workspace = self.sim.workspace
-        if factor_joints(workspace.record) == 0:
-            return
+        evaluate_joints(workspace.record)
         try:
+            # pivots of an earlier visit to this structure would be a state that no State holds
             workspace.structure.kkt_query.analyze(workspace.arrays["values"])
-            singular = factor_joints(workspace.record) != 0
-        except SingularMatrixError:
-            singular = True
-        if singular:
+        except SingularMatrixError as error:
             names = ", ".join(f"'{c.name}'" for c in self.infos)
             raise SimulationError(
                 f"contact {names}, t = {self.sim.t_internal:.9g} s: the matrix [M Phi_q^T; Phi_q 0] of the joints is "
                 "singular there (a coordinate without mass, or a singular position): impulses cannot be computed",
                 t=self.sim.t_internal,
                 loop="impact",
-            )
+            ) from error
 
     def _solve(self, direction: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         workspace, n = self.sim.workspace, len(direction)

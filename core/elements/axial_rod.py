@@ -246,11 +246,11 @@ class AxialRod(FlexibleBody):
         row = (mass * diagonal, mass * beside, mass * diagonal, stiffness, stiffness * self.relaxation_time, length)
         weight = 0.5 * mass * gravity
         table = np.tile((*row, weight, weight), (self.elements, 1))
-        for end in self.massless_ends:
-            # column of the node next to the end, in the element beside the end's
-            last, beside_it, near, weight_near = (0, 1, 0, 6) if end == "left" else (-1, -2, 2, 7)
-            table[last, [0, 1, 2, 4]] = 0.0
-            table[last, 6:] = 0.0
+        ends = [(0, 1, 0, 6) if end == "left" else (-1, -2, 2, 7) for end in self.massless_ends]
+        for last, *_ in ends:
+            table[last, [0, 1, 2, 4, 6, 7]] = 0.0
+        for _, beside_it, near, weight_near in ends:
+            # columns of the node next to the end, in the element beside the end's
             table[beside_it, near] += mass
             table[beside_it, weight_near] += 2.0 * weight
         return table

@@ -194,12 +194,12 @@ class ContactSide:
         evaluate_residuals(self.workspace.record)
 
     def unsettled(self) -> list[int]:
-        """Constraint contacts whose mode does not fit the forces at the workspace's point: closed ones that pull or are
-        held beyond their friction, and touching ones that would overlap."""
+        """Closed contacts whose mode does not fit the forces at the workspace's point: they pull, or are held beyond
+        their friction."""
         arrays, tolerance = self.workspace.arrays, self.no_force()
         found = []
         for k, contact in enumerate(self.assembly.contacts):
-            if self.memory[k, MODE] != CLOSED or k in self.assembly.massless_contacts:
+            if self.memory[k, MODE] != CLOSED:
                 continue
             force = -arrays["lam"][contact.row]
             if force < -tolerance and force < -self._contact_noise(contact.row):

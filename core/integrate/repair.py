@@ -2,14 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..errors import ConsistencyError, SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
+from ..system.evaluate import evaluate_tangent
 from ..system.partition import prepare
-from ..system.records import CHOICE_CONDITION, CONDITION
+from ..system.records import CHOICE_CONDITION, CONDITION, FACTOR_CV
 from ..system.redundancy import choose_rows
 
 if TYPE_CHECKING:
@@ -24,7 +22,7 @@ def repair(sim: "Simulation") -> bool:
     ------
     SimulationError : if the constraints depend on one another there.
     """
-    matrix, structure = sim.workspace.arrays["values"].copy(), sim.workspace.structure
+    structure, c_v = sim.workspace.structure, float(sim.workspace.arrays["rate"][FACTOR_CV])
     recall(sim.workspace.record, sim._method.record, 0)
     rate = sim.workspace.arrays["rate"]
     condition = float(rate[CONDITION])
@@ -36,7 +34,7 @@ def repair(sim: "Simulation") -> bool:
         else:
             rate[CHOICE_CONDITION] = condition
             if structure is sim.workspace.structure:
-                _order_as_in_stages(sim, matrix)
+                _order_as_in_stages(sim, c_v)
     except (ConsistencyError, SingularMatrixError) as error:
         raise SimulationError(
             f"at t = {sim.t_internal:.9g} s the constraints cannot be partitioned: {error}",
@@ -46,13 +44,16 @@ def repair(sim: "Simulation") -> bool:
     return changed
 
 
-def _order_as_in_stages(sim: "Simulation", matrix: NDArray[np.float64]) -> None:
-    """Pivots of the stages' matrix from the values that it had last: where the stiffness outweighs the mass by many
-    orders of magnitude, those of the mass matrix alone may be the wrong ones."""
+def _order_as_in_stages(sim: "Simulation", c_v: float) -> None:
+    """Pivots of the stages' matrix as it is here with the factor c_v of the last one: where the stiffness outweighs the
+    mass by many orders of magnitude, those of the mass matrix alone may be the wrong ones."""
+    workspace = sim.workspace
+    mass_alone = workspace.arrays["values"].copy()
+    evaluate_tangent(workspace.record, c_v * c_v, c_v)
     try:
-        sim.workspace.structure.kkt.analyze(matrix)
+        workspace.structure.kkt.analyze(workspace.arrays["values"])
     except SingularMatrixError:
-        sim.workspace.structure.kkt.analyze(sim.workspace.arrays["values"])
+        workspace.structure.kkt.analyze(mass_alone)
 
 
 def _move_multipliers(sim: "Simulation") -> None:

@@ -30,6 +30,8 @@ _SHARED = (
 
 CHEAP = 0.5
 """Share of the entries of all elements up to which evaluating those with constraint rows counts as cheap."""
+MOST_STRUCTURES = 32
+"""Kept, for as many sets of closed contacts: with a contact at every node there are endless many."""
 MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
 
@@ -158,9 +160,10 @@ class Workspace:
         a place in the matrix."""
         self.key = (closed, closed | engaged, sticking)
         key = (*self.key, self.dropped)
-        if key not in self._structures:
-            self._structures[key] = build_structure(self.assembly, *key)
-        self.structure = structure = self._structures[key]
+        structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
+        while len(self._structures) >= MOST_STRUCTURES:
+            del self._structures[next(iter(self._structures))]
+        self._structures[key] = self.structure = structure
         values = np.zeros(structure.nnz + 1)
         self._set("values", values, n_values=len(values))
         self._set("active", structure.active, m_act=len(structure.active))

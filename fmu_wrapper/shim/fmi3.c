@@ -124,7 +124,16 @@ SET(Boolean, fmi3Boolean)
 
 EXPORT fmi3Status fmi3GetString(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3String value[],
                                 size_t values) {
-    return forward_get_strings(c, "fmi3GetString", vr, n < values ? n : values, value);
+    int gil;
+    if (n == values) {
+        return forward_get_strings(c, "fmi3GetString", vr, n, value);
+    }
+    if (instance_enter(c, &gil)) { /* an instance, which has a log */
+        python_leave(gil);
+        instance_report(c, "fmi3GetString: FmuValueError: room for %zu values was given for %zu scalar variables",
+                        values, n);
+    }
+    return STATUS_ERROR;
 }
 
 EXPORT fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const fmi3String value[],

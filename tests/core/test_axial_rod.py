@@ -10,6 +10,7 @@ from tlismni.core import (
     Constant,
     CoordinateContact,
     CoordinateDriver,
+    CoordinateLoad,
     CoordinateTerm,
     KelvinVoigt,
     Marker2D,
@@ -20,6 +21,7 @@ from tlismni.core import (
     PointMass2D,
     Polynomial,
     Simulation,
+    Step,
     axial_force,
     deformed_shape,
     simulate,
@@ -290,3 +292,24 @@ def test_a_run_goes_on_bit_for_bit_from_a_state_stored_while_a_massless_end_is_c
     again.run_to(0.2)
     assert [e.kind for e in first.events] == ["close", "open"] and first.events == again.events
     assert np.array_equal(first.values(), again.values())
+
+
+def test_two_massless_ends_leave_all_mass_to_the_node_between_them() -> None:
+    model = Model(bodies=[rod(2, massless_ends=("left", "right"))])
+    mass, _ = matrices(model)
+    assert np.diag(mass) == pytest.approx([0.0, 3.0, 0.0])
+
+
+def test_a_load_that_pulls_a_closed_massless_end_away_opens_it_at_once() -> None:
+    """No sample shows a wall that pulls."""
+    body = rod(10, massless_ends=("right",), velocity=1.0)
+    pull = CoordinateLoad(
+        name="pull",
+        body="rod",
+        coordinate="x10",
+        load=Step(time=0.15, before=0.0, after=-1e4 * STEEL["axial_stiffness"]),
+    )
+    model = Model(gravity=(0.0, 0.0), bodies=[body], forces=[pull], contacts=[wall(node="x10")])
+    result = simulate(model, 0.16, "newmark", step=0.2 * 0.2 / body.wave_speed)
+    assert result.events[-1].kind == "open" and result.events[-1].t == pytest.approx(0.15)
+    assert np.min(result["wall.normal_force"]) >= 0.0

@@ -323,3 +323,18 @@ def test_values_of_one_sample_are_the_columns_of_many_bit_for_bit():
 def test_what_are_no_bytes_is_refused(given):
     with pytest.raises(ModelError, match="bytes of a solver state are needed"):
         State.from_bytes(given)
+
+
+def test_a_state_before_impacts_that_revisit_sets_of_contacts_goes_on_bit_for_bit():
+    """Pivots that were chosen at an earlier visit are no part of a state: they must not be used again."""
+    model = load("hub_beam_stop", modes=8).model
+    sim = Simulation(model)
+    sim.advance(0.0125)
+    state = sim.state()
+    sim.advance(0.065)
+    assert len({e.t for e in sim.events if e.t > 0.0125}) >= 3
+    end, events = sim.values().copy(), list(sim.events)
+    for other in (sim, Simulation(model)):
+        other.restore(state)
+        other.advance(0.065)
+        assert np.array_equal(other.values(), end) and other.events == events

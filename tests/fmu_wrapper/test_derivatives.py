@@ -1,10 +1,19 @@
 """Derivatives of outputs with respect to inputs: by hand, in open and in closed contact; asking leaves no trace."""
 
+import zipfile
+from xml.etree import ElementTree
+
+import fmpy
 import numpy as np
 import pytest
 from fmu_helpers import ball_model
+from tlismni.core.description import Model
+from tlismni.core.elements import AppliedForce2D, CoordinateDriver, PointMass2D
 from tlismni.core.errors import TlismniError
-from tlismni.fmu_wrapper import CallOrderError, Slave
+from tlismni.core.model.channels import Input
+from tlismni.core.model.markers import Marker2D
+from tlismni.core.model.signals import InputSignal
+from tlismni.fmu_wrapper import CallOrderError, FmuValueError, Slave, export_fmu
 from tlismni.models import load
 
 
@@ -71,6 +80,41 @@ def test_asking_leaves_no_trace():
         for slave in (asked, other):
             slave.do_step(k * 0.05, 0.05)
         assert asked.snapshot().data == other.snapshot().data
+
+
+def driven_model():
+    """A point led along x by the input `lead` and pushed along y by the input `push`."""
+    marker = Marker2D(body="p")
+    return Model(
+        name="led",
+        gravity=(0.0, 0.0),
+        bodies=[PointMass2D(name="p", mass=2.0)],
+        joints=[CoordinateDriver(name="hand", body="p", coordinate="x", motion=InputSignal(channel="lead"))],
+        forces=[AppliedForce2D(name="wind", marker=marker, force_y=InputSignal(channel="push"))],
+        inputs=[Input(name="lead", unit="m"), Input(name="push", unit="N")],
+    )
+
+
+def test_a_motion_that_is_an_input_is_refused_by_the_name_of_its_driver():
+    """Held coordinates do not feel a motion, though the next step follows it: zero would be the wrong answer."""
+    slave = started(driven_model())
+    for ask in (("p.x",), ("p.ay", "p.x")):
+        with pytest.raises(FmuValueError, match=r"input 'lead' is the motion of \['hand'\].*difference of two steps"):
+            derivatives(slave, "lead", *ask)
+    assert slave.phase == "step"
+    np.testing.assert_allclose(derivatives(slave, "push", "p.ay", "p.ax"), [0.5, 0.0], rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_the_flags_promise_derivatives_only_if_all_inputs_are_forces(tmp_path, version):
+    for name, source, provided in (("led", driven_model(), False), ("ball", ball_model(), True)):
+        path = export_fmu(source, tmp_path / f"{name}.fmu", t_end=1.0, fmi_version=version)
+        with zipfile.ZipFile(path) as archive:
+            flags = ElementTree.fromstring(archive.read("modelDescription.xml")).find("CoSimulation").attrib
+        said = {key: value for key, value in flags.items() if "Derivatives" in f"{key}s" and key.startswith("provides")}
+        assert len(said) == (1 if version == "2.0" else 2)
+        assert set(said.values()) == {"true" if provided else "false"}
+        assert fmpy.read_model_description(str(path), validate=True).fmiVersion == version
 
 
 def test_when_and_of_what():

@@ -295,6 +295,59 @@ def test_a_failed_step_leaves_a_slave_that_can_be_restored_or_reset(fake_slave):
     run(started(slave), [0.0, 0.25])
 
 
+class HalfSet(FakeSimulation):
+    """Takes the input 7.0 and fails before it has restarted; the same value again is no change and no restart."""
+
+    def set_inputs(self, values):
+        changed = values["push"] != self._state.push
+        super().set_inputs(values)
+        if changed and values["push"] == 7.0:
+            raise SimulationError("the state cannot be projected onto the constraints", t=self.t, loop="inner")
+
+
+def ask_output(slave):
+    return slave["ball.ay"]
+
+
+def ask_derivative(slave):
+    return slave.directional_derivative(refs(slave, "ball.ay"), refs(slave, "push"), np.ones(1))
+
+
+@pytest.mark.parametrize("ask", [ask_output, ask_derivative])
+@pytest.mark.parametrize("phase", ["step", "event", "event due"])
+def test_an_input_that_fails_when_outputs_are_asked_is_no_silent_half_change(model, ask, phase):
+    slave = started(Slave(model, simulation_factory=HalfSet, event_mode=phase != "step", early_return=True))
+    if phase == "event due":
+        slave.enter_step_mode()
+        slave.do_step(0.0, 1.5)
+    assert slave.phase == phase
+    snapshot = slave.snapshot()
+    slave.set_by_name({"push": 7.0})
+    with pytest.raises(SimulationError, match="cannot be projected"):
+        ask(slave)
+    assert slave.phase == "failed"
+    for go_on in (lambda: slave.do_step(0.0, 0.1), slave.snapshot, slave.update_discrete_states):
+        with pytest.raises(CallOrderError, match="the last step failed: set a stored state, or reset"):
+            go_on()
+    slave.restore(snapshot)
+    assert slave.phase == phase and slave["ball.ay"] == 1.0 / 2.0 - 9.81
+    slave.set_by_name({"push": 3.0})
+    assert slave["ball.ay"] == 3.0 / 2.0 - 9.81
+
+
+def test_an_input_that_fails_in_initialization_fails_again_until_it_is_mended(model):
+    slave = Slave(model, simulation_factory=HalfSet)
+    slave.enter_initialization()
+    slave.set_by_name({"push": 7.0})
+    for ask in (ask_output, ask_derivative, Slave.exit_initialization, ask_output):
+        with pytest.raises(SimulationError, match="cannot be projected"):
+            ask(slave)
+        assert slave.phase == "initialization"
+    slave.set_by_name({"push": 3.0})
+    slave.exit_initialization()
+    assert slave["ball.ay"] == 3.0 / 2.0 - 9.81
+
+
 def test_values_that_are_not_finite_are_an_error(fake_slave):
     slave = started(fake_slave(nan_at=0.5))
     slave.do_step(0.0, 0.25)
