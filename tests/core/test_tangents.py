@@ -71,12 +71,12 @@ FORCE_LAWS = [
     KelvinVoigt(stiffness=4.0, damping=0.8),
     Flores(stiffness=6.0, restitution=0.5, exponent=2.0),
     Tsuji(stiffness=5.0, damping=0.7),
-    KuwabaraKono(stiffness=5.0, relaxation_time=0.1),
+    KuwabaraKono(stiffness=5.0, damping_time=0.1),
 ]
 CASES = {
     "bodies": {},
     "rod": {"bodies": [AxialRod(name="rod", elements=4, length=1.3, axial_stiffness=4.0, mass_per_length=0.8,
-                                relaxation_time=0.3, massless_ends=("left",))]},
+                                damping_time=0.3, massless_ends=("left",))]},
     "revolute": {"joints": [Revolute2D(name="j", a=LEFT, b=RIGHT)]},
     "revolute on ground": {"joints": [Revolute2D(name="j", a=on("ground", 0.1, 0.2), b=RIGHT)]},
     "revolute with a point mass": {"joints": [Revolute2D(name="j", a=LEFT, b=on("p"))]},
