@@ -71,7 +71,7 @@ FORCE_LAWS = [
     KelvinVoigt(stiffness=4.0, damping=0.8),
     Flores(stiffness=6.0, restitution=0.5, exponent=2.0),
     Tsuji(stiffness=5.0, damping=0.7),
-    KuwabaraKono(stiffness=5.0, damping_time=0.1),
+    KuwabaraKono(stiffness=5.0, relaxation_time=0.1),
 ]
 CASES = {
     "bodies": {},
