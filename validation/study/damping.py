@@ -54,14 +54,15 @@ def _rod(courant: float, elements: int = 50) -> DampingProblem:
 
 def problems() -> tuple[DampingProblem, ...]:
     """The rod with a step that follows its elements' waves and with a longer one, and the beam on the hub: undamped in
-    a floating frame, and with the scenario's damping in ANCF elements."""
+    a floating frame, and with the scenario's damping in ANCF elements (whose axial vibrations let Newton's iteration of
+    HHT on GGL diverge with steps of 1e-5 s and more)."""
     hub = {"formulation": "floating", "damping_time": 0.0}
-    beam = ("hub_beam_stop", "stop", 2e-5)
+    beam = ("hub_beam_stop", "stop")
     return (
         _rod(0.2),
         _rod(1.0),
-        DampingProblem("hub_beam_stop, floating", *beam, hub, degree=6),
-        DampingProblem("hub_beam_stop, ANCF", *beam, {"formulation": "ancf"}, degree=6),
+        DampingProblem("hub_beam_stop, floating", *beam, 2e-5, hub, degree=6),
+        DampingProblem("hub_beam_stop, ANCF", *beam, 5e-6, {"formulation": "ancf"}, degree=6),
     )
 
 
