@@ -2,10 +2,10 @@
 
 Run: python benchmarks/rod_cost.py [--json out.json] [--sizes 101 1001] [--core 1]. Steps in which a wave passes 0.2 of
 an element, all of them while the rod is in contact. exudyn's models: one GenericODE2 object with sparse matrices, and a
-chain of masses and springs (Mass1D), with modified Newton, up to 500 coordinates with full Newton too (it is slower from
-101 on), contact by penalty (half of an element's stiffness); the best of them counts. Building and starting are left out: a step costs the difference of a long and a
-short run, in CPU time of one thread. exudyn's GenericODE2 builds a dense Jacobian (n^2) and is left out beyond 1001
-coordinates.
+chain of masses and springs (Mass1D), with modified Newton, up to 500 coordinates with full Newton too (which is slower
+from 101 on), contact by penalty (half of an element's stiffness); the best of them counts. Building and starting are
+left out: a step costs the difference of a long and a short run, in CPU time of one thread. exudyn's GenericODE2 builds
+a dense Jacobian (n^2) and is left out beyond 1001 coordinates.
 """
 
 import one_thread  # isort: skip  # noqa: F401

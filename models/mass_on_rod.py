@@ -43,7 +43,7 @@ def mass_on_rod(
     """
     rod = AxialRod(
         name="rod", elements=elements, length=length, axial_stiffness=youngs_modulus * area,
-        mass_per_length=density * area, mass_matrix=mass_matrix, relaxation_time=damping_time,
+        mass_per_length=density * area, mass_matrix=mass_matrix, damping_time=damping_time,
         massless_ends=("left",) if massless_contact else (),
     )  # fmt: skip
     mass = LinearSystem(

@@ -44,7 +44,7 @@ def rod_rod(
     """
     rod: dict[str, Any] = {
         "axial_stiffness": youngs_modulus * area, "mass_per_length": density * area, "mass_matrix": mass_matrix,
-        "relaxation_time": damping_time,
+        "damping_time": damping_time,
     }  # fmt: skip
     striker = AxialRod(
         name="striker", elements=elements, length=length, position=-length - gap, velocity=velocity,

@@ -40,7 +40,7 @@ def rod_wall(
     """
     rod = AxialRod(
         name="rod", elements=elements, length=length, axial_stiffness=youngs_modulus * area,
-        mass_per_length=density * area, mass_matrix=mass_matrix, relaxation_time=damping_time, velocity=velocity,
+        mass_per_length=density * area, mass_matrix=mass_matrix, damping_time=damping_time, velocity=velocity,
         massless_ends=("right",) if massless_contact else (),
     )  # fmt: skip
     end = f"x{elements}"

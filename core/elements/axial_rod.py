@@ -112,7 +112,7 @@ class AxialRod(FlexibleBody):
     """rho A, kg/m."""
     mass_matrix: MassMatrix = "consistent"
     """Of the elements: consistent with the linear shape functions, or half of the mass at each node."""
-    relaxation_time: NonNegative = 0.0
+    damping_time: NonNegative = 0.0
     """tau of the viscous stress E tau strain rate (Kelvin and Voigt), s."""
     position: float = 0.0
     """Initial x of the left end, m; the rod starts unstrained."""
@@ -213,7 +213,7 @@ class AxialRod(FlexibleBody):
         e, _ = self._places(points)
         strain = (q[:, e + 1] - q[:, e]) / length - 1.0
         rate = (v[:, e + 1] - v[:, e]) / length
-        tau = np.full(self.elements, self.relaxation_time)
+        tau = np.full(self.elements, self.damping_time)
         for end in self.massless_ends:
             tau[0 if end == "left" else -1] = 0.0
         nothing = np.zeros_like(strain)
@@ -243,7 +243,7 @@ class AxialRod(FlexibleBody):
         length = self.length / self.elements
         mass, stiffness = self.mass_per_length * length, self.axial_stiffness / length
         diagonal, beside = CONSISTENT if self.mass_matrix == "consistent" else LUMPED
-        row = (mass * diagonal, mass * beside, mass * diagonal, stiffness, stiffness * self.relaxation_time, length)
+        row = (mass * diagonal, mass * beside, mass * diagonal, stiffness, stiffness * self.damping_time, length)
         weight = 0.5 * mass * gravity
         table = np.tile((*row, weight, weight), (self.elements, 1))
         ends = [(0, 1, 0, 6) if end == "left" else (-1, -2, 2, 7) for end in self.massless_ends]

@@ -55,7 +55,7 @@ def partition_rod(
         coordinates=(*nodes, *(f"z{k + 1}" for k in range(modes))),
         mass=_rows(found.mass),
         stiffness=_rows(found.stiffness),
-        damping=_rows(rod.relaxation_time * found.stiffness) if rod.relaxation_time else None,
+        damping=_rows(rod.damping_time * found.stiffness) if rod.damping_time else None,
         force=tuple((found.basis.T @ rod.weight(gravity)).tolist()) if gravity else None,
         position=(*(rod.position,) * (region + 1), *(0.0,) * modes),
         velocity=(*(rod.velocity,) * (region + 1), *(0.0,) * modes),

@@ -121,7 +121,7 @@ def test_eigenfrequencies_converge_with_order_two(mass_matrix: str, sign: float)
 
 
 def test_viscous_stress_is_proportional_to_the_stiffness_and_takes_the_energy_that_is_missing() -> None:
-    body = rod(16, relaxation_time=2e-4, velocity=0.5)
+    body = rod(16, damping_time=2e-4, velocity=0.5)
     model = Model(bodies=[body], contacts=[wall(node="x16")])
     for c_v in (1.0, 3.0):
         workspace = Workspace(model.assemble())
@@ -232,7 +232,7 @@ def test_every_tenth_step_is_recorded_with_what_happens_at_contacts_and_the_end(
 
 def test_fields_along_the_rod() -> None:
     """A wave of compression of length c t at the wall's end: stress E v/c behind its front, none before it."""
-    body = rod(80, velocity=0.5, mass_matrix="lumped", relaxation_time=1e-5)
+    body = rod(80, velocity=0.5, mass_matrix="lumped", damping_time=1e-5)
     h = 0.2 * body.length / 80 / body.wave_speed
     touch = 0.1 / 0.5
     result = simulate(

@@ -122,7 +122,7 @@ ELEMENTS = {
         ),
         st.builds(
             AxialRod, name=st.just("x"), elements=st.integers(3, 5), length=positive, axial_stiffness=positive,
-            mass_per_length=positive, mass_matrix=st.sampled_from(["consistent", "lumped"]), relaxation_time=positive,
+            mass_per_length=positive, mass_matrix=st.sampled_from(["consistent", "lumped"]), damping_time=positive,
             position=number, velocity=number, massless_ends=st.sampled_from([(), ("left",), ("left", "right")]),
         ),
         st.builds(

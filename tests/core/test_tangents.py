@@ -76,7 +76,7 @@ FORCE_LAWS = [
 CASES = {
     "bodies": {},
     "rod": {"bodies": [AxialRod(name="rod", elements=4, length=1.3, axial_stiffness=4.0, mass_per_length=0.8,
-                                relaxation_time=0.3, massless_ends=("left",))]},
+                                damping_time=0.3, massless_ends=("left",))]},
     "revolute": {"joints": [Revolute2D(name="j", a=LEFT, b=RIGHT)]},
     "revolute on ground": {"joints": [Revolute2D(name="j", a=on("ground", 0.1, 0.2), b=RIGHT)]},
     "revolute with a point mass": {"joints": [Revolute2D(name="j", a=LEFT, b=on("p"))]},
