@@ -93,8 +93,8 @@ def stress(
     found = section(result, body, points, times)
     if found.axial_force.size and np.all(np.isnan(found.axial_force)):
         raise ModelError(
-            f"stress in '{body.name}' needs its axial force, which a {type(body).__name__} tells only with axial_modes "
-            "(or an axial attachment) and axial_stiffness: give it these, or ask for bending_stress, that of bending"
+            f"stress in '{body.name}' needs its axial force, which a {type(body).__name__} tells only with "
+            "axial_stiffness and axial_modes (or an axial attachment): give it these, or ask for bending_stress alone"
         )
     return found.axial_force / area - found.bending_moment * height / second_moment
 
