@@ -208,7 +208,7 @@ def test_stress_without_axial_modes_is_that_of_bending_alone():
         found = bending_stress(result, s, [0.0, 0.5], second_moment=1e-9, height=height, times=[30.0])
         exact = 0.2 * np.array([LENGTH, LENGTH - 0.5]) * height / 1e-9
         assert found[0] == pytest.approx(exact, rel=1e-3)
-    with pytest.raises(ModelError, match=r"axial_modes .* and axial_stiffness"):
+    with pytest.raises(ModelError, match="axial_stiffness and axial_modes"):
         stress(result, s, [0.5], area=1e-4, second_moment=1e-9, height=0.01)
     with pytest.raises(ModelError, match="second_moment = -1"):
         bending_stress(result, s, [0.5], second_moment=-1.0, height=0.01)
