@@ -172,10 +172,10 @@ class Touching:
         """Rates of the gaps' free accelerations (contacts,), m/s^3, as the forces' dependence on the motion makes them:
         M a' = -(K v + D a). What is not more than rounding is zero."""
         sim, arrays = self.sim, self.sim.workspace.arrays
-        by_v, by_a = (1.0, 0.0, arrays["v"]), (0.0, 1.0, arrays["a"])
         response = self._response[: len(self.contacts)]
-        jerks = -response @ (sim.tangent_product(*by_v) + sim.tangent_product(*by_a))
-        sizes = np.abs(response) @ (sim.tangent_product(*by_v, True) + sim.tangent_product(*by_a, True))
+        by_v, sizes_v = sim.tangent_product(1.0, 0.0, arrays["v"])
+        by_a, sizes_a = sim.tangent_product(0.0, 1.0, arrays["a"])
+        jerks, sizes = -response @ (by_v + by_a), np.abs(response) @ (sizes_v + sizes_a)
         return np.where(np.abs(jerks) <= NO_JERK * sizes, 0.0, jerks)
 
     def _rows(self, level: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

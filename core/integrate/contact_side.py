@@ -225,8 +225,8 @@ class ContactSide:
         """Rounding of the multipliers: a force below this is none, N."""
         return FORCE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["lam"]), initial=0.0)))
 
-    def tangent_product(self, c_q: float, c_v: float, x: NDArray[np.float64], of_sizes: bool = False) -> Any:
-        """(c_v D + c_q K) x (n,), without the mass matrix; `of_sizes`: the same of the magnitudes of all terms."""
+    def tangent_product(self, c_q: float, c_v: float, x: NDArray[np.float64]) -> tuple[Any, Any]:
+        """(c_v D + c_q K) x (n,), without the mass matrix, and the same of the magnitudes of all terms."""
         workspace, n = self.workspace, self.assembly.n
         rows, cols = workspace.structure.rows, workspace.structure.cols
         evaluate_tangent(workspace.record, c_q, c_v)
@@ -234,14 +234,14 @@ class ContactSide:
         evaluate_tangent(workspace.record, 0.0, 0.0)
         here = np.flatnonzero((rows < n) & (cols < n))
         terms = (values[here] - workspace.arrays["values"][here]) * x[cols[here]]
-        return np.bincount(rows[here], np.abs(terms) if of_sizes else terms, n)
+        return np.bincount(rows[here], terms, n), np.bincount(rows[here], np.abs(terms), n)
 
     def force_noise(self) -> NDArray[np.float64]:
         """What rounding of the coordinates leaves in the forces (n,), N: in stiff bodies, coordinates that are nearly
         equal make large forces that cancel each other. That of the largest travels to all of them as waves."""
         largest = float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]), initial=0.0))
         noise = np.full(self.assembly.n, COORDINATE_NOISE * largest)
-        return np.asarray(self.tangent_product(1.0, 0.0, noise, True))
+        return np.asarray(self.tangent_product(1.0, 0.0, noise)[1])
 
     def presses(self, k: int) -> bool:
         """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""
