@@ -27,6 +27,7 @@ class Moment:
     states: tuple[Any, ...]
     values: Vector
     rate: Vector | None
+    scale: Vector
 
 
 class Coupled:
@@ -119,14 +120,15 @@ class Coupled:
                     f"instance '{instance.name}' cannot get and set its state: iterated algorithms and a controlled "
                     "step need that; use 'jacobi' or 'gauss-seidel' with a fixed step"
                 )
-        return Moment(tuple(instance.state() for instance in self.instances), self.values.copy(), self.rate)
+        return Moment(tuple(instance.state() for instance in self.instances), self.values.copy(), self.rate, self.scale)
 
     def back(self, moment: Moment) -> None:
         """Go back."""
         self.rollbacks += 1
         for instance, state in zip(self.instances, moment.states, strict=True):
             instance.restore(state)
-        self.values, self.rate = moment.values.copy(), moment.rate
+        # a pass that went astray must not count in what is large
+        self.values, self.rate, self.scale = moment.values.copy(), moment.rate, moment.scale
 
     def free(self, moment: Moment) -> None:
         """Free the states of a moment."""

@@ -165,7 +165,7 @@ class SystemDescription(Record):
     record: tuple[str, ...] = ("*",)
     """What is recorded: patterns of "instance.variable"; outputs and connected inputs."""
     plot: tuple[str, ...] = ()
-    """What is drawn; left out: the connected inputs."""
+    """What is drawn; left out: what is coupled."""
     master: MasterSettings
 
 

@@ -60,8 +60,8 @@ class Repeated:
             first = found if first is None else first
             if not np.isfinite(found).all():
                 break
-            coupled.scale = np.maximum(coupled.scale, np.abs(found))
-            weights = coupled.weights(self.settings.tolerance, self.settings.absolute)
+            scale = np.maximum(coupled.scale, np.abs(found))
+            weights = self.settings.absolute + self.settings.tolerance * scale
             history.append(float(np.max(np.abs(found - used) / weights, initial=0.0)))
             if history[-1] <= 1.0:
                 self.correction = found - first
@@ -126,7 +126,7 @@ class Iterated(Repeated):
         if not self.settings.aitken:
             return np.asarray(u + self.settings.relaxation * residual)
         # scaled: forces and displacements stand in one vector
-        scaled = residual / coupled.weights(1.0, self.settings.absolute)
+        scaled = residual / np.where(coupled.scale > 0.0, coupled.scale, 1.0)
         if self._last is not None:
             change = scaled - self._last
             square = float(change @ change)

@@ -7,7 +7,8 @@ g(u) is what the outputs make the inputs after a step with u. Its Jacobian needs
 where the derivatives on the right are directional derivatives at held state at the end of the step, y' and y'' the
 outputs that are the derivatives of y in time (of a position: its velocity and acceleration), and w the part of u in the
 input that is held. For a force that moves a body the first two vanish, and what is left is h^2/2 times the inverse of
-the mass that the force feels: right to leading order in h; Broyden's update brings the rest from pass to pass.
+the mass that the force feels: right to leading order in h; Broyden's update brings the rest from pass to pass. Where
+that does not converge, steps done again with one input moved give the Jacobian.
 After Sicklinger et al., "Interface Jacobian-based co-simulation", Int. J. Numer. Meth. Engng 98 (2014) 418.
 """
 
@@ -44,17 +45,17 @@ class Newton(Repeated):
 
     def _begin(self, coupled: Coupled) -> None:
         self._last: tuple[Vector, Vector] | None = None
-        self._renewed = False
+        self._renewals = 0
 
     def _next(
         self, coupled: Coupled, moment: Moment, t: float, h: float, start: Vector, u: Vector, found: Vector
     ) -> Vector:
         residual = found - u
-        scale = coupled.weights(1.0, max(self.settings.absolute, 1e-300))
+        scale = np.where(coupled.scale > 0.0, coupled.scale, 1.0)
         if self._last is not None and self._matrix is not None:
             du, dr = (u - self._last[0]) / scale, (residual - self._last[1]) / scale
             reduction = float(np.linalg.norm(residual / scale) / np.linalg.norm(self._last[1] / scale))
-            if reduction > (1.0 if self._renewed else SLOW):
+            if reduction > (1.0 if self._renewals else SLOW):
                 self._matrix = None
             elif float(du @ du) > 0.0:
                 # in scaled variables
@@ -63,8 +64,10 @@ class Newton(Repeated):
                 self._matrix = scaled * scale[:, None] / scale[None, :]
         if self._matrix is None:
             self.jacobians += 1
-            self._renewed = True
-            by = self._by_steps if self.settings.jacobian == "steps" else self._by_derivatives
+            # leading order in h may be too little for a long step
+            exact = self.settings.jacobian == "steps" or self._renewals > 0
+            self._renewals += 1
+            by = self._by_steps if exact else self._by_derivatives
             self._matrix = by(coupled, moment, t, h, start, u, found) - np.eye(len(u))
         self._last = (u, residual)
         try:

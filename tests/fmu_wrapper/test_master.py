@@ -1,0 +1,182 @@
+"""The master on split oscillators: each algorithm is the map that theory says; orders, stability, controlled steps."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("fmpy")
+
+from split_oscillators import COUPLING, EXACT, START, Oscillators, connections, state
+from tlismni.core import CoordinateLoad, LinearSystem, Model
+from tlismni.core.model.channels import Input
+from tlismni.core.model.signals import InputSignal
+from tlismni.fmu_wrapper.master import Connection, CouplingError, MasterSettings, of_source, run
+
+UNDAMPED = Oscillators()
+ALGORITHMS = [
+    ("jacobi", {}, None),
+    ("gauss-seidel", {}, None),
+    ("iterated", {"hold": "start"}, 0.0),
+    ("iterated", {"hold": "mean"}, 0.5),
+    ("iterated", {"hold": "end", "sweep": "jacobi", "aitken": True}, 1.0),
+    ("iterated", {"hold": "end", "relaxation": 0.8}, 1.0),
+    ("newton", {"hold": "mean"}, 0.5),
+    ("newton", {"hold": "end", "jacobian": "steps"}, 1.0),
+]
+
+
+@pytest.mark.parametrize(("algorithm", "settings", "weight"), ALGORITHMS)
+def test_a_step_is_the_map_of_theory(algorithm, settings, weight):
+    h, steps = 0.07, 20
+    tight = {} if weight is None else {"tolerance": 1e-11}
+    found = UNDAMPED.run(algorithm, h, steps * h, **settings, **tight)
+    expected = np.linalg.matrix_power(UNDAMPED.map(algorithm, h, weight), steps) @ START
+    np.testing.assert_allclose(state(found), expected, atol=1e-7 * np.abs(expected).max())
+    assert len(found.t) == steps + 1 and found.t[-1] == steps * h
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "settings", "order"),
+    [
+        ("jacobi", {}, 1),
+        ("gauss-seidel", {}, 1),
+        ("iterated", {"hold": "end"}, 1),  # agreeing at the end of a step does not mend what is held during it
+        ("iterated", {"hold": "mean"}, 2),
+        ("newton", {"hold": "mean"}, 2),
+    ],
+)
+def test_order_of_the_coupling_error(algorithm, settings, order):
+    t_end, exact = 0.8, UNDAMPED.monolithic(0.8)
+    errors = [np.linalg.norm(state(UNDAMPED.run(algorithm, h, t_end, **settings)) - exact) for h in (0.02, 0.01, 0.005)]
+    observed = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert observed[-1] == pytest.approx(order, abs=0.15)
+
+
+@pytest.mark.parametrize(("algorithm", "weight"), [("jacobi", None), ("iterated", 1.0)])
+def test_stability_limit(algorithm, weight):
+    """Inputs that lag (Jacobi) or lead (end) by h/2 feed energy in, more than the dampers take beyond a step."""
+    damped = Oscillators(dampers=(0.8, 0.4))
+    limit = next(h for h in np.linspace(0.005, 0.5, 1000) if damped.radius(algorithm, h, weight) > 1.0)
+    assert limit < 0.04
+    hold = {} if weight is None else {"hold": "end", "tolerance": 1e-10}
+    for part, grows in ((0.5, False), (2.0, True)):
+        found = damped.run(algorithm, part * limit, 100 * part * limit, **hold)
+        early, late = (np.linalg.norm(state(found, k)) for k in (20, -1))
+        assert (late > early) == grows
+
+
+@pytest.mark.parametrize("algorithm", ["gauss-seidel", "newton"])
+def test_what_lags_on_one_side_and_leads_on_the_other_is_stable_with_any_step(algorithm):
+    """Undamped, with steps of up to two periods: the eigenvalues of the map stay on the unit circle."""
+    assert all(UNDAMPED.radius(algorithm, h) < 1.0 + 1e-9 for h in np.linspace(0.01, 1.5, 300))
+    found = UNDAMPED.run(algorithm, 0.4, 100.0)
+    start = np.linalg.norm(START)
+    assert max(np.linalg.norm([found[f"{i}.mass.x"][k] for i in "ab"]) for k in range(len(found.t))) < 3.0 * start
+
+
+def test_the_mean_of_both_ends_keeps_the_energy_that_held_values_feed():
+    """Undamped: Jacobi's held forces lag and pump energy in; held means do not drift to first order."""
+
+    def energy(z):
+        (m1, m2), (k1, k2) = UNDAMPED.masses, UNDAMPED.springs
+        return 0.5 * (m1 * z[1] ** 2 + m2 * z[3] ** 2 + k1 * z[0] ** 2 + k2 * z[2] ** 2 + COUPLING * (z[0] - z[2]) ** 2)
+
+    gains = {}
+    for algorithm in ("jacobi", "newton"):
+        found = UNDAMPED.run(algorithm, 0.02, 4.0)
+        gains[algorithm] = energy(state(found)) / energy(START) - 1.0
+    assert gains["jacobi"] > 0.5
+    assert abs(gains["newton"]) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "estimate"), [("gauss-seidel", "doubling"), ("newton", "doubling"), ("iterated", "iteration")]
+)
+def test_controlled_step_follows_its_tolerance(algorithm, estimate):
+    halves = Oscillators(solver={"method": "irk", "rtol": 1e-8, "atol": 1e-11})
+    t_end, errors, steps = 1.0, [], []
+    for tolerance in (3e-3, 1.5e-4):
+        control = {"estimate": estimate, "tolerance": tolerance}
+        found = halves.run(algorithm, 0.3, t_end, control=control)
+        assert found.t[-1] == t_end and np.all(np.diff(found.t) > 0.0)
+        assert found.stats["rejected"] > 0  # the first step is far too long
+        errors.append(max(np.linalg.norm(state(found, k) - UNDAMPED.monolithic(t)) for k, t in enumerate(found.t)))
+        steps.append(found.stats["communication_steps"])
+    assert errors[0] > errors[1] and steps[0] < steps[1]
+    # displacements are coupled: whatever is held, they are off by h^3 = tolerance after one step (that the mean of both
+    # ends is right only shows in velocities), and by h^p at the end
+    order = 1 if algorithm == "gauss-seidel" else 2
+    slope = np.log(errors[0] / errors[1]) / np.log(20.0)
+    assert slope == pytest.approx(order / 3.0, rel=0.25)
+
+
+def test_a_step_that_fails_is_done_anew_with_a_shorter_one():
+    """The fixed point diverges with long steps; under control the run goes on with shorter ones."""
+    stiff, t_end = Oscillators(masses=(0.02, 0.02), springs=(0.0, 0.0)), 0.1
+    settings = {"hold": "end", "sweep": "jacobi"}
+    with pytest.raises(CouplingError, match="does not converge"):
+        stiff.run("iterated", 0.1, t_end, **settings)
+    settings["hold"] = "mean"
+    found = stiff.run("iterated", 0.1, t_end, control={"tolerance": 1e-5}, **settings)
+    exact = stiff.monolithic(t_end)
+    assert found.stats["rejected"] > 0
+    assert np.linalg.norm(state(found) - exact) < 0.05 * np.linalg.norm(exact)
+
+
+def added_mass(extra):
+    """A mass whose own acceleration feeds back the inertia of another: an algebraic loop through one input."""
+    model = Model(
+        name="mass",
+        bodies=[LinearSystem(name="mass", coordinates=("x",), mass=((1.0,),), stiffness=((9.0,),), position=(0.1,))],
+        forces=[CoordinateLoad(name="load", body="mass", coordinate="x", load=InputSignal(channel="force"))],
+        inputs=[Input(name="force", unit="N")],
+    )
+    link = Connection(source="a.mass.dd_x", target="a.force", factor=-extra, unit="N.s2/m")
+    return [of_source("a", model, **EXACT)], [link]
+
+
+@pytest.mark.parametrize("algorithm", ["gauss-seidel", "newton"])
+def test_algebraic_loop_is_named_and_solved(algorithm):
+    extra, t_end = 3.0, 2.0
+    omega = np.sqrt(9.0 / (1.0 + extra))
+    errors = []
+    for h in (0.02, 0.01):
+        found = run(*added_mass(extra), MasterSettings(algorithm=algorithm, step=h, t_end=t_end))
+        assert found.loops == ("a.force",)
+        np.testing.assert_allclose(found["a.mass.dd_x"][0], -0.1 * omega**2, rtol=1e-9)
+        errors.append(abs(found["a.mass.x"][-1] - 0.1 * np.cos(omega * t_end)))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(1 if algorithm == "gauss-seidel" else 2, abs=0.25)
+
+
+def test_derivatives_gain_convergence_where_the_fixed_point_has_none():
+    """Each pass multiplies the loop's error by -extra (times 1/m = 1): more than 1 diverges, but not Newton."""
+    for extra, converges in ((0.5, True), (3.0, False)):
+        settings = {"step": 0.01, "t_end": 0.05, "predictor": "constant"}
+        if converges:
+            run(*added_mass(extra), MasterSettings(algorithm="iterated", **settings))
+        else:
+            with pytest.raises(CouplingError, match=r"a\.force"):
+                run(*added_mass(extra), MasterSettings(algorithm="iterated", **settings))
+        found = run(*added_mass(extra), MasterSettings(algorithm="newton", **settings))
+        assert found.stats["passes"] <= 3 * found.stats["communication_steps"]
+
+
+@pytest.mark.parametrize("algorithm", ["jacobi", "newton"])
+def test_both_fmi_versions_give_the_same(algorithm):
+    two, three = (UNDAMPED.run(algorithm, 0.05, 1.0, fmi=fmi, record=("*",)) for fmi in ("2.0", "3.0"))
+    assert two.channels == three.channels
+    for name in two.channels:
+        assert np.array_equal(two[name], three[name])
+
+
+def test_order_of_the_sweep():
+    """Gauss-Seidel from the other end is another map."""
+    there, back = (
+        state(run(UNDAMPED.instances(), connections(), MasterSettings(
+            algorithm="gauss-seidel", step=0.05, t_end=0.5, order=order)))
+        for order in (("a", "b"), ("b", "a"))
+    )  # fmt: skip
+    assert np.linalg.norm(there - back) > 1e-4
+    swapped = Oscillators(masses=UNDAMPED.masses[::-1], springs=UNDAMPED.springs[::-1])
+    exchange = np.eye(4)[[2, 3, 0, 1]]
+    expected = exchange @ np.linalg.matrix_power(swapped.map("gauss-seidel", 0.05), 10) @ exchange @ START
+    np.testing.assert_allclose(back, expected, atol=1e-7)
