@@ -38,6 +38,10 @@ class Numbering(Protocol):
         """Offset of a time function in the pool."""
         ...
 
+    def motion(self, signal: Signal) -> int:
+        """Offset in the pool of a time function that a constraint follows, for `evaluate_motion`."""
+        ...
+
     def internal(self, name: str) -> tuple[int, ...]:
         """Indices of the internal coordinates of the element `name`."""
         ...
@@ -152,6 +156,15 @@ class Element(Record):
         """The time functions it uses."""
         return ()
 
+    def motions(self) -> Sequence[Signal]:
+        """Those among them that its constraint rows follow, one a row; Phi_k = q_k - f(t)."""
+        return ()
+
+    def placed(self, numbering: Numbering) -> Sequence[int]:
+        """The coordinates that start where its constraint rows say, one a row; the model gives them no start of their
+        own."""
+        return ()
+
     def multiplier_channels(self) -> Sequence[Channel]:
         """One channel for each constraint row: what its multiplier means."""
         return ()
@@ -210,8 +223,11 @@ class BodyElement(Element):
         """(q0, v0)."""
         raise NotImplementedError(f"{type(self).__name__} must say where it starts")
 
-    def start_in(self, bodies: "Mapping[str, BodyElement]") -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """(q0, v0) in a model with these bodies, for bodies that start where another one is."""
+    def start_in(
+        self, bodies: "Mapping[str, BodyElement]", inputs: Mapping[str, float]
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """(q0, v0) in a model with these bodies and start values of the inputs, for bodies that start where another one
+        or an input is."""
         return self.initial_state()
 
     def extent(self) -> Sequence[tuple[float, float]]:

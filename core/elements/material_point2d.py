@@ -185,10 +185,12 @@ class MaterialPoint2D(PlanarFrame):
     def coordinate_records(self) -> Sequence[Coordinate]:
         return (X, Y, ANGLE)
 
-    def start_in(self, bodies: Mapping[str, BodyElement]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def start_in(
+        self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float]
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) that follow from the flexible body's."""
         body, shape = bodies[self.body], self._shape(bodies)
-        q, v = body.start_in(bodies)
+        q, v = body.start_in(bodies, inputs)
         index = {name: k for k, name in enumerate(body.coordinate_names)}
         frame = [index[name] for name in shape.frame or ()]
         frame_q, frame_v = ([x[k] for k in frame] or [0.0] * 3 for x in (q, v))

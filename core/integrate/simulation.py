@@ -15,7 +15,7 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, restore
+from . import advance, motions, restore
 from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
@@ -72,7 +72,10 @@ class Simulation(Engine):
         ModelError : if t is not finite or before the present time.
         SimulationError : if the run fails; what was reached stays.
         """
-        self._advance_to(*self._goal(t))
+        goal = self._goal(t)
+        with self._failures():
+            motions.close_jumps(self, goal[0])
+        self._advance_to(*goal)
         self.t = float(t)
 
     def _goal(self, t: float) -> tuple[float, float]:
@@ -94,6 +97,7 @@ class Simulation(Engine):
         """
         start, (target, stop) = self.t, self._goal(t)
         with self._failures():
+            motions.close_jumps(self, target)
             while True:
                 while self.event_due:
                     self._handle_pending()
@@ -204,13 +208,14 @@ class Simulation(Engine):
             if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
                 raise ModelError(f"input '{name}' = {value!r}: a finite number is needed")
         inputs = self.workspace.arrays["inputs"]
-        changed = False
-        for name, value in values.items():
-            k = names.index(name)
-            if inputs[k, 0] != value:
-                inputs[k, 0] = value
-                changed = True
-        if changed:
+        new = {name: value for name, value in values.items() if inputs[names.index(name), 0] != value}
+        moved = motions.moved_by(self, new)
+        for name, value in new.items():
+            inputs[names.index(name), 0] = value
+        if moved:
+            with self._failures():
+                motions.lead(self, moved)
+        if new:
             restore.restart_here(self)
 
     def state(self) -> State:

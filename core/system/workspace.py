@@ -64,7 +64,7 @@ class Workspace:
             "energy": np.zeros(3),
             "monitor": np.zeros(2 * max(contacts, 1)),
             "memory": np.zeros((max(contacts, 1), MEMORY_SIZE)),
-            "inputs": np.zeros((max(len(a.input_names), 1), 3)),
+            "inputs": np.zeros((a.input_rows, 3)),
             "signals": a.signals.copy(),
             "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
             "batches": np.zeros(len(a.batches), dtype=np.int64),
