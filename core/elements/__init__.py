@@ -26,7 +26,14 @@ from .revolute2d import Revolute2D
 from .spring_damper2d import SpringDamper2D
 
 Body = Annotated[
-    PointMass2D | RigidBody2D | LinearSystem | AxialRod | Cable2D | FloatingBeam2D | ReducedBody2D | MaterialPoint2D
+    PointMass2D
+    | RigidBody2D
+    | LinearSystem
+    | AxialRod
+    | Cable2D
+    | FloatingBeam2D
+    | ReducedBody2D
+    | MaterialPoint2D
     | MovingFrame2D,
     Field(discriminator="type"),
 ]

@@ -11,7 +11,7 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, vec
 from ..model.channels import Channel
 from ..model.motion import evaluate_motion
-from ..model.signals import Constant, InputSignal, Signal, Step, evaluate_signal
+from ..model.signals import INPUT_SIZE, Constant, InputSignal, Signal, Step, evaluate_signal
 from .base import BodyElement, Coordinate, Numbering, Row
 from .planar_body import ANGLE, PlanarFrame, X, Y
 
@@ -21,7 +21,7 @@ def moving_frame2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT and job != POWER:
         return
     coord, row, extra = imat(b.coord, b.count, 3), imat(b.row, b.count, 3), imat(b.extra, b.count, 4)
-    pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, 3 * b.n_inputs)
+    pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
     q, v, a = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended)
     lam, r, values = vec(b.lam, b.m_extended), vec(b.r, b.n_extended), vec(b.values, b.n_values)
     phi, phid, phidd = vec(b.phi, b.m_extended), vec(b.phid, b.m_extended), vec(b.phidd, b.m_extended)

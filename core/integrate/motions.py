@@ -1,11 +1,11 @@
 """What a run does when an input that is a motion changes (`tlismni.core.model.motion` says why)."""
 
 import logging
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING
 
-from ..model.motion import InputMotion
-from . import restore
+from ..model.motion import DURATION, JUMP, RATE_JUMP, SINCE, InputMotion
+from .restore import restart_here
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -18,24 +18,26 @@ LARGE_JUMP = 0.01
 State = tuple[InputMotion, float, float]
 
 
-def moved_by(sim: "Simulation", channels: Iterable[str]) -> list[State]:
-    """The motions that these input channels lead, with position and velocity that they have at the present time."""
-    numbers = {sim.assembly.input_names.index(name) for name in channels}
+def led_by(sim: "Simulation", channels: Collection[int]) -> list[State]:
+    """The motions that the input channels of these numbers lead, with position and velocity at the present time."""
     inputs = sim.workspace.arrays["inputs"]
-    moved = [m for m in sim.assembly.motions if {m.position, m.rate} & numbers]
+    moved = [m for m in sim.assembly.motions if m.position in channels or m.rate in channels]
     return [(m, *m.state(inputs, sim.t)) for m in moved]
 
 
 def lead(sim: "Simulation", states: Iterable[State]) -> None:
     """Let motions in these states follow what the channels say now. Before the first step they start there."""
     inputs = sim.workspace.arrays["inputs"]
-    at_start = not sim.started and sim.t == sim.settings.t0
     for motion, x, v in states:
-        said_x, said_v = motion.said(inputs)
-        jumps = (0.0, 0.0) if at_start else (x - said_x, v - said_v)
-        motion.jumps(inputs)[:] = (*jumps, sim.t, 0.0)
-    if at_start and states:
-        start_again(sim)
+        inputs[motion.jumps, SINCE] = sim.t
+        said_x, said_v = motion.said(inputs, sim.t)
+        jumps = (0.0, 0.0) if at_start(sim) else (x - said_x, v - said_v)
+        inputs[motion.jumps] = (*jumps, sim.t, 0.0)
+
+
+def at_start(sim: "Simulation") -> bool:
+    """True before the first step."""
+    return not sim.started and sim.t == sim.settings.t0
 
 
 def start_again(sim: "Simulation") -> None:
@@ -62,13 +64,13 @@ def close_jumps(sim: "Simulation", t: float) -> None:
     inputs = sim.workspace.arrays["inputs"]
     changed = False
     for motion in sim.assembly.motions:
-        jumps = motion.jumps(inputs)
-        if jumps[3] == 0.0 and (jumps[0] != 0.0 or jumps[1] != 0.0) and t > sim.t:
-            jumps[3] = t - jumps[2]
+        row = inputs[motion.jumps]
+        if row[DURATION] == 0.0 and (row[JUMP] != 0.0 or row[RATE_JUMP] != 0.0) and t > sim.t:
+            row[DURATION] = t - row[SINCE]
             changed = True
-            _warn_if_large(sim, motion, float(jumps[0]), float(jumps[3]))
+            _warn_if_large(sim, motion, float(row[JUMP]), float(row[DURATION]))
     if changed:
-        restore.restart_here(sim)
+        restart_here(sim)
 
 
 def _warn_if_large(sim: "Simulation", motion: InputMotion, jump: float, duration: float) -> None:

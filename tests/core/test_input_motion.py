@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from tlismni.core import (
     CoordinateDriver,
     Disk2D,
@@ -94,7 +95,9 @@ def test_a_moving_wall_is_the_resting_one_seen_from_a_moving_frame():
     """Force law: adding one velocity to everything changes no force."""
     u, h = 0.8, 0.03
     law = Hertz(stiffness=1e4)
-    rest = simulate(wall(law, Polynomial(coefficients=(0.0,)), ()), 0.9, rtol=1e-10, atol=1e-12, t_eval=[0.3, 0.45, 0.9])
+    rest = simulate(
+        wall(law, Polynomial(coefficients=(0.0,)), ()), 0.9, rtol=1e-10, atol=1e-12, t_eval=[0.3, 0.45, 0.9]
+    )
     moving = Simulation(wall(law, velocity=(u - 1.0, 0.0)), rtol=1e-10, atol=1e-12)
     seen = []
     for k in range(30):
@@ -108,14 +111,16 @@ def test_a_moving_wall_is_the_resting_one_seen_from_a_moving_frame():
     assert [event.kind for event in moving.events] == ["close", "open"]
 
 
-@pytest.mark.parametrize("law", [NewtonImpact(restitution=0.0), Hertz(stiffness=1e5)], ids=["constraint", "force"])
-def test_a_coarse_motion_converges_with_the_communication_step(law):
+@pytest.mark.parametrize("force", [False, True])
+def test_a_coarse_motion_converges_with_the_communication_step(force):
     """A wall that oscillates, with a ball that a spring presses on it; samples of its motion every h s. The lag is
     a h^2/2, so the error is of second order; jumps put no energy in that the ledger does not know."""
-    amplitude, w, t_end = 0.2, 5.0, 0.8
+    amplitude, w, t_end, stiffness = 0.2, 5.0, 0.8, 1e5
+    law = Hertz(stiffness=stiffness) if force else NewtonImpact(restitution=0.0)
 
     def build(motion, inputs=INPUTS):
-        model = wall(law, motion, inputs, position=(0.1, 0.0), velocity=(amplitude * w, 0.0))
+        overlap = brentq(lambda d: stiffness * d**1.5 - 800.0 * (0.6 - d), 0.0, 0.1) if force else 0.0
+        model = wall(law, motion, inputs, position=(0.1 - overlap, 0.0), velocity=(amplitude * w, 0.0))
         spring = SpringDamper2D(
             name="spring", a=Marker2D(point=(1.5, 0.0)), b=Marker2D(body="ball"), stiffness=800.0, natural_length=2.0
         )
@@ -124,7 +129,7 @@ def test_a_coarse_motion_converges_with_the_communication_step(law):
     coefficients = [amplitude * (-1) ** (k // 2) * w**k / math.factorial(k) if k % 2 else 0.0 for k in range(28)]
     exact = simulate(build(Polynomial(coefficients=coefficients), ()), t_end, rtol=1e-10, atol=1e-12)
     errors = []
-    for count in (20, 40, 80):
+    for count in (40, 80, 160):
         h = t_end / count
         sim = Simulation(build(LED), "irk", rtol=1e-9, atol=1e-11)
         for k in range(count):
@@ -163,7 +168,7 @@ def test_a_jump_is_closed_without_impact(caplog):
     assert "the motion is -0.45 away from its input 'x'" in caplog.text
     found = values(sim)
     assert found["p.x"] == pytest.approx(1.475, abs=1e-13) and found["p.vx"] == pytest.approx(-0.25, abs=1e-12)
-    assert found["energy.input_work"] == pytest.approx(1.5 * (0.25**2 - 0.5**2), rel=1e-8)
+    assert found["energy.input_work"] == pytest.approx(1.5 * (0.25**2 - 0.5**2), rel=1e-6)
     sim.advance(0.4)
     found = values(sim)
     assert found["p.x"] == pytest.approx(1.425, abs=1e-13) and abs(found["p.ax"]) < 1e-9
