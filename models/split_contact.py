@@ -20,13 +20,13 @@ from .scenario import Scenario
 FORCE_LAWS = tuple(name for name in LAW_NAMES if name != "newton")
 """An impulse does not pass through a port, so the contact is a force."""
 _HAMMER = (
-    ScenarioParameter("hammer_mass", 1.0, "kg", "", 0.0, exclusive=True),
+    ScenarioParameter("hammer_mass", 1.0, "kg", "of the striking body", 0.0, exclusive=True),
     ScenarioParameter("hammer_frequency", 20.0, "rad/s", "of the hammer on its spring", 0.0, exclusive=True),
     ScenarioParameter("gap", 0.01, "m", "between hammer and anvil at the start", 0.0),
     ScenarioParameter("speed", 1.0, "m/s", "of the hammer at the start, towards the anvil", 0.0),
 )  # fmt: skip
 _ANVIL = (
-    ScenarioParameter("anvil_mass", 2.0, "kg", "", 0.0, exclusive=True),
+    ScenarioParameter("anvil_mass", 2.0, "kg", "of the body that is struck", 0.0, exclusive=True),
     ScenarioParameter("anvil_frequency", 100.0, "rad/s", "of the anvil on its spring", 0.0, exclusive=True),
     ScenarioParameter("anvil_damping_ratio", 0.05, "-", "of the anvil on its spring", 0.0),
     ScenarioParameter("law", "flores", "-", "of the contact, a force", choices=FORCE_LAWS),

@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, ClassVar, Protocol
 
 from ..model.base import Name, Record
 from ..model.channels import Channel
 from ..model.markers import Marker2D
 from ..model.signals import Signal
+
+NO_INPUTS: Mapping[str, float] = MappingProxyType({})
 
 
 class Numbering(Protocol):
@@ -224,7 +227,7 @@ class BodyElement(Element):
         raise NotImplementedError(f"{type(self).__name__} must say where it starts")
 
     def start_in(
-        self, bodies: "Mapping[str, BodyElement]", inputs: Mapping[str, float]
+        self, bodies: "Mapping[str, BodyElement]", inputs: Mapping[str, float] = NO_INPUTS
     ) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) in a model with these bodies and start values of the inputs, for bodies that start where another one
         or an input is."""

@@ -18,7 +18,7 @@ from ..compiled.views import imat, mat, vec
 from ..model.base import Name, Vector2
 from ..model.channels import Channel
 from ..model.markers import GROUND
-from .base import BodyElement, Coordinate, Form, Numbering, Row
+from .base import NO_INPUTS, BodyElement, Coordinate, Form, Numbering, Row
 from .flexible_body import FlexibleBody, PointShape
 from .planar_body import ANGLE, PlanarFrame, X, Y
 
@@ -186,7 +186,7 @@ class MaterialPoint2D(PlanarFrame):
         return (X, Y, ANGLE)
 
     def start_in(
-        self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float]
+        self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS
     ) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) that follow from the flexible body's."""
         body, shape = bodies[self.body], self._shape(bodies)

@@ -12,7 +12,7 @@ from ..compiled.views import imat, vec
 from ..model.channels import Channel
 from ..model.motion import evaluate_motion
 from ..model.signals import INPUT_SIZE, Constant, InputSignal, Signal, Step, evaluate_signal
-from .base import BodyElement, Coordinate, Numbering, Row
+from .base import NO_INPUTS, BodyElement, Coordinate, Numbering, Row
 from .planar_body import ANGLE, PlanarFrame, X, Y
 
 
@@ -80,7 +80,7 @@ class MovingFrame2D(PlanarFrame):
         return (X, Y, ANGLE)
 
     def start_in(
-        self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float]
+        self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS
     ) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) where the motions are at t = 0."""
         found = [_start(motion, inputs) for motion in self.motions()]
@@ -88,7 +88,7 @@ class MovingFrame2D(PlanarFrame):
 
     def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) with all inputs at zero."""
-        return self.start_in({}, {})
+        return self.start_in({})
 
     def row(self, numbering: Numbering) -> Row:
         extra = (*(numbering.motion(motion) for motion in self.motions()), numbering.work("input"))
