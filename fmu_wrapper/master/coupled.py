@@ -63,6 +63,11 @@ class Coupled:
             places = [p for p, k in enumerate(links) if self.links[k].target == i]
             self.instances[i].set([self.links[links[p]].input.reference for p in places], values[places])
 
+    def write_ahead(self, links: Sequence[int], values: Vector, h: float) -> None:
+        """Set inputs for a step of length `h`, s, at whose end all inputs are `values` (one for each link)."""
+        held = [values[k] if (rate := self.links[k].rate) is None else values[k] - h * values[rate] for k in links]
+        self.write(links, np.array(held))
+
     def settle(self) -> None:
         """Pass values along all links, in order, so that every input is what its output makes it.
 

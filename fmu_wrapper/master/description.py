@@ -78,8 +78,10 @@ class Connection(Record):
     factor: float = 1.0
     unit: str = "1"
     """Unit of the factor, e.g. "N/m" if a displacement feeds a force."""
-    hold: Hold | None = None
-    """What the input is during a step of an iterated algorithm; left out: the master's `hold`."""
+    hold: Hold | Literal["meet"] | None = None
+    """What the input is during a step of an iterated algorithm; left out: the master's `hold`. `meet` is for a position
+    that its instance carries on with the velocity that is connected beside it: it starts from where it comes to the
+    value and velocity of the step's end."""
 
     @model_validator(mode="before")
     @classmethod

@@ -38,10 +38,12 @@ class GaussSeidel:
         """Advance all instances from `t` by `h`, s."""
         self.passes += 1
         stepped: set[int] = set()
+        values = coupled.values.copy()
         for i in self.sequence:
             links = [k for k in coupled.into[i] if coupled.links[k].source in stepped]
             if links:
-                coupled.write(links, coupled.read(links))
+                values[links] = coupled.read(links)
+                coupled.write_ahead(links, values, h)
             coupled.instances[i].step(t, h)
             stepped.add(i)
         finish(coupled, h)

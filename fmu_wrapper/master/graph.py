@@ -6,8 +6,9 @@ moving the input a little in initialization mode and looking. Links that hang to
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from graphlib import TopologicalSorter
+from typing import Literal
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -17,6 +18,7 @@ from ..units import BaseUnit, parse_unit
 from .description import Connection, Hold
 from .errors import MasterError, near
 from .instance import Instance
+from .rates import time_derivatives
 from .variable import Variable
 
 
@@ -30,11 +32,13 @@ class Link:
     target: int
     input: Variable
     factor: float
-    hold: Hold
+    hold: Hold | Literal["meet"]
     label: str
     """"instance.input", as in results."""
     origin: str
     """"instance.output"."""
+    rate: int | None = None
+    """Of a link with hold `meet`, the link that brings the velocity."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +83,7 @@ def resolve(
                 f"input '{link.label}' is fed twice, by '{fed[link.label].origin}' and '{link.origin}': remove one"
             )
         fed[link.label] = link
+    links = tuple(_with_rate(link, links, instances) if link.hold == "meet" else link for link in links)
     inputs = (f"{instance.name}.{name}" for instance in instances for name in instance.names("input"))
     return links, tuple(name for name in inputs if name not in fed)
 
@@ -108,6 +113,19 @@ def _link(connection: Connection, number: Mapping[str, int], instances: Sequence
     scale = _conversion(connection, output, input_)
     return Link(source, output, target, input_, connection.factor * scale, connection.hold or hold,
                 connection.target, connection.source)  # fmt: skip
+
+
+def _with_rate(link: Link, links: Sequence[Link], instances: Sequence[Instance]) -> Link:
+    """A link with hold `meet`, with the link that brings its velocity."""
+    derivatives = time_derivatives(instances[link.source], link.output)[:1]
+    for k, other in enumerate(links):
+        if (other.source, other.target) == (link.source, link.target) and other.output in derivatives:
+            return replace(link, rate=k)
+    name = derivatives[0].name if derivatives else "its derivative in time"
+    raise MasterError(
+        f"connection '{link.origin} -> {link.label}' has hold = 'meet' but its velocity does not come along: connect "
+        f"'{instances[link.source].name}.{name}' to the input for the velocity, or leave out hold"
+    )
 
 
 def _conversion(connection: Connection, output: Variable, input_: Variable) -> float:

@@ -2,7 +2,8 @@
 
 The unknowns are the inputs u at the end of the step. During the step an instance holds (1 - w) u_0 + w u, where u_0 are
 the inputs at its start and w is 0 (`start`), 1/2 (`mean`) or 1 (`end`); then it gets u, and shows its outputs. The mean
-is off by O(h) inside the step, but its mean error is O(h^2): order 2.
+is off by O(h) inside the step, but its mean error is O(h^2): order 2. A position with a velocity beside it (`meet`) is
+set to what comes to the position and velocity of the end with constant velocity.
 """
 
 from collections.abc import Sequence
@@ -15,7 +16,7 @@ from .description import MasterSettings
 from .errors import CouplingError
 from .explicit import finish
 
-WEIGHTS = {"start": 0.0, "mean": 0.5, "end": 1.0}
+WEIGHTS = {"start": 0.0, "mean": 0.5, "end": 1.0, "meet": 1.0}
 AITKEN_BOUND = 4.0
 """Largest magnitude of Aitken's factor."""
 
@@ -27,7 +28,9 @@ class Repeated:
         self.settings = settings
         self.sequence = tuple(sequence)
         self.weight = np.array([WEIGHTS[link.hold] for link in coupled.links])
-        self.order = 2 if np.all(self.weight == 0.5) and len(self.weight) else 1
+        met = [k for link in coupled.links if link.rate is not None for k in (coupled.links.index(link), link.rate)]
+        self.weight[met] = WEIGHTS["meet"]
+        self.order = 2 if np.all(np.delete(self.weight, met) == 0.5) and len(self.weight) else 1
         self.passes = 0
         self.correction: Vector = np.zeros(len(coupled.links))
         """By how much the last step's result differs from that of its first pass."""
@@ -88,8 +91,7 @@ class Repeated:
             if known:
                 used[known] = coupled.read(known)
             if links:
-                w = self.weight[links]
-                coupled.write(links, (1.0 - w) * start[links] + w * used[links])
+                coupled.write_ahead(links, (1.0 - self.weight) * start + self.weight * used, h)
             coupled.instances[i].step(t, h)
             if links:
                 coupled.write(links, used[links])

@@ -8,7 +8,8 @@ where the derivatives on the right are directional derivatives at held state at 
 outputs that are the derivatives of y in time (of a position: its velocity and acceleration), and w the part of u in the
 input that is held. For a force that moves a body the first two vanish, and what is left is h^2/2 times the inverse of
 the mass that the force feels: right to leading order in h; Broyden's update brings the rest from pass to pass. Where
-that does not converge, steps done again with one input moved give the Jacobian.
+that does not converge, and along inputs for which an instance has no derivatives (motions), steps done again with one
+input moved give the Jacobian.
 After Sicklinger et al., "Interface Jacobian-based co-simulation", Int. J. Numer. Meth. Engng 98 (2014) 418.
 """
 
@@ -20,14 +21,12 @@ from numpy.typing import NDArray
 from .coupled import Coupled, Moment, Vector
 from .description import MasterSettings
 from .errors import CouplingError, MasterError
-from .instance import Instance
 from .iterated import Repeated
 from .rates import time_derivatives
-from .variable import Variable
 
 SLOW = 0.3
 """A pass that leaves more than this part of the residual asks for a new Jacobian."""
-MOVE = 1e-6
+MOVE = 1e-4
 """Part of an input's largest value by which it is moved to form a difference."""
 
 
@@ -37,7 +36,8 @@ class Newton(Repeated):
     def __init__(self, settings: MasterSettings, coupled: Coupled, sequence: Sequence[int]) -> None:
         super().__init__(settings, coupled, sequence)
         self._rates = [time_derivatives(coupled.instances[link.source], link.output) for link in coupled.links]
-        self._refused: set[tuple[int, str]] = set()
+        self._refused: set[int] = set()
+        """Links into instances that give no derivatives along them."""
         self.jacobians = 0
 
         self._matrix: NDArray[np.float64] | None = None
@@ -64,11 +64,8 @@ class Newton(Repeated):
                 self._matrix = scaled * scale[:, None] / scale[None, :]
         if self._matrix is None:
             self.jacobians += 1
-            # leading order in h may be too little for a long step
-            exact = self.settings.jacobian == "steps" or self._renewals > 0
+            self._matrix = self._jacobian(coupled, moment, t, h, start, u, found) - np.eye(len(u))
             self._renewals += 1
-            by = self._by_steps if exact else self._by_derivatives
-            self._matrix = by(coupled, moment, t, h, start, u, found) - np.eye(len(u))
         self._last = (u, residual)
         try:
             return np.asarray(u - np.linalg.solve(self._matrix, residual))
@@ -77,66 +74,59 @@ class Newton(Repeated):
                 f"the interface Jacobian of the step from t = {t!r} s by {h!r} s is singular: use a smaller step"
             ) from None
 
-    def _by_derivatives(
+    def _jacobian(
         self, coupled: Coupled, moment: Moment, t: float, h: float, start: Vector, u: Vector, found: Vector
     ) -> NDArray[np.float64]:
-        """dg/du from derivatives at the end of the step, where the instances are."""
+        """dg/du, column by column: from derivatives at the end of the step, where the instances are, or from the step
+        done again, if an instance gives no derivatives, or they did not lead to convergence."""
+        exact = self.settings.jacobian == "steps" or self._renewals > 0
         matrix = np.zeros((len(u), len(u)))
+        again: list[tuple[int, list[int]]] = []
         for a, into in enumerate(coupled.links):
             outs = [b for b, link in enumerate(coupled.links) if link.source == into.target]
-            if not outs:
-                continue
-            unknowns = [variable for b in outs for variable in (coupled.links[b].output, *self._rates[b])]
-            move = MOVE * (coupled.scale[a] or 1.0)
-            derivatives = iter(
-                self._derivatives(coupled.instances[into.target], into.target, unknowns, into.input, move)
-            )
-            for b in outs:
-                matrix[b, a] = next(derivatives)
-                part = self.weight[a]
-                for k, _ in enumerate(self._rates[b]):
-                    part *= h / (k + 1.0)
-                    matrix[b, a] += part * next(derivatives)
-                matrix[b, a] *= coupled.links[b].factor
+            column = None if exact or not outs else self._by_derivatives(coupled, a, outs, h)
+            if column is not None:
+                matrix[outs, a] = column
+            elif outs:
+                again.append((a, outs))
+        for a, outs in again:
+            matrix[outs, a] = self._by_step(coupled, moment, a, outs, t, h, start, u, found)
         return matrix
 
-    def _derivatives(
-        self, instance: Instance, number: int, unknowns: Sequence[Variable], known: Variable, move: float
-    ) -> Vector:
-        """Derivatives at held state: the instance's own, or else differences."""
-        references = [variable.reference for variable in unknowns]
-        if instance.abilities.derivatives and (number, known.name) not in self._refused:
-            try:
-                return instance.derivative(references, known.reference)
-            except MasterError:
-                self._refused.add((number, known.name))
-        state = instance.state()
+    def _by_derivatives(self, coupled: Coupled, a: int, outs: Sequence[int], h: float) -> Vector | None:
+        """Derivatives of g on the links `outs` along the link `a`; None if the instance has none for this input."""
+        into = coupled.links[a]
+        instance = coupled.instances[into.target]
+        if not instance.abilities.derivatives or a in self._refused:
+            return None
+        unknowns = [variable.reference for b in outs for variable in (coupled.links[b].output, *self._rates[b])]
         try:
-            old = instance.get([known.reference])
-            before = instance.get(references)
-            instance.set([known.reference], old + move)
-            return np.asarray((instance.get(references) - before) / move)
-        finally:
-            instance.restore(state)
-            instance.free(state)
+            derivatives = iter(instance.derivative(unknowns, into.input.reference))
+        except MasterError:
+            self._refused.add(a)
+            return None
+        column = np.empty(len(outs))
+        for place, b in enumerate(outs):
+            column[place] = next(derivatives)
+            part = self.weight[a]
+            for k in range(len(self._rates[b])):
+                part *= h / (k + 1.0)
+                column[place] += part * next(derivatives)
+            column[place] *= coupled.links[b].factor
+        return column
 
-    def _by_steps(
-        self, coupled: Coupled, moment: Moment, t: float, h: float, start: Vector, u: Vector, found: Vector
-    ) -> NDArray[np.float64]:
-        """dg/du from steps done again, each with one input moved."""
-        matrix = np.zeros((len(u), len(u)))
-        for a, into in enumerate(coupled.links):
-            outs = [b for b, link in enumerate(coupled.links) if link.source == into.target]
-            if not outs:
-                continue
-            move = MOVE * (coupled.scale[a] or 1.0)
-            moved = u.copy()
-            moved[a] += move
-            instance, links = coupled.instances[into.target], coupled.into[into.target]
-            instance.restore(moment.states[into.target])
-            w = self.weight[links]
-            coupled.write(links, (1.0 - w) * start[links] + w * moved[links])
-            instance.step(t, h)
-            coupled.write(links, moved[links])
-            matrix[outs, a] = (coupled.read(outs) - found[outs]) / move
-        return matrix
+    def _by_step(
+        self, coupled: Coupled, moment: Moment, a: int, outs: Sequence[int], t: float, h: float,
+        start: Vector, u: Vector, found: Vector,
+    ) -> Vector:  # fmt: skip
+        """The same from the step done again with the input moved."""
+        move = MOVE * (coupled.scale[a] or 1.0)
+        moved = u.copy()
+        moved[a] += move
+        number = coupled.links[a].target
+        instance, links = coupled.instances[number], coupled.into[number]
+        instance.restore(moment.states[number])
+        coupled.write_ahead(links, (1.0 - self.weight) * start + self.weight * moved, h)
+        instance.step(t, h)
+        coupled.write(links, moved[links])
+        return np.asarray((coupled.read(outs) - found[outs]) / move)
