@@ -5,6 +5,7 @@ from .errors import CouplingError, MasterError
 from .result import SystemResult
 from .run import run, simulate_system
 from .sources import of_fmu, of_source
+from .ssp import write_ssp
 
 __all__ = [
     "Connection",
@@ -20,4 +21,5 @@ __all__ = [
     "read_system",
     "run",
     "simulate_system",
+    "write_ssp",
 ]

@@ -34,20 +34,33 @@ def make_instance(
     """
     if record.fmu is not None:
         instance = of_fmu(name, folder / record.fmu, unzip_into / name, record.in_process)
-    elif record.scenario is not None:
-        if load_scenario is None:
-            raise MasterError(
-                f"instance '{name}' is the scenario '{record.scenario}': give load_scenario=tlismni.models.load"
-            )
-        instance = of_source(name, load_scenario(record.scenario, **record.parameters), record.fmi, **record.solver)
     else:
-        instance = of_source(name, Model.load(folder / str(record.model)), record.fmi, **record.solver)
+        source, solver = source_of(name, record, folder, load_scenario)
+        instance = of_source(name, source, record.fmi, **solver)
     try:
         instance.set_start(record.start)
     except BaseException:
         instance.close()
         raise
     return instance
+
+
+def source_of(
+    name: str, record: InstanceRecord, folder: Path, load_scenario: LoadScenario | None
+) -> tuple[Any, dict[str, Any]]:
+    """The scenario or model of a record that is no FMU, and the solver settings that win over the scenario's.
+
+    Raises
+    ------
+    MasterError, ModelError : if there is none.
+    """
+    if record.scenario is None:
+        return Model.load(folder / str(record.model)), record.solver
+    if load_scenario is None:
+        raise MasterError(
+            f"instance '{name}' is the scenario '{record.scenario}': give load_scenario=tlismni.models.load"
+        )
+    return load_scenario(record.scenario, **record.parameters), record.solver
 
 
 def of_source(name: str, source: Any, fmi: str = "3.0", **solver: Any) -> Instance:

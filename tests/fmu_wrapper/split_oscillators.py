@@ -23,11 +23,12 @@ EXACT = {"method": "irk", "rtol": 1e-11, "atol": 1e-13}
 
 @dataclass(frozen=True)
 class Oscillators:
-    """Masses (kg), springs to the ground (N/m) and dampers (N s/m)."""
+    """Masses (kg), springs to the ground (N/m), dampers (N s/m), and the spring between them (N/m)."""
 
     masses: tuple[float, float] = (1.0, 0.5)
     springs: tuple[float, float] = (30.0, 20.0)
     dampers: tuple[float, float] = (0.0, 0.0)
+    coupling: float = COUPLING
     solver: dict = field(default_factory=lambda: dict(EXACT))
 
     def model(self, k: int) -> Model:
@@ -36,7 +37,7 @@ class Oscillators:
             bodies=[
                 LinearSystem(
                     name="mass", coordinates=("x",), mass=((self.masses[k],),), damping=((self.dampers[k],),),
-                    stiffness=((self.springs[k] + COUPLING,),), position=(START[2 * k],),
+                    stiffness=((self.springs[k] + self.coupling,),), position=(START[2 * k],),
                 )
             ],
             forces=[CoordinateLoad(name="load", body="mass", coordinate="x", load=InputSignal(channel="force"))],
@@ -48,30 +49,24 @@ class Oscillators:
 
     def run(self, algorithm, step, t_end, fmi="3.0", record=("*.mass.x", "*.mass.d_x"), **settings):
         connected = MasterSettings(algorithm=algorithm, step=step, t_end=t_end, **settings)
-        return run(self.instances(fmi), connections(), connected, record)
+        return run(self.instances(fmi), connections(self.coupling), connected, record)
 
     @property
     def halves(self):
         return [
-            np.array([[0.0, 1.0], [-(k + COUPLING) / m, -c / m]])
+            np.array([[0.0, 1.0], [-(k + self.coupling) / m, -c / m]])
             for m, k, c in zip(self.masses, self.springs, self.dampers, strict=True)
         ]
 
     def monolithic(self, t):
         """The exact state at t."""
         a = block_diag(*self.halves)
-        a[1, 2], a[3, 0] = COUPLING / self.masses[0], COUPLING / self.masses[1]
+        a[1, 2], a[3, 0] = self.coupling / self.masses[0], self.coupling / self.masses[1]
         return expm(a * t) @ START
 
     def map(self, algorithm, h, weight=0.5):
         """The state after a step of h, as a matrix; `weight` of the step's end in the inputs of iterated algorithms."""
-        own, by_input = np.zeros((4, 4)), np.zeros((4, 4))
-        for k, (a, m) in enumerate(zip(self.halves, self.masses, strict=True)):
-            held = np.zeros((3, 3))
-            held[:2, :2], held[1, 2] = a, 1.0 / m
-            step = expm(held * h)
-            own[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = step[:2, :2]
-            by_input[2 * k : 2 * k + 2, 2 - 2 * k] = COUPLING * step[:2, 2]
+        own, by_input = self.parts(h)
         if algorithm == "jacobi":
             return own + by_input
         if algorithm == "gauss-seidel":  # the second half takes x1 at the end of the step
@@ -79,15 +74,30 @@ class Oscillators:
             return np.linalg.solve(np.eye(4) - late, own + by_input - late)
         return np.linalg.solve(np.eye(4) - weight * by_input, own + (1.0 - weight) * by_input)
 
+    def own(self, h):
+        """The state after a step of h without coupling, as a matrix."""
+        return self.parts(h)[0]
+
+    def parts(self, h):
+        """The state after a step of h, from the state at its start and from the displacements that are held."""
+        own, by_input = np.zeros((4, 4)), np.zeros((4, 4))
+        for k, (a, m) in enumerate(zip(self.halves, self.masses, strict=True)):
+            held = np.zeros((3, 3))
+            held[:2, :2], held[1, 2] = a, 1.0 / m
+            step = expm(held * h)
+            own[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = step[:2, :2]
+            by_input[2 * k : 2 * k + 2, 2 - 2 * k] = self.coupling * step[:2, 2]
+        return own, by_input
+
     def radius(self, algorithm, h, weight=0.5):
         """Growth of the least stable motion in a step."""
         return float(np.max(np.abs(np.linalg.eigvals(self.map(algorithm, h, weight)))))
 
 
-def connections():
+def connections(coupling=COUPLING):
     return [
-        Connection(source="a.mass.x", target="b.force", factor=COUPLING, unit="N/m"),
-        Connection(source="b.mass.x", target="a.force", factor=COUPLING, unit="N/m"),
+        Connection(source="a.mass.x", target="b.force", factor=coupling, unit="N/m"),
+        Connection(source="b.mass.x", target="a.force", factor=coupling, unit="N/m"),
     ]
 
 
