@@ -11,7 +11,7 @@ from ..core.description import Model
 from .derivatives import along, check_finite
 from .errors import FmuError
 from .settings import Settings
-from .values import Values
+from .values import MOST_DERIVATIVES, Values
 from .variables import EVENTS, Variable, VariableTable
 
 SimulationFactory = Callable[..., Any]
@@ -79,8 +79,8 @@ class Run:
         self.key = self.key_of(values, t0)
         inputs = values.table.block("input")
         self._input_names = [v.name for v in inputs]
-        self._input_positions = np.array([values.table.position[v.reference] for v in inputs], dtype=np.intp)
-        self._applied = np.array([v.start for v in inputs], dtype=np.float64)
+        self._applied = np.zeros((len(inputs), 1 + MOST_DERIVATIVES))
+        self._applied[:, 0] = [v.start for v in inputs]
         self._events = values.table.by_name[EVENTS]
         changed_model, changed_settings = effective(model, settings, values)
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
@@ -111,9 +111,9 @@ class Run:
         }
 
     @property
-    def applied(self) -> tuple[float, ...]:
-        """The input values that the simulation has been told."""
-        return tuple(self._applied.tolist())
+    def applied(self) -> list[list[float]]:
+        """Value and derivatives of each input, as the simulation has been told."""
+        return self._applied.tolist()
 
     @property
     def events(self) -> Sequence[Any]:
@@ -122,7 +122,7 @@ class Run:
 
     def inputs(self) -> dict[str, float]:
         """The input values that the simulation has been told, by name."""
-        return dict(zip(self._input_names, self.applied, strict=True))
+        return dict(zip(self._input_names, self._applied[:, 0].tolist(), strict=True))
 
     def derivatives(self, outputs: Sequence[Variable], direction: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """Derivatives of real outputs along `direction`, by input name, at the present time."""
@@ -133,11 +133,21 @@ class Run:
 
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""
-        wanted = values.vectors["real"][self._input_positions]
-        changed = np.flatnonzero(wanted != self._applied)
-        if changed.size:
-            self._simulation.set_inputs({self._input_names[i]: wanted[i].item() for i in changed})
-            self._applied = wanted
+        wanted = values.courses
+        changed = np.flatnonzero((wanted != self._applied).any(axis=1))
+        if not changed.size:
+            return
+        told = {self._input_names[i]: wanted[i, 0].item() for i in changed}
+        sloped = {self._input_names[i]: wanted[i, 1:].tolist() for i in changed if wanted[i, 1:].any()}
+        if sloped:
+            self._simulation.set_inputs(told, sloped)
+        else:
+            self._simulation.set_inputs(told)
+        self._applied = wanted
+
+    def follow(self, values: Values) -> None:
+        """The inputs have gone on by their derivatives, as the simulation knows."""
+        self._applied = values.courses
 
     def advance(self, t: float, event_mode: bool = False, early_return: bool = False) -> StepEnd:
         """Integrate to `t`, s, or to a contact event before it if `early_return`.
@@ -185,9 +195,9 @@ class Run:
         """The solver's state."""
         return self._simulation.state()
 
-    def restore(self, state: Any, applied: tuple[float, ...]) -> None:
+    def restore(self, state: Any, applied: list[list[float]]) -> None:
         """Take over a solver state (or its bytes) and the inputs that it has been told."""
         if isinstance(state, bytes):
             state = type(self._simulation.state()).from_bytes(state)
         self._simulation.restore(state)
-        self._applied = np.array(applied, dtype=np.float64)
+        self._applied = np.array(applied, dtype=np.float64).reshape(-1, 1 + MOST_DERIVATIVES)

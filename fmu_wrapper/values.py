@@ -14,11 +14,20 @@ from .variables import KINDS, Kind, Variable, VariableTable
 
 DTYPES: dict[Kind, str] = {"real": "<f8", "integer": "<i4", "boolean": "|b1", "string": "object"}
 NUMERIC: tuple[Kind, ...] = ("real", "integer", "boolean")
+MOST_DERIVATIVES = 2
+"""Order of the highest derivative that an input can go on with."""
 INT32 = range(-(2**31), 2**31)
 
 
 class Values:
-    """Values of the variables of `table`, at their start values; outputs start as 0."""
+    """Values of the variables of `table`, at their start values; outputs start as 0.
+
+    Attributes
+    ----------
+    vectors : values by kind; `inputs` are the positions of the inputs among the reals.
+    slopes : (inputs, MOST_DERIVATIVES) time derivatives with which the inputs go on.
+    slope_times : (inputs,) when these were set, s.
+    """
 
     def __init__(self, table: VariableTable) -> None:
         self.table = table
@@ -29,6 +38,10 @@ class Values:
             for i, variable in enumerate(variables):
                 vector[i] = ("" if kind == "string" else 0) if variable.start is None else variable.start
             self.vectors[kind] = vector
+        inputs = table.block("input")
+        self.inputs = np.array([table.position[v.reference] for v in inputs], dtype=np.intp)
+        self.slopes = np.zeros((len(inputs), MOST_DERIVATIVES))
+        self.slope_times = np.full(len(inputs), -np.inf)
 
     def __getitem__(self, variable: Variable) -> Any:
         value = self.vectors[variable.kind][self.table.position[variable.reference]]
@@ -42,11 +55,37 @@ class Values:
         twin = object.__new__(Values)
         twin.table = self.table
         twin.vectors = {kind: vector.copy() for kind, vector in self.vectors.items()}
+        twin.inputs, twin.slopes, twin.slope_times = self.inputs, self.slopes.copy(), self.slope_times.copy()
         return twin
+
+    def forget_outputs(self) -> None:
+        """Outputs start as 0 again: they follow from the rest."""
+        for kind in NUMERIC:
+            self.vectors[kind][self.table.outputs[kind]] = 0
+
+    @property
+    def courses(self) -> npt.NDArray[np.float64]:
+        """Value and derivatives of each input (inputs, 1 + MOST_DERIVATIVES)."""
+        return np.column_stack((self.vectors["real"][self.inputs], self.slopes))
+
+    def go_on(self, duration: float) -> bool:
+        """Let the inputs follow their derivatives for `duration`, s. False if there is none with derivatives."""
+        if not self.slopes.any():
+            return False
+        first, second = self.slopes.T
+        self.vectors["real"][self.inputs] += duration * (first + 0.5 * duration * second)
+        first += duration * second
+        return True
+
+    def end_slopes(self, positions: npt.NDArray[np.intp], now: float) -> None:
+        """Forget the derivatives of the inputs among the reals at `positions`, unless they were set at this time."""
+        ended = np.isin(self.inputs, positions) & (self.slope_times != now)
+        self.slopes[ended] = 0.0
 
     def to_bytes(self) -> bytes:
         """The values bit for bit: reals, integers, booleans, then the strings as JSON."""
         numbers = b"".join(self.vectors[kind].tobytes() for kind in NUMERIC)
+        numbers += self.slopes.tobytes() + self.slope_times.tobytes()
         return numbers + json.dumps(list(self.vectors["string"])).encode()
 
     @classmethod
@@ -58,6 +97,9 @@ class Values:
             count = len(table.of_kind[kind])
             values.vectors[kind] = np.frombuffer(data, DTYPES[kind], count, offset).copy()
             offset += values.vectors[kind].nbytes
+        for part in (values.slopes, values.slope_times):
+            part[...] = np.frombuffer(data, "<f8", part.size, offset).reshape(part.shape)
+            offset += part.nbytes
         values.vectors["string"][:] = json.loads(data[offset:])
         return values
 

@@ -94,6 +94,11 @@ class VariableTable:
             kind: tuple(v for v in self.variables if v.kind == kind) for kind in KINDS
         }
         self.position = {v.reference: i for kind in KINDS for i, v in enumerate(self.of_kind[kind])}
+        self.outputs: dict[Kind, npt.NDArray[np.intp]] = {
+            kind: np.array([i for i, v in enumerate(self.of_kind[kind]) if v.role == "output"], dtype=np.intp)
+            for kind in KINDS
+        }
+        """Positions of the outputs among their kind."""
         self._plans: dict[tuple[Kind, bytes], Plan] = {}
 
     def block(self, block: Block) -> list[Variable]:

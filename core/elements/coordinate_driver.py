@@ -10,7 +10,7 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, vec
 from ..model.base import Name
 from ..model.channels import Channel
-from ..model.signals import Signal, Step, evaluate_signal
+from ..model.signals import INPUT_SIZE, Signal, Step, evaluate_signal
 from .base import UNKNOWN_UNIT, Element, Numbering, Row
 
 
@@ -23,6 +23,7 @@ def coordinate_driver_kernel(job: int, t: float, b: Any) -> None:
     extra = imat(b.extra, b.count, 2)
     lam = vec(b.lam, b.m_extended)
     a = vec(b.a, b.n_extended)
+    pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
     for e in range(b.count):
         i, k = coord[e, 0], row[e, 0]
         if job == TANGENT:
@@ -30,7 +31,7 @@ def coordinate_driver_kernel(job: int, t: float, b: Any) -> None:
             values[imat(b.slot_j, b.count, 1)[e, 0]] += 1.0
             values[imat(b.slot_jt, b.count, 1)[e, 0]] += 1.0
             continue
-        f, df, ddf = evaluate_signal(vec(b.signals, b.n_signals), vec(b.inputs, 3 * b.n_inputs), extra[e, 0], t)
+        f, df, ddf = evaluate_signal(pool, inputs, extra[e, 0], t)
         if job == RESIDUAL:
             vec(b.phi, b.m_extended)[k] = vec(b.q, b.n_extended)[i] - f
             vec(b.phid, b.m_extended)[k] = vec(b.v, b.n_extended)[i] - df

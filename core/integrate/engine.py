@@ -102,6 +102,7 @@ class Engine(ContactSide):
         self.t = float(t0)
         self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
+        self.input_times = (float(t0), math.inf)
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
         self._method = build_method(self.formula, self.settings, self.workspace.row_length)

@@ -1,10 +1,9 @@
 """Simulation: one run that can be stepped, asked, driven, stored and restored."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, restore
+from . import advance, inputs, restore
 from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
@@ -72,14 +71,18 @@ class Simulation(Engine):
         ModelError : if t is not finite or before the present time.
         SimulationError : if the run fails; what was reached stays.
         """
-        self._advance_to(*self._goal(t))
-        self.t = float(t)
+        goal = self._goal(t)
+        newest = self.t_internal
+        # most points of a fine grid lie within the newest step: there is nothing to do but to ask
+        if newest < goal[0] or (newest == goal[0] and self.pending):
+            self._advance_to(*goal)
+        self.t = goal[0]
 
     def _goal(self, t: float) -> tuple[float, float]:
-        """Where to go, and where the last step must end: inputs may change at `t`."""
+        """Where to go, and where a step must end because inputs are expected to change."""
         if not math.isfinite(t) or t < self.t:
             raise ModelError(f"cannot advance from t = {self.t!r} to {t!r}: the time must be finite and not earlier")
-        return float(t), float(t) if self.assembly.input_names else math.inf
+        return float(t), inputs.next_stop(self.input_times, self.t, float(t))
 
     def advance_to_event(self, t: float) -> bool:
         """Integrate to `t` (s) or to the first contact event before or at it; True if there is one.
@@ -190,28 +193,18 @@ class Simulation(Engine):
         counts = {name: int(counters[k]) for k, name in enumerate(_COUNTER_NAMES[:COUNTERS_SIZE])}
         return {**counts, "fallbacks": len(self.fallbacks)}
 
-    def set_inputs(self, values: Mapping[str, float]) -> None:
-        """Set input channels; they hold from the present time on.
+    def set_inputs(self, values: Mapping[str, float], derivatives: Mapping[str, Sequence[float]] | None = None) -> None:
+        """Set input channels from the present time on.
+
+        They keep these values, or go on with the first and second time derivatives in `derivatives`, by the same names.
+        Setting an input to what it is at this time anyway changes nothing, bit for bit.
 
         Raises
         ------
-        ModelError : for an unknown name or a value that is not finite.
+        ModelError : for an unknown name or a value that is not finite; nothing has happened.
+        ConsistencyError, SimulationError : if there are no accelerations for these inputs; they are as before.
         """
-        names = self.assembly.input_names
-        for name, value in values.items():
-            if name not in names:
-                raise ModelError(f"there is no input '{name}'; inputs are {names}")
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-                raise ModelError(f"input '{name}' = {value!r}: a finite number is needed")
-        inputs = self.workspace.arrays["inputs"]
-        changed = False
-        for name, value in values.items():
-            k = names.index(name)
-            if inputs[k, 0] != value:
-                inputs[k, 0] = value
-                changed = True
-        if changed:
-            restore.restart_here(self)
+        inputs.set_inputs(self, values, derivatives or {})
 
     def state(self) -> State:
         """The present state as a value."""
