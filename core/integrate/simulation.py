@@ -14,7 +14,7 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, inputs, motions, restore
+from . import advance, inputs, motions, restore, sensitivity
 from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
@@ -205,6 +205,18 @@ class Simulation(Engine):
         ConsistencyError, SimulationError : if there are no accelerations for these inputs; they are as before.
         """
         inputs.set_inputs(self, values, derivatives or {})
+
+    def input_derivatives(self, direction: Mapping[str, float]) -> NDArray[np.float64]:
+        """Derivatives (channels,) of all channels along `direction`, by input name, at the present time.
+
+        Coordinates, velocities and contact modes are held; exact to rounding. The simulation stays as it is, bit for
+        bit. Those with respect to a motion are zero: it is followed by the next steps (`tlismni.core.model.motion`).
+
+        Raises
+        ------
+        SimulationError : if accelerations cannot be computed.
+        """
+        return sensitivity.input_derivatives(self, direction)
 
     def state(self) -> State:
         """The present state as a value."""
