@@ -142,12 +142,14 @@ class Fmi2Calls(Calls):
         """Derivatives of outputs along a direction of inputs, into the buffer `sensitivity`."""
         self.directional_derivative(unknowns, knowns, seed, sensitivity)
 
-    # what this slave does not do
-
     @fmi_call()
-    def fmi2SetRealInputDerivatives(self) -> None:
-        """Refused."""
-        raise UnavailableError("inputs are held over a step (canInterpolateInputs = false)")
+    def fmi2SetRealInputDerivatives(self, vr: Any, order: Any, value: Any) -> None:
+        """Time derivatives with which inputs go on from the present time."""
+        self.slave.set_input_derivatives(
+            references_in(vr), numbers_in(order, np.int32).tolist(), numbers_in(value, np.float64).tolist()
+        )
+
+    # what this slave does not do
 
     @fmi_call()
     def fmi2GetRealOutputDerivatives(self) -> None:

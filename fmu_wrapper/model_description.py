@@ -18,7 +18,7 @@ from .variables import VariableTable
 CAPABILITIES = {
     "needsExecutionTool": "false",
     "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "false",
+    "canInterpolateInputs": "true",
     "maxOutputDerivativeOrder": "0",
     "canRunAsynchronuously": "false",  # the standard's own spelling
     "canBeInstantiatedOnlyOncePerProcess": "false",

@@ -79,8 +79,7 @@ class Run:
         self.key = self.key_of(values, t0)
         inputs = values.table.block("input")
         self._input_names = [v.name for v in inputs]
-        self._input_positions = np.array([values.table.position[v.reference] for v in inputs], dtype=np.intp)
-        self._applied = np.array([v.start for v in inputs], dtype=np.float64)
+        self._applied: list[list[float]] = [[float(v.start or 0.0) for v in inputs]]
         self._events = values.table.by_name[EVENTS]
         changed_model, changed_settings = effective(model, settings, values)
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
@@ -111,18 +110,14 @@ class Run:
         }
 
     @property
-    def applied(self) -> tuple[float, ...]:
-        """The input values that the simulation has been told."""
-        return tuple(self._applied.tolist())
+    def applied(self) -> list[list[float]]:
+        """The courses of the inputs, as the simulation has been told."""
+        return self._applied
 
     @property
     def events(self) -> Sequence[Any]:
         """Events so far."""
         return self._simulation.events
-
-    def inputs(self) -> dict[str, float]:
-        """The input values that the simulation has been told, by name."""
-        return dict(zip(self._input_names, self.applied, strict=True))
 
     def derivatives(self, outputs: Sequence[Variable], direction: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """Derivatives of real outputs along `direction`, by input name, at the present time."""
@@ -133,11 +128,19 @@ class Run:
 
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""
-        wanted = values.vectors["real"][self._input_positions]
-        changed = np.flatnonzero(wanted != self._applied)
-        if changed.size:
-            self._simulation.set_inputs({self._input_names[i]: wanted[i].item() for i in changed})
-            self._applied = wanted
+        wanted = values.courses
+        if wanted == self._applied:
+            return
+        told = dict(zip(self._input_names, wanted[0], strict=True))
+        if len(wanted) > 1:
+            self._simulation.set_inputs(told, dict(zip(self._input_names, zip(*wanted[1:], strict=True), strict=True)))
+        else:
+            self._simulation.set_inputs(told)
+        self._applied = wanted
+
+    def follow(self, values: Values) -> None:
+        """The inputs have gone on by their derivatives, as the simulation knows."""
+        self._applied = values.courses
 
     def advance(self, t: float, event_mode: bool = False, early_return: bool = False) -> StepEnd:
         """Integrate to `t`, s, or to a contact event before it if `early_return`.
@@ -185,9 +188,9 @@ class Run:
         """The solver's state."""
         return self._simulation.state()
 
-    def restore(self, state: Any, applied: tuple[float, ...]) -> None:
+    def restore(self, state: Any, applied: list[list[float]]) -> None:
         """Take over a solver state (or its bytes) and the inputs that it has been told."""
         if isinstance(state, bytes):
             state = type(self._simulation.state()).from_bytes(state)
         self._simulation.restore(state)
-        self._applied = np.array(applied, dtype=np.float64)
+        self._applied = applied

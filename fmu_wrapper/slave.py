@@ -17,10 +17,10 @@ from . import log as logs
 from .derivatives import check_knowns, check_unknowns
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
-from .phases import EVENT_PHASES, RUNNING, SETTABLE, Phase
+from .phases import EVENT_PHASES, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
 from .slave_state import SlaveState
-from .values import check_values
+from .values import MOST_DERIVATIVES, check_values
 from .variables import Kind, Variable
 
 
@@ -104,11 +104,10 @@ class Slave(SlaveState):
         self._need("update discrete states", Phase.EVENT)
         run = self._engine()
         seen = len(run.events)
+        self._stale = True
         with self._failing():
-            run.apply_inputs(self._values)
+            self._tell(run)
             again = run.handle_event()
-            run.read(self._values)
-        self._stale = False
         self._log_events(run, seen)
         return again
 
@@ -136,18 +135,20 @@ class Slave(SlaveState):
         SimulationError, FmuError : the solver failed; the slave is in phase `failed`.
         """
         self._need("do step", Phase.STEP)
-        target = check_step(self._time, t, h, self._stop_time)
+        before = self._time
+        target = check_step(before, t, h, self._stop_time)
         run = self._engine()
         seen = len(run.events)
+        self._stale = True
         try:  # not `_failing`: a context manager at every step is dear
-            run.apply_inputs(self._values)
+            self._tell(run)
             end = run.advance(target, self.event_mode, self.early_return)
-            run.read(self._values)
         except BaseException:
             self._phase = Phase.FAILED
             raise
         self._set_time(end.time)
-        self._stale = False
+        if self._values.go_on(end.time - before):
+            run.follow(self._values)
         if end.event_due:
             self._phase = Phase.EVENT_DUE
         self._log_events(run, seen)
@@ -172,9 +173,10 @@ class Slave(SlaveState):
         """
         self._need("get values", *RUNNING)
         plan = self.variables.plan(kind, references)
-        if self._stale and self._phase != Phase.FAILED and "output" in plan.roles:
+        if self._stale and "output" in plan.roles:
+            self._need("get outputs that were not asked for before", *SOUND)
             self._refresh()
-        return self._values.vectors[kind][plan.positions]
+        return self._values.vectors[kind].take(plan.positions)
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.
@@ -189,11 +191,43 @@ class Slave(SlaveState):
         self._need("set values", *SETTABLE)
         if not plan.roles <= SETTABLE[self._phase]:
             self._refuse(plan.variables)
-        self._values.vectors[kind][plan.positions] = check_values(plan.variables, values)
-        self._stale = True
+        self._values.vectors[kind][plan.positions] = check_values(plan, values)
+        self._stale = self._untold = True
+        if kind == "real" and "input" in plan.roles:
+            self._values.end_slopes(plan.positions, self._time)
         if "parameter" in plan.roles:
             self._rtol_given |= any(v.name == "solver.rtol" for v in plan.variables)
             self._run = None
+
+    def set_input_derivatives(
+        self, references: npt.NDArray[np.uint32], orders: Sequence[int], values: Sequence[float]
+    ) -> None:
+        """Let the inputs behind `references` go on, from the present time, with these time derivatives of the given
+        orders, 1 or 2: all of them or, on an error, none.
+
+        The value of such an input moves along. Its derivatives hold until it is set without new ones at a later time.
+
+        Raises
+        ------
+        CallOrderError, FmuValueError
+        """
+        plan = self.variables.plan("real", references)
+        self._need("set input derivatives", *SETTABLE)
+        given = [float(value) for value in values]
+        rows = []
+        for variable, order, value in zip(plan.variables, orders, given, strict=True):
+            if variable.role != "input":
+                raise FmuValueError(f"'{variable.name}' is of role {variable.role}: only inputs take derivatives")
+            if not 1 <= order <= MOST_DERIVATIVES:
+                raise FmuValueError(
+                    f"a derivative of order {order} of input '{variable.name}' was given: orders 1 to "
+                    f"{MOST_DERIVATIVES} are taken"
+                )
+            if not math.isfinite(value):
+                raise FmuValueError(f"a derivative of input '{variable.name}' is {value!r}: a finite number is needed")
+            rows.append(self._input_rows[variable.reference])
+        self._values.set_slopes(rows, orders, given, self._time)
+        self._stale = self._untold = True
 
     def _refuse(self, variables: Sequence[Variable]) -> None:
         for v in variables:

@@ -40,6 +40,8 @@ class SlaveState:
             channels = build_simulation(simulation_factory, self.model, self.settings).channels
             variables = build_table(self.model, self.settings, channels)
         self.variables = variables
+        self._input_rows = {v.reference: i for i, v in enumerate(variables.block("input"))}
+        self._time_position = variables.position[TIME]
         self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
         self._run: Run | None = None
@@ -63,21 +65,23 @@ class SlaveState:
         self._stop_time: float | None = None
         self._rtol_given = False
         self._run = None
-        self._stale = True
+        self._stale = self._untold = True
 
     # state
 
     def snapshot(self) -> Snapshot:
         """The whole state. Raises CallOrderError after a failed step, whose state is worthless."""
         self._need("get the state", *(p for p in Phase if p != Phase.FAILED))
+        values = self._values.copy()
+        values.forget_outputs()
         return Snapshot(
             phase=self._phase,
             start_time=self._start_time,
             stop_time=self._stop_time,
             time=self._time,
             rtol_given=self._rtol_given,
-            values=self._values.copy(),
-            applied=() if self._run is None else self._run.applied,
+            values=values,
+            applied=[] if self._run is None else self._run.applied,
             simulation=None if self._run is None else self._run.state(),
             identity=self.identity,
         )
@@ -114,13 +118,17 @@ class SlaveState:
         self._run, self._values = run, values
         self._phase, self._rtol_given = snapshot.phase, snapshot.rtol_given
         self._start_time, self._stop_time, self._time = snapshot.start_time, snapshot.stop_time, snapshot.time
-        self._stale = run is None or snapshot.applied != tuple(values[v] for v in self.variables.block("input"))
+        self._stale = True
+        self._untold = run is None or snapshot.applied != values.courses
 
     def snapshot_from_bytes(self, data: bytes) -> Snapshot:
         """The snapshot whose `.data` is `data`. Raises SnapshotError if it is none, or not of this slave's kind."""
         return Snapshot.from_data(data, self.variables, self.identity)
 
     # inside
+
+    # `_stale`: the outputs are not those of the present time and inputs; `_untold`: the simulation does not know all
+    # inputs yet. Outputs are read when they are asked for, since a step does not cost much more than asking.
 
     def _need(self, what: str, *phases: Phase) -> None:
         if self._phase not in phases:
@@ -142,19 +150,25 @@ class SlaveState:
         """
         try:
             run = self._engine()
-            run.apply_inputs(self._values)
+            self._tell(run)
             run.read(self._values)
         except BaseException:
             if self._phase == Phase.INITIALIZATION:
-                self._run = None
+                self._run, self._untold = None, True
             else:
                 self._phase = Phase.FAILED
             raise
         self._stale = False
 
+    def _tell(self, run: Run) -> None:
+        """Tell the simulation the inputs, if any were set since it was told."""
+        if self._untold:
+            run.apply_inputs(self._values)
+            self._untold = False
+
     def _set_time(self, t: float) -> None:
         self._time = t
-        self._values[self.variables.by_reference[TIME]] = t
+        self._values.vectors["real"][self._time_position] = t
 
     @contextmanager
     def _failing(self) -> Iterator[None]:

@@ -65,6 +65,8 @@ class Plan:
     positions: npt.NDArray[np.intp]
     roles: frozenset[Role]
     enumerations: frozenset[bool]
+    unbounded: bool
+    """Whether all are reals that may take any finite value."""
 
 
 class VariableTable:
@@ -90,6 +92,11 @@ class VariableTable:
             kind: tuple(v for v in self.variables if v.kind == kind) for kind in KINDS
         }
         self.position = {v.reference: i for kind in KINDS for i, v in enumerate(self.of_kind[kind])}
+        self.outputs: dict[Kind, npt.NDArray[np.intp]] = {
+            kind: np.array([i for i, v in enumerate(self.of_kind[kind]) if v.role == "output"], dtype=np.intp)
+            for kind in KINDS
+        }
+        """Positions of the outputs among their kind."""
         self._plans: dict[tuple[Kind, bytes], Plan] = {}
 
     def block(self, block: Block) -> list[Variable]:
@@ -109,7 +116,10 @@ class VariableTable:
             variables = tuple(self._find(kind, int(r)) for r in references)
             positions = np.array([self.position[v.reference] for v in variables], dtype=np.intp)
             enumerations = frozenset(v.enumeration is not None for v in variables)
-            plan = Plan(variables, positions, frozenset(v.role for v in variables), enumerations)
+            unbounded = kind == "real" and all(
+                v.minimum is None and v.maximum is None and v.block != "solver" for v in variables
+            )
+            plan = Plan(variables, positions, frozenset(v.role for v in variables), enumerations, unbounded)
             if len(self._plans) >= PLANS_KEPT:
                 self._plans.clear()
             self._plans[key] = plan

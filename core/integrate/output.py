@@ -112,8 +112,13 @@ class ChannelTable:
             *((k, column, 1.0) for k, f in sums for column in f.columns),
             *((k, column, -1.0) for k, f in sums for column in f.less),
         ]
-        self._plain, self._flags = _pairs(plain), _pairs(flags)
-        self._terms = _pairs([(k, column) for k, column, _ in terms])
+        # a place for every channel, so that one `take` fills all; sums and flags are put in after it
+        self._places = np.zeros(len(self._formulas), dtype=np.intp)
+        self._places[[k for k, _ in plain]] = [column for _, column in plain]
+        self._flags = _pairs(flags)
+        self._summed = np.array([k for k, _ in sums], dtype=np.intp)
+        number = {k: i for i, (k, _) in enumerate(sums)}
+        self._terms = _pairs([(number[k], column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
 
     def _add_contact(self, k: int, name: str, friction: bool) -> None:
@@ -181,15 +186,15 @@ class ChannelTable:
 
     def values(self, sample: NDArray[np.float64]) -> NDArray[np.float64]:
         """All channels (channels,) of one sample, the same bits as `column` gives."""
+        out: NDArray[np.float64] = sample.take(self._places)
         # bincount adds the terms of each channel in their order
-        channel, column = self._terms
-        out = np.bincount(channel, self._signs * sample[column], len(self._formulas)).astype(np.float64, copy=False)
+        number, column = self._terms
+        out[self._summed] = np.bincount(number, self._signs * sample.take(column), len(self._summed))
         out[self._balance] -= self.initial_energy
-        channel, column = self._plain
-        out[channel] = sample[column]
         channel, column = self._flags
-        mode = sample[column]
-        out[channel] = (mode == CLOSED) | (mode == ACTIVE)
+        if len(channel):
+            mode = sample.take(column)
+            out[channel] = (mode == CLOSED) | (mode == ACTIVE)
         if len(self._of_markers):
             out[self._of_markers] = self._markers(sample[None, :])[0]
         return out

@@ -94,7 +94,7 @@ def test_default_experiment_and_capabilities(fake_fmu):
     assert given == [0.0, 2.5, 1e-7, 0.01]
     flags = description.coSimulation
     assert flags.canHandleVariableCommunicationStepSize and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
-    assert not flags.canInterpolateInputs and flags.providesDirectionalDerivative and not flags.needsExecutionTool
+    assert flags.canInterpolateInputs and flags.providesDirectionalDerivative and not flags.needsExecutionTool
 
 
 def test_a_scenario_gives_its_settings(fake_fmu, model):

@@ -270,7 +270,7 @@ def test_foreign_and_damaged_states_are_refused(fake_slave, monkeypatch):
     with pytest.raises(SnapshotError, match="damaged"):
         slave.snapshot_from_bytes(data[:-1] + bytes([data[-1] ^ 1]))
     monkeypatch.setattr(snapshot_module, "package_version", lambda: "9.9")
-    with pytest.raises(SnapshotError, match=r"stored by tlismni \S+ \(format 1\), this is 9.9 \(format 1\)"):
+    with pytest.raises(SnapshotError, match=r"stored by tlismni \S+ \(format 2\), this is 9.9 \(format 2\)"):
         slave.snapshot_from_bytes(data)
     monkeypatch.undo()
     with pytest.raises(SnapshotError, match="these 7 bytes are no stored state"):
@@ -351,8 +351,12 @@ def test_an_input_that_fails_in_initialization_fails_again_until_it_is_mended(mo
 def test_values_that_are_not_finite_are_an_error(fake_slave):
     slave = started(fake_slave(nan_at=0.5))
     slave.do_step(0.0, 0.25)
+    slave.do_step(0.25, 0.25)
     with pytest.raises(FmuError, match=r"at t = 0.5 s these values are not finite: ball.y = nan; the model runs away"):
-        slave.do_step(0.25, 0.25)
+        slave["ball.vy"]
+    with pytest.raises(CallOrderError, match="outputs that were not asked for before in phase 'failed'"):
+        slave["ball.y"]
+    assert slave.time == 0.5
 
 
 def test_a_failed_initialization_can_be_repaired(fake_slave):
