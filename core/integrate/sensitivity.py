@@ -111,7 +111,7 @@ def _solve(sim: "Simulation", load: Vector) -> Vector:
         x = x + arrays["rhs"][:size]
     terms = values * x[cols]
     left = np.abs(wanted - np.bincount(rows, terms, size))
-    if not np.all(left <= ACCURATE * (np.abs(wanted) + np.bincount(rows, np.abs(terms), size))):
+    if not np.all(left <= ACCURATE * (np.max(np.abs(load), initial=0.0) + np.bincount(rows, np.abs(terms), size))):
         raise SimulationError(
             f"no derivatives at t = {sim.t:.9g} s: the mechanism is too near a singular position, or a value is not "
             "finite",
