@@ -14,8 +14,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from .dependencies import Dependencies
 from .description_parts import About
 from .documentation import documentation
+from .drawing import draw, to_png, to_svg
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
 from .libpython import library_record, python_record, shared_library
@@ -23,6 +25,7 @@ from .model_description import fmi2_description
 from .model_description3 import fmi3_description
 from .settings import Settings
 from .slave import Slave
+from .terminals import terminals_and_icons
 from .variables import VariableTable
 from .version import package_version
 
@@ -90,8 +93,11 @@ def export_fmu(
         "variables": slave.variables.to_data(),
     }
     files = {
-        "modelDescription.xml": description(slave.variables, slave.settings, about),
+        "modelDescription.xml": description(
+            slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables)
+        ),
         "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
+        **_pictures(slave, fmi_version),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": _json(settings),
         f"resources/{PYTHON_FILE}": _json(python_record()),
@@ -106,6 +112,27 @@ def export_fmu(
             sys.prefix,
         )
     return _write(path, files)
+
+
+def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
+    """The icon, and for FMI 3.0 the terminals beside it."""
+    from lxml import etree
+
+    drawing, files = draw(slave.model), {}
+    try:
+        picture = to_png(drawing)
+    except ImportError:
+        logging.getLogger(__name__).warning(
+            "the FMU gets no icon: that needs Pillow, which is not installed (pip install pillow)"
+        )
+        picture = None
+    if fmi_version == "2.0":
+        return {} if picture is None else {"model.png": picture}
+    folder = "terminalsAndIcons"
+    if picture is not None:
+        files = {f"{folder}/icon.png": picture, f"{folder}/icon.svg": etree.tostring(to_svg(drawing, names=False))}
+    described = terminals_and_icons(slave.model, slave.variables, picture is not None)
+    return {f"{folder}/terminalsAndIcons.xml": described, **files}
 
 
 def shim_path() -> Path:
@@ -135,7 +162,9 @@ def fmi3_platform() -> str:
     return f"{_ARCHITECTURES.get(machine, machine)}-{system}"
 
 
-VERSIONS: dict[str, tuple[Callable[[VariableTable, Settings, About], bytes], Callable[[], str]]] = {
+Description = Callable[[VariableTable, Settings, About, Dependencies], bytes]
+
+VERSIONS: dict[str, tuple[Description, Callable[[], str]]] = {
     "2.0": (fmi2_description, fmi2_platform),
     "3.0": (fmi3_description, fmi3_platform),
 }

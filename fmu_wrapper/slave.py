@@ -20,7 +20,7 @@ from .grid import check_step
 from .phases import EVENT_PHASES, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
 from .slave_state import SlaveState
-from .values import MOST_DERIVATIVES, check_values
+from .values import MOST_DERIVATIVES, check_values, item_value
 from .variables import Kind, Variable
 
 
@@ -237,15 +237,19 @@ class Slave(SlaveState):
                 raise CallOrderError(f"parameter '{v.name}' is fixed after initialization: reset, then set it before")
 
     def set_by_name(self, values: Mapping[str, Any]) -> None:
-        """`set` for Python users: values by variable name."""
+        """`set` for Python users: values by variable name, those of enumerations by name too."""
         for name, value in values.items():
             variable = self._named(name)
+            if variable.items and isinstance(value, str):
+                value = item_value(variable, value)
             self.set(variable.kind, np.array([variable.reference], dtype=np.uint32), [value])
 
     def __getitem__(self, name: str) -> Any:
-        """Value of the variable `name`."""
+        """Value of the variable `name`; of a setting or law that is an enumeration, its item."""
         variable = self._named(name)
         value = self.get(variable.kind, np.array([variable.reference], dtype=np.uint32))[0]
+        if variable.items and variable.role != "output":
+            return variable.item(value)
         return value if variable.kind == "string" else value.item()
 
     def _named(self, name: str) -> Variable:

@@ -12,7 +12,8 @@ from .run import Run, SimulationFactory, build_simulation
 from .settings import Settings
 from .snapshot import Snapshot, identity
 from .values import Values
-from .variables import TIME, VariableTable, build_table
+from .variable_list import build_table
+from .variables import TIME, VariableTable
 
 
 class SlaveState:

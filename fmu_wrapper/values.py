@@ -137,17 +137,34 @@ def check_value(variable: Variable, value: Any) -> Any:
     if variable.kind == "integer":
         if int(value) != value or int(value) not in INT32:
             raise FmuValueError(f"{name} needs a whole number of 32 bits, not {value!r}")
+        if variable.items and int(value) not in range(len(variable.items)):
+            meanings = ", ".join(f"{i} {item}" for i, item in enumerate(variable.items))
+            raise FmuValueError(f"{name} was set to {value!r}, which is none of its values: {meanings}")
+        if not variable.items:
+            _check_limits(variable, name, value)
         return int(value)
     number = float(value)
     if not math.isfinite(number):
         raise FmuValueError(f"{name} was set to {number!r}, which is not finite: check what feeds it")
+    _check_limits(variable, name, number)
+    if variable.block == "solver" and variable.name in ("solver.rtol", "solver.atol", "solver.step"):
+        check_solver_value(variable.name.removeprefix("solver."), number)
+    return number
+
+
+def _check_limits(variable: Variable, name: str, number: float) -> None:
     low, high = variable.minimum, variable.maximum
     if (low is not None and number < low) or (high is not None and number > high):
         limits = f"[{'-inf' if low is None else low}, {'inf' if high is None else high}]"
         raise FmuValueError(f"{name} was set to {number!r}, which is outside its range {limits}")
-    if variable.block == "solver" and variable.name in ("solver.rtol", "solver.atol", "solver.step"):
-        check_solver_value(variable.name.removeprefix("solver."), number)
-    return number
+
+
+def item_value(variable: Variable, name: str) -> int:
+    """The value of an enumeration's item. Raises FmuValueError for a name that it has not."""
+    if name not in variable.items:
+        text = f"'{variable.name}' (value reference {variable.reference}) has no item '{name}'"
+        raise FmuValueError(f"{text}; it has {list(variable.items)}")
+    return variable.items.index(name)
 
 
 def check_values(plan: Plan, values: Iterable[Any]) -> Any:

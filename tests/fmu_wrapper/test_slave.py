@@ -137,7 +137,10 @@ def test_calls_out_of_order_are_refused(fake_slave, calls, match):
         ({"mass": -1.0}, r"outside its range \[0.0, inf\]"),
         ({"solver.rtol": 0.0}, "'rtol' = 0.0 must be greater than 0"),
         ({"solver.step": -1.0}, "outside its range"),
-        ({"solver.method": 3}, "needs a string"),
+        ({"solver.method": 99}, "was set to 99, which is none of its values: 0 newmark, 1 hht"),
+        ({"solver.method": "euler"}, r"'solver.method' \(value reference 1\) has no item 'euler'; it has"),
+        ({"solver.method": True}, "needs a number, not True"),
+        ({"floor.law": "Hertz"}, "'floor.law' is of role constant and cannot be set"),
         ({"ball.y": 1.0}, "'ball.y' is of role output and cannot be set"),
         ({"time": 1.0}, "'time' is of role independent"),
         ({"nonsense": 1.0}, "no variable 'nonsense'; there are"),
@@ -361,9 +364,9 @@ def test_values_that_are_not_finite_are_an_error(fake_slave):
 
 def test_a_failed_initialization_can_be_repaired(fake_slave):
     slave = fake_slave()
-    slave.set_by_name({"solver.method": "euler"})
+    slave.set_by_name({"solver.method": "adams"})  # a method, but not of this simulation
     slave.enter_initialization()
-    with pytest.raises(ModelError, match="unknown method 'euler'"):
+    with pytest.raises(ModelError, match="unknown method 'adams'"):
         slave.exit_initialization()
     assert slave.phase == "initialization"
     slave.set_by_name({"solver.method": "bdf"})
