@@ -271,15 +271,15 @@ class Slave(SlaveState):
         Raises
         ------
         CallOrderError : outside initialization, step and event mode.
-        FmuValueError : for other variables than real outputs and inputs, for an input that drives a motion, a wrong
-            seed.
+        FmuValueError : for other variables than real outputs and inputs, for an input that leads a motion while it
+            still makes the start, a wrong seed.
         SimulationError : if accelerations cannot be computed; if that is so for the inputs set, the slave is in phase
             `failed`, as in `get`.
         """
         self._need("get derivatives", Phase.INITIALIZATION, Phase.STEP, *EVENT_PHASES)
         outputs, inputs = (self.variables.plan("real", references).variables for references in (unknowns, knowns))
         check_unknowns(outputs)
-        check_knowns(inputs, seed, self.drivers)
+        check_knowns(inputs, seed, self.drivers if self._phase == Phase.INITIALIZATION else {})
         if self._stale:
             self._refresh()
         direction: dict[str, float] = {}

@@ -76,6 +76,11 @@ class FakeSimulation:
     def set_inputs(self, values: dict[str, float]) -> None:
         self._state = replace(self._state, push=values["push"])
 
+    def input_derivatives(self, direction: dict[str, float]) -> np.ndarray:
+        slope = np.zeros(len(CHANNELS))
+        slope[2] = direction.get("push", 0.0) / self.mass
+        return slope
+
     def _acceleration(self) -> float:
         return self._state.push / self.mass - self.gravity
 
