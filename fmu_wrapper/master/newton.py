@@ -8,8 +8,8 @@ where the derivatives on the right are directional derivatives at held state at 
 outputs that are the derivatives of y in time (of a position: its velocity and acceleration), and w the part of u in the
 input that is held. For a force that moves a body the first two vanish, and what is left is h^2/2 times the inverse of
 the mass that the force feels: right to leading order in h; Broyden's update brings the rest from pass to pass. Where
-that does not converge, and along inputs for which an instance has no derivatives (motions), steps done again with one
-input moved give the Jacobian.
+that does not converge, and along inputs that nothing feels at once (motions that are met at the end of a step), the
+step done again with the input moved gives the Jacobian.
 After Sicklinger et al., "Interface Jacobian-based co-simulation", Int. J. Numer. Meth. Engng 98 (2014) 418.
 """
 
@@ -94,17 +94,20 @@ class Newton(Repeated):
         return matrix
 
     def _by_derivatives(self, coupled: Coupled, a: int, outs: Sequence[int], h: float) -> Vector | None:
-        """Derivatives of g on the links `outs` along the link `a`; None if the instance has none for this input."""
+        """Derivatives of g on the links `outs` along the link `a`; None if they say nothing."""
         into = coupled.links[a]
         instance = coupled.instances[into.target]
         if not instance.abilities.derivatives or a in self._refused:
             return None
         unknowns = [variable.reference for b in outs for variable in (coupled.links[b].output, *self._rates[b])]
         try:
-            derivatives = iter(instance.derivative(unknowns, into.input.reference))
+            found = instance.derivative(unknowns, into.input.reference)
         except MasterError:
             self._refused.add(a)
             return None
+        if not found.any():  # nothing feels the input at once, as a motion that is met at the end of the next step
+            return None
+        derivatives = iter(found)
         column = np.empty(len(outs))
         for place, b in enumerate(outs):
             column[place] = next(derivatives)
