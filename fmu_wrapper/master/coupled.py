@@ -63,10 +63,44 @@ class Coupled:
             places = [p for p, k in enumerate(links) if self.links[k].target == i]
             self.instances[i].set([self.links[links[p]].input.reference for p in places], values[places])
 
-    def write_ahead(self, links: Sequence[int], values: Vector, h: float) -> None:
-        """Set inputs for a step of length `h`, s, at whose end all inputs are `values` (one for each link)."""
-        held = [values[k] if (rate := self.links[k].rate) is None else values[k] - h * values[rate] for k in links]
-        self.write(links, np.array(held))
+    def write_ahead(
+        self, links: Sequence[int], values: Vector, h: float, slopes: Vector | None = None, end: Vector | None = None
+    ) -> None:
+        """Set inputs for a step of length `h`, s.
+
+        Parameters
+        ----------
+        values : for each link, what it holds.
+        slopes : for each link, with which derivative it goes on (NaN: none).
+        end : for each link the value at the step's end, for positions that shall meet it; None for `values`.
+        """
+        end = values if end is None else end
+        held = values.copy()
+        for k in links:
+            rate = self.links[k].rate
+            if rate is not None:
+                carried = values[rate] if slopes is None or np.isnan(slopes[rate]) else 0.5 * (values[rate] + end[rate])
+                held[k] = end[k] - h * carried
+        self.write(links, held[links])
+        if slopes is not None:
+            self.write_slopes(links, slopes)
+
+    def write_slopes(self, links: Iterable[int], slopes: Vector) -> None:
+        """Let inputs that have just been set go on with derivatives (one for each link; NaN: none)."""
+        going = [k for k in links if not np.isnan(slopes[k])]
+        for i in dict.fromkeys(self.links[k].target for k in going):
+            of_one = [k for k in going if self.links[k].target == i]
+            self.instances[i].set_slopes([self.links[k].input.reference for k in of_one], slopes[of_one])
+
+    def need_courses(self, links: Iterable[int]) -> None:
+        """Raise MasterError if an instance that these links feed takes no derivatives of inputs."""
+        for k in links:
+            instance = self.instances[self.links[k].target]
+            if not instance.abilities.courses:
+                raise MasterError(
+                    f"instance '{instance.name}' takes no derivatives of inputs, which '{self.links[k].label}' needs "
+                    "to go on linearly: use FMI 2.0 and an FMU with canInterpolateInputs, or hold = 'mean'"
+                )
 
     def settle(self) -> None:
         """Pass values along all links, in order, so that every input is what its output makes it.

@@ -30,7 +30,7 @@ from ...core.model.base import Name, NonNegative, Positive, Record
 from .errors import MasterError
 
 Algorithm = Literal["jacobi", "gauss-seidel", "iterated", "newton"]
-Hold = Literal["start", "mean", "end"]
+Hold = Literal["start", "mean", "end", "linear"]
 ARROW = "->"
 
 
@@ -129,7 +129,11 @@ class MasterSettings(Record):
     order: tuple[str, ...] = ()
     """Order of the instances in Gauss-Seidel sweeps; left out: that of the file."""
     hold: Hold = "mean"
-    """Iterated algorithms: value of the inputs during a step. `mean` of its ends gives order 2, `start` and `end` 1."""
+    """Iterated algorithms: the inputs during a step. `mean` of its ends gives order 2, `start` and `end` 1; `linear`
+    goes from one end to the other, order 2, for instances that take derivatives of inputs (FMI 2.0)."""
+    extrapolation: Literal["constant", "linear"] = "constant"
+    """Of `jacobi` and `gauss-seidel`: what goes on beyond the known values, `linear` by their last change, for
+    instances that take derivatives of inputs."""
     sweep: Literal["jacobi", "gauss-seidel"] = "gauss-seidel"
     """One pass of `iterated`."""
     relaxation: Annotated[float, Field(gt=0.0, lt=2.0)] = 1.0

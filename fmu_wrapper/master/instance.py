@@ -25,6 +25,8 @@ class Abilities:
     variable_step: bool = False
     derivatives: bool = False
     """Directional derivatives."""
+    courses: bool = False
+    """Inputs may go on with a derivative in time (FMI 2.0)."""
 
 
 class Instance(ABC):
@@ -111,6 +113,10 @@ class Instance(ABC):
         """Set real variables."""
         self._call("set inputs", self._set, references, [float(x) for x in values])
 
+    def set_slopes(self, references: Sequence[int], slopes: Iterable[float]) -> None:
+        """Let real inputs that have just been set go on with these derivatives in time."""
+        self._call("set input derivatives", self._set_slopes, references, [float(x) for x in slopes])
+
     def numbers(self, variables: Sequence[Variable]) -> list[float]:
         """Values of variables of all kinds but strings, as floats."""
         found: dict[str, float] = {}
@@ -162,6 +168,9 @@ class Instance(ABC):
     @abstractmethod
     def _set(self, references: Sequence[int], values: Sequence[float]) -> None: ...
 
+    def _set_slopes(self, references: Sequence[int], slopes: Sequence[float]) -> None:
+        raise MasterError(f"instance '{self.name}' takes no derivatives of inputs")
+
     @abstractmethod
     def _step(self, t: float, h: float) -> None: ...
 
@@ -187,6 +196,9 @@ class Fmi2Instance(Instance):
 
     def _set(self, references: Sequence[int], values: Sequence[float]) -> None:
         self.fmu.setReal(references, values)
+
+    def _set_slopes(self, references: Sequence[int], slopes: Sequence[float]) -> None:
+        self.fmu.setRealInputDerivatives(references, [1] * len(references), slopes)
 
     def _step(self, t: float, h: float) -> None:
         self.fmu.doStep(currentCommunicationPoint=t, communicationStepSize=h)

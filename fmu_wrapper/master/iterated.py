@@ -2,7 +2,8 @@
 
 The unknowns are the inputs u at the end of the step. During the step an instance holds (1 - w) u_0 + w u, where u_0 are
 the inputs at its start and w is 0 (`start`), 1/2 (`mean`) or 1 (`end`); then it gets u, and shows its outputs. The mean
-is off by O(h) inside the step, but its mean error is O(h^2): order 2. A position with a velocity beside it (`meet`) is
+is off by O(h) inside the step, but its mean error is O(h^2): order 2; so is a straight line from one end to the other
+(`linear`), for instances that take derivatives of inputs. A position with a velocity beside it (`meet`) is
 set to what comes to the position and velocity of the end with constant velocity.
 """
 
@@ -16,7 +17,7 @@ from .description import MasterSettings
 from .errors import CouplingError
 from .explicit import finish
 
-WEIGHTS = {"start": 0.0, "mean": 0.5, "end": 1.0, "meet": 1.0}
+WEIGHTS = {"start": 0.0, "mean": 0.5, "end": 1.0, "meet": 1.0, "linear": 0.0}
 AITKEN_BOUND = 4.0
 """Largest magnitude of Aitken's factor."""
 
@@ -29,8 +30,10 @@ class Repeated:
         self.sequence = tuple(sequence)
         self.weight = np.array([WEIGHTS[link.hold] for link in coupled.links])
         met = [k for link in coupled.links if link.rate is not None for k in (coupled.links.index(link), link.rate)]
-        self.weight[met] = WEIGHTS["meet"]
-        self.order = 2 if np.all(np.delete(self.weight, met) == 0.5) and len(self.weight) else 1
+        self.linear = np.array([link.hold == "linear" for link in coupled.links], dtype=bool)
+        self.weight[[k for k in met if not self.linear[k]]] = WEIGHTS["meet"]
+        coupled.need_courses(np.flatnonzero(self.linear))
+        self.order = 2 if np.all(np.delete((self.weight == 0.5) | self.linear, met)) and len(self.weight) else 1
         self.passes = 0
         self.correction: Vector = np.zeros(len(coupled.links))
         """By how much the last step's result differs from that of its first pass."""
@@ -91,12 +94,17 @@ class Repeated:
             if known:
                 used[known] = coupled.read(known)
             if links:
-                coupled.write_ahead(links, (1.0 - self.weight) * start + self.weight * used, h)
+                self.write_held(coupled, links, start, used, h)
             coupled.instances[i].step(t, h)
             if links:
                 coupled.write(links, used[links])
             done.add(i)
         return used, coupled.read(range(len(coupled.links)))
+
+    def write_held(self, coupled: Coupled, links: Sequence[int], start: Vector, end: Vector, h: float) -> None:
+        """Set inputs for a step of length `h`, s, from the inputs at its ends."""
+        slopes = np.where(self.linear, (end - start) / h, np.nan) if self.linear.any() else None
+        coupled.write_ahead(links, (1.0 - self.weight) * start + self.weight * end, h, slopes, end)
 
     def _sweeps(self) -> bool:
         return False

@@ -13,6 +13,7 @@ step done again with the input moved gives the Jacobian.
 After Sicklinger et al., "Interface Jacobian-based co-simulation", Int. J. Numer. Meth. Engng 98 (2014) 418.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -111,9 +112,10 @@ class Newton(Repeated):
         column = np.empty(len(outs))
         for place, b in enumerate(outs):
             column[place] = next(derivatives)
-            part = self.weight[a]
             for k in range(len(self._rates[b])):
-                part *= h / (k + 1.0)
+                # a held input acts from the start; one that rises linearly is integrated once more
+                part = h ** (k + 1) / math.factorial(k + 1)
+                part *= 1.0 / (k + 2.0) if self.linear[a] else self.weight[a]
                 column[place] += part * next(derivatives)
             column[place] *= coupled.links[b].factor
         return column
@@ -129,7 +131,7 @@ class Newton(Repeated):
         number = coupled.links[a].target
         instance, links = coupled.instances[number], coupled.into[number]
         instance.restore(moment.states[number])
-        coupled.write_ahead(links, (1.0 - self.weight) * start + self.weight * moved, h)
+        self.write_held(coupled, links, start, moved, h)
         instance.step(t, h)
         coupled.write(links, moved[links])
         return np.asarray((coupled.read(outs) - found[outs]) / move)

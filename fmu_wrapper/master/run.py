@@ -110,9 +110,9 @@ def _sequence(settings: MasterSettings, instances: Sequence[Instance]) -> list[i
 def _algorithm(settings: MasterSettings, coupled: Coupled, sequence: Sequence[int]) -> Algorithm:
     match settings.algorithm:
         case "jacobi":
-            return Jacobi()
+            return Jacobi(coupled, settings.extrapolation == "linear")
         case "gauss-seidel":
-            return GaussSeidel(sequence)
+            return GaussSeidel(coupled, sequence, settings.extrapolation == "linear")
         case "iterated":
             return Iterated(settings, coupled, sequence)
         case _:

@@ -71,7 +71,7 @@ def of_source(name: str, source: Any, fmi: str = "3.0", **solver: Any) -> Instan
     slave = Slave(source, name=name, on_log=_nowhere, **solver)
     direct = InProcess(slave) if fmi == "2.0" else InProcess3(slave)
     variables = of_slave(slave.variables.variables, fmi)
-    abilities = Abilities(state=True, variable_step=True, derivatives=True)
+    abilities = Abilities(state=True, variable_step=True, derivatives=True, courses=fmi == "2.0")
     return INSTANCES[fmi](name, direct, variables, abilities, {}, lambda: slave.log.last_problem)
 
 
@@ -137,6 +137,7 @@ def _abilities(unzipped: Path) -> Abilities:
         is_set("canGetAndSetFMUstate", "canGetAndSetFMUState"),
         is_set("canHandleVariableCommunicationStepSize"),
         is_set("providesDirectionalDerivative", "providesDirectionalDerivatives"),
+        is_set("canInterpolateInputs"),
     )
 
 

@@ -13,8 +13,11 @@ from .coupling_problems import (
     CONTACT_FREQUENCY,
     END,
     GAUSS_SEIDEL,
+    GAUSS_SEIDEL_LINEAR,
     ITERATED,
     JACOBI,
+    JACOBI_LINEAR,
+    LINEAR,
     NEWTON,
     Contender,
 )
@@ -24,6 +27,9 @@ STYLES: dict[Contender, dict[str, Any]] = {
     JACOBI: {"color": "#d1495b", "marker": "o"},
     GAUSS_SEIDEL: {"color": "#e58b3a", "marker": "s"},
     END: {"color": "#8a8d91", "marker": "v"},
+    JACOBI_LINEAR: {"color": "#d1495b", "marker": "o", "markerfacecolor": "none", "linestyle": (0, (1, 1.5))},
+    GAUSS_SEIDEL_LINEAR: {"color": "#e58b3a", "marker": "s", "markerfacecolor": "none", "linestyle": (0, (1, 1.5))},
+    LINEAR: {"color": "#7b2d8b", "marker": "*"},
     ITERATED: {"color": "#5a8f29", "marker": "^"},
     AITKEN: {"color": "#1d7874", "marker": "D"},
     BY_STEPS: {"color": "#3f88c5", "marker": "P"},
@@ -37,7 +43,7 @@ def plot_coupling(study: CouplingStudy, path: Path) -> Path:
     """Write the figure. Raises TlismniError if matplotlib cannot be imported."""
     figure_class, context = _matplotlib()
     with context(STYLE):
-        figure = figure_class(figsize=(11.0, 8.0), layout="constrained", dpi=RESOLUTION)
+        figure = figure_class(figsize=(12.0, 9.0), layout="constrained", dpi=RESOLUTION)
         (over_step, over_cost), (energy, limits) = figure.subplots(2, 2)
         _over_step(over_step, study)
         _over_cost(over_cost, study)
@@ -49,9 +55,9 @@ def plot_coupling(study: CouplingStudy, path: Path) -> Path:
 
 
 def _over_step(axes: Any, study: CouplingStudy) -> None:
-    for contender in (JACOBI, GAUSS_SEIDEL, END, NEWTON):
+    for contender in (JACOBI, GAUSS_SEIDEL, END, JACOBI_LINEAR, GAUSS_SEIDEL_LINEAR, NEWTON, LINEAR):
         rows = study.of(contender)
-        label = "mean of both ends, iterated or Newton" if contender in SAME_MAP else contender.label
+        label = "mean of both ends" if contender in SAME_MAP else contender.label
         text = f"{label}: order {study.order(contender):.2f}"
         axes.loglog([1e3 * r.step for r in rows], [r.error for r in rows], label=text, **_line(contender))
     for order, anchor in ((1, GAUSS_SEIDEL), (2, NEWTON)):
@@ -67,14 +73,14 @@ def _over_step(axes: Any, study: CouplingStudy) -> None:
 
 
 def _over_cost(axes: Any, study: CouplingStudy) -> None:
-    for contender in (JACOBI, GAUSS_SEIDEL, ITERATED, BY_STEPS, NEWTON):
+    for contender in (JACOBI, GAUSS_SEIDEL, JACOBI_LINEAR, GAUSS_SEIDEL_LINEAR, ITERATED, AITKEN, NEWTON):
         rows = study.of(contender)
         axes.loglog(
             [r.instance_steps for r in rows], [r.error for r in rows], label=contender.label, **_line(contender)
         )
     for contender in dict.fromkeys(row.contender for row in study.controlled):
         rows = [row for row in study.controlled if row.contender == contender and not row.failure]
-        style = {**_line(contender), "linestyle": (0, (4, 2)), "markerfacecolor": "none"}
+        style = {**_line(contender), "linestyle": (0, (4, 2)), "marker": ".", "linewidth": 0.8}
         axes.loglog(
             [r.instance_steps for r in rows],
             [r.error for r in rows],
@@ -87,7 +93,7 @@ def _over_cost(axes: Any, study: CouplingStudy) -> None:
 
 def _energy(axes: Any, study: CouplingStudy) -> None:
     floor = min((abs(r.energy) for r in study.rows if not r.failure and r.energy), default=1e-9)
-    for contender in (JACOBI, GAUSS_SEIDEL, END, NEWTON):
+    for contender in (JACOBI, GAUSS_SEIDEL, END, JACOBI_LINEAR, GAUSS_SEIDEL_LINEAR, NEWTON, LINEAR):
         rows = study.of(contender)
         axes.plot([1e3 * r.step for r in rows], [r.energy for r in rows], label=contender.label, **_line(contender))
     axes.axhline(0.0, color="0.6", lw=0.6)
@@ -108,12 +114,15 @@ def _limits(axes: Any, study: CouplingStudy) -> None:
     axes.axvline(1e3 * FIXED_POINT_LIMIT, color="0.5", lw=0.8, ls="--")
     axes.text(1e3 * FIXED_POINT_LIMIT, -0.75, "fixed point, theory", fontsize=7.5, ha="center", color="0.4")
     axes.set_xscale("log")
-    axes.set_xlim(5e2 * min((r.limit for r in study.stability if r.limit), default=SHORTEST), 1e4 * LONGEST)
+    axes.set_xlim(3e2 * min((r.limit for r in study.stability if r.limit), default=SHORTEST), 6e3 * LONGEST)
     axes.set_yticks(range(len(labels)), labels)
     axes.set_ylim(len(labels) - 0.4, -1.0)
     period = 2e3 * np.pi / CONTACT_FREQUENCY
-    axes.set_xlabel(f"longest stable step on a contact that stays, ms (its period: {period:.0f} ms)")
+    axes.set_axisbelow(True)
+    axes.axvline(period, color="0.5", lw=0.8, ls=":")
+    axes.text(period, -0.75, "period", fontsize=7.5, ha="center", color="0.4")
+    axes.set_xlabel("longest stable step on a contact that stays, ms")
 
 
 def _line(contender: Contender) -> dict[str, Any]:
-    return {**STYLES[contender], "linewidth": 1.2, "markersize": 5}
+    return {"linewidth": 1.2, "markersize": 5, **STYLES[contender]}

@@ -44,19 +44,25 @@ def _of(label: str, **settings: Any) -> Contender:
 
 JACOBI = _of("Jacobi", algorithm="jacobi")
 GAUSS_SEIDEL = _of("Gauss-Seidel", algorithm="gauss-seidel")
+JACOBI_LINEAR = _of("Jacobi, extrapolated", algorithm="jacobi", extrapolation="linear")
+GAUSS_SEIDEL_LINEAR = _of("Gauss-Seidel, extrapolated", algorithm="gauss-seidel", extrapolation="linear")
 END = _of("iterated, value at the end", algorithm="iterated", hold="end")
 ITERATED = _of("iterated, mean", algorithm="iterated")
 AITKEN = _of("iterated, mean, Aitken", algorithm="iterated", aitken=True)
 BY_STEPS = _of("Newton, Jacobian by steps", algorithm="newton", jacobian="steps")
-NEWTON = _of("Newton, directional derivatives", algorithm="newton")
-CONTENDERS = (JACOBI, GAUSS_SEIDEL, END, ITERATED, AITKEN, BY_STEPS, NEWTON)
+NEWTON = _of("Newton, derivatives", algorithm="newton")
+LINEAR = _of("Newton, straight line", algorithm="newton", hold="linear")
+CONTENDERS = (
+    JACOBI, GAUSS_SEIDEL, JACOBI_LINEAR, GAUSS_SEIDEL_LINEAR, END, ITERATED, AITKEN, BY_STEPS, NEWTON, LINEAR,
+)  # fmt: skip
 
 
 def couple(
     halves: Sequence[Any], contender: Contender, step: float, t_end: float, record: Sequence[str], **more: Any
 ) -> SystemResult:
-    """Run two halves: the striker gives position and velocity, the wall the contact's force."""
-    striker, wall = (of_source(n, half, **SOLVER) for n, half in zip(("striker", "wall"), halves, strict=True))
+    """Run two halves: the striker gives position and velocity, the wall the contact's force. FMI 2.0 lets inputs go on
+    with a derivative."""
+    striker, wall = (of_source(n, half, "2.0", **SOLVER) for n, half in zip(("striker", "wall"), halves, strict=True))
     connections = (
         # the wall carries the position on with the velocity, so what it gets must meet the end of the step
         Connection(source="striker.hammer.x", target="wall.hammer_x", hold="meet"),
