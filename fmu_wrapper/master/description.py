@@ -83,6 +83,13 @@ class Connection(Record):
     that its instance carries on with the velocity that is connected beside it: it starts from where it comes to the
     value and velocity of the step's end."""
 
+    @classmethod
+    def between(
+        cls, source: str, target: str, factor: float = 1.0, unit: str = "1", hold: Hold | Literal["meet"] | None = None
+    ) -> "Connection":
+        """The connection from the output `source` to the input `target`."""
+        return cls(**{"from": source, "to": target, "factor": factor, "unit": unit, "hold": hold})
+
     @model_validator(mode="before")
     @classmethod
     def _from_text(cls, data: Any) -> Any:

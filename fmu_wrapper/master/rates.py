@@ -29,7 +29,7 @@ def _rate(instance: Instance, variable: Variable) -> Variable | None:
     # a linear system's coordinate `x` has the rates `d_x` and `dd_x`
     second = [f"d{quantity}"] if quantity.startswith("d_") else []
     for name in (RATES.get(quantity), *second, f"d_{quantity}"):
-        other = instance.variables.get(f"{owner}.{name}") if name else None
-        if other is not None and other.is_real and other.causality == "output":
-            return other
+        found = instance.variables.get(f"{owner}.{name}") if name else None
+        if found is not None and found.is_real and found.causality == "output":
+            return found
     return None

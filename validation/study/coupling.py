@@ -141,7 +141,7 @@ def coupling_study(*, quick: bool = False, progress: Callable[[float], None] | N
     """Run every contender with every step, then controlled, then on the press; `progress` gets the share done."""
     steps = QUICK_STEPS if quick else STEPS
     tolerances = TOLERANCES[1:3] if quick else TOLERANCES
-    plan = [(c, h, None) for c in CONTENDERS for h in steps]
+    plan: list[tuple[Contender, float, float | None]] = [(c, h, None) for c in CONTENDERS for h in steps]
     plan += [(c, STEPS[0], tolerance) for c in CONTROLLED for tolerance in tolerances]
     total = len(plan) + 2 * len(CONTENDERS)
     reference = Reference()

@@ -65,9 +65,9 @@ def couple(
     striker, wall = (of_source(n, half, "2.0", **SOLVER) for n, half in zip(("striker", "wall"), halves, strict=True))
     connections = (
         # the wall carries the position on with the velocity, so what it gets must meet the end of the step
-        Connection(source="striker.hammer.x", target="wall.hammer_x", hold="meet"),
-        Connection(source="striker.hammer.vx", target="wall.hammer_vx"),
-        Connection(source="wall.blow.normal_force", target="striker.contact_force"),
+        Connection.between("striker.hammer.x", "wall.hammer_x", hold="meet"),
+        Connection.between("striker.hammer.vx", "wall.hammer_vx"),
+        Connection.between("wall.blow.normal_force", "striker.contact_force"),
     )
     try:
         return run((striker, wall), connections, contender.master(step, t_end, **more), record)
