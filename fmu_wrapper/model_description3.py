@@ -26,9 +26,9 @@ CAPABILITIES = {
     "providesPerElementDependencies": "false",
     "canHandleVariableCommunicationStepSize": "true",
     "maxOutputDerivativeOrder": "0",
-    "providesIntermediateUpdate": "false",
+    "providesIntermediateUpdate": "true",
     "mightReturnEarlyFromDoStep": "true",
-    "canReturnEarlyAfterIntermediateUpdate": "false",
+    "canReturnEarlyAfterIntermediateUpdate": "true",
     "hasEventMode": "true",
     "providesEvaluateDiscreteStates": "false",
 }
@@ -51,6 +51,8 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     variables = add(root, "ModelVariables")
     for variable in table.variables:
         own = attributes(variable)
+        if variable.role in ("input", "output"):
+            own["intermediateUpdate"] = True
         if variable.kind == "string":
             element = add(variables, "String", **own)
             if variable.start is not None:
