@@ -126,6 +126,11 @@ class Run:
         check_finite(outputs, found)
         return found
 
+    def rates(self, outputs: Sequence[Variable]) -> npt.NDArray[np.float64]:
+        """Time derivatives of real outputs at the present time, NaN where they are not known."""
+        column = {name: i for i, name in enumerate(self._names)}
+        return np.asarray(self._simulation.output_rates()[[column[v.name] for v in outputs]])
+
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""
         wanted = values.courses

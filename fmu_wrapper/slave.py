@@ -17,6 +17,7 @@ from . import log as logs
 from .derivatives import check_knowns, check_unknowns
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
+from .output_derivatives import check_known, check_orders
 from .phases import EVENT_PHASES, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
 from .slave_state import SlaveState
@@ -286,3 +287,21 @@ class Slave(SlaveState):
         for variable, x in zip(inputs, seed.tolist(), strict=True):
             direction[variable.name] = direction.get(variable.name, 0.0) + x
         return self._engine().derivatives(outputs, direction)
+
+    def output_derivatives(self, references: npt.NDArray[np.uint32], orders: Sequence[int]) -> npt.NDArray[np.float64]:
+        """First time derivatives of the real outputs behind `references` at the present time.
+
+        Raises
+        ------
+        CallOrderError : before the first step can be made.
+        FmuValueError : for other variables than real outputs, and other orders than 1.
+        UnavailableError : for outputs whose derivative is not known.
+        """
+        self._need("get output derivatives", Phase.STEP, *EVENT_PHASES, Phase.TERMINATED)
+        outputs = self.variables.plan("real", references).variables
+        check_orders(outputs, orders)
+        if self._stale:
+            self._refresh()
+        found = self._engine().rates(outputs)
+        check_known(outputs, found)
+        return found

@@ -14,7 +14,7 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, inputs, motions, restore, sensitivity
+from . import advance, inputs, motions, output_rates, restore, sensitivity
 from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
@@ -224,6 +224,10 @@ class Simulation(Engine):
         SimulationError : if accelerations cannot be computed.
         """
         return sensitivity.input_derivatives(self, direction)
+
+    def output_rates(self) -> NDArray[np.float64]:
+        """Time derivatives (channels,) of all channels at the present time, NaN where they are not known exactly."""
+        return output_rates.output_rates(self)
 
     def state(self) -> State:
         """The present state as a value."""

@@ -81,6 +81,11 @@ class FakeSimulation:
         slope[2] = direction.get("push", 0.0) / self.mass
         return slope
 
+    def output_rates(self) -> np.ndarray:
+        rates = np.full(len(CHANNELS), np.nan)
+        rates[:2] = self._state.v, self._acceleration()
+        return rates
+
     def _acceleration(self) -> float:
         return self._state.push / self.mass - self.gravity
 
