@@ -1,8 +1,8 @@
 """First time derivatives of outputs at the present time: what can be asked, and which are known.
 
 The simulation gives them (`tlismni.core.integrate.output_rates`): positions, velocities, gaps and their rates,
-impulses, work and dissipation have one that is known exactly; accelerations, forces of joints and contacts, energies and
-residuals have none.
+impulses, work and dissipation have one that is known exactly; accelerations, forces of joints and contacts, energies
+and residuals have none.
 """
 
 from collections.abc import Sequence
@@ -31,11 +31,12 @@ def check_orders(outputs: Sequence[Variable], orders: Sequence[int]) -> None:
             )
 
 
-def check_known(outputs: Sequence[Variable], found: npt.NDArray[np.float64]) -> None:
-    """Refuse outputs whose derivative is not known, with UnavailableError."""
+def check_known(outputs: Sequence[Variable], found: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """The derivatives `found`. Refuses outputs whose derivative is not known, with UnavailableError."""
     unknown = [v.name for v, x in zip(outputs, found, strict=True) if not np.isfinite(x)]
     if unknown:
         raise UnavailableError(
             f"the time derivatives of {', '.join(unknown)} are not known exactly: there are those of positions, "
             "velocities, gaps, gap rates, impulses, work and dissipation; take the difference of two steps"
         )
+    return found

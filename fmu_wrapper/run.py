@@ -126,6 +126,10 @@ class Run:
         check_finite(outputs, found)
         return found
 
+    def close_start(self) -> None:
+        """The start is over: motions that are set from now on go on from where they are."""
+        self._simulation.close_start()
+
     def rates(self, outputs: Sequence[Variable]) -> npt.NDArray[np.float64]:
         """Time derivatives of real outputs at the present time, NaN where they are not known."""
         column = {name: i for i, name in enumerate(self._names)}

@@ -85,6 +85,7 @@ class Slave(SlaveState):
         """
         self._need("exit initialization mode", Phase.INITIALIZATION)
         self._refresh()
+        self._engine().close_start()
         self._phase = Phase.EVENT if self.event_mode else Phase.STEP
 
     def enter_event_mode(self) -> None:
@@ -272,10 +273,8 @@ class Slave(SlaveState):
         Raises
         ------
         CallOrderError : outside initialization, step and event mode.
-        FmuValueError : for other variables than real outputs and inputs, for an input that leads a motion while it
-            still makes the start, a wrong seed.
-        SimulationError : if accelerations cannot be computed; if that is so for the inputs set, the slave is in phase
-            `failed`, as in `get`.
+        FmuValueError : for what is no real output or input, a motion that makes the start yet, a wrong seed.
+        SimulationError : if there are no accelerations; if that is so for the inputs set, it has `failed`, as in `get`.
         """
         self._need("get derivatives", Phase.INITIALIZATION, Phase.STEP, *EVENT_PHASES)
         outputs, inputs = (self.variables.plan("real", references).variables for references in (unknowns, knowns))
@@ -289,19 +288,13 @@ class Slave(SlaveState):
         return self._engine().derivatives(outputs, direction)
 
     def output_derivatives(self, references: npt.NDArray[np.uint32], orders: Sequence[int]) -> npt.NDArray[np.float64]:
-        """First time derivatives of the real outputs behind `references` at the present time.
+        """First time derivatives of the real outputs behind `references`, after initialization.
 
-        Raises
-        ------
-        CallOrderError : before the first step can be made.
-        FmuValueError : for other variables than real outputs, and other orders than 1.
-        UnavailableError : for outputs whose derivative is not known.
+        Raises CallOrderError before; FmuValueError for other variables and orders; UnavailableError where none is known.
         """
         self._need("get output derivatives", Phase.STEP, *EVENT_PHASES, Phase.TERMINATED)
         outputs = self.variables.plan("real", references).variables
         check_orders(outputs, orders)
         if self._stale:
             self._refresh()
-        found = self._engine().rates(outputs)
-        check_known(outputs, found)
-        return found
+        return check_known(outputs, self._engine().rates(outputs))

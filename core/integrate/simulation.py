@@ -79,8 +79,14 @@ class Simulation(Engine):
             self._advance_to(*goal)
         self.t = goal[0]
 
+    def close_start(self) -> None:
+        """From now on motions that inputs lead go on from where they are; until then (or the first step) the run
+        starts where they are set."""
+        self.start_open = False
+
     def _close_jumps(self, t: float) -> None:
         if self.assembly.motions:
+            self.close_start()
             with self._failures():
                 motions.close_jumps(self, t)
 

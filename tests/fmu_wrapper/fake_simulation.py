@@ -81,6 +81,9 @@ class FakeSimulation:
         slope[2] = direction.get("push", 0.0) / self.mass
         return slope
 
+    def close_start(self) -> None:
+        pass
+
     def output_rates(self) -> np.ndarray:
         rates = np.full(len(CHANNELS), np.nan)
         rates[:2] = self._state.v, self._acceleration()
