@@ -290,7 +290,7 @@ class Slave(SlaveState):
     def output_derivatives(self, references: npt.NDArray[np.uint32], orders: Sequence[int]) -> npt.NDArray[np.float64]:
         """First time derivatives of the real outputs behind `references`, after initialization.
 
-        Raises CallOrderError before; FmuValueError for other variables and orders; UnavailableError where none is known.
+        Raises CallOrderError before, FmuValueError for other variables or orders, UnavailableError if it is unknown.
         """
         self._need("get output derivatives", Phase.STEP, *EVENT_PHASES, Phase.TERMINATED)
         outputs = self.variables.plan("real", references).variables
