@@ -27,9 +27,9 @@ CAPABILITIES = {
     "providesPerElementDependencies": "false",
     "canHandleVariableCommunicationStepSize": "true",
     "maxOutputDerivativeOrder": str(HIGHEST_ORDER),
-    "providesIntermediateUpdate": "false",
+    "providesIntermediateUpdate": "true",
     "mightReturnEarlyFromDoStep": "true",
-    "canReturnEarlyAfterIntermediateUpdate": "false",
+    "canReturnEarlyAfterIntermediateUpdate": "true",
     "hasEventMode": "true",
     "providesEvaluateDiscreteStates": "false",
 }
@@ -52,6 +52,8 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     variables = add(root, "ModelVariables")
     for variable in table.variables:
         own = attributes(variable)
+        if variable.role in ("input", "output"):
+            own["intermediateUpdate"] = True
         if variable.kind == "string":
             element = add(variables, "String", **own)
             if variable.start is not None:

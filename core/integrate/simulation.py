@@ -23,6 +23,11 @@ _COUNTER_NAMES = (
 )  # fmt: skip
 
 
+def just_after(t: float) -> float:
+    """A time after `t`, s, that no step ends before: a step is longer."""
+    return t + 8.0 * math.ulp(t)
+
+
 class Simulation(Engine):
     """One run of a system.
 
@@ -121,6 +126,24 @@ class Simulation(Engine):
                     self.t = self.t_internal
                     return True
 
+    def next_point(self, t: float) -> float:
+        """Where the solver's newest step ends, s, but at most `t`; a step is made if none goes beyond the present time.
+
+        The present time stays: `advance` or `advance_to_event` go there.
+
+        Raises
+        ------
+        ModelError, SimulationError : as `advance`.
+        """
+        target, stop = self._goal(t)
+        self._close_jumps(target)
+        with self._failures():
+            while self.event_due:
+                self._handle_pending()
+            if self.t_internal <= self.t:
+                advance.advance_to(self, just_after(self.t), stop, hold=True)
+        return min(self.t_internal, target)
+
     @property
     def event_due(self) -> bool:
         """True if the present time is that of a contact event that has not happened yet."""
@@ -161,7 +184,7 @@ class Simulation(Engine):
             elif (due := advance.due_break(self)) is not None:
                 advance.restart_at(self, due)
             elif now < t_end:
-                advance.advance_to(self, math.nextafter(now, math.inf), float(t_end))
+                advance.advance_to(self, just_after(now), float(t_end))
         self.t = self.t_internal
 
     @property

@@ -82,7 +82,8 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
         instance_report(&model, "fmi2Instantiate: this FMU does co-simulation only, type %d was asked", type);
         return NULL;
     }
-    return instance_new(&model, 2, false, false, "fmi2Instantiate", name, guid, resources, logging_on);
+    Asked asked = {2, logging_on, false, false, NULL, 0};
+    return instance_new(&model, &asked, "fmi2Instantiate", name, guid, resources);
 }
 
 EXPORT void fmi2FreeInstance(fmi2Component c) {

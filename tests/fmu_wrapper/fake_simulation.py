@@ -92,6 +92,9 @@ class FakeSimulation:
     def _acceleration(self) -> float:
         return self._state.push / self.mass - self.gravity
 
+    def next_point(self, t: float) -> float:
+        return min(self.t + 0.03, t)
+
     def advance(self, t: float) -> None:
         while self.advance_to_event(t):
             self.handle_event()
