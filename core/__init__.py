@@ -77,6 +77,7 @@ from .integrate.simulation import Simulation
 from .methods.registry import METHODS
 from .model.channels import Channel, Input, Parameter
 from .model.markers import Marker2D
+from .model.outputs import MarkerOutput2D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
 from .result import Result
 from .simulate import simulate
@@ -134,6 +135,7 @@ __all__ = [
     "LinearSystem",
     "LuGreFriction",
     "Marker2D",
+    "MarkerOutput2D",
     "Material",
     "MaterialPoint2D",
     "Model",

@@ -84,9 +84,7 @@ def export_fmu(
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
-    about = About(
-        identifier, slave.model.name, token, text, f"tlismni {package_version()}", derivatives=not slave.drivers
-    )
+    about = About(identifier, slave.model.name, token, text, f"tlismni {package_version()}", derivatives=True)
     description, platforms = VERSIONS[fmi_version]
     settings = {
         "token": token,

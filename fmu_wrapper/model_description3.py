@@ -15,6 +15,7 @@ from .description_parts import (
     limits,
     start,
 )
+from .output_derivatives import HIGHEST_ORDER
 from .settings import Settings
 from .variables import VariableTable
 
@@ -25,7 +26,7 @@ CAPABILITIES = {
     "canSerializeFMUState": "true",
     "providesPerElementDependencies": "false",
     "canHandleVariableCommunicationStepSize": "true",
-    "maxOutputDerivativeOrder": "0",
+    "maxOutputDerivativeOrder": str(HIGHEST_ORDER),
     "providesIntermediateUpdate": "true",
     "mightReturnEarlyFromDoStep": "true",
     "canReturnEarlyAfterIntermediateUpdate": "true",

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.description import Model
-from .derivatives import along, check_finite
+from .derivatives import check_finite
 from .errors import FmuError
 from .settings import Settings
 from .values import Values
@@ -119,16 +119,21 @@ class Run:
         """Events so far."""
         return self._simulation.events
 
-    def inputs(self) -> dict[str, float]:
-        """The input values that the simulation has been told, by name."""
-        return dict(zip(self._input_names, self._applied[0], strict=True))
-
     def derivatives(self, outputs: Sequence[Variable], direction: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """Derivatives of real outputs along `direction`, by input name, at the present time."""
         column = {name: i for i, name in enumerate(self._names)}
-        found = along(self._simulation, self.inputs(), direction)[[column[v.name] for v in outputs]]
+        found = self._simulation.input_derivatives(direction)[[column[v.name] for v in outputs]]
         check_finite(outputs, found)
         return found
+
+    def close_start(self) -> None:
+        """The start is over: motions that are set from now on go on from where they are."""
+        self._simulation.close_start()
+
+    def rates(self, outputs: Sequence[Variable]) -> npt.NDArray[np.float64]:
+        """Time derivatives of real outputs at the present time, NaN where they are not known."""
+        column = {name: i for i, name in enumerate(self._names)}
+        return np.asarray(self._simulation.output_rates()[[column[v.name] for v in outputs]])
 
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""

@@ -14,18 +14,17 @@ import numpy as np
 import numpy.typing as npt
 
 from . import log as logs
-from .derivatives import check_knowns, check_unknowns
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
 from .intermediate import Updates
 from .phases import EVENT_PHASES, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
-from .slave_state import SlaveState
+from .slave_derivatives import SlaveDerivatives
 from .values import MOST_DERIVATIVES, check_values, item_value
 from .variables import Kind, Variable
 
 
-class Slave(SlaveState):
+class Slave(SlaveDerivatives):
     """A model with its solver as a co-simulation slave.
 
     Parameters
@@ -86,6 +85,7 @@ class Slave(SlaveState):
         """
         self._need("exit initialization mode", Phase.INITIALIZATION)
         self._refresh()
+        self._engine().close_start()
         self._phase = Phase.EVENT if self.event_mode else Phase.STEP
 
     def enter_event_mode(self) -> None:
@@ -286,32 +286,3 @@ class Slave(SlaveState):
             return self.variables.by_name[name]
         except KeyError:
             raise FmuValueError(f"no variable '{name}'; there are {sorted(self.variables.by_name)}") from None
-
-    def directional_derivative(
-        self,
-        unknowns: npt.NDArray[np.uint32],
-        knowns: npt.NDArray[np.uint32],
-        seed: npt.NDArray[np.float64],
-    ) -> npt.NDArray[np.float64]:
-        """Derivatives of the outputs behind `unknowns` along `seed` in the inputs behind `knowns`, at the present time.
-
-        Coordinates, velocities and contact modes are held: the derivatives are those of accelerations and forces.
-
-        Raises
-        ------
-        CallOrderError : outside initialization, step and event mode.
-        FmuValueError : for other variables than real outputs and inputs, for an input that drives a motion, a wrong
-            seed.
-        SimulationError : if accelerations cannot be computed; if that is so for the inputs set, the slave is in phase
-            `failed`, as in `get`.
-        """
-        self._need("get derivatives", Phase.INITIALIZATION, Phase.STEP, *EVENT_PHASES)
-        outputs, inputs = (self.variables.plan("real", references).variables for references in (unknowns, knowns))
-        check_unknowns(outputs)
-        check_knowns(inputs, seed, self.drivers)
-        if self._stale:
-            self._refresh()
-        direction: dict[str, float] = {}
-        for variable, x in zip(inputs, seed.tolist(), strict=True):
-            direction[variable.name] = direction.get(variable.name, 0.0) + x
-        return self._engine().derivatives(outputs, direction)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel, Enumeration
 from ..system.assembly import Assembly
+from .marker_channels import MarkerChannels
 
 CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
 
@@ -62,15 +63,25 @@ class InContact:
         return ((mode == CLOSED) | (mode == ACTIVE)).astype(np.float64)
 
 
+@dataclass(frozen=True)
+class OfMarker:
+    """A channel of a marker: its number among those of all markers."""
+
+    number: int
+
+
 class ChannelTable:
     """The output channels of a system and how to compute them."""
 
     def __init__(self, system: Any, assembly: Assembly) -> None:
         self.layout = layout = SampleLayout(assembly)
         self.initial_energy = 0.0
-        self._formulas: list[tuple[Channel, int | Sum | InContact]] = []
+        self._formulas: list[tuple[Channel, int | Sum | InContact | OfMarker]] = []
         for channel, at in system.coordinate_channels(assembly, layout):
             self._formulas.append((channel, at))
+        self._markers = MarkerChannels(assembly.markers, (layout.q.start, layout.v.start, layout.a.start))
+        for k, channel in enumerate(self._markers.channels):
+            self._formulas.append((channel, OfMarker(k)))
         for k, channel in enumerate(assembly.multiplier_channels):
             self._formulas.append((channel, layout.multipliers.start + k))
         for k, contact in enumerate(assembly.contacts):
@@ -93,6 +104,9 @@ class ChannelTable:
         """The formulas as index arrays, for one sample at a time."""
         plain = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, int)]
         flags = [(k, f.column) for k, (_, f) in enumerate(self._formulas) if isinstance(f, InContact)]
+        self._of_markers = np.array(
+            [k for k, (_, f) in enumerate(self._formulas) if isinstance(f, OfMarker)], dtype=np.intp
+        )
         sums = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, Sum)]
         terms = [
             *((k, column, 1.0) for k, f in sums for column in f.columns),
@@ -165,6 +179,8 @@ class ChannelTable:
         formula = self._formulas[k][1]
         if isinstance(formula, int):
             return samples[:, formula]
+        if isinstance(formula, OfMarker):
+            return self._markers(samples)[:, formula.number]
         found = formula(samples)
         return found - self.initial_energy if k == self._balance else found
 
@@ -179,7 +195,20 @@ class ChannelTable:
         if len(channel):
             mode = sample.take(column)
             out[channel] = (mode == CLOSED) | (mode == ACTIVE)
+        if len(self._of_markers):
+            out[self._of_markers] = self._markers(sample[None, :])[0]
         return out
+
+    def rates(self, sample: NDArray[np.float64], rates: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates of all channels (channels,) from those of the columns of a sample; NaN: not known."""
+        found = np.full(len(self._formulas), np.nan)
+        for k, (_, formula) in enumerate(self._formulas):
+            if isinstance(formula, int):
+                found[k] = rates[formula]
+            elif isinstance(formula, Sum):
+                found[k] = formula(rates[None, :])[0]
+        found[self._of_markers] = self._markers.rates(sample)
+        return found
 
     def total_energy(self, sample: NDArray[np.float64]) -> float:
         """Stored energy in one sample, J."""

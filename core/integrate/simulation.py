@@ -14,7 +14,7 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, inputs, motions, restore
+from . import advance, inputs, motions, output_rates, restore, sensitivity
 from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
@@ -77,14 +77,23 @@ class Simulation(Engine):
         SimulationError : if the run fails; what was reached stays.
         """
         goal = self._goal(t)
-        if self.assembly.motions:
-            with self._failures():
-                motions.close_jumps(self, goal[0])
+        self._close_jumps(goal[0])
         newest = self.t_internal
         # most points of a fine grid lie within the newest step: there is nothing to do but to ask
         if newest < goal[0] or (newest == goal[0] and self.pending):
             self._advance_to(*goal)
         self.t = goal[0]
+
+    def close_start(self) -> None:
+        """From now on motions that inputs lead go on from where they are; until then (or the first step) the run
+        starts where they are set."""
+        self.start_open = False
+
+    def _close_jumps(self, t: float) -> None:
+        if self.assembly.motions:
+            self.close_start()
+            with self._failures():
+                motions.close_jumps(self, t)
 
     def _goal(self, t: float) -> tuple[float, float]:
         """Where to go, and where a step must end because inputs are expected to change."""
@@ -104,8 +113,8 @@ class Simulation(Engine):
         ModelError, SimulationError : as `advance`.
         """
         start, (target, stop) = self.t, self._goal(t)
+        self._close_jumps(target)
         with self._failures():
-            motions.close_jumps(self, target)
             while True:
                 while self.event_due:
                     self._handle_pending()
@@ -127,8 +136,8 @@ class Simulation(Engine):
         ModelError, SimulationError : as `advance`.
         """
         target, stop = self._goal(t)
+        self._close_jumps(target)
         with self._failures():
-            motions.close_jumps(self, target)
             while self.event_due:
                 self._handle_pending()
             if self.t_internal <= self.t:
@@ -232,6 +241,22 @@ class Simulation(Engine):
         ConsistencyError, SimulationError : if there are no accelerations for these inputs; they are as before.
         """
         inputs.set_inputs(self, values, derivatives or {})
+
+    def input_derivatives(self, direction: Mapping[str, float]) -> NDArray[np.float64]:
+        """Derivatives (channels,) of all channels along `direction`, by input name, at the present time.
+
+        Coordinates, velocities and contact modes are held; exact to rounding. The simulation stays as it is, bit for
+        bit. Those with respect to a motion are zero: it is followed by the next steps (`tlismni.core.model.motion`).
+
+        Raises
+        ------
+        SimulationError : if accelerations cannot be computed.
+        """
+        return sensitivity.input_derivatives(self, direction)
+
+    def output_rates(self) -> NDArray[np.float64]:
+        """Time derivatives (channels,) of all channels at the present time, NaN where they are not known exactly."""
+        return output_rates.output_rates(self)
 
     def state(self) -> State:
         """The present state as a value."""

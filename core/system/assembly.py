@@ -15,7 +15,8 @@ from ..elements.base import Coordinate, Element, Form, Row
 from ..elements.internal import internal_coordinates_kernel
 from ..errors import ModelError
 from ..model.channels import Channel
-from ..model.motion import InputMotion, input_rows
+from ..model.motion import InputMotion
+from ..model.outputs import MarkerPlace
 from .numbering import GROUND_SLOTS, ModelNumbering
 
 
@@ -87,10 +88,12 @@ class Assembly:
     """Step beyond which error control could miss what a time function does, s."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
     """Rows of massless ends, each with the contacts that take its place when they close."""
+    markers: tuple[MarkerPlace, ...] = ()
+    """Those whose motion is shown."""
     motions: tuple[InputMotion, ...] = ()
     """Motions that are inputs."""
     placed: tuple[tuple[int, int], ...] = ()
-    """(coordinate, row of Phi) pairs of coordinates that start where that row says, Phi_row = q - f(t)."""
+    """(coordinate, row) pairs: it starts where that row of Phi says, Phi_row = q - f(t)."""
     linear: bool = False
     """All elements are linear with constant coefficients."""
     n_internal: int = 0
@@ -118,13 +121,8 @@ class Assembly:
         return leap
 
     @property
-    def input_rows(self) -> int:
-        """Rows of the array of inputs: one a channel, and what the motions among them need."""
-        return input_rows(len(self.input_names), len(self.motions))
-
-    @property
     def is_internal(self) -> NDArray[np.bool_]:
-        """Which coordinates are internal ones, (n,)."""
+        """Which coordinates are internal ones."""
         return np.arange(self.n) >= self.n - self.n_internal
 
     @property
@@ -248,6 +246,7 @@ def assemble(model: Model) -> Assembly:
         body_columns=columns,
         coordinate_scale=_coordinate_scale(model, columns, len(internal)),
         replaced_rows=_replaced_rows(model, massless, batches),
+        markers=tuple(MarkerPlace(o.name, o.marker, numbering.place(o.marker.body)) for o in model.outputs),
         motions=tuple(numbering.motions),
         placed=tuple(placed),
         linear=all(element.linear for element in model.elements()),
@@ -284,8 +283,7 @@ def _replaced_rows(model: Model, massless: Mapping[int, int], batches: Sequence[
 def _internal_batch(internal: NDArray[np.int64]) -> Batch:
     """The unit masses of internal coordinates."""
     count = len(internal)
-    nothing = np.zeros((count, 0), dtype=np.int64)
-    address = kernel_address(internal_coordinates_kernel)
+    nothing, address = np.zeros((count, 0), dtype=np.int64), kernel_address(internal_coordinates_kernel)
     none = np.full(count, -1, dtype=np.int64)
     return Batch(address, np.zeros((count, 0)), internal[:, None].copy(), nothing, nothing, ((0, 0),), (), none)
 

@@ -59,6 +59,11 @@ class ModelNumbering:
             self.places[body] = dict(zip(self.names[body], self.index[body], strict=False))
         return self.places[body][name]
 
+    def place(self, body: str) -> tuple[int, int, int]:
+        """Indices of a frame's own (x, y, angle); -1 for those that it does not have."""
+        x, y, angle = (k if k < self.n else -1 for k in self.coordinates(body))
+        return x, y, angle
+
     def initial(self, body: str) -> tuple[float, float, float]:
         return self.initial_positions[body]
 

@@ -162,6 +162,13 @@ EXPORT fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference vr[], s
 DERIVATIVE(fmi3GetDirectionalDerivative)
 DERIVATIVE(fmi3GetAdjointDerivative)
 
+/* derivatives of outputs in time */
+
+EXPORT fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                                           const fmi3Int32 order[], fmi3Float64 value[], size_t values) {
+    FORWARD(c, "fmi3GetOutputDerivatives", "(NNN)", IN(vr, n), IN(order, n), OUT(value, values));
+}
+
 /* state */
 
 EXPORT fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {

@@ -76,6 +76,19 @@ class FakeSimulation:
     def set_inputs(self, values: dict[str, float]) -> None:
         self._state = replace(self._state, push=values["push"])
 
+    def input_derivatives(self, direction: dict[str, float]) -> np.ndarray:
+        slope = np.zeros(len(CHANNELS))
+        slope[2] = direction.get("push", 0.0) / self.mass
+        return slope
+
+    def close_start(self) -> None:
+        pass
+
+    def output_rates(self) -> np.ndarray:
+        rates = np.full(len(CHANNELS), np.nan)
+        rates[:2] = self._state.v, self._acceleration()
+        return rates
+
     def _acceleration(self) -> float:
         return self._state.push / self.mass - self.gravity
 

@@ -189,8 +189,8 @@ def test_flags_are_true_to_behaviour(fake_fmu, tmp_path, version, asked):
 
 
 @pytest.mark.parametrize(("version", "asked"), [("2.0", asked2), ("3.0", asked3)])
-def test_no_derivatives_with_respect_to_a_motion(tmp_path, version, asked):
-    """The flags say no where one input has none."""
+def test_derivatives_with_respect_to_a_motion(tmp_path, version, asked):
+    """The flags say yes, and there are some: zero, since the next step meets the motion."""
     model = Model(
         name="driven",
         bodies=[PointMass2D(name="cart", mass=1.0)],
