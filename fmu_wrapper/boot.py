@@ -11,12 +11,12 @@ import site
 import sys
 
 
-def create(interface, name, token, resources, logging_on, log, event_mode, early_return):  # type: ignore[no-untyped-def]
+def create(interface, name, token, resources, logging_on, log, event_mode, early_return, *updates):  # type: ignore[no-untyped-def]
     """The calls object of a new instance. Raises with cause and remedy, which the shim logs."""
     with open(os.path.join(resources, "python.json"), encoding="utf-8") as file:
         record = json.load(file)
     flags = {"logging_on": bool(logging_on), "event_mode": bool(event_mode), "early_return": bool(early_return)}
-    return _embedded(record).create(interface, name, token, resources, log, **flags)
+    return _embedded(record).create(interface, name, token, resources, log, *updates, **flags)
 
 
 def _embedded(record):  # type: ignore[no-untyped-def]

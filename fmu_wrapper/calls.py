@@ -96,6 +96,14 @@ class Calls:
             raise FmuValueError(f"room for {len(room)} sensitivities was given for {len(found)} unknowns")
         room[:] = found
 
+    def output_derivatives(self, references: Any, orders: Any, values: Any) -> None:
+        """The time derivatives of outputs into the buffer `values`."""
+        found = self.slave.output_derivatives(references_in(references), numbers_in(orders, np.int32).tolist())
+        room = numbers_in(values, np.float64)
+        if len(room) != len(found):
+            raise FmuValueError(f"room for {len(room)} derivatives was given for {len(found)} outputs")
+        room[:] = found
+
     def write_state(self, handle: int, buffer: Any) -> None:
         """Write the bytes of the snapshot under `handle` into `buffer`. Raises SnapshotError if it is too small."""
         data = self.kept(handle).data

@@ -2,8 +2,8 @@
 
 A force or torque changes, at held coordinates and velocities, the accelerations of the bodies that constraints tie to
 its own (joints, contacts that are constraints), the forces in these constraints, and whether such a contact opens; the
-forces of springs, dampers and contact laws wait for the motion. What moves a constraint (an input that a driver or a
-wall follows) can change all of what it is connected with.
+forces of springs, dampers and contact laws wait for the motion. A position or velocity that a driver or a wall follows
+is met by the next step: nothing feels it at once, but the start of all that is connected with it does.
 """
 
 from collections.abc import Callable, Iterator
@@ -12,9 +12,9 @@ from ..core.contact.laws import ForceLaw
 from ..core.description import Model
 from ..core.elements import Element
 from ..core.model.markers import GROUND
-from ..core.model.signals import InputSignal
 from .variables import EVENTS, Variable, VariableTable
 
+ACCELERATIONS = ("ax", "ay", "angular_acceleration")
 FELT_BY_CONTACT = ("normal_force", "friction_force", "in_contact", "mode")
 
 
@@ -28,35 +28,44 @@ class Dependencies:
         tied = _groups(model, lambda e: bool(e.constraint_rows) or _is_impact_contact(e))
         connected = _groups(model, lambda e: True)
         self._felt: dict[str, set[str]] = {}
+        self._led: dict[str, set[str]] = {}
         for element in model.elements():
-            moves = bool(element.constraint_rows) or element in model.contacts
-            for channel in _inputs_of(element):
-                reached = _reached(element, connected if moves else tied)
-                for other in model.elements():
-                    if bodies_of(other) & reached:
-                        self._note(other, channel, everything=moves)
-                if moves:
-                    for v in table.block("channel"):
-                        if v.name.startswith(("energy.", "residual.")):
-                            self._felt.setdefault(v.name, set()).add(channel)
-                self._felt.setdefault("residual.acceleration", set()).add(channel)
-                if model.contacts:
-                    self._felt.setdefault(EVENTS, set()).add(channel)
+            moving = {channel for motion in element.motions() for channel in motion.channels()}
+            for channel in {channel for signal in element.signals() for channel in signal.channels()}:
+                if channel in moving:
+                    self._note_start(_reached(element, connected), channel)
+                else:
+                    self._note_force(_reached(element, tied), channel)
 
     def of_output(self, output: Variable) -> list[Variable]:
         """The inputs that `output` feels at once, in the order of their references."""
-        felt = self._felt.get(output.name, set())
-        return [v for name, v in self._inputs.items() if name in felt]
+        return self._named(self._felt.get(output.name, set()))
 
     def at_start(self, output: Variable) -> list[Variable]:
         """The parameters and inputs that its initial value depends on; solver settings do not change it."""
         if output.name == EVENTS:
             return []
-        return [*self._parameters, *self.of_output(output)]
+        felt = self._felt.get(output.name, set()) | self._led.get(output.name, set())
+        return [*self._parameters, *self._named(felt)]
 
-    def _note(self, element: Element, channel: str, everything: bool) -> None:
-        for name in _all_channels(element, self._table) if everything else _felt_channels(element):
+    def _named(self, channels: set[str]) -> list[Variable]:
+        return [v for name, v in self._inputs.items() if name in channels]
+
+    def _note_force(self, reached: set[str], channel: str) -> None:
+        """A force on the bodies `reached`: what feels it at once."""
+        names = {name for e in self._model.elements() if bodies_of(e) & reached for name in _felt_channels(e)}
+        names |= {f"{o.name}.{a}" for o in self._model.outputs if o.marker.body in reached for a in ACCELERATIONS}
+        names |= {"residual.acceleration"} | ({EVENTS} if self._model.contacts else set())
+        for name in names:
             self._felt.setdefault(name, set()).add(channel)
+
+    def _note_start(self, reached: set[str], channel: str) -> None:
+        """A motion that leads the bodies `reached`: what starts elsewhere with it."""
+        parts = {e.name for e in self._model.elements() if bodies_of(e) & reached} | {"energy", "residual"}
+        parts |= {o.name for o in self._model.outputs if o.marker.body in reached}
+        for v in self._table.block("channel"):
+            if v.name.partition(".")[0] in parts:
+                self._led.setdefault(v.name, set()).add(channel)
 
 
 def bodies_of(element: Element) -> set[str]:
@@ -76,14 +85,6 @@ def _felt_channels(element: Element) -> Iterator[str]:
         yield from (channel.name for channel in element.multiplier_channels())
     if _is_impact_contact(element):
         yield from (f"{element.name}.{name}" for name in FELT_BY_CONTACT)
-
-
-def _all_channels(element: Element, table: VariableTable) -> Iterator[str]:
-    return (v.name for v in table.block("channel") if v.name.startswith(f"{element.name}."))
-
-
-def _inputs_of(element: Element) -> list[str]:
-    return [s.channel for s in element.signals() if isinstance(s, InputSignal)]
 
 
 def _is_force_contact(element: Element) -> bool:

@@ -149,12 +149,10 @@ class Fmi2Calls(Calls):
             references_in(vr), numbers_in(order, np.int32).tolist(), numbers_in(value, np.float64).tolist()
         )
 
-    # what this slave does not do
-
     @fmi_call()
-    def fmi2GetRealOutputDerivatives(self) -> None:
-        """Refused."""
-        raise UnavailableError("no output derivatives (maxOutputDerivativeOrder = 0)")
+    def fmi2GetRealOutputDerivatives(self, vr: Any, order: Any, value: Any) -> None:
+        """Time derivatives of outputs at the present time, into the buffer `value`."""
+        self.output_derivatives(vr, order, value)
 
     # status
 

@@ -39,7 +39,6 @@ REFUSED: dict[str, str] = {
     **{f"fmi3{name}": NO_CLOCKS for name in _CLOCKS},
     **{f"fmi3{name}": NO_STRUCTURE for name in _STRUCTURE},
     **{f"fmi3{name}": NO_MODEL_EXCHANGE for name in _MODEL_EXCHANGE},
-    "fmi3GetOutputDerivatives": "no output derivatives (maxOutputDerivativeOrder = 0)",
     "fmi3EvaluateDiscreteStates": "providesEvaluateDiscreteStates = false: use fmi3UpdateDiscreteStates",
 }
 """Functions that this FMU has not, and why."""
@@ -187,6 +186,11 @@ class Fmi3Calls(Calls):
     def fmi3GetDirectionalDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
         """Derivatives of outputs along a direction of inputs, into the buffer `sensitivity`."""
         self.directional_derivative(unknowns, knowns, seed, sensitivity)
+
+    @fmi_call()
+    def fmi3GetOutputDerivatives(self, vr: Any, order: Any, value: Any) -> None:
+        """Time derivatives of outputs at the present time, into the buffer `value`."""
+        self.output_derivatives(vr, order, value)
 
     @fmi_call()
     def fmi3GetAdjointDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:

@@ -15,6 +15,7 @@ from .description_parts import (
     limits,
     start,
 )
+from .output_derivatives import HIGHEST_ORDER
 from .settings import Settings
 from .variables import VariableTable
 
@@ -22,7 +23,7 @@ CAPABILITIES = {
     "needsExecutionTool": "false",
     "canHandleVariableCommunicationStepSize": "true",
     "canInterpolateInputs": "true",
-    "maxOutputDerivativeOrder": "0",
+    "maxOutputDerivativeOrder": str(HIGHEST_ORDER),
     "canRunAsynchronuously": "false",  # the standard's own spelling
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canNotUseMemoryManagementFunctions": "true",

@@ -15,6 +15,7 @@ from .description_parts import (
     limits,
     start,
 )
+from .output_derivatives import HIGHEST_ORDER
 from .settings import Settings
 from .variables import VariableTable
 
@@ -25,10 +26,10 @@ CAPABILITIES = {
     "canSerializeFMUState": "true",
     "providesPerElementDependencies": "false",
     "canHandleVariableCommunicationStepSize": "true",
-    "maxOutputDerivativeOrder": "0",
-    "providesIntermediateUpdate": "false",
+    "maxOutputDerivativeOrder": str(HIGHEST_ORDER),
+    "providesIntermediateUpdate": "true",
     "mightReturnEarlyFromDoStep": "true",
-    "canReturnEarlyAfterIntermediateUpdate": "false",
+    "canReturnEarlyAfterIntermediateUpdate": "true",
     "hasEventMode": "true",
     "providesEvaluateDiscreteStates": "false",
 }
@@ -51,6 +52,8 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     variables = add(root, "ModelVariables")
     for variable in table.variables:
         own = attributes(variable)
+        if variable.role in ("input", "output"):
+            own["intermediateUpdate"] = True
         if variable.kind == "string":
             element = add(variables, "String", **own)
             if variable.start is not None:

@@ -9,6 +9,7 @@ class Phase(StrEnum):
     INSTANTIATED = "instantiated"
     INITIALIZATION = "initialization"
     STEP = "step"
+    INTERMEDIATE = "intermediate update"
     EVENT_DUE = "event due"
     EVENT = "event"
     FAILED = "failed"
@@ -19,6 +20,7 @@ WAYS = {
     Phase.INSTANTIATED: "enter and exit initialization mode first",
     Phase.INITIALIZATION: "exit initialization mode first",
     Phase.STEP: "reset first",
+    Phase.INTERMEDIATE: "return from the callback of the intermediate update first",
     Phase.EVENT_DUE: "the last step ended at an event: enter event mode, update the discrete states, enter step mode",
     Phase.EVENT: "update the discrete states and enter step mode first",
     Phase.FAILED: "the last step failed: set a stored state, or reset",
@@ -30,6 +32,7 @@ SETTABLE = {
     Phase.INSTANTIATED: frozenset(("parameter", "input")),
     Phase.INITIALIZATION: frozenset(("parameter", "input")),
     Phase.STEP: frozenset(("input",)),
+    Phase.INTERMEDIATE: frozenset(("input",)),
     Phase.EVENT_DUE: frozenset(("input",)),
     Phase.EVENT: frozenset(("input",)),
 }

@@ -126,6 +126,15 @@ class Run:
         check_finite(outputs, found)
         return found
 
+    def close_start(self) -> None:
+        """The start is over: motions that are set from now on go on from where they are."""
+        self._simulation.close_start()
+
+    def rates(self, outputs: Sequence[Variable]) -> npt.NDArray[np.float64]:
+        """Time derivatives of real outputs at the present time, NaN where they are not known."""
+        column = {name: i for i, name in enumerate(self._names)}
+        return np.asarray(self._simulation.output_rates()[[column[v.name] for v in outputs]])
+
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""
         wanted = values.courses
@@ -142,19 +151,25 @@ class Run:
         """The inputs have gone on by their derivatives, as the simulation knows."""
         self._applied = values.courses
 
-    def advance(self, t: float, event_mode: bool = False, early_return: bool = False) -> StepEnd:
-        """Integrate to `t`, s, or to a contact event before it if `early_return`.
+    def next_point(self, t: float) -> float:
+        """Where the solver's newest step ends, s, at most `t`; a step is made if there is none beyond the present."""
+        return float(self._simulation.next_point(t))
 
-        With `event_mode` a contact event at the end is left to `handle_event`. All others happen in here.
+    def advance(
+        self, t: float, event_mode: bool = False, early_return: bool = False, goal: float | None = None
+    ) -> StepEnd:
+        """Integrate to `t`, s, on the way to `goal` (None: `t`), or to a contact event before that if `early_return`.
+
+        With `event_mode` a contact event at the goal is left to `handle_event`. All others happen in here.
         """
-        simulation = self._simulation
+        simulation, last = self._simulation, t if goal is None else goal
         if not (event_mode or early_return):
             simulation.advance(t)
             return StepEnd(t)
         while simulation.advance_to_event(t):
             reached = float(simulation.t)
-            early = early_return and reached < t
-            if event_mode and (early or reached >= t):
+            early = early_return and reached < last
+            if event_mode and (early or reached >= last):
                 return StepEnd(reached, event_due=True, early=early)
             while simulation.handle_event():
                 pass

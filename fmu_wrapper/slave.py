@@ -14,17 +14,17 @@ import numpy as np
 import numpy.typing as npt
 
 from . import log as logs
-from .derivatives import check_knowns, check_unknowns
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
+from .intermediate import Updates
 from .phases import EVENT_PHASES, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
-from .slave_state import SlaveState
+from .slave_derivatives import SlaveDerivatives
 from .values import MOST_DERIVATIVES, check_values, item_value
 from .variables import Kind, Variable
 
 
-class Slave(SlaveState):
+class Slave(SlaveDerivatives):
     """A model with its solver as a co-simulation slave.
 
     Parameters
@@ -36,6 +36,7 @@ class Slave(SlaveState):
     logging_on : True passes on all categories, False errors only.
     event_mode : contact events at the end of a step are left to `update_discrete_states`, in event mode.
     early_return : a step may end before its time, at a contact event.
+    updates : intermediate updates, None for none.
     simulation_factory : makes the simulation; None is `tlismni.core.Simulation`.
     solver : `method`, `rtol`, `atol`, `step` and options of the method; they win over the scenario's.
 
@@ -84,6 +85,7 @@ class Slave(SlaveState):
         """
         self._need("exit initialization mode", Phase.INITIALIZATION)
         self._refresh()
+        self._engine().close_start()
         self._phase = Phase.EVENT if self.event_mode else Phase.STEP
 
     def enter_event_mode(self) -> None:
@@ -135,24 +137,49 @@ class Slave(SlaveState):
         SimulationError, FmuError : the solver failed; the slave is in phase `failed`.
         """
         self._need("do step", Phase.STEP)
-        before = self._time
-        target = check_step(before, t, h, self._stop_time)
+        target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
         seen = len(run.events)
         self._stale = True
         try:  # not `_failing`: a context manager at every step is dear
-            self._tell(run)
-            end = run.advance(target, self.event_mode, self.early_return)
+            if self.updates is None:
+                self._tell(run)
+                end = run.advance(target, self.event_mode, self.early_return)
+                self._arrive(run, end.time)
+            else:
+                end = self._advance_with_updates(run, target, self.updates)
         except BaseException:
             self._phase = Phase.FAILED
             raise
-        self._set_time(end.time)
-        if self._values.go_on(end.time - before):
-            run.follow(self._values)
         if end.event_due:
             self._phase = Phase.EVENT_DUE
         self._log_events(run, seen)
         return end
+
+    def _arrive(self, run: Run, t: float) -> None:
+        """The simulation is at `t`, s, and so are the inputs that go on with derivatives."""
+        if self._values.go_on(t - self._time):
+            run.follow(self._values)
+        self._set_time(t)
+        self._stale = True
+
+    def _advance_with_updates(self, run: Run, target: float, updates: Updates) -> StepEnd:
+        """Advance to `target`, s, with an intermediate update where each step of the solver ends on the way."""
+        goal = target
+        while True:
+            self._tell(run)
+            end = run.advance(run.next_point(goal), self.event_mode, self.early_return, goal)
+            self._arrive(run, end.time)
+            if end.early or end.event_due or end.time >= goal:
+                return StepEnd(end.time, end.event_due, end.time < target)
+            self._phase = Phase.INTERMEDIATE
+            wanted = updates.call(end.time, self.early_return)
+            self._phase = Phase.STEP
+            if self.early_return and wanted is not None:
+                goal = min(goal, wanted)
+                if goal <= end.time:
+                    self._tell(run)
+                    return StepEnd(end.time, early=True)
 
     def _log_events(self, run: Run, seen: int) -> None:
         if self.log.wants(logs.EVENTS):
@@ -191,6 +218,8 @@ class Slave(SlaveState):
         self._need("set values", *SETTABLE)
         if not plan.roles <= SETTABLE[self._phase]:
             self._refuse(plan.variables)
+        if self._phase == Phase.INTERMEDIATE and self.updates is not None:
+            self.updates.check(plan.variables)
         self._values.vectors[kind][plan.positions] = check_values(plan, values)
         self._stale = self._untold = True
         if kind == "real" and "input" in plan.roles:
@@ -257,32 +286,3 @@ class Slave(SlaveState):
             return self.variables.by_name[name]
         except KeyError:
             raise FmuValueError(f"no variable '{name}'; there are {sorted(self.variables.by_name)}") from None
-
-    def directional_derivative(
-        self,
-        unknowns: npt.NDArray[np.uint32],
-        knowns: npt.NDArray[np.uint32],
-        seed: npt.NDArray[np.float64],
-    ) -> npt.NDArray[np.float64]:
-        """Derivatives of the outputs behind `unknowns` along `seed` in the inputs behind `knowns`, at the present time.
-
-        Coordinates, velocities and contact modes are held: the derivatives are those of accelerations and forces.
-
-        Raises
-        ------
-        CallOrderError : outside initialization, step and event mode.
-        FmuValueError : for other variables than real outputs and inputs, for an input that leads a motion while it
-            still makes the start, a wrong seed.
-        SimulationError : if accelerations cannot be computed; if that is so for the inputs set, the slave is in phase
-            `failed`, as in `get`.
-        """
-        self._need("get derivatives", Phase.INITIALIZATION, Phase.STEP, *EVENT_PHASES)
-        outputs, inputs = (self.variables.plan("real", references).variables for references in (unknowns, knowns))
-        check_unknowns(outputs)
-        check_knowns(inputs, seed, self.drivers if self._phase == Phase.INITIALIZATION else {})
-        if self._stale:
-            self._refresh()
-        direction: dict[str, float] = {}
-        for variable, x in zip(inputs, seed.tolist(), strict=True):
-            direction[variable.name] = direction.get(variable.name, 0.0) + x
-        return self._engine().derivatives(outputs, direction)

@@ -6,6 +6,7 @@ from typing import Any
 
 from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
+from .intermediate import Updates
 from .log import Log, LogCallback
 from .phases import EVENT_PHASES, WAYS, Phase
 from .run import Run, SimulationFactory, build_simulation
@@ -29,13 +30,14 @@ class SlaveState:
         logging_on: bool = False,
         event_mode: bool = False,
         early_return: bool = False,
+        updates: Updates | None = None,
         simulation_factory: SimulationFactory | None = None,
         **solver: Any,
     ) -> None:
         self.model, self.settings = Settings.of(source, **solver)
         self.name = name
         self.log = Log(on_log, logging_on)
-        self.event_mode, self.early_return = event_mode, early_return
+        self.event_mode, self.early_return, self.updates = event_mode, early_return, updates
         self._factory = simulation_factory
         if variables is None:
             channels = build_simulation(simulation_factory, self.model, self.settings).channels
@@ -59,7 +61,14 @@ class SlaveState:
         return self._time
 
     def reset(self) -> None:
-        """Back to the state of a new slave: start values, no experiment, phase `instantiated`."""
+        """Back to the state of a new slave: start values, no experiment, phase `instantiated`.
+
+        Raises
+        ------
+        CallOrderError : in an intermediate update.
+        """
+        if self._run is not None:
+            self._need("reset", *(p for p in Phase if p != Phase.INTERMEDIATE))
         self._phase = Phase.INSTANTIATED
         self._values = Values(self.variables)
         self._start_time = self._time = 0.0
@@ -72,7 +81,7 @@ class SlaveState:
 
     def snapshot(self) -> Snapshot:
         """The whole state. Raises CallOrderError after a failed step, whose state is worthless."""
-        self._need("get the state", *(p for p in Phase if p != Phase.FAILED))
+        self._need("get the state", *(p for p in Phase if p not in (Phase.FAILED, Phase.INTERMEDIATE)))
         values = self._values.copy()
         values.forget_outputs()
         return Snapshot(
@@ -94,6 +103,7 @@ class SlaveState:
         ------
         SnapshotError : if it is no snapshot, or belongs to another model or other settings.
         """
+        self._need("set a state", *(p for p in Phase if p != Phase.INTERMEDIATE))
         if not isinstance(snapshot, Snapshot):
             raise SnapshotError(
                 f"a Snapshot is needed to restore, not {type(snapshot).__name__}; bytes go through snapshot_from_bytes"

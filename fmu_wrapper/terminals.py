@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..core.description import Model
-from ..core.elements import AppliedForce2D, AppliedTorque2D, CoordinateDriver, CoordinateLoad
+from ..core.elements import AppliedForce2D, AppliedTorque2D, CoordinateDriver, CoordinateLoad, MovingFrame2D
 from ..core.model.signals import InputSignal
 from .description_parts import add
 from .variables import VariableTable
@@ -35,7 +35,7 @@ def terminals(model: Model, table: VariableTable) -> list[Terminal]:
     """The flanges of an FMU, in the order of the model's elements."""
     found = []
     for element in model.elements():
-        flange = _flange(element)
+        flange = _flange(model, element)
         if flange is None:
             continue
         members = flange.members | dict(_motion(model, flange))
@@ -56,7 +56,7 @@ class Flange:
     coordinates: tuple[str, ...]
 
 
-def _flange(element: Any) -> Flange | None:
+def _flange(model: Model, element: Any) -> Flange | None:
     """The flange of an element; None if no input acts there."""
     if isinstance(element, AppliedForce2D):
         signals = {"force_x": element.force_x, "force_y": element.force_y}
@@ -73,8 +73,30 @@ def _flange(element: Any) -> Flange | None:
     if isinstance(element, CoordinateDriver) and isinstance(element.motion, InputSignal):
         force = FORCES.get(element.coordinate, f"force_{element.coordinate}")
         members = {element.coordinate: element.motion.channel, force: f"{element.name}.reaction"}
+        if element.motion.rate is not None:
+            members |= dict(_rates(model, element.body, element.coordinate, element.motion.rate))
         return Flange("motion", element.body, members, ())
+    if isinstance(element, MovingFrame2D):
+        return _frame(element)
     return None
+
+
+def _frame(frame: MovingFrame2D) -> Flange | None:
+    """The flange of a frame that inputs move: motion and reaction along the coordinates that they lead."""
+    members: dict[str, str] = {}
+    for c, motion in zip(frame.coordinate_records(), frame.motions(), strict=True):
+        if isinstance(motion, InputSignal):
+            members[c.name] = motion.channel
+            if motion.rate is not None:
+                members[c.rate] = motion.rate
+            members[FORCES[c.name]] = f"{frame.name}.reaction_{'torque' if c.name == 'angle' else c.name}"
+    return Flange("motion", frame.name, members, ()) if members else None
+
+
+def _rates(model: Model, body: str, coordinate: str, channel: str) -> Iterator[tuple[str, str]]:
+    """Member and variable of the velocity of a coordinate that an input leads."""
+    for record in (b for b in model.bodies if b.name == body):
+        yield from ((c.rate, channel) for c in record.coordinate_records() if c.name == coordinate)
 
 
 def _motion(model: Model, flange: Flange) -> Iterator[tuple[str, str]]:

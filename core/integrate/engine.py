@@ -103,6 +103,7 @@ class Engine(ContactSide):
         self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
         self.input_times = (float(t0), math.inf)
+        self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
         self._method = build_method(self.formula, self.settings, self.workspace.row_length)

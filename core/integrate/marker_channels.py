@@ -40,6 +40,17 @@ class MarkerChannels:
 
     def __call__(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
         """All channels (N, channels) of samples (N, columns)."""
+        return self._all(samples).reshape(len(samples), -1)[:, self._kept]
+
+    def rates(self, sample: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates of all channels (channels,) of one sample, NaN for the accelerations."""
+        found = self._all(sample[None, :])[0]
+        rates = np.full_like(found, np.nan)
+        rates[:, :6] = found[:, 3:]
+        return rates.ravel()[self._kept]
+
+    def _all(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All nine of each marker (N, markers, 9)."""
         (x, y, angle), (vx, vy, w), (ax, ay, growth) = (
             np.where(self._there[:, None], samples[:, columns].transpose(1, 0, 2), 0.0) for columns in self._columns
         )
@@ -50,4 +61,4 @@ class MarkerChannels:
             vx - w * py, vy + w * px, w,
             ax - growth * py - w * w * px, ay + growth * px - w * w * py, growth,
         ], axis=-1)  # fmt: skip
-        return np.asarray(found.reshape(len(samples), -1)[:, self._kept])
+        return found

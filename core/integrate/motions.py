@@ -26,7 +26,7 @@ def led_by(sim: "Simulation", channels: Collection[int]) -> list[State]:
 
 
 def lead(sim: "Simulation", states: Iterable[State]) -> None:
-    """Let motions in these states follow what the channels say now. Before the first step they start there."""
+    """Let motions in these states follow what the channels say now. At the start they begin there."""
     inputs = sim.workspace.arrays["inputs"]
     for motion, x, v in states:
         inputs[motion.jumps, SINCE] = sim.t
@@ -36,8 +36,8 @@ def lead(sim: "Simulation", states: Iterable[State]) -> None:
 
 
 def at_start(sim: "Simulation") -> bool:
-    """True before the first step."""
-    return not sim.started and sim.t == sim.settings.t0
+    """True as long as motions that are set make the start."""
+    return sim.start_open and not sim.started and sim.t == sim.settings.t0
 
 
 def start_again(sim: "Simulation") -> None:

@@ -199,6 +199,17 @@ class ChannelTable:
             out[self._of_markers] = self._markers(sample[None, :])[0]
         return out
 
+    def rates(self, sample: NDArray[np.float64], rates: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates of all channels (channels,) from those of the columns of a sample; NaN: not known."""
+        found = np.full(len(self._formulas), np.nan)
+        for k, (_, formula) in enumerate(self._formulas):
+            if isinstance(formula, int):
+                found[k] = rates[formula]
+            elif isinstance(formula, Sum):
+                found[k] = formula(rates[None, :])[0]
+        found[self._of_markers] = self._markers.rates(sample)
+        return found
+
     def total_energy(self, sample: NDArray[np.float64]) -> float:
         """Stored energy in one sample, J."""
         layout = self.layout

@@ -55,6 +55,7 @@ def get_state(sim: "Simulation") -> State:
         "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
         "handled": [repr(sim._times_handled[0]), sim._times_handled[1]],
         "outer": sim.outer,
+        "start_open": sim.start_open,
         "input_times": [repr(x) for x in sim.input_times],
         "fallbacks": [[f.t, f.outer, f.reason] for f in sim.fallbacks],
     }
@@ -101,6 +102,7 @@ def set_state(sim: "Simulation", state: State) -> None:
     sim.t = float(facts["t"])
     sim.pending = [int(k) for k in facts["pending"]]
     sim.open_accounts = {int(k): (v[0], v[1]) for k, v in facts["open_accounts"].items()}
+    sim.start_open = bool(facts["start_open"])
     sim.input_times = (float(facts["input_times"][0]), float(facts["input_times"][1]))
     sim._times_handled = (float(facts["handled"][0]), int(facts["handled"][1]))
     sim.events, sim.stored_events = list(state.events), state.events

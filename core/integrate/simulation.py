@@ -14,13 +14,18 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, inputs, motions, restore, sensitivity
+from . import advance, inputs, motions, output_rates, restore, sensitivity
 from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
     "residual_evaluations", "stages", "analyses", "krylov_iterations",
 )  # fmt: skip
+
+
+def just_after(t: float) -> float:
+    """A time after `t`, s, that no step ends before: a step is longer."""
+    return t + 8.0 * math.ulp(t)
 
 
 class Simulation(Engine):
@@ -79,8 +84,14 @@ class Simulation(Engine):
             self._advance_to(*goal)
         self.t = goal[0]
 
+    def close_start(self) -> None:
+        """From now on motions that inputs lead go on from where they are; until then (or the first step) the run
+        starts where they are set."""
+        self.start_open = False
+
     def _close_jumps(self, t: float) -> None:
         if self.assembly.motions:
+            self.close_start()
             with self._failures():
                 motions.close_jumps(self, t)
 
@@ -114,6 +125,24 @@ class Simulation(Engine):
                 if self.t_internal > start:
                     self.t = self.t_internal
                     return True
+
+    def next_point(self, t: float) -> float:
+        """Where the solver's newest step ends, s, but at most `t`; a step is made if none goes beyond the present time.
+
+        The present time stays: `advance` or `advance_to_event` go there.
+
+        Raises
+        ------
+        ModelError, SimulationError : as `advance`.
+        """
+        target, stop = self._goal(t)
+        self._close_jumps(target)
+        with self._failures():
+            while self.event_due:
+                self._handle_pending()
+            if self.t_internal <= self.t:
+                advance.advance_to(self, just_after(self.t), stop, hold=True)
+        return min(self.t_internal, target)
 
     @property
     def event_due(self) -> bool:
@@ -155,7 +184,7 @@ class Simulation(Engine):
             elif (due := advance.due_break(self)) is not None:
                 advance.restart_at(self, due)
             elif now < t_end:
-                advance.advance_to(self, math.nextafter(now, math.inf), float(t_end))
+                advance.advance_to(self, just_after(now), float(t_end))
         self.t = self.t_internal
 
     @property
@@ -224,6 +253,10 @@ class Simulation(Engine):
         SimulationError : if accelerations cannot be computed.
         """
         return sensitivity.input_derivatives(self, direction)
+
+    def output_rates(self) -> NDArray[np.float64]:
+        """Time derivatives (channels,) of all channels at the present time, NaN where they are not known exactly."""
+        return output_rates.output_rates(self)
 
     def state(self) -> State:
         """The present state as a value."""

@@ -82,7 +82,8 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
         instance_report(&model, "fmi2Instantiate: this FMU does co-simulation only, type %d was asked", type);
         return NULL;
     }
-    return instance_new(&model, 2, false, false, "fmi2Instantiate", name, guid, resources, logging_on);
+    Asked asked = {2, logging_on, false, false, NULL, 0};
+    return instance_new(&model, &asked, "fmi2Instantiate", name, guid, resources);
 }
 
 EXPORT void fmi2FreeInstance(fmi2Component c) {
@@ -219,10 +220,7 @@ EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueRe
     FORWARD(c, "fmi2SetRealInputDerivatives", "(NNN)", IN(vr, n), IN(order, n), IN(value, n));
 }
 
-/* what this FMU does not do, as its capability flags say: refused, with a line in the log */
-
 EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                                                const fmi2Integer order[], fmi2Real value[]) {
-    (void)vr, (void)n, (void)order, (void)value;
-    FORWARD(c, "fmi2GetRealOutputDerivatives", "()");
+    FORWARD(c, "fmi2GetRealOutputDerivatives", "(NNN)", IN(vr, n), IN(order, n), OUT(value, n));
 }

@@ -25,6 +25,13 @@ static void log_to_host(const Instance *self, int status, const char *category, 
     }
 }
 
+static bool update_of_host(const Instance *self, double time, bool can_return_early, double *end) {
+    fmi3Boolean wanted = false;
+    ((fmi3IntermediateUpdateCallback)self->updater)(self->environment, time, true, true, true, can_return_early,
+                                                    &wanted, end);
+    return can_return_early && wanted;
+}
+
 /* version and logging */
 
 EXPORT const char *fmi3GetVersion(void) {
@@ -52,10 +59,11 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String toke
                                                 fmi3LogMessageCallback logger,
                                                 fmi3IntermediateUpdateCallback intermediate_update) {
     (void)visible; /* there is nothing to show */
-    (void)intermediate, (void)intermediates, (void)intermediate_update; /* providesIntermediateUpdate = false */
     Instance model = model_of(environment, logger);
-    return instance_new(&model, 3, event_mode, early_return, "fmi3InstantiateCoSimulation", name, token, resources,
-                        logging_on);
+    model.update = intermediate_update ? update_of_host : NULL;
+    model.updater = (void (*)(void))intermediate_update;
+    Asked asked = {3, logging_on, event_mode, early_return, intermediate, intermediate ? intermediates : 0};
+    return instance_new(&model, &asked, "fmi3InstantiateCoSimulation", name, token, resources);
 }
 
 EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
@@ -153,6 +161,13 @@ EXPORT fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference vr[], s
 
 DERIVATIVE(fmi3GetDirectionalDerivative)
 DERIVATIVE(fmi3GetAdjointDerivative)
+
+/* derivatives of outputs in time */
+
+EXPORT fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                                           const fmi3Int32 order[], fmi3Float64 value[], size_t values) {
+    FORWARD(c, "fmi3GetOutputDerivatives", "(NNN)", IN(vr, n), IN(order, n), OUT(value, values));
+}
 
 /* state */
 

@@ -48,6 +48,23 @@ static PyObject *log_from_python(PyObject *capsule, PyObject *arguments) {
     return py.Py_BuildValue("");
 }
 
+/* update(time, can_return_early), called from Python: the time at which the step shall end, or None. */
+static PyObject *update_from_python(PyObject *capsule, PyObject *arguments) {
+    double time, end;
+    int can_return_early;
+    const Instance *self = py.PyCapsule_GetPointer(capsule, CAPSULE);
+    if (!self || !py.PyArg_ParseTuple(arguments, "di", &time, &can_return_early)) {
+        return NULL;
+    }
+    end = time;
+    void *thread = py.PyEval_SaveThread();
+    bool ends = self->update(self, time, can_return_early != 0, &end);
+    py.PyEval_RestoreThread(thread);
+    return ends ? py.Py_BuildValue("d", end) : py.Py_BuildValue("");
+}
+
+static PyMethodDef update_method = {"update", update_from_python, METH_VARARGS, "An intermediate update."};
+
 static PyMethodDef log_method = {"log", log_from_python, METH_VARARGS, "Hand a message to the host's logger."};
 
 static int hex_digit(char c) {
@@ -133,12 +150,6 @@ static PyObject *boot(Instance *self, const char *function, const char *source, 
     return result;
 }
 
-/* What the host asked of an instance. */
-typedef struct {
-    int interface; /* FMI major version */
-    bool event_mode, early_return, logging_on;
-} Asked;
-
 /* Make the Python side of `self`. */
 static bool populate(Instance *self, const Asked *asked, const char *function, const char *token,
                      const char *resources) {
@@ -158,9 +169,11 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
     } else {
         PyObject *capsule = py.PyCapsule_New(self, CAPSULE, NULL);
         PyObject *log = capsule ? py.PyCFunction_NewEx(&log_method, capsule, NULL) : NULL;
-        PyObject *arguments = log ? py.Py_BuildValue("(isssiNii)", asked->interface, self->name, token, resources,
-                                                     (int)asked->logging_on, log, (int)asked->event_mode,
-                                                     (int)asked->early_return) : NULL;
+        PyObject *update = self->update ? py.PyCFunction_NewEx(&update_method, capsule, NULL) : py.Py_BuildValue("");
+        PyObject *arguments = log && update ? py.Py_BuildValue(
+            "(isssiNiiNN)", asked->interface, self->name, token, resources, (int)asked->logging_on, log,
+            (int)asked->event_mode, (int)asked->early_return, update,
+            view_of(asked->intermediate, asked->intermediates * sizeof *asked->intermediate)) : NULL;
         self->calls = boot(self, function, source, path, arguments);
         py.Py_DecRef(arguments);
         py.Py_DecRef(capsule);
@@ -170,8 +183,8 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
     return self->calls != NULL;
 }
 
-Instance *instance_new(const Instance *model, int interface, bool event_mode, bool early_return, const char *function,
-                       const char *name, const char *token, const char *resource_location, bool logging_on) {
+Instance *instance_new(const Instance *model, const Asked *asked, const char *function, const char *name,
+                       const char *token, const char *resource_location) {
     Instance *self = malloc(sizeof *self);
     if (!self) {
         return NULL;
@@ -186,8 +199,7 @@ Instance *instance_new(const Instance *model, int interface, bool event_mode, bo
         instance_report(self, "%s: the resource location is NULL: the URI of the FMU's resources folder is needed",
                         function);
     } else if (self->name) {
-        Asked asked = {interface, event_mode, early_return, logging_on};
-        made = populate(self, &asked, function, token ? token : "", resources);
+        made = populate(self, asked, function, token ? token : "", resources);
     }
     free(resources);
     if (!made) {

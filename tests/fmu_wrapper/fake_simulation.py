@@ -81,8 +81,19 @@ class FakeSimulation:
         slope[2] = direction.get("push", 0.0) / self.mass
         return slope
 
+    def close_start(self) -> None:
+        pass
+
+    def output_rates(self) -> np.ndarray:
+        rates = np.full(len(CHANNELS), np.nan)
+        rates[:2] = self._state.v, self._acceleration()
+        return rates
+
     def _acceleration(self) -> float:
         return self._state.push / self.mass - self.gravity
+
+    def next_point(self, t: float) -> float:
+        return min(self.t + 0.03, t)
 
     def advance(self, t: float) -> None:
         while self.advance_to_event(t):

@@ -134,6 +134,16 @@ def asked3(exported):
         other.doStep(0.0, 0.1)
         return bool(calls)
 
+    def ends_when_asked():
+        from fmpy.fmi3 import fmi3IntermediateUpdateCallback
+
+        def ask(environment, time, set_requested, get_allowed, finished, can_return, wanted, end):
+            wanted[0], end[0] = True, time
+
+        callback = fmi3IntermediateUpdateCallback(ask)
+        other = new(intermediateUpdate=callback, earlyReturnAllowed=True)
+        return other.doStep(0.0, 0.1)[2]
+
     def returns_early():
         other = new(earlyReturnAllowed=True)
         return other.doStep(0.0, 1.5)[2]  # the ball strikes before
@@ -158,7 +168,7 @@ def asked3(exported):
         "maxOutputDerivativeOrder": order_of_outputs(lambda order: fmu.getOutputDerivatives([Y], [order])),
         "providesIntermediateUpdate": updates(),
         "mightReturnEarlyFromDoStep": returns_early(),
-        "canReturnEarlyAfterIntermediateUpdate": None,  # a host may ask, the slave need not
+        "canReturnEarlyAfterIntermediateUpdate": ends_when_asked(),
         "hasEventMode": works(lambda: new(eventModeUsed=True)),
         "providesEvaluateDiscreteStates": evaluates(),
         "providesDirectionalDerivatives": works(fmu.getDirectionalDerivative, [Y], [PUSH], [1.0]),
@@ -179,8 +189,8 @@ def test_flags_are_true_to_behaviour(fake_fmu, tmp_path, version, asked):
 
 
 @pytest.mark.parametrize(("version", "asked"), [("2.0", asked2), ("3.0", asked3)])
-def test_no_derivatives_with_respect_to_a_motion(tmp_path, version, asked):
-    """The flags say no where one input has none."""
+def test_derivatives_with_respect_to_a_motion(tmp_path, version, asked):
+    """The flags say yes, and there are some: zero, since the next step meets the motion."""
     model = Model(
         name="driven",
         bodies=[PointMass2D(name="cart", mass=1.0)],

@@ -310,7 +310,10 @@ def test_derivatives(host):
          "fmi3GetDirectionalDerivative: FmuValueError: a seed of 2 numbers was given for 1 inputs"),
         (lambda f, vr: f.getAdjointDerivative([vr["ball.y"]], [vr["push"]], [1.0, 2.0], 1),
          "fmi3GetAdjointDerivative: FmuValueError: a seed of 2 numbers and room for 1 sensitivities"),
-        (lambda f, vr: f.getOutputDerivatives([vr["ball.y"]], [1]), "fmi3GetOutputDerivatives: UnavailableError: no"),
+        (lambda f, vr: f.getOutputDerivatives([vr["ball.ay"]], [1]),
+         "fmi3GetOutputDerivatives: UnavailableError: the time derivatives of ball.ay are not known exactly"),
+        (lambda f, vr: f.getOutputDerivatives([vr["ball.y"]], [2]),
+         "fmi3GetOutputDerivatives: FmuValueError: a derivative of order 2 of 'ball.y' was asked"),
     ],
 )  # fmt: skip
 def test_errors_are_statuses_with_one_line_in_the_log_and_the_instance_lives_on(host, messages, call, message):
@@ -323,6 +326,13 @@ def test_errors_are_statuses_with_one_line_in_the_log_and_the_instance_lives_on(
     assert messages.errors[0].startswith(message)
     assert host.read(fmu) == before
     fmu.doStep(0.0, 0.125)
+
+
+def test_output_derivatives(host):
+    fmu = host.started(stop=2.0)
+    fmu.doStep(0.0, 0.25)
+    v, a = fmu.getFloat64([host.vr["ball.vy"], host.vr["ball.ay"]])
+    assert list(fmu.getOutputDerivatives([host.vr["ball.y"], host.vr["ball.vy"]], [1, 1])) == [v, a]
 
 
 def test_a_step_while_an_event_is_due_is_refused(host, messages):

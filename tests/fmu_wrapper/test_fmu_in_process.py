@@ -266,7 +266,12 @@ def test_all_kinds_of_values(make_host, fake_fmu):
          "fmi2SetRealInputDerivatives: FmuValueError: a derivative of order 3 of input 'push' was given: orders"),
         (lambda f, vr: f.setRealInputDerivatives([vr["push"]], [1], [math.inf]),
          "fmi2SetRealInputDerivatives: FmuValueError: a derivative of input 'push' is inf: a finite number is needed"),
-        (lambda f, vr: f.getRealOutputDerivatives([vr["ball.y"]], [1]), "fmi2GetRealOutputDerivatives: Unavailable"),
+        (lambda f, vr: f.getRealOutputDerivatives([vr["ball.ay"]], [1]),
+         "fmi2GetRealOutputDerivatives: UnavailableError: the time derivatives of ball.ay are not known exactly"),
+        (lambda f, vr: f.getRealOutputDerivatives([vr["ball.y"]], [2]),
+         "fmi2GetRealOutputDerivatives: FmuValueError: a derivative of order 2 of 'ball.y' was asked"),
+        (lambda f, vr: f.getRealOutputDerivatives([vr["push"]], [1]),
+         "fmi2GetRealOutputDerivatives: FmuValueError: 'push' is of role input"),
         (lambda f, vr: f.cancelStep(), "fmi2CancelStep: UnavailableError: steps never run in the background"),
     ],
 )  # fmt: skip
@@ -290,6 +295,14 @@ def test_directional_derivatives(host):
     assert fmu.getDirectionalDerivative(outputs, [host.vr["push"]], [3.0]) == pytest.approx([1.5, 0.0, 1.5], rel=1e-14)
     assert fmu.getDirectionalDerivative(outputs, [], []) == [0.0] * 3
     assert host.read(fmu) == before
+
+
+def test_output_derivatives(host):
+    fmu = host.started()
+    fmu.doStep(0.0, 0.25)
+    v, a = fmu.getReal([host.vr["ball.vy"], host.vr["ball.ay"]])
+    found = fmu.getRealOutputDerivatives([host.vr["ball.y"], host.vr["ball.vy"]], [1, 1])
+    assert list(found) == [v, a]
 
 
 def test_a_failed_step(make_host, fake_fmu, messages):

@@ -24,6 +24,7 @@ from tlismni.core.elements import (
 )
 from tlismni.core.model.channels import Input, Parameter
 from tlismni.core.model.markers import Marker2D
+from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
 from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.dependencies import Dependencies
@@ -93,7 +94,17 @@ def feel(slave, name, amount):
     return {key for key in before if abs(before[key] - after[key]) > 1e-6 * (1.0 + abs(before[key]))}
 
 
+def half():
+    """A wall that moves by inputs, and an anvil with a marker on it that it strikes."""
+    model = load("split_wall", law="hertz").model
+    output = MarkerOutput2D(name="far", marker=Marker2D(body="anvil", point=(-0.1, 0.0)))
+    push = AppliedForce2D(name="wind", marker=Marker2D(body="anvil"), force_x=InputSignal(channel="wind"))
+    inputs = (*model.inputs, Input(name="wind", unit="N"))
+    return model.model_copy(update={"outputs": (output,), "forces": (*model.forces, push), "inputs": inputs})
+
+
 CASES = {
+    "half": (half(), 0.02),
     "ball": (ball_model(), 0.7),
     "impact law": (three_masses(NewtonImpact(restitution=0.5)), 0.5),
     "force law": (three_masses(Hertz(stiffness=1e4)), 0.5),
@@ -126,6 +137,23 @@ def test_dependencies_are_those_of_the_slave(name):
         assert felt[channel] <= outputs, channel
         if channel not in slave.drivers:
             assert any(name.endswith(("ay", "ax", "acceleration")) for name in felt[channel])
+
+
+def test_motions_are_felt_at_the_start_only():
+    slave = Slave(half())
+    known = Dependencies(slave.model, slave.variables)
+
+    def of(name):
+        output = slave.variables.by_name[name]
+        return [{v.name for v in f(output)} - {"stiffness", "restitution"} for f in (known.of_output, known.at_start)]
+
+    motion = {"hammer_x", "hammer_vx"}
+    assert of("blow.gap") == of("anvil.x") == [set(), motion | (of("anvil.x")[1] - motion)]
+    assert of("anvil.ax") == of("far.ax") == [{"wind"}, of("anvil.ax")[1]] and motion | {"wind"} <= of("far.ax")[1]
+    slave.enter_initialization()
+    before = slave["blow.gap"]
+    slave.set_by_name({"hammer_x": 0.02})
+    assert slave["blow.gap"] == pytest.approx(before + 0.01, abs=1e-15)
 
 
 def test_dependencies_tell_laws_and_springs_apart():
