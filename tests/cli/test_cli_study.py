@@ -154,6 +154,9 @@ def test_coupling_as_table_json_and_figure(tlismni: Command, tmp_path: Path, mon
     monkeypatch.setattr(coupling, "CONTROLLED", (NEWTON,))
     monkeypatch.setattr(coupling, "QUICK_STEPS", (1e-3, 5e-4))
     monkeypatch.setattr(coupling, "SHORTEST", 4e-3)
+    monkeypatch.setattr(coupling, "FEWEST", 30)
+    study = coupling.coupling_study(quick=True)
+    monkeypatch.setattr(coupling, "coupling_study", lambda **arguments: study)
     done = tlismni("study", "coupling", "--quick", "--json", "--plot", tmp_path / "c.png")
     assert done.code == 0
     jacobi, newton = ([r for r in done.json["rows"] if r["contender"] == c.label] for c in (JACOBI, NEWTON))
