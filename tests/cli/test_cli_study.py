@@ -151,10 +151,13 @@ def test_coupling_as_table_json_and_figure(tlismni: Command, tmp_path: Path, mon
     from tlismni.validation.study.coupling_problems import JACOBI, NEWTON
 
     monkeypatch.setattr(coupling, "CONTENDERS", (JACOBI, NEWTON))
-    monkeypatch.setattr(coupling, "CONTROLLED", (NEWTON,))
+    monkeypatch.setattr(coupling, "CONTROLLED", ((NEWTON, "iteration"),))
     monkeypatch.setattr(coupling, "QUICK_STEPS", (1e-3, 5e-4))
     monkeypatch.setattr(coupling, "SHORTEST", 4e-3)
     monkeypatch.setattr(coupling, "FEWEST", 30)
+    monkeypatch.setattr(coupling, "LONG_END", 0.04)
+    monkeypatch.setattr(coupling, "LONG_STEPS", (2e-3,))
+    monkeypatch.setattr(coupling, "TOLERANCES", (1.0, 1e-1))
     study = coupling.coupling_study(quick=True)
     monkeypatch.setattr(coupling, "coupling_study", lambda **arguments: study)
     done = tlismni("study", "coupling", "--quick", "--json", "--plot", tmp_path / "c.png")
