@@ -14,15 +14,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from .bundle import package_archive
 from .dependencies import Dependencies
 from .description_parts import About
 from .documentation import documentation
 from .drawing import draw, to_png, to_svg
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
-from .libpython import library_record, python_record, shared_library
+from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
+from .python_library import library_record, shared_library
 from .settings import Settings
 from .slave import Slave
 from .terminals import terminals_and_icons
@@ -42,12 +44,14 @@ def export_fmu(
     *,
     t_end: float | None = None,
     communication_step: float | None = None,
+    bundle: bool = False,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
 
-    The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it; that Python must
-    be on the machine where the FMU runs. The same source and settings give the same file on one machine.
+    The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it, or that of another one
+    on the machine where it runs (docs/fmu.md); with `bundle`, with what it carries along. The same source and settings
+    give the same file on one machine.
 
     Parameters
     ----------
@@ -57,6 +61,7 @@ def export_fmu(
     t_end : stop time of the default experiment, s.
     communication_step : preferred communication step, s; without it a round number of a hundredth to a
         thousandth of `t_end`.
+    bundle : carry the package along; the machine needs only the third-party packages then.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -94,6 +99,7 @@ def export_fmu(
         "solver": solver_data,
         "variables": slave.variables.to_data(),
     }
+    archive, digest = package_archive() if bundle else (None, None)
     files = {
         "modelDescription.xml": description(
             slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables)
@@ -102,15 +108,16 @@ def export_fmu(
         **_pictures(slave, fmi_version),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": _json(settings),
-        f"resources/{PYTHON_FILE}": _json(python_record()),
+        f"resources/{PYTHON_FILE}": _json(python_record(digest)),
         "resources/libpython.txt": library_record().encode(),
-        "resources/boot.py": (HERE / "boot.py").read_bytes(),
+        **{f"resources/{name}": (HERE / name).read_bytes() for name in ("boot.py", "python_library.py")},
+        **({} if archive is None else {"resources/tlismni.zip": archive}),
         f"binaries/{platforms()}/{identifier}{shim.suffix}": shim.read_bytes(),
     }
     if shared_library() is None:
         logging.getLogger(__name__).warning(
             "this Python (%s) has no shared library: the FMU will load in Python hosts such as fmpy only; "
-            "set TLISMNI_LIBPYTHON in the host's environment, or export with a Python that has libpython",
+            "set TLISMNI_PYTHON in the host's environment to one that has, or export with a Python that has libpython",
             sys.prefix,
         )
     return _write(path, files)

@@ -158,9 +158,9 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
     } else {
         PyObject *capsule = py.PyCapsule_New(self, CAPSULE, NULL);
         PyObject *log = capsule ? py.PyCFunction_NewEx(&log_method, capsule, NULL) : NULL;
-        PyObject *arguments = log ? py.Py_BuildValue("(isssiNii)", asked->interface, self->name, token, resources,
+        PyObject *arguments = log ? py.Py_BuildValue("(isssiNiii)", asked->interface, self->name, token, resources,
                                                      (int)asked->logging_on, log, (int)asked->event_mode,
-                                                     (int)asked->early_return) : NULL;
+                                                     (int)asked->early_return, (int)python_is_own()) : NULL;
         self->calls = boot(self, function, source, path, arguments);
         py.Py_DecRef(arguments);
         py.Py_DecRef(capsule);
