@@ -71,10 +71,16 @@ class Model(Record):
             for name, coordinate in element.moved_coordinates():
                 self._check_coordinate(element, self._find(element, name, bodies), coordinate)
             for signal in element.signals():
-                if isinstance(signal, InputSignal) and signal.channel not in inputs:
+                for channel in signal.channels():
+                    if channel not in inputs:
+                        raise ValueError(
+                            f"'{element.name}' uses input channel '{channel}', which is not declared in inputs; "
+                            f"declared are {sorted(inputs)}"
+                        )
+                if isinstance(signal, InputSignal) and signal.rate is not None and not element.motions():
                     raise ValueError(
-                        f"'{element.name}' uses input channel '{signal.channel}', which is not declared in inputs; "
-                        f"declared are {sorted(inputs)}"
+                        f"'{element.name}' names a rate channel '{signal.rate}' for its input '{signal.channel}', but "
+                        "only motions have a velocity: leave `rate` out"
                     )
         for parameter in self.parameters:
             parameter.refuse_outside(self._number_at(parameter, parameter.targets[0]))

@@ -38,5 +38,8 @@ SETTABLE = {
 RUNNING = tuple(phase for phase in Phase if phase != Phase.INSTANTIATED)
 """Phases in which values can be read."""
 
+SOUND = tuple(phase for phase in RUNNING if phase != Phase.FAILED)
+"""Phases in which outputs can be computed."""
+
 EVENT_PHASES = (Phase.EVENT, Phase.EVENT_DUE)
 """Phases that only a slave with event mode can be in."""

@@ -11,7 +11,7 @@ from ..core.description import Model
 from .derivatives import along, check_finite
 from .errors import FmuError
 from .settings import Settings
-from .values import MOST_DERIVATIVES, Values
+from .values import Values
 from .variables import EVENTS, Variable, VariableTable
 
 SimulationFactory = Callable[..., Any]
@@ -79,8 +79,7 @@ class Run:
         self.key = self.key_of(values, t0)
         inputs = values.table.block("input")
         self._input_names = [v.name for v in inputs]
-        self._applied = np.zeros((len(inputs), 1 + MOST_DERIVATIVES))
-        self._applied[:, 0] = [v.start for v in inputs]
+        self._applied: list[list[float]] = [[float(v.start or 0.0) for v in inputs]]
         self._events = values.table.by_name[EVENTS]
         changed_model, changed_settings = effective(model, settings, values)
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
@@ -112,8 +111,8 @@ class Run:
 
     @property
     def applied(self) -> list[list[float]]:
-        """Value and derivatives of each input, as the simulation has been told."""
-        return self._applied.tolist()
+        """The courses of the inputs, as the simulation has been told."""
+        return self._applied
 
     @property
     def events(self) -> Sequence[Any]:
@@ -122,7 +121,7 @@ class Run:
 
     def inputs(self) -> dict[str, float]:
         """The input values that the simulation has been told, by name."""
-        return dict(zip(self._input_names, self._applied[:, 0].tolist(), strict=True))
+        return dict(zip(self._input_names, self._applied[0], strict=True))
 
     def derivatives(self, outputs: Sequence[Variable], direction: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """Derivatives of real outputs along `direction`, by input name, at the present time."""
@@ -134,13 +133,11 @@ class Run:
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""
         wanted = values.courses
-        changed = np.flatnonzero((wanted != self._applied).any(axis=1))
-        if not changed.size:
+        if wanted == self._applied:
             return
-        told = {self._input_names[i]: wanted[i, 0].item() for i in changed}
-        sloped = {self._input_names[i]: wanted[i, 1:].tolist() for i in changed if wanted[i, 1:].any()}
-        if sloped:
-            self._simulation.set_inputs(told, sloped)
+        told = dict(zip(self._input_names, wanted[0], strict=True))
+        if len(wanted) > 1:
+            self._simulation.set_inputs(told, dict(zip(self._input_names, zip(*wanted[1:], strict=True), strict=True)))
         else:
             self._simulation.set_inputs(told)
         self._applied = wanted
@@ -200,4 +197,4 @@ class Run:
         if isinstance(state, bytes):
             state = type(self._simulation.state()).from_bytes(state)
         self._simulation.restore(state)
-        self._applied = np.array(applied, dtype=np.float64).reshape(-1, 1 + MOST_DERIVATIVES)
+        self._applied = applied

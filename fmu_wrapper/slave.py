@@ -17,7 +17,7 @@ from . import log as logs
 from .derivatives import check_knowns, check_unknowns
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
-from .phases import EVENT_PHASES, RUNNING, SETTABLE, Phase
+from .phases import EVENT_PHASES, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
 from .slave_state import SlaveState
 from .values import MOST_DERIVATIVES, check_values, item_value
@@ -174,9 +174,9 @@ class Slave(SlaveState):
         self._need("get values", *RUNNING)
         plan = self.variables.plan(kind, references)
         if self._stale and "output" in plan.roles:
-            self._need("get outputs that were not asked for before", *(p for p in RUNNING if p != Phase.FAILED))
+            self._need("get outputs that were not asked for before", *SOUND)
             self._refresh()
-        return self._values.vectors[kind][plan.positions]
+        return self._values.vectors[kind].take(plan.positions)
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.
@@ -191,7 +191,7 @@ class Slave(SlaveState):
         self._need("set values", *SETTABLE)
         if not plan.roles <= SETTABLE[self._phase]:
             self._refuse(plan.variables)
-        self._values.vectors[kind][plan.positions] = check_values(plan.variables, values)
+        self._values.vectors[kind][plan.positions] = check_values(plan, values)
         self._stale = self._untold = True
         if kind == "real" and "input" in plan.roles:
             self._values.end_slopes(plan.positions, self._time)
@@ -213,9 +213,9 @@ class Slave(SlaveState):
         """
         plan = self.variables.plan("real", references)
         self._need("set input derivatives", *SETTABLE)
-        given = np.asarray(values, dtype=np.float64)
+        given = [float(value) for value in values]
         rows = []
-        for variable, order, value in zip(plan.variables, orders, given.tolist(), strict=True):
+        for variable, order, value in zip(plan.variables, orders, given, strict=True):
             if variable.role != "input":
                 raise FmuValueError(f"'{variable.name}' is of role {variable.role}: only inputs take derivatives")
             if not 1 <= order <= MOST_DERIVATIVES:
@@ -226,8 +226,7 @@ class Slave(SlaveState):
             if not math.isfinite(value):
                 raise FmuValueError(f"a derivative of input '{variable.name}' is {value!r}: a finite number is needed")
             rows.append(self._input_rows[variable.reference])
-        self._values.slopes[rows, np.asarray(orders, dtype=np.intp) - 1] = given
-        self._values.slope_times[rows] = self._time
+        self._values.set_slopes(rows, orders, given, self._time)
         self._stale = self._untold = True
 
     def _refuse(self, variables: Sequence[Variable]) -> None:

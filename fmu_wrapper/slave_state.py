@@ -120,7 +120,7 @@ class SlaveState:
         self._phase, self._rtol_given = snapshot.phase, snapshot.rtol_given
         self._start_time, self._stop_time, self._time = snapshot.start_time, snapshot.stop_time, snapshot.time
         self._stale = True
-        self._untold = run is None or snapshot.applied != values.courses.tolist()
+        self._untold = run is None or snapshot.applied != values.courses
 
     def snapshot_from_bytes(self, data: bytes) -> Snapshot:
         """The snapshot whose `.data` is `data`. Raises SnapshotError if it is none, or not of this slave's kind."""

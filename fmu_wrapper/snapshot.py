@@ -32,7 +32,7 @@ class Snapshot:
     time : the slave's own time, s.
     rtol_given : whether `solver.rtol` was set, so that the experiment's tolerance does not replace it.
     values : values of all variables.
-    applied : value and derivatives of each input that the simulation has been told.
+    applied : courses of the inputs that the simulation has been told.
     simulation : the solver's state (its bytes if the snapshot came from bytes), or None before it exists.
     identity : hash of model, settings and variables; a snapshot fits only a slave with the same.
     """

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .errors import FmuValueError
 from .settings import check_solver_value
-from .variables import KINDS, Kind, Variable, VariableTable
+from .variables import KINDS, Kind, Plan, Variable, VariableTable
 
 DTYPES: dict[Kind, str] = {"real": "<f8", "integer": "<i4", "boolean": "|b1", "string": "object"}
 NUMERIC: tuple[Kind, ...] = ("real", "integer", "boolean")
@@ -27,6 +27,7 @@ class Values:
     vectors : values by kind; `inputs` are the positions of the inputs among the reals.
     slopes : (inputs, MOST_DERIVATIVES) time derivatives with which the inputs go on.
     slope_times : (inputs,) when these were set, s.
+    sloped : whether any input has derivatives.
     """
 
     def __init__(self, table: VariableTable) -> None:
@@ -42,6 +43,7 @@ class Values:
         self.inputs = np.array([table.position[v.reference] for v in inputs], dtype=np.intp)
         self.slopes = np.zeros((len(inputs), MOST_DERIVATIVES))
         self.slope_times = np.full(len(inputs), -np.inf)
+        self.sloped = False
 
     def __getitem__(self, variable: Variable) -> Any:
         value = self.vectors[variable.kind][self.table.position[variable.reference]]
@@ -56,6 +58,7 @@ class Values:
         twin.table = self.table
         twin.vectors = {kind: vector.copy() for kind, vector in self.vectors.items()}
         twin.inputs, twin.slopes, twin.slope_times = self.inputs, self.slopes.copy(), self.slope_times.copy()
+        twin.sloped = self.sloped
         return twin
 
     def forget_outputs(self) -> None:
@@ -64,13 +67,20 @@ class Values:
             self.vectors[kind][self.table.outputs[kind]] = 0
 
     @property
-    def courses(self) -> npt.NDArray[np.float64]:
-        """Value and derivatives of each input (inputs, 1 + MOST_DERIVATIVES)."""
-        return np.column_stack((self.vectors["real"][self.inputs], self.slopes))
+    def courses(self) -> list[list[float]]:
+        """The values of the inputs, and their first and second derivatives if any input has derivatives."""
+        levels: list[list[float]] = [self.vectors["real"].take(self.inputs).tolist()]
+        return levels + self.slopes.T.tolist() if self.sloped else levels
+
+    def set_slopes(self, rows: Sequence[int], orders: Sequence[int], slopes: Sequence[float], now: float) -> None:
+        """Give the inputs with these numbers derivatives of these orders at time `now`, s."""
+        self.slopes[rows, np.asarray(orders, dtype=np.intp) - 1] = slopes
+        self.slope_times[rows] = now
+        self.sloped = bool(self.slopes.any())
 
     def go_on(self, duration: float) -> bool:
         """Let the inputs follow their derivatives for `duration`, s. False if there is none with derivatives."""
-        if not self.slopes.any():
+        if not self.sloped:
             return False
         first, second = self.slopes.T
         self.vectors["real"][self.inputs] += duration * (first + 0.5 * duration * second)
@@ -79,8 +89,9 @@ class Values:
 
     def end_slopes(self, positions: npt.NDArray[np.intp], now: float) -> None:
         """Forget the derivatives of the inputs among the reals at `positions`, unless they were set at this time."""
-        ended = np.isin(self.inputs, positions) & (self.slope_times != now)
-        self.slopes[ended] = 0.0
+        if self.sloped:
+            self.slopes[np.isin(self.inputs, positions) & (self.slope_times != now)] = 0.0
+            self.sloped = bool(self.slopes.any())
 
     def to_bytes(self) -> bytes:
         """The values bit for bit: reals, integers, booleans, then the strings as JSON."""
@@ -100,6 +111,7 @@ class Values:
         for part in (values.slopes, values.slope_times):
             part[...] = np.frombuffer(data, "<f8", part.size, offset).reshape(part.shape)
             offset += part.nbytes
+        values.sloped = bool(values.slopes.any())
         values.vectors["string"][:] = json.loads(data[offset:])
         return values
 
@@ -155,8 +167,13 @@ def item_value(variable: Variable, name: str) -> int:
     return variable.items.index(name)
 
 
-def check_values(variables: Sequence[Variable], values: Iterable[Any]) -> list[Any]:
+def check_values(plan: Plan, values: Iterable[Any]) -> Any:
     """All values checked by `check_value`. Raises FmuValueError if the lengths differ."""
+    variables = plan.variables
+    if plan.unbounded and isinstance(values, np.ndarray) and values.dtype == np.float64:
+        # what comes from C at every step
+        if len(values) == len(variables) and np.isfinite(values).all():
+            return values
     given = values.tolist() if isinstance(values, np.ndarray) else list(values)
     if len(given) != len(variables):
         raise FmuValueError(f"{len(given)} values were given for {len(variables)} value references")

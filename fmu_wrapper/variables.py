@@ -69,6 +69,8 @@ class Plan:
     positions: npt.NDArray[np.intp]
     roles: frozenset[Role]
     enumerations: frozenset[bool]
+    unbounded: bool
+    """Whether all are reals that may take any finite value."""
 
 
 class VariableTable:
@@ -122,7 +124,10 @@ class VariableTable:
             variables = tuple(self._find(kind, int(r)) for r in references)
             positions = np.array([self.position[v.reference] for v in variables], dtype=np.intp)
             enumerations = frozenset(v.enumeration is not None for v in variables)
-            plan = Plan(variables, positions, frozenset(v.role for v in variables), enumerations)
+            unbounded = kind == "real" and all(
+                v.minimum is None and v.maximum is None and v.block != "solver" for v in variables
+            )
+            plan = Plan(variables, positions, frozenset(v.role for v in variables), enumerations, unbounded)
             if len(self._plans) >= PLANS_KEPT:
                 self._plans.clear()
             self._plans[key] = plan

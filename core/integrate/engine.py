@@ -146,6 +146,11 @@ class Engine(ContactSide):
         arrays["q"][: a.n] = a.q0
         arrays["v"][: a.n] = a.v0
         arrays["t"][0] = self.settings.t0
+        if a.placed:
+            evaluate_residuals(self.workspace.record)
+            coordinates, rows = (list(x) for x in zip(*a.placed, strict=True))
+            arrays["q"][coordinates] -= arrays["phi"][rows]
+            arrays["v"][coordinates] -= arrays["phid"][rows]
         refuse = self.settings.redundant == "refuse"
         self.redundant = make_consistent(self.workspace, self.settings.start_tolerance, refuse)
         gap_tolerance = 1e-9 * float(np.max(a.coordinate_scale, initial=1.0))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError
 from ..model.signals import INPUT_SIZE
+from . import motions
 from .restore import restart_here
 
 if TYPE_CHECKING:
@@ -31,13 +32,20 @@ def set_inputs(sim: "Simulation", values: Mapping[str, float], derivatives: Mapp
     changed = {k: new for k, new in wanted.items() if not _goes_on(rows[k].tolist(), new, t)}
     if not changed:
         return
-    before, pending = rows.copy(), sim.pending
+    before, pending, moved = rows.copy(), sim.pending, motions.led_by(sim, changed)
+    start = bool(moved) and motions.at_start(sim)
     for k, new in changed.items():
         rows[k] = (*new, t)
+    motions.lead(sim, moved)
     try:
-        restart_here(sim)
+        if start:
+            motions.start_again(sim)
+        else:
+            restart_here(sim)
     except BaseException:
         rows[:], sim.pending = before, pending
+        if start:
+            motions.start_again(sim)
         raise
     last, _ = sim.input_times
     if t > last:

@@ -14,7 +14,7 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, inputs, restore
+from . import advance, inputs, motions, restore
 from .engine import Engine, user_errors
 
 _COUNTER_NAMES = (
@@ -72,6 +72,9 @@ class Simulation(Engine):
         SimulationError : if the run fails; what was reached stays.
         """
         goal = self._goal(t)
+        if self.assembly.motions:
+            with self._failures():
+                motions.close_jumps(self, goal[0])
         newest = self.t_internal
         # most points of a fine grid lie within the newest step: there is nothing to do but to ask
         if newest < goal[0] or (newest == goal[0] and self.pending):
@@ -97,6 +100,7 @@ class Simulation(Engine):
         """
         start, (target, stop) = self.t, self._goal(t)
         with self._failures():
+            motions.close_jumps(self, target)
             while True:
                 while self.event_due:
                     self._handle_pending()

@@ -26,6 +26,10 @@ class TimeFunction(Record):
         """Step beyond which error control could miss what the function does, s."""
         return math.inf
 
+    def channels(self) -> tuple[str, ...]:
+        """The input channels that it needs."""
+        return ()
+
 
 class Constant(TimeFunction):
     """f(t) = value."""
@@ -139,10 +143,16 @@ class Table(TimeFunction):
 
 class InputSignal(TimeFunction):
     """The model's input channel `channel`: the value that was set last, going on with the derivatives that it was given
-    (none unless set)."""
+    (none unless set). As a motion it may have its velocity in another channel, `rate`, see `motion.py`; forces have no
+    use for that."""
 
     type: Literal["Input"] = "Input"
     channel: Name
+    rate: Name | None = None
+    """Input channel with the velocity of a motion, in the position's unit per s."""
+
+    def channels(self) -> tuple[str, ...]:
+        return (self.channel,) if self.rate is None else (self.channel, self.rate)
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
         return [INPUT, inputs[self.channel]]

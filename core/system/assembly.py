@@ -15,6 +15,7 @@ from ..elements.base import Coordinate, Element, Form, Row
 from ..elements.internal import internal_coordinates_kernel
 from ..errors import ModelError
 from ..model.channels import Channel
+from ..model.motion import InputMotion, input_rows
 from .numbering import GROUND_SLOTS, ModelNumbering
 
 
@@ -86,6 +87,10 @@ class Assembly:
     """Step beyond which error control could miss what a time function does, s."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
     """Rows of massless ends, each with the contacts that take its place when they close."""
+    motions: tuple[InputMotion, ...] = ()
+    """Motions that are inputs."""
+    placed: tuple[tuple[int, int], ...] = ()
+    """(coordinate, row of Phi) pairs of coordinates that start where that row says, Phi_row = q - f(t)."""
     linear: bool = False
     """All elements are linear with constant coefficients."""
     n_internal: int = 0
@@ -111,6 +116,11 @@ class Assembly:
         leap = np.ascontiguousarray(0.5 * np.minimum(self.coordinate_scale, smallest))
         leap[self.n - self.n_internal :] = np.inf
         return leap
+
+    @property
+    def input_rows(self) -> int:
+        """Rows of the array of inputs: one a channel, and what the motions among them need."""
+        return input_rows(len(self.input_names), len(self.motions))
 
     @property
     def is_internal(self) -> NDArray[np.bool_]:
@@ -159,6 +169,7 @@ def assemble(model: Model) -> Assembly:
     multipliers: list[Channel] = []
     contact_rows: dict[str, tuple[int, ...]] = {}
     massless: dict[int, int] = {}
+    placed: list[tuple[int, int]] = []
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
         for part in element.parts(numbering):
@@ -169,6 +180,7 @@ def assemble(model: Model) -> Assembly:
                 contact_rows[element.name] = rows
             if part.massless >= 0:
                 massless[rows[0]] = part.massless
+            placed += zip(element.placed(numbering), rows, strict=False)
             address = kernel_address(form.kernel)
             for row in part.rows:
                 key = (address, len(row.coordinates))
@@ -194,7 +206,7 @@ def assemble(model: Model) -> Assembly:
         batches.append(_internal_batch(internal))
     rest = ((0.0,) * len(internal),) * 2
     states: list[tuple[Sequence[float], Sequence[float]]] = [
-        *(body.start_in(numbering.bodies) for body in model.bodies),
+        *(body.start_in(numbering.bodies, numbering.input_start) for body in model.bodies),
         rest,
     ]
     columns, names = [], []
@@ -236,6 +248,8 @@ def assemble(model: Model) -> Assembly:
         body_columns=columns,
         coordinate_scale=_coordinate_scale(model, columns, len(internal)),
         replaced_rows=_replaced_rows(model, massless, batches),
+        motions=tuple(numbering.motions),
+        placed=tuple(placed),
         linear=all(element.linear for element in model.elements()),
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),

@@ -6,7 +6,8 @@ from ..description import Model
 from ..elements.base import BodyElement
 from ..elements.planar_body import PlanarFrame
 from ..model.markers import GROUND
-from ..model.signals import Signal
+from ..model.motion import InputMotion
+from ..model.signals import InputSignal, Signal
 
 GROUND_SLOTS = 3
 """Extended vectors end in the ground's (x, y, angle), which stay zero, and the work accounts."""
@@ -21,6 +22,8 @@ class ModelNumbering:
         self.index: dict[str, tuple[int, ...]] = {}
         self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
         self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
+        self.input_start = {record.name: record.start for record in model.inputs}
+        self.motions: list[InputMotion] = []
         self.pool: list[float] = []
         self.work_names: list[str] = []
         self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
@@ -42,7 +45,7 @@ class ModelNumbering:
             own = tuple(range(start, start + count))
             if isinstance(body, PlanarFrame):
                 own += tuple(range(n + count, n + GROUND_SLOTS))
-                q0 = body.start_in(self.bodies)[0]
+                q0 = body.start_in(self.bodies, self.input_start)[0]
                 self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
             self.index[body.name] = own
             start += count
@@ -62,6 +65,15 @@ class ModelNumbering:
     def signal(self, signal: Signal) -> int:
         offset = len(self.pool)
         self.pool.extend(float(x) for x in signal.pool(self.inputs))
+        return offset
+
+    def motion(self, signal: Signal) -> int:
+        if not isinstance(signal, InputSignal):
+            return self.signal(signal)
+        offset = len(self.pool)
+        found = InputMotion.of(signal, self.inputs, len(self.motions))
+        self.motions.append(found)
+        self.pool.extend(found.pool())
         return offset
 
     def internal(self, name: str) -> tuple[int, ...]:

@@ -65,7 +65,7 @@ class Workspace:
             "energy": np.zeros(3),
             "monitor": np.zeros(2 * max(contacts, 1)),
             "memory": np.zeros((max(contacts, 1), MEMORY_SIZE)),
-            "inputs": np.zeros((max(len(a.input_names), 1), INPUT_SIZE)),
+            "inputs": np.zeros((a.input_rows, INPUT_SIZE)),
             "signals": a.signals.copy(),
             "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
             "batches": np.zeros(len(a.batches), dtype=np.int64),
