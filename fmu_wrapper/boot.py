@@ -161,7 +161,7 @@ def _unpack(archive, digest):  # type: ignore[no-untyped-def]
         raise ImportError(f"'{archive}' is damaged: its content is not what the export wrote; unzip the FMU anew")
     with zipfile.ZipFile(archive) as content:
         problems = []
-        for parent in (os.path.join(_user_cache(), "tlismni", "packages"), os.path.dirname(archive)):
+        for parent in (os.path.join(user_cache(), "tlismni", "packages"), os.path.dirname(archive)):
             folder = os.path.join(parent, f"tlismni_{digest}")
             try:
                 if not _complete(folder, content):
@@ -202,7 +202,7 @@ def _complete(folder, content):  # type: ignore[no-untyped-def]
         return False
 
 
-def _user_cache():  # type: ignore[no-untyped-def]
+def user_cache():  # type: ignore[no-untyped-def]
     """The user's cache folder by the custom of the platform."""
     if sys.platform == "win32":
         return os.environ.get("LOCALAPPDATA") or os.path.expanduser("~\\AppData\\Local")
