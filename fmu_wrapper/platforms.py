@@ -23,13 +23,16 @@ class Platform:
         return self.fmi2 if fmi_version.startswith("2") else self.fmi3
 
 
+# its own name in the binary would else be that of the folder where it was made
+_DARWIN = ("-fPIC", "-Wl,-install_name,@rpath/tlismni_shim.dylib")
+
 PLATFORMS = {
     found.fmi3: found
     for found in (
         Platform("linux64", "x86_64-linux", ".so", "x86_64-linux-gnu.2.17", ("-fPIC", "-ldl", "-lpthread")),
         Platform("aarch64-linux", "aarch64-linux", ".so", "aarch64-linux-gnu.2.17", ("-fPIC", "-ldl", "-lpthread")),
-        Platform("darwin64", "x86_64-darwin", ".dylib", "x86_64-macos.11.0", ("-fPIC",)),
-        Platform("aarch64-darwin", "aarch64-darwin", ".dylib", "aarch64-macos.11.0", ("-fPIC",)),
+        Platform("darwin64", "x86_64-darwin", ".dylib", "x86_64-macos.11.0", _DARWIN),
+        Platform("aarch64-darwin", "aarch64-darwin", ".dylib", "aarch64-macos.11.0", _DARWIN),
         Platform("win64", "x86_64-windows", ".dll", "x86_64-windows-gnu"),
     )
 }
