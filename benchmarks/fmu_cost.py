@@ -4,7 +4,7 @@ against slaves of pythonfmu and pythonfmu3 that wrap the same solver; through fm
 Run: python benchmarks/fmu_cost.py [--json out.json] [--steps 4000] (pip install pythonfmu pythonfmu3, and a C compiler)
 
 Contenders take turns in batches, each with its own run of the same motion, so that what else the machine does hits all
-alike; a step costs the CPU time of the faster half of its batches. Once with an input that changes at every step (the run
+Run: python benchmarks/fmu_cost.py [--json out.json] [--steps 4000] (wants pythonfmu, pythonfmu3 and a C compiler)
 starts anew there), once with one that holds (most steps lie within the solver's newest one). All must end at equal
 angles.
 """
