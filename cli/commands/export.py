@@ -58,7 +58,7 @@ def export(
     """Export a scenario or a model file as a co-simulation FMU, or a system file (.toml) as an SSP archive (.ssp)."""
     if is_system_file(source):
         others = (sets, t_end, communication_step, method, rtol, atol, step, option)
-        _system(source, output, json, any(value is not None for value in others))
+        _system(source, output, json, any(value is not None for value in others), bundle, platform)
         return
     check_suffix(output, (".fmu",), "--output")
     check_file(output)
@@ -98,7 +98,7 @@ def export(
         say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB, for {', '.join(held)}{carried})")
 
 
-def _system(source: str, output: Path, json: bool, more: bool) -> None:
+def _system(source: str, output: Path, json: bool, more: bool, bundle: bool, platform: list[str] | None) -> None:
     """Write the SSP archive of a system file."""
     if more:
         raise typer.BadParameter(f"'{source}' describes its instances and their solvers itself: change them there")
@@ -106,12 +106,14 @@ def _system(source: str, output: Path, json: bool, more: bool) -> None:
     check_file(output)
 
     from ...fmu_wrapper.master import read_system, write_ssp
+    from ...fmu_wrapper.platforms import choose
     from ...models import load
 
     described = read_system(source)
     output.parent.mkdir(parents=True, exist_ok=True)
     with compile_notice():
-        path = write_ssp(described, output, Path(source).parent, load_scenario=load)
+        carried = {"bundle": bundle, "platforms": choose(platform or ())}
+        path = write_ssp(described, output, Path(source).parent, load_scenario=load, **carried)
     if json:
         print_json({"file": str(path), "bytes": path.stat().st_size, "instances": list(described.instances)})
     else:

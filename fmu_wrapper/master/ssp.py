@@ -30,6 +30,7 @@ def write_ssp(
     folder: str | Path = ".",
     *,
     load_scenario: LoadScenario | None = None,
+    **export: Any,
 ) -> Path:
     """Write a system as an SSP archive. Scenarios and models in it become FMUs.
 
@@ -41,6 +42,7 @@ def write_ssp(
     path : the file to write, "x.ssp".
     folder : paths in the description start here.
     load_scenario : `tlismni.models.load`, for instances that are scenarios.
+    export : further arguments of `export_fmu` (`bundle`, `platforms`) for scenarios and models.
 
     Raises
     ------
@@ -53,7 +55,7 @@ def write_ssp(
         instances: list[Instance] = []
         try:
             for name, record in description.instances.items():
-                fmus[name] = _fmu(name, record, Path(folder), place, description, load_scenario)
+                fmus[name] = _fmu(name, record, Path(folder), place, description, load_scenario, export)
                 instances.append(of_fmu(name, fmus[name], place / f"{name}_unzipped"))
                 instances[-1].set_start(record.start)
             links, _ = resolve(description.connections, description.master.hold, instances)
@@ -66,15 +68,19 @@ def write_ssp(
 
 
 def _fmu(
-    name: str, record: InstanceRecord, folder: Path, place: Path, system: SystemDescription, load: LoadScenario | None
+    name: str,
+    record: InstanceRecord,
+    folder: Path,
+    place: Path,
+    system: SystemDescription,
+    load: LoadScenario | None,
+    export: dict[str, Any],
 ) -> Path:
     if record.fmu is not None:
         return folder / record.fmu
     source, solver = source_of(name, record, folder, load)
-    master = system.master
-    return export_fmu(
-        source, place / f"{name}.fmu", record.fmi, t_end=master.t_end, communication_step=master.step, **solver
-    )
+    times: dict[str, Any] = {"t_end": system.master.t_end, "communication_step": system.master.step}
+    return export_fmu(source, place / f"{name}.fmu", record.fmi, **times, **export, **solver)
 
 
 def _structure(description: SystemDescription, instances: Sequence[Instance], links: Iterable[Link]) -> bytes:
