@@ -185,6 +185,11 @@ class Run:
                 return StepEnd(reached, early=True)
         return StepEnd(t)
 
+    @property
+    def horizon(self) -> float:
+        """Time up to which the solver has gone without an event, s."""
+        return float(self._simulation.horizon)
+
     def handle_event(self) -> bool:
         """Let a contact event at the present time happen, if one is due. True if it entails another at once."""
         return bool(self._simulation.handle_event())
