@@ -104,6 +104,17 @@ ExudynStep = Annotated[
 ]
 FmiVersion = Annotated[str, typer.Option("--fmi", help="Version of the FMI standard: 2 or 3.")]
 FmuFile = Annotated[Path, typer.Option("--output", "-o", help="The FMU to write, .fmu.")]
+Bundle = Annotated[
+    bool,
+    typer.Option("--bundle", help="Carry tlismni along; the machine then needs only numpy, scipy, numba, pydantic."),
+]
+Platforms = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--platform", metavar="NAME",
+        help="Add the binary for another platform, e.g. x86_64-windows, or all; may be repeated. Needs ziglang.",
+    ),
+]  # fmt: skip
 ExistingFmu = Annotated[
     Path, typer.Argument(metavar="FMU", exists=True, dir_okay=False, help="An FMU, .fmu; of any origin.")
 ]

@@ -1,8 +1,12 @@
 """`tlismni export`: write an FMU."""
 
+import zipfile
+
 from ..errors import one_line_errors
+from ..fmu_file import binaries
 from ..options import (
     Atol,
+    Bundle,
     CommunicationStep,
     Debug,
     EndTime,
@@ -11,6 +15,7 @@ from ..options import (
     Json,
     MethodName,
     MethodOption,
+    Platforms,
     Rtol,
     Set,
     Source,
@@ -23,6 +28,7 @@ from ..targets import check_file
 EXAMPLES = (
     "Examples:\n\n  tlismni export pendulum_stop -o pendulum.fmu\n\n"
     "  tlismni export pendulum_stop -o pendulum3.fmu --fmi 3\n\n"
+    "  tlismni export pendulum_stop -o anywhere.fmu --bundle --platform all\n\n"
     "  tlismni export my_model.json -o ball.fmu --t-end 2 --method ebdf --option k=3 --set restitution=0.5"
 )
 
@@ -40,6 +46,8 @@ def export(
     atol: Atol = None,
     step: Step = None,
     option: MethodOption = None,
+    bundle: Bundle = False,
+    platform: Platforms = None,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -49,14 +57,19 @@ def export(
 
     from ...fmu_wrapper import export_fmu
     from ...fmu_wrapper.export import known_version
+    from ...fmu_wrapper.platforms import choose
     from ..source import read_source, solver_settings
 
-    fmi = known_version(fmi)
+    fmi, platforms = known_version(fmi), choose(platform or ())
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     output.parent.mkdir(parents=True, exist_ok=True)
     with compile_notice():
-        path = export_fmu(scenario, output, fmi, communication_step=communication_step)
+        path = export_fmu(
+            scenario, output, fmi, communication_step=communication_step, bundle=bundle, platforms=platforms
+        )
     size = path.stat().st_size
+    with zipfile.ZipFile(path) as archive:
+        held = binaries(archive.namelist())
     if json:
         print_json(
             {
@@ -67,8 +80,11 @@ def export(
                 "parameters": dict(scenario.parameters),
                 "t_end": scenario.t_end,
                 "solver": solver_settings(scenario),
+                "bundle": bundle,
+                "platforms": held,
                 "inputs": [channel.name for channel in scenario.model.inputs],
             }
         )
     else:
-        say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB)")
+        carried = ", with tlismni inside" if bundle else ""
+        say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB, for {', '.join(held)}{carried})")

@@ -8,6 +8,7 @@ from ...core.elements import (
     FlexibleBody,
     LinearSystem,
     MaterialPoint2D,
+    MovingFrame2D,
     PointMass2D,
     Prismatic2D,
     RigidBody2D,
@@ -22,7 +23,7 @@ LINK = 2.6  # width of a link, in hundredths of the drawing's size
 
 def draw_bodies(drawing: Drawing, places: Places) -> None:
     """All bodies with their names; of many bodies of a kind, the first one's and the last one's."""
-    shown = [b for b in places.model.bodies if not isinstance(b, MaterialPoint2D)]
+    shown = [b for b in places.model.bodies if not isinstance(b, MaterialPoint2D | MovingFrame2D)]
     named = {b.name for b in (shown if len(shown) <= MOST_NAMES else (shown[0], shown[-1]))}
     boxes, labels = 0, []
     for body in shown:

@@ -18,6 +18,7 @@ from ...core.elements import (
     CoordinateDriver,
     CoordinateLoad,
     Distance2D,
+    MovingFrame2D,
     PlanarFrame,
     Prismatic2D,
     Revolute2D,
@@ -87,6 +88,14 @@ def _(element: Distance2D, drawing: Drawing, places: Places) -> None:
 @draw_interaction.register
 def _(element: CoordinateDriver, drawing: Drawing, places: Places) -> None:
     _coordinate(element.body, element.coordinate, _name(element.motion, element.name), drawing, places)
+
+
+@draw_interaction.register
+def _(element: MovingFrame2D, drawing: Drawing, places: Places) -> None:
+    """A frame is seen by what is put on it, and by its motion."""
+    for coordinate, motion in zip(("x", "y", "angle"), element.motions(), strict=True):
+        if not isinstance(motion, Constant):
+            _coordinate(element.name, coordinate, _name(motion, element.name), drawing, places)
 
 
 # forces

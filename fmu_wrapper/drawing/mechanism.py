@@ -3,6 +3,7 @@
 import math
 
 from ...core.description import Model
+from ...core.elements import MovingFrame2D
 from . import symbols
 from .bodies import draw_bodies
 from .interactions import draw_interaction
@@ -19,7 +20,8 @@ def draw(model: Model) -> Drawing:
     under, drawing.shapes = drawing.shapes, []
     draw_bodies(drawing, places)
     bodies, drawing.shapes = drawing.shapes, []
-    for element in (*model.forces, *model.joints):
+    frames = [body for body in model.bodies if isinstance(body, MovingFrame2D)]
+    for element in (*frames, *model.forces, *model.joints):
         draw_interaction(element, drawing, places)
     walls = [s for s in under if isinstance(s, Path)]
     drawing.shapes = [*walls, *bodies, *drawing.shapes, *(s for s in under if not isinstance(s, Path))]

@@ -20,7 +20,8 @@ class Places:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
-        self._starts = {name: body.start_in(self.bodies)[0] for name, body in self.bodies.items()}
+        inputs = {channel.name: channel.start for channel in model.inputs}
+        self._starts = {name: body.start_in(self.bodies, inputs)[0] for name, body in self.bodies.items()}
         self.size = self._size()
 
     def start(self, body: str) -> dict[str, float]:

@@ -171,8 +171,8 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
         PyObject *log = capsule ? py.PyCFunction_NewEx(&log_method, capsule, NULL) : NULL;
         PyObject *update = self->update ? py.PyCFunction_NewEx(&update_method, capsule, NULL) : py.Py_BuildValue("");
         PyObject *arguments = log && update ? py.Py_BuildValue(
-            "(isssiNiiNN)", asked->interface, self->name, token, resources, (int)asked->logging_on, log,
-            (int)asked->event_mode, (int)asked->early_return, update,
+            "(isssiNiiiNN)", asked->interface, self->name, token, resources, (int)asked->logging_on, log,
+            (int)asked->event_mode, (int)asked->early_return, (int)python_is_own(), update,
             view_of(asked->intermediate, asked->intermediates * sizeof *asked->intermediate)) : NULL;
         self->calls = boot(self, function, source, path, arguments);
         py.Py_DecRef(arguments);

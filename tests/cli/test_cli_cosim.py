@@ -76,6 +76,28 @@ def test_info(tlismni: Command, tmp_path: Path, version: str) -> None:
     assert shown.code == 0 and all(name in shown.out for name in ("FMI " + version, "stop.normal_force", "torque"))
 
 
+def test_a_bundled_fmu_says_so(tlismni: Command, tmp_path: Path) -> None:
+    path = tmp_path / "p.fmu"
+    assert tlismni("export", "pendulum_stop", "-o", path, "--fmi", "3", "--bundle", "--json").json["bundle"] is True
+    found = tlismni("info", path, "--json").json
+    assert found["bundle"] and found["icon"] and found["documentation"]
+    assert {need.split(">=")[0] for need in found["requires"]} == {"numpy", "scipy", "numba", "pydantic"}
+    (drive,) = found["terminals"]
+    assert drive["name"] == "drive" and drive["members"]["torque"] == "torque"
+    variables = {v["name"]: v for v in found["variables"]}
+    assert variables["solver.method"]["start"] == "ebdf" and "irk" in variables["solver.method"]["choices"]
+    assert (variables["restitution"]["min"], variables["restitution"]["max"]) == (0.0, 1.0)
+    assert variables["stop.law"]["start"] == "NewtonImpact"
+    shown = tlismni("info", path).out
+    assert "inside" in shown and "numba>=" in shown and "terminals" in shown and "constants" in shown
+
+
+def test_export_for_an_unknown_platform(tlismni: Command, tmp_path: Path) -> None:
+    done = tlismni("export", "pendulum_stop", "-o", tmp_path / "p.fmu", "--platform", "amiga")
+    assert done.code == 1 and "platform 'amiga' is unknown: choose from" in done.cause
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_info_of_what_is_no_fmu(tlismni: Command, tmp_path: Path) -> None:
     (tmp_path / "x.fmu").write_text("no archive")
     done = tlismni("info", tmp_path / "x.fmu")
