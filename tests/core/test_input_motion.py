@@ -20,6 +20,7 @@ from tlismni.core import (
     Ramp,
     RigidBody2D,
     Simulation,
+    SimulationError,
     SpringDamper2D,
     State,
     Step,
@@ -199,6 +200,18 @@ def test_the_state_holds_a_jump_that_is_being_closed():
         other.restore(State.from_bytes(stored))
         other.advance(t)
         assert np.array_equal(go_on(other), end)
+
+
+@pytest.mark.parametrize("x, v", [(1e6, 0.0), (0.0, -1e6), (1e300, 1e300)])
+def test_an_absurd_way_is_refused_at_once_and_the_run_can_go_back(x, v):
+    sim = Simulation(wall(Hertz(stiffness=1e4)))
+    sim.advance(0.1)
+    state = sim.state()
+    sim.set_inputs({"x": x, "v": v})
+    with pytest.raises(SimulationError, match=r"inputs \['x', 'v'\] ask for a way of .* check their values and units"):
+        sim.advance(0.2)
+    sim.restore(state)
+    sim.advance(0.2)
 
 
 def test_without_a_rate_the_motion_comes_to_rest_at_each_point():
