@@ -1,10 +1,10 @@
 """What an FMU costs: set + doStep + get of a chain of ten links, against the same step of the solver without FMI, and
 against slaves of pythonfmu and pythonfmu3 that wrap the same solver; through fmpy, and in a native host.
 
-Run: python benchmarks/fmu_cost.py [--json out.json] [--steps 4000] (pip install pythonfmu pythonfmu3, and a C compiler)
+Run: python benchmarks/fmu_cost.py [--json out.json] [--steps 4000] (wants pythonfmu, pythonfmu3 and a C compiler)
 
 Contenders take turns in batches, each with its own run of the same motion, so that what else the machine does hits all
-Run: python benchmarks/fmu_cost.py [--json out.json] [--steps 4000] (wants pythonfmu, pythonfmu3 and a C compiler)
+alike; a step costs the CPU time of the faster half of its batches. Once with an input that changes every step (the run
 starts anew there), once with one that holds (most steps lie within the solver's newest one). All must end at equal
 angles.
 """

@@ -95,8 +95,16 @@ CommunicationStep = Annotated[
     float | None,
     typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s."),
 ]
-ComparisonStep = Annotated[
-    float, typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s.")
+SystemOrSource = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENARIO_OR_MODEL_OR_SYSTEM",
+        help="Name of a scenario (see `tlismni list`), a model file, or a system file (.toml).",
+    ),
+]
+Algorithm = Annotated[
+    str | None,
+    typer.Option("--algorithm", help="Of a system file: jacobi, gauss-seidel, iterated or newton in place of its own."),
 ]
 Irregular = Annotated[bool, typer.Option("--irregular", help="Steps of 0.2 to 1.8 times that, the same in every run.")]
 ExudynStep = Annotated[
@@ -119,7 +127,13 @@ ExistingFmu = Annotated[
     Path, typer.Argument(metavar="FMU", exists=True, dir_okay=False, help="An FMU, .fmu; of any origin.")
 ]
 FmuFolder = Annotated[
-    Path | None, typer.Option("--output", "-o", metavar="DIR", help="Leave FMU, CSV files and figure here.")
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="DIR",
+        help="Leave FMU, CSV files and figure here; of a system, also a file .csv, .json or .npz.",
+    ),
 ]
 ReportFolder = Annotated[
     Path | None, typer.Option("--report", metavar="DIR", help="Write the report, its figures and numbers here.")

@@ -12,6 +12,7 @@ from ..core.description import Model
 from .errors import ExudynFailed
 from .exudyn_model import build_exudyn_model
 from .translation import Build
+from .translation.coordinate_contacts import coordinate_channels
 from .translation.kinematics import BodyStates, States, gap_motion
 
 log = logging.getLogger(__name__)
@@ -83,10 +84,11 @@ def run_exudyn(model: Model, t_end: float, step: float, settings: ExudynSettings
     wall_time, steps = solve(build, t_end, step, settings or ExudynSettings())
     if not build.columns:
         raise ExudynFailed(f"model '{model.name}' has no bodies: there is nothing to record")
-    sensors = {c.sensor for c in build.columns} | {c.sensor for c in build.contacts}
+    sensors = {c.sensor for c in (*build.columns, *build.contacts, *build.user_contacts)}
     data = {sensor: build.mbs.GetSensorStoredData(sensor) for sensor in sensors}
     t = data[build.columns[0].sensor][:, 0]
     channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}
+    channels |= {d.channel: d.function(channels) for d in build.derived}
     channels |= _contact_channels(build, channels, data, t)
     return ExudynResult(
         t,
@@ -157,11 +159,22 @@ def _contact_channels(
         nx, ny = motion.normal
         vector = data[contact.sensor]
         force = contact.sign * (nx * vector[:, 1] + ny * vector[:, 2])
-        impulse = np.concatenate(([0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(t))))
-        found |= {
-            f"{contact.name}.gap": motion.gap,
-            f"{contact.name}.gap_rate": motion.rate,
-            f"{contact.name}.normal_force": force,
-            f"{contact.name}.impulse": impulse,
-        }
+        found |= _force_channels(contact.name, t, motion.gap, motion.rate, force)
+    rates = {f"{b.name}.{c.name}": f"{b.name}.{c.rate}" for b in build.model.bodies for c in b.coordinate_records()}
+    for columns in build.coordinate_contacts:
+        found |= _force_channels(columns.record.name, t, *coordinate_channels(columns, dict(channels), rates))
+    for user in build.user_contacts:
+        recorded = data[user.sensor]
+        found |= _force_channels(user.name, t, recorded[:, 1], recorded[:, 2], recorded[:, 3])
+        if user.friction:
+            found[f"{user.name}.friction_force"] = recorded[:, 4]
     return found
+
+
+def _force_channels(
+    name: str, t: np.ndarray, gap: np.ndarray, rate: np.ndarray, force: np.ndarray
+) -> dict[str, np.ndarray]:
+    impulse = np.concatenate(([0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(t))))
+    return {
+        f"{name}.gap": gap, f"{name}.gap_rate": rate, f"{name}.normal_force": force, f"{name}.impulse": impulse,
+    }  # fmt: skip

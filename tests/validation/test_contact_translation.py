@@ -10,7 +10,6 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from tlismni.core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.core.contact.disk_on_line import DiskOnLine2D, Line2D
-from tlismni.core.contact.friction import TanhFriction
 from tlismni.core.contact.laws import (
     CarvalhoMartins,
     Flores,
@@ -19,11 +18,10 @@ from tlismni.core.contact.laws import (
     KelvinVoigt,
     LankaraniNikravesh,
     NewtonImpact,
-    Tsuji,
 )
 from tlismni.core.contact.segment2d import DiskOnSegment2D, Segment2D
 from tlismni.core.description import Model
-from tlismni.core.elements import PointMass2D, Prismatic2D, RigidBody2D
+from tlismni.core.elements import AxialRod, FloatingBeam2D, PointMass2D, Prismatic2D, RigidBody2D
 from tlismni.core.model.markers import Marker2D
 from tlismni.models.laws import kelvin_voigt_restitution
 from tlismni.validation.errors import ExudynUnavailable, NotTranslatable
@@ -177,26 +175,19 @@ def newton_drop() -> Model:
     return drop(NewtonImpact(restitution=0.5))
 
 
-def law_with_another_formula() -> Model:
-    class Hardening(Hertz):
-        pass
-
-    return drop(Hardening(stiffness=K))
+def floating_beam() -> Model:
+    return Model(bodies=(FloatingBeam2D(name="beam", mass=1.0, length=1.0, bending_stiffness=1.0, modes=1),))
 
 
-def tsuji_drop() -> Model:
-    return drop(Tsuji(stiffness=K, damping=1.0))
+def massless_rod() -> Model:
+    rod = AxialRod(name="rod", elements=3, length=1.0, axial_stiffness=1.0, mass_per_length=1.0,
+                   massless_ends=("right",))  # fmt: skip
+    return Model(bodies=(rod,))
 
 
 def point_mass_in_a_prismatic_joint() -> Model:
     joint = Prismatic2D(name="s", a=Marker2D(), b=Marker2D(body="p"))
     return Model(bodies=(PointMass2D(name="p", mass=1.0),), joints=(joint,))
-
-
-def drop_with_friction() -> Model:
-    model = drop(Hertz(stiffness=K))
-    friction = TanhFriction(coefficient=0.3, transition_speed=0.01)
-    return model.model_copy(update={"contacts": (model.contacts[0].model_copy(update={"friction": friction}),)})
 
 
 def drop_on_a_segment() -> Model:
@@ -219,12 +210,11 @@ def drop_on_a_line() -> Model:
 @pytest.mark.parametrize(
     "make, text",
     [
-        (drop_on_a_line, "'floor' is a DiskOnLine2D, for which no translation"),
-        (drop_with_friction, "friction .Tanh., which is not translated"),
-        (drop_on_a_segment, "'floor' is a DiskOnSegment2D, for which no translation"),
+        (drop_on_a_line, "'floor' is a DiskOnLine2D.*nearest route: disks"),
+        (drop_on_a_segment, "'floor' is a DiskOnSegment2D.*nearest route: a DiskOnHalfPlane2D"),
+        (floating_beam, "'beam' is a FloatingBeam2D.*nearest route: a Cable2D"),
+        (massless_rod, "massless ends"),
         (newton_drop, "constraint .* limit"),
-        (tsuji_drop, "law Tsuji, which exudyn has no form of"),
-        (law_with_another_formula, "law Hardening, which exudyn has no form of"),
         (point_mass_in_a_prismatic_joint, "point mass: make it a RigidBody2D"),
         (lambda: "not a model", "only a Model"),
     ],

@@ -22,11 +22,11 @@ def body(record: RigidBody2D | PointMass2D, build: Build) -> None:
         item = build.add("ObjectRigidBody2D", nodeNumber=node, mass=record.mass, inertia=record.inertia)
     else:
         item = build.add("ObjectMassPoint2D", nodeNumber=node, mass=record.mass)
-    build.bodies[record.name] = BodyItems(node, item, rigid)
+    build.bodies[record.name] = BodyItems(node, item, rigid, reference=tuple(q0))
     if any(build.model.gravity):
         marker = build.add("MarkerBodyMass", bodyNumber=item)
         build.add("LoadMassProportional", markerNumber=marker, loadVector=[*build.model.gravity, 0.0])
-    _columns(record, build, node, q0)
+    node_columns(record, build, (node,), q0)
 
 
 @translates(LinearSystem)
@@ -45,18 +45,19 @@ def linear_system(record: LinearSystem, build: Build) -> None:
         if (value := getattr(record, name)) is not None
     }
     item = build.add("ObjectGenericODE2", nodeNumbers=[node], forceVector=list(record.force or zero), **matrices)
-    build.bodies[record.name] = BodyItems(node, item, False)
-    _columns(record, build, node, zero)
+    build.bodies[record.name] = BodyItems(node, item, False, reference=tuple(zero))
+    node_columns(record, build, (node,), zero)
 
 
-def _columns(record: BodyElement, build: Build, node: int, reference: Sequence[float]) -> None:
-    """Channels of the coordinates; exudyn's are displacements from the reference."""
+def node_columns(record: BodyElement, build: Build, nodes: Sequence[int], reference: Sequence[float]) -> None:
+    """Channels of the coordinates, the same number from each node; exudyn's are displacements from the reference."""
     if not build.sensors:
         return
-    sensors = [
-        build.sensor(node, output, of_node=True) for output in ("Coordinates", "Coordinates_t", "Coordinates_tt")
-    ]
-    for k, coordinate in enumerate(record.coordinate_records()):
+    records = record.coordinate_records()
+    each = len(records) // len(nodes)
+    outputs = ("Coordinates", "Coordinates_t", "Coordinates_tt")
+    sensors = [[build.sensor(node, output, of_node=True) for output in outputs] for node in nodes]
+    for k, coordinate in enumerate(records):
         for level, name in enumerate((coordinate.name, coordinate.rate, coordinate.acceleration)):
             offset = reference[k] if level == 0 else 0.0
-            build.columns.append(Column(f"{record.name}.{name}", sensors[level], k, 1.0, offset))
+            build.columns.append(Column(f"{record.name}.{name}", sensors[k // each][level], k % each, 1.0, offset))

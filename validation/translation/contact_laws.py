@@ -8,6 +8,7 @@ approximated.
 """
 
 import math
+from typing import Any
 
 from ...core.contact.laws import CarvalhoMartins, Hertz, HuntCrossley, ImpactLaw, KelvinVoigt
 from ...core.contact.laws.hunt_crossley import HuntCrossleyFamily
@@ -15,6 +16,18 @@ from ..errors import NotTranslatable
 
 _LARGEST_CHI_OF_FIRST_BRANCH = 8.0 / 3.0  # both branches of model 2 give this at e = 1/3
 _NEARLY_ELASTIC = 1.0 - 1e-15
+
+
+def is_native(record: Any) -> bool:
+    """Whether exudyn's contact objects have the law of a contact, and it has no friction.
+
+    Raises NotTranslatable for constraint contact.
+    """
+    if isinstance(record.law, ImpactLaw):
+        contact_parameters(record.law, record.name)
+    law = record.law
+    family = isinstance(law, HuntCrossleyFamily) and type(law).formula is HuntCrossleyFamily.formula
+    return record.friction is None and (family or type(law) in (KelvinVoigt, Hertz))
 
 
 def contact_parameters(law: object, contact: str) -> dict[str, float | int]:

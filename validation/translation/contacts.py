@@ -12,24 +12,49 @@ from typing import Any
 import numpy as np
 
 from ...core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from ...core.contact.coordinate_contact import CoordinateContact
+from ...core.contact.disk_on_cable import DiskOnCable2D
+from ...core.contact.disk_on_line import DiskOnLine2D
 from ...core.contact.laws import KelvinVoigt
+from ...core.contact.segment2d import DiskOnSegment2D
 from ...core.elements import PlanarBody
 from ...core.model.markers import GROUND, Marker2D
-from .contact_laws import contact_parameters
+from .contact_laws import contact_parameters, is_native
+from .coordinate_contacts import add_coordinate_contact
 from .kinematics import BodyStates, States, gap_motion
-from .registry import Build, ContactColumns, translates
+from .registry import Build, ContactColumns, no_equal, translates
+from .user_contacts import add_user_contact
 
 Shapes = tuple[HalfPlane2D, Disk2D] | tuple[Disk2D, Disk2D]
 BeforeStep = Callable[[Any, float], None]
 
 
+no_equal(
+    "disks at the places that touch (DiskOnDisk2D, DiskOnHalfPlane2D on MaterialPoint2D); exudyn's circle-cable contact "
+    "has one stiffness for each of its segments, and so another force law",
+    DiskOnCable2D,
+    DiskOnLine2D,
+)
+no_equal("a DiskOnHalfPlane2D, as long as the disk touches the segment and not its ends", DiskOnSegment2D)
+
+
+@translates(CoordinateContact)
+def coordinate_contact(record: CoordinateContact, build: Build) -> None:
+    """ObjectContactCoordinate where the gap is a difference of two coordinates, else a user function."""
+    contact_parameters(record.law, record.name)
+    if not add_coordinate_contact(record, build):
+        add_user_contact(record, build)
+
+
 @translates(DiskOnHalfPlane2D)
 def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
-    """ObjectContactSphereTriangle.
+    """ObjectContactSphereTriangle; a user function for laws that exudyn lacks, and for friction.
 
     exudyn needs a sphere with a radius, and one deeper than its diameter passes through: so the sphere gets
     a large radius, and the triangle is drawn back as much, which leaves gap and force line unchanged.
     """
+    if not is_native(record):
+        return add_user_contact(record, build)
     plane, disk = record.plane, record.disk
     size = _size(build)
     angle = plane.marker.angle
@@ -56,7 +81,9 @@ def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
 
 @translates(DiskOnDisk2D)
 def disk_on_disk(record: DiskOnDisk2D, build: Build) -> None:
-    """ObjectContactSphereSphere."""
+    """ObjectContactSphereSphere; a user function for laws that exudyn lacks, and for friction."""
+    if not is_native(record):
+        return add_user_contact(record, build)
     _add(
         build,
         record,
@@ -90,7 +117,7 @@ def _add(
 def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Shapes) -> BeforeStep:
     """Switch the contact off when the force has come to zero, and on again when the gap has opened."""
     names = {marker.body for marker in (shapes[0].marker, shapes[1].marker)} - {GROUND}
-    starts = {b.name: b.initial_state()[0] for b in build.model.bodies if b.name in names}
+    starts = {name: build.bodies[name].reference for name in names}
     core, active = build.exudyn.core, [True]
 
     def before_step(mbs: Any, t: float) -> None:
@@ -116,12 +143,10 @@ def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Sha
 
 def _data_node(build: Build, shapes: Shapes) -> Any:
     """Node of the contact's memory, with the gap at the start: exudyn's active set begins with it."""
-    bodies = {}
-    for b in build.model.bodies:
-        if not isinstance(b, PlanarBody):
-            continue
-        q, v = b.initial_state()
-        bodies[b.name] = BodyStates(*(np.atleast_1d(x) for x in (*(*q, 0.0)[:3], *(*v, 0.0)[:3])))
+    names = {shape.marker.body for shape in shapes}
+    bodies = {
+        name: BodyStates(*(np.atleast_1d(x) for level in build.start(name) for x in level)) for name in names - {GROUND}
+    }
     gap = float(gap_motion(shapes, States(1, bodies)).gap[0])
     return build.add("NodeGenericData", numberOfDataCoordinates=4, initialCoordinates=[gap, 0.0, 0.0, 0.0])
 

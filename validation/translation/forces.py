@@ -65,11 +65,7 @@ def applied_torque(record: AppliedTorque2D, build: Build) -> None:
 @translates(CoordinateLoad)
 def coordinate_load(record: CoordinateLoad, build: Build) -> None:
     """LoadCoordinate, over time as a user function."""
-    body = next(b for b in build.model.bodies if b.name == record.body)
-    marker = build.add(
-        "MarkerNodeCoordinate", nodeNumber=build.bodies[record.body].node,
-        coordinate=body.coordinate_names.index(record.coordinate),
-    )  # fmt: skip
+    marker, _ = build.coordinate(record.body, record.coordinate, record.name)
     load = time_function(record.load, build.model)
     if load.constant is not None:
         build.add("LoadCoordinate", markerNumber=marker, load=load.constant)

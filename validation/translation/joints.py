@@ -1,13 +1,16 @@
 """Joints and drivers. Signs of the force channels are those of the model's records."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
-from ...core.elements import CoordinateDriver, Distance2D, LinearSystem, Prismatic2D, Revolute2D
+import numpy as np
+
+from ...core.elements import Clamp2D, CoordinateDriver, Distance2D, Prismatic2D, Revolute2D
 from ...core.elements.base import Element
 from ...core.model.markers import GROUND
 from ..errors import NotTranslatable
-from .registry import Build, Column, translates
+from .registry import Build, Column, Derived, translates
 from .signals import time_function
 
 
@@ -44,6 +47,37 @@ def prismatic(record: Prismatic2D, build: Build) -> None:
     build.notes.append(f"{record.name}: its forces are not read back from exudyn, which splits them otherwise")
 
 
+@translates(Clamp2D)
+def clamp(record: Clamp2D, build: Build) -> None:
+    """ObjectJointGeneric that locks x, y and the rotation about z, with b's frame turned by the angle that is kept."""
+    relative = record.relative_angle
+    if relative is None:
+        relative = build.start_angle(record.b.body) - build.start_angle(record.a.body)
+    c, s = math.cos(relative), math.sin(relative)
+    item = build.add(
+        "ObjectJointGeneric",
+        markerNumbers=[build.frame(record.a, record.name), build.frame(record.b, record.name)],
+        constrainedAxes=[1, 1, 0, 0, 0, 1],
+        rotationMarker1=[[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]],
+    )
+    if not build.sensors:
+        return
+    force, torque = build.sensor(item, "ForceLocal"), build.sensor(item, "TorqueLocal")
+    names = [channel.name for channel in record.multiplier_channels()]
+    # in the axes of a's body, and the force is the one on a
+    own = [f"{record.name}.exudyn_force_{axis}" for axis in "xy"]
+    build.columns += [Column(own[0], force, 0, -1.0), Column(own[1], force, 1, -1.0), Column(names[2], torque, 2)]
+    turned = f"{record.a.body}.angle"
+
+    def along(c_x: Callable[[Any], Any], c_y: Callable[[Any], Any]) -> Callable[[dict[str, Any]], Any]:
+        return lambda found: c_x(found.get(turned, 0.0)) * found[own[0]] + c_y(found.get(turned, 0.0)) * found[own[1]]
+
+    build.derived += [
+        Derived(names[0], along(np.cos, lambda angle: -np.sin(angle))),
+        Derived(names[1], along(np.sin, np.cos)),
+    ]
+
+
 @translates(Distance2D)
 def distance(record: Distance2D, build: Build) -> None:
     """ObjectConnectorDistance."""
@@ -60,17 +94,9 @@ def driver(record: CoordinateDriver, build: Build) -> None:
     """ObjectConnectorCoordinate between the ground and the coordinate, with the motion as offset."""
     if record.body == GROUND:
         raise NotTranslatable(f"'{record.name}' drives the ground, which cannot move: name a body")
-    body = next(b for b in build.model.bodies if b.name == record.body)
-    if record.coordinate not in body.coordinate_names:
-        raise NotTranslatable(f"'{record.name}' drives '{record.coordinate}', which '{body.name}' does not have")
-    k = body.coordinate_names.index(record.coordinate)
+    driven, reference = build.coordinate(record.body, record.coordinate, record.name)
     motion = time_function(record.motion, build.model)
-    # exudyn constrains displacements from the reference: subtract where the body starts
-    reference = 0.0 if isinstance(body, LinearSystem) else body.initial_state()[0][k]
-    markers = [
-        build.add("MarkerNodeCoordinate", nodeNumber=build.ground_node, coordinate=0),
-        build.add("MarkerNodeCoordinate", nodeNumber=build.bodies[record.body].node, coordinate=k),
-    ]
+    markers = [build.ground_coordinate(), driven]
     functions: dict[str, Any] = {}
     if motion.constant is None:
         functions = {

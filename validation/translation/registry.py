@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ...core.contact.contact2d import Disk2D, HalfPlane2D
+from ...core.contact.coordinate_contact import CoordinateContact
 from ...core.description import Model
 from ...core.elements import RigidBody2D
 from ...core.model.markers import GROUND, Marker2D
@@ -16,6 +17,7 @@ from .kinematics import States
 
 Translator = Callable[[Any, "Build"], None]
 _TRANSLATORS: dict[type, Translator] = {}
+_ROUTES: dict[type, str] = {}
 T = TypeVar("T", bound=Translator)
 
 
@@ -30,6 +32,12 @@ def translates(*records: type) -> Callable[[T], T]:
     return register
 
 
+def no_equal(route: str, *records: type) -> None:
+    """Say that exudyn has no equal of records of these types, and the nearest `route` to a comparison."""
+    for record in records:
+        _ROUTES[record] = route
+
+
 def translate(record: Any, build: "Build") -> None:
     """Add the exudyn equal of `record`. Raises NotTranslatable if there is none."""
     find_translator(record)(record, build)
@@ -38,19 +46,13 @@ def translate(record: Any, build: "Build") -> None:
 def find_translator(record: Any) -> Translator:
     """The function that translates `record`. Raises NotTranslatable if there is none."""
     translator = _TRANSLATORS.get(type(record))
-    friction = getattr(record, "friction", None)
-    if friction is not None:
-        raise NotTranslatable(
-            f"contact '{record.name}' has friction '{friction.type}', which is not translated to exudyn; leave it out "
-            "(friction=None) to compare the rest"
-        )
-    if translator is None:
-        known = sorted(t.__name__ for t in _TRANSLATORS)
-        raise NotTranslatable(
-            f"'{getattr(record, 'name', record)}' is a {type(record).__name__}, for which no translation to "
-            f"exudyn is written; there are translations of {known}"
-        )
-    return translator
+    if translator is not None:
+        return translator
+    what = f"'{getattr(record, 'name', record)}' is a {type(record).__name__}"
+    if type(record) in _ROUTES:
+        raise NotTranslatable(f"{what}, of which exudyn has no equal. The nearest route: {_ROUTES[type(record)]}")
+    known = sorted(t.__name__ for t in _TRANSLATORS)
+    raise NotTranslatable(f"{what}, for which no translation to exudyn is written; there are translations of {known}")
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,18 @@ class BodyItems:
     node: int
     item: int
     rigid: bool
+    nodes: tuple[int, ...] = ()
+    """All nodes of a flexible body, in their order; `coordinates_each` coordinates each."""
+    elements: tuple[int, ...] = ()
+    coordinates_each: int = 0
+    local: tuple[float, float] = (0.0, 0.0)
+    """Where a material point lies in its element `item`, m."""
+    reference: tuple[float, ...] = ()
+    """What exudyn's coordinates are displacements from."""
+
+    @property
+    def all_nodes(self) -> tuple[int, ...]:
+        return self.nodes or (self.node,)
 
 
 @dataclass(frozen=True)
@@ -84,6 +98,31 @@ class ContactColumns:
     """+1 if the sensor gives the force on the second shape's body."""
 
 
+@dataclass(frozen=True)
+class UserContact:
+    """A contact by user function: its sensor records gap, gap rate, normal force and friction force."""
+
+    name: str
+    sensor: int
+    friction: bool
+
+
+@dataclass(frozen=True)
+class CoordinateColumns:
+    """A contact between coordinates, with the force of its law (penetration, its rate, any speed)."""
+
+    record: CoordinateContact
+    law: Callable[[float, float, float], float]
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A channel that follows from others."""
+
+    channel: str
+    function: Callable[[dict[str, np.ndarray]], np.ndarray]
+
+
 @dataclass
 class Build:
     """A model under construction in exudyn."""
@@ -97,6 +136,11 @@ class Build:
     bodies: dict[str, BodyItems] = field(default_factory=dict)
     columns: list[Column] = field(default_factory=list)
     contacts: list[ContactColumns] = field(default_factory=list)
+    user_contacts: list[UserContact] = field(default_factory=list)
+    coordinate_contacts: list[CoordinateColumns] = field(default_factory=list)
+    derived: list[Derived] = field(default_factory=list)
+    flexible: bool = False
+    """Whether a body is flexible, so that exudyn should keep its Jacobian."""
     before_step: list[Callable[[Any, float], None]] = field(default_factory=list)
     """Called at the start of each step with (mbs, t)."""
     notes: list[str] = field(default_factory=list)
@@ -110,11 +154,18 @@ class Build:
         return getattr(self.mbs, adder)(item)
 
     def point(self, marker: Marker2D) -> Any:
-        """A position marker."""
-        local = [*marker.point, 0.0]
-        if marker.body != GROUND and not self.bodies[marker.body].rigid:
-            return self.add("MarkerBodyPosition", bodyNumber=self.bodies[marker.body].item, localPosition=local)
-        return self.add("MarkerBodyRigid", bodyNumber=self._item(marker.body), localPosition=local)
+        """A position marker. Raises NotTranslatable for a point beside a material point, along its axis."""
+        if marker.body == GROUND:
+            return self.add("MarkerBodyRigid", bodyNumber=self.ground, localPosition=[*marker.point, 0.0])
+        body = self.bodies[marker.body]
+        if body.elements and marker.point[0] != 0.0:
+            raise NotTranslatable(
+                f"a marker on '{marker.body}' lies {marker.point[0]:g} m beyond it along the axis, where exudyn's cable "
+                "elements have no point: put a MaterialPoint2D there, or a light RigidBody2D on a Clamp2D"
+            )
+        local = [body.local[0] + marker.point[0], body.local[1] + marker.point[1], 0.0]
+        kind = "MarkerBodyRigid" if body.rigid else "MarkerBodyPosition"
+        return self.add(kind, bodyNumber=body.item, localPosition=local)
 
     def frame(self, marker: Marker2D, user: str) -> Any:
         """A position and orientation marker. Raises NotTranslatable on a point mass, which has none."""
@@ -124,6 +175,24 @@ class Build:
             )
         return self.point(marker)
 
+    def coordinate(self, body: str, coordinate: str, user: str) -> tuple[Any, float]:
+        """(marker of a coordinate, its reference: exudyn's coordinates are displacements from there).
+
+        Raises NotTranslatable if the body has no such coordinate of its own.
+        """
+        record = next(b for b in self.model.bodies if b.name == body)
+        items = self.bodies[body]
+        if coordinate not in record.coordinate_names or not items.reference:
+            raise NotTranslatable(f"'{user}' takes '{coordinate}' of '{body}', which is no coordinate there")
+        k = record.coordinate_names.index(coordinate)
+        each = items.coordinates_each or len(items.reference)
+        marker = self.add("MarkerNodeCoordinate", nodeNumber=items.all_nodes[k // each], coordinate=k % each)
+        return marker, items.reference[k]
+
+    def ground_coordinate(self) -> Any:
+        """A coordinate that is always zero."""
+        return self.add("MarkerNodeCoordinate", nodeNumber=self.ground_node, coordinate=0)
+
     def sensor(self, item: Any, output: str, *, of_node: bool = False) -> int:
         """A sensor that stores `output` of an object (or node) at every step; returns its index."""
         kind = "SensorNode" if of_node else "SensorObject"
@@ -132,18 +201,24 @@ class Build:
         make = getattr(self.exudyn.items, kind)
         return self.mbs.AddSensor(make(**target, outputVariableType=output_type, storeInternal=True, writeToFile=False))
 
+    def body_sensor(self, item: int, local: tuple[float, float], output: str) -> int:
+        """A sensor of `output` at a point of a body; returns its index."""
+        output_type = getattr(self.exudyn.core.OutputVariableType, output)
+        return self.mbs.AddSensor(
+            self.exudyn.items.SensorBody(
+                bodyNumber=item, localPosition=[*local, 0.0], outputVariableType=output_type, storeInternal=True,
+                writeToFile=False,
+            )
+        )  # fmt: skip
+
+    def start(self, body: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """(x, y, angle), and their rates, of a body with a place at the start; zero for the ground."""
+        records = {b.name: b for b in self.model.bodies}
+        if body not in records:
+            return (0.0,) * 3, (0.0,) * 3
+        q, v = records[body].start_in(records)
+        return (*q, 0.0)[:3], (*v, 0.0)[:3]
+
     def start_angle(self, body: str) -> float:
         """Angle of a body at the start, rad; 0 for the ground and for point masses."""
-        return next((b.angle for b in self.model.bodies if b.name == body and isinstance(b, RigidBody2D)), 0.0)
-
-    def _item(self, body: str) -> int:
-        return self.ground if body == GROUND else self.bodies[body].item
-
-
-@dataclass(frozen=True)
-class Recording:
-    """What a run recorded: the time and the channels."""
-
-    t: np.ndarray
-    channels: dict[str, np.ndarray]
-    states: States
+        return self.start(body)[0][2]

@@ -1,0 +1,159 @@
+"""Contacts whose law or friction exudyn does not have: an ObjectGenericODE2 that shares the bodies' nodes.
+
+It has no mass, only the contact's generalised force F_N grad g + F_T grad s as its user function, so that the bodies
+feel equal and opposite forces at the place of contact. The deflection of LuGre's bristles is no coordinate: its law is
+linear in it, so that the trapezoidal rule over the step gives it from the state at the step's end.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ...core.contact.friction import LuGreFriction
+from .formulas import friction_force, lugre, normal_force
+from .registry import Build, UserContact
+from .user_gaps import UserGap, user_gap
+
+Array = np.ndarray
+
+
+class Memory:
+    """What a contact remembers from step to step: whether it is touching, and the speed with which it came."""
+
+    def __init__(self, least: float) -> None:
+        self.least, self.touching, self.speed = least, False, least
+        self.gap, self.rate = 0.0, 0.0
+        self.t, self.end = 0.0, 0.0
+        self.deflection, self.bending = 0.0, 0.0
+
+    def approach(self, gap: float, rate: float) -> float:
+        """The speed at gap zero: by the line from the last step's end, outside, to this state inside."""
+        if self.touching:
+            return self.speed
+        share = self.gap / (self.gap - gap) if self.gap > 0.0 else 0.0
+        return max(-(self.rate + share * (rate - self.rate)), self.least)
+
+    def after_step(self, gap: float, rate: float) -> None:
+        """Called with the state at the end of each step."""
+        if gap >= 0.0:
+            self.touching = False
+        elif not self.touching:
+            self.touching, self.speed = True, self.approach(gap, rate)
+        self.gap, self.rate = gap, rate
+
+
+def add_user_contact(record: Any, build: Build) -> None:
+    """Contact, friction and their recording."""
+    gap = user_gap(record, build)
+    force, kinds = Force(record, gap), build.exudyn.core.OutputVariableType
+    build.add(
+        "ObjectGenericODE2",
+        nodeNumbers=list(gap.nodes),
+        forceUserFunction=lambda mbs, t, item, q, v: force(t, np.array(q), np.array(v)).tolist(),
+        jacobianUserFunction=lambda mbs, t, item, q, v, by_q, by_v: force.jacobian(
+            t, np.array(q), np.array(v), by_q, by_v
+        ),
+    )
+
+    def state(mbs: Any) -> list[Array]:
+        return [
+            np.concatenate([np.atleast_1d(mbs.GetNodeOutput(node, kind)) for node in gap.nodes])
+            for kind in (kinds.Coordinates, kinds.Coordinates_t)
+        ]
+
+    build.before_step.append(lambda mbs, t: force.before_step(t, *state(mbs)))
+    if build.sensors:
+        sensor = build.mbs.AddSensor(
+            build.exudyn.items.SensorUserFunction(
+                sensorNumbers=[],
+                sensorUserFunction=lambda mbs, t, sensors, factors, configuration: force.measure(t, *state(mbs)),
+                storeInternal=True,
+                writeToFile=False,
+            )
+        )
+        build.user_contacts.append(UserContact(record.name, sensor, record.friction is not None))
+    what = type(record.law).__name__ + ("" if record.friction is None else f" with {record.friction.type} friction")
+    build.notes.append(f"{record.name}: {what} by user function")
+
+
+class Force:
+    """The contact's generalised force as a function of exudyn's coordinates and rates."""
+
+    def __init__(self, record: Any, gap: UserGap) -> None:
+        self.gap = gap
+        self.law, self.release = normal_force(record.law), record.law.release
+        self.memory = Memory(record.law.minimum_approach_speed)
+        bristle = isinstance(record.friction, LuGreFriction)
+        self.bristles = lugre(record.friction) if bristle else None
+        self.friction = None if record.friction is None or bristle else friction_force(record.friction)
+
+    def normal(self, gap: float, rate: float) -> float:
+        """N; positive where it pushes."""
+        if gap >= 0.0:
+            return 0.0
+        force = self.law(-gap, -rate, self.memory.approach(gap, rate))
+        return max(force, 0.0) if self.release == "force" else force
+
+    def tangential(self, t: float, speed: float, normal: float) -> float:
+        """N along the sliding direction."""
+        if normal <= 0.0:
+            return 0.0
+        if self.friction is not None:
+            return self.friction(speed, normal)
+        return self._bend(t, speed, normal)[2] if self.bristles is not None else 0.0
+
+    def _bend(self, t: float, speed: float, normal: float) -> tuple[float, float, float]:
+        """(deflection, its rate, force) of the bristles at the end of the step from the memory's time to t."""
+        law, m = self.bristles or _no_bristles, self.memory
+        half = 0.5 * (t - m.t)
+        free, _ = law(0.0, speed, normal)
+        slope = law(1.0, speed, normal)[0] - free
+        z = (m.deflection + half * (m.bending + free)) / (1.0 - half * slope)
+        rate, force = law(z, speed, normal)
+        return z, rate, force
+
+    def parts(self, t: float, q: Array, v: Array) -> tuple[float, float, float, float, float, Array, Array]:
+        """(gap, rate, F_N, F_T, sliding speed, gradients of gap and sliding)."""
+        gap, along, across = self.gap.evaluate(self.gap.reference + q)
+        rate, speed = float(along @ v), float(across @ v)
+        normal = self.normal(gap, rate)
+        return gap, rate, normal, self.tangential(t, speed, normal), speed, along, across
+
+    def __call__(self, t: float, q: Array, v: Array) -> Array:
+        _, _, normal, tangential, _, along, across = self.parts(t, q, v)
+        return normal * along + tangential * across
+
+    def jacobian(self, t: float, q: Array, v: Array, by_q: float, by_v: float) -> Array:
+        """by_q d/dq + by_v d/dv of the force on the left-hand side, the gradients held: for Newton's iteration only."""
+        gap, rate, normal, tangential, speed, along, across = self.parts(t, q, v)
+        n = len(q)
+        if gap >= 0.0:
+            return np.zeros((n, n))
+        small_gap, small_rate = -1e-6 * gap, 1e-6 * (abs(rate) + abs(speed)) + 1e-12
+        by_gap = (normal - self.normal(gap - small_gap, rate)) / small_gap if small_gap else 0.0
+        by_rate = (self.normal(gap, rate + small_rate) - normal) / small_rate
+        push = np.outer(along, along)
+        found = (by_q * by_gap + by_v * by_rate) * push
+        if tangential != 0.0:
+            by_speed = (self.tangential(t, speed + small_rate, normal) - tangential) / small_rate
+            ratio = tangential / normal
+            found += by_v * by_speed * np.outer(across, across)
+            found += ratio * (by_q * by_gap + by_v * by_rate) * np.outer(across, along)
+        return -found
+
+    def before_step(self, end: float, q: Array, v: Array) -> None:
+        """Remember the state in which a step to time `end` begins; exudyn gives its end as the time then."""
+        m = self.memory
+        gap, rate, normal, _, speed, _, _ = self.parts(m.end, q, v)
+        if self.bristles is not None:
+            m.deflection, m.bending, _ = self._bend(m.end, speed, normal) if normal > 0.0 else (0.0, 0.0, 0.0)
+        m.t, m.end = m.end, end
+        m.after_step(gap, rate)
+
+    def measure(self, t: float, q: Array, v: Array) -> list[float]:
+        """What the sensor records."""
+        return list(self.parts(t, q, v)[:4])
+
+
+def _no_bristles(z: float, v: float, n: float) -> tuple[float, float]:
+    return 0.0, 0.0
