@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from ..errors import SimulationError
 from ..model.motion import DURATION, JUMP, RATE_JUMP, SINCE, InputMotion
+from ..system.evaluate import evaluate_residuals
+from ..system.workspace import Workspace
 from .restore import restart_here
 
 if TYPE_CHECKING:
@@ -21,6 +23,18 @@ LONGEST_WAY = 1000.0
 that no shape passes through would take for ever."""
 
 State = tuple[InputMotion, float, float]
+
+
+def place(workspace: Workspace, t0: float) -> None:
+    """Begin the motions of inputs at time `t0`, s, and put coordinates where the rows say that they start at."""
+    arrays, assembly = workspace.arrays, workspace.assembly
+    for motion in assembly.motions:
+        arrays["inputs"][motion.jumps] = (0.0, 0.0, t0, 0.0)
+    if assembly.placed:
+        evaluate_residuals(workspace.record)
+        coordinates, rows = (list(x) for x in zip(*assembly.placed, strict=True))
+        arrays["q"][coordinates] -= arrays["phi"][rows]
+        arrays["v"][coordinates] -= arrays["phid"][rows]
 
 
 def led_by(sim: "Simulation", channels: Collection[int]) -> list[State]:
