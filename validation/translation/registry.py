@@ -9,9 +9,11 @@ import numpy as np
 from ...core.contact.contact2d import Disk2D, HalfPlane2D
 from ...core.contact.coordinate_contact import CoordinateContact
 from ...core.description import Model
+from ...core.elements import RigidBody2D
 from ...core.model.markers import GROUND, Marker2D
 from ..errors import NotTranslatable
 from ..exudyn_import import Exudyn
+from .kinematics import States
 
 Translator = Callable[[Any, "Build"], None]
 _TRANSLATORS: dict[type, Translator] = {}
