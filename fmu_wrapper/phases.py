@@ -28,13 +28,14 @@ WAYS = {
 }
 """How to get out of each phase, for messages."""
 
+INPUTS = frozenset(("input",))
 SETTABLE = {
     Phase.INSTANTIATED: frozenset(("parameter", "input")),
     Phase.INITIALIZATION: frozenset(("parameter", "input")),
-    Phase.STEP: frozenset(("input",)),
-    Phase.INTERMEDIATE: frozenset(("input",)),
-    Phase.EVENT_DUE: frozenset(("input",)),
-    Phase.EVENT: frozenset(("input",)),
+    Phase.STEP: INPUTS,
+    Phase.INTERMEDIATE: INPUTS,
+    Phase.EVENT_DUE: INPUTS,
+    Phase.EVENT: INPUTS,
 }
 """Roles of the variables that can be set; in other phases there are none."""
 

@@ -17,7 +17,7 @@ from . import log as logs
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
 from .intermediate import Updates
-from .phases import EVENT_PHASES, RUNNING, SETTABLE, SOUND, Phase
+from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
 from .slave_derivatives import SlaveDerivatives
 from .values import MOST_DERIVATIVES, check_values, item_value
@@ -215,14 +215,15 @@ class Slave(SlaveDerivatives):
         CallOrderError, FmuValueError
         """
         plan = self.variables.plan(kind, references)
-        self._need("set values", *SETTABLE)
-        if not plan.roles <= SETTABLE[self._phase]:
-            self._refuse(plan.variables)
+        if self._phase is not Phase.STEP or plan.roles != INPUTS:  # by far the most calls
+            self._need("set values", *SETTABLE)
+            if not plan.roles <= SETTABLE[self._phase]:
+                self._refuse(plan.variables)
         if self._phase == Phase.INTERMEDIATE and self.updates is not None:
             self.updates.check(plan.variables)
         self._values.vectors[kind][plan.positions] = check_values(plan, values)
         self._stale = self._untold = True
-        if kind == "real" and "input" in plan.roles:
+        if self._values.sloped and kind == "real" and "input" in plan.roles:
             self._values.end_slopes(plan.positions, self._time)
         if "parameter" in plan.roles:
             self._rtol_given |= any(v.name == "solver.rtol" for v in plan.variables)

@@ -89,9 +89,8 @@ class Values:
 
     def end_slopes(self, positions: npt.NDArray[np.intp], now: float) -> None:
         """Forget the derivatives of the inputs among the reals at `positions`, unless they were set at this time."""
-        if self.sloped:
-            self.slopes[np.isin(self.inputs, positions) & (self.slope_times != now)] = 0.0
-            self.sloped = bool(self.slopes.any())
+        self.slopes[np.isin(self.inputs, positions) & (self.slope_times != now)] = 0.0
+        self.sloped = bool(self.slopes.any())
 
     def to_bytes(self) -> bytes:
         """The values bit for bit: reals, integers, booleans, then the strings as JSON."""
@@ -172,8 +171,9 @@ def check_values(plan: Plan, values: Iterable[Any]) -> Any:
     variables = plan.variables
     if plan.unbounded and isinstance(values, np.ndarray) and values.dtype == np.float64:
         # what comes from C at every step
-        if len(values) == len(variables) and np.isfinite(values).all():
-            return values
+        numbers = values.tolist()
+        if len(numbers) == len(variables) and all(map(math.isfinite, numbers)):
+            return numbers
     given = values.tolist() if isinstance(values, np.ndarray) else list(values)
     if len(given) != len(variables):
         raise FmuValueError(f"{len(given)} values were given for {len(variables)} value references")
