@@ -29,7 +29,7 @@ from .recommended_step import recommended_step
 from .run import build_simulation
 from .settings import Settings
 from .slave import Slave
-from .terminals import terminals_and_icons
+from .terminals import terminals, terminals_and_icons
 from .variables import VariableTable
 from .version import package_version
 
@@ -156,8 +156,10 @@ def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
     folder = "terminalsAndIcons"
     if picture is not None:
         files = {f"{folder}/icon.png": picture, f"{folder}/icon.svg": etree.tostring(to_svg(drawing, names=False))}
-    described = terminals_and_icons(slave.model, slave.variables, picture is not None)
-    return {f"{folder}/terminalsAndIcons.xml": described, **files}
+    if files or terminals(slave.model, slave.variables):
+        described = terminals_and_icons(slave.model, slave.variables, bool(files))
+        files[f"{folder}/terminalsAndIcons.xml"] = described
+    return files
 
 
 def shim_path() -> Path:
