@@ -16,11 +16,6 @@ MOST_UNCONNECTED = 12
 """Unconnected inputs that are named."""
 
 
-def is_system(source: str) -> bool:
-    """True if `source` means a system file."""
-    return source.lower().endswith(".toml")
-
-
 def run_system(path: Path, changes: dict[str, Any], output: Path | None, plot: Path | None, as_json: bool) -> None:
     """Run the system in a file, with `changes` to its [master] settings."""
     description = read_system(path)

@@ -28,7 +28,7 @@ from ..options import (
     check_suffix,
 )
 from ..screen import compile_notice, number, print_json, print_table, say, status_line, stdout
-from ..targets import check_file, check_folder
+from ..targets import check_file, check_folder, is_system_file
 
 EXAMPLES = (
     "Examples:\n\n  tlismni cosim pendulum_stop -o out/demo\n\n"
@@ -66,7 +66,7 @@ def cosim(
 
     With a system file (SYSTEM.toml): run the coupled FMUs that it describes.
     """
-    if source.lower().endswith(".toml"):
+    if is_system_file(source):
         other = {
             "--irregular": irregular, "--fmi": fmi != "2.0", "--set": sets, "--method": method, "--rtol": rtol,
             "--atol": atol, "--step": step, "--option": option,

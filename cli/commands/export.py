@@ -1,6 +1,9 @@
 """`tlismni export`: write an FMU."""
 
 import zipfile
+from pathlib import Path
+
+import typer
 
 from ..errors import one_line_errors
 from ..fmu_file import binaries
@@ -23,12 +26,13 @@ from ..options import (
     check_suffix,
 )
 from ..screen import compile_notice, print_json, say
-from ..targets import check_file
+from ..targets import check_file, is_system_file
 
 EXAMPLES = (
     "Examples:\n\n  tlismni export pendulum_stop -o pendulum.fmu\n\n"
     "  tlismni export pendulum_stop -o pendulum3.fmu --fmi 3\n\n"
     "  tlismni export pendulum_stop -o anywhere.fmu --bundle --platform all\n\n"
+    "  tlismni export system.toml -o system.ssp\n\n"
     "  tlismni export my_model.json -o ball.fmu --t-end 2 --method ebdf --option k=3 --set restitution=0.5"
 )
 
@@ -51,7 +55,11 @@ def export(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Export a scenario or a model file as a co-simulation FMU."""
+    """Export a scenario or a model file as a co-simulation FMU, or a system file (.toml) as an SSP archive (.ssp)."""
+    if is_system_file(source):
+        others = (sets, t_end, communication_step, method, rtol, atol, step, option)
+        _system(source, output, json, any(value is not None for value in others))
+        return
     check_suffix(output, (".fmu",), "--output")
     check_file(output)
 
@@ -88,3 +96,23 @@ def export(
     else:
         carried = ", with tlismni inside" if bundle else ""
         say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB, for {', '.join(held)}{carried})")
+
+
+def _system(source: str, output: Path, json: bool, more: bool) -> None:
+    """Write the SSP archive of a system file."""
+    if more:
+        raise typer.BadParameter(f"'{source}' describes its instances and their solvers itself: change them there")
+    check_suffix(output, (".ssp",), "--output")
+    check_file(output)
+
+    from ...fmu_wrapper.master import read_system, write_ssp
+    from ...models import load
+
+    described = read_system(source)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with compile_notice():
+        path = write_ssp(described, output, Path(source).parent, load_scenario=load)
+    if json:
+        print_json({"file": str(path), "bytes": path.stat().st_size, "instances": list(described.instances)})
+    else:
+        say(f"wrote {path} (SSP 1.0, {len(described.instances)} instances)")

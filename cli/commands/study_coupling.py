@@ -39,8 +39,8 @@ def coupling(
         return
     columns = ("coupling", "step, ms", "error", "energy added", "steps", "passes", "instance steps")
     print_table("A blow, equal communication steps", columns, [_line(row) for row in study.rows])
-    columns = ("coupling", "tolerance", *columns[2:])
-    print_table("A blow, controlled communication step", columns, [_line(row) for row in study.controlled])
+    columns = ("coupling", "step or tolerance", *columns[2:])
+    print_table("A longer run, equal and controlled steps", columns, [_line(row) for row in study.controlled])
     stability = [
         (row.contender.label, f"{row.beyond} ".lstrip() + ("" if row.limit is None else number(1e3 * row.limit, 3)),
          "" if row.limit_angle is None else number(row.limit_angle, 3), row.fails)
@@ -54,7 +54,7 @@ def coupling(
 
 
 def _line(row: Any) -> tuple[str, ...]:
-    given = f"{1e3 * row.step:.4g}" if row.tolerance is None else f"{row.tolerance:g}"
+    given = f"{1e3 * row.step:.4g}" if row.tolerance is None else f"{row.tolerance:g}, {row.estimate}"
     if row.failure:
         return row.contender.label, given, "no run", "", "", "", ""
     counts = (str(row.steps), str(row.passes), str(row.instance_steps))

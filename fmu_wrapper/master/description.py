@@ -88,7 +88,8 @@ class Connection(Record):
         cls, source: str, target: str, factor: float = 1.0, unit: str = "1", hold: Hold | Literal["meet"] | None = None
     ) -> "Connection":
         """The connection from the output `source` to the input `target`."""
-        return cls(**{"from": source, "to": target, "factor": factor, "unit": unit, "hold": hold})
+        data: dict[str, Any] = {"from": source, "to": target, "factor": factor, "unit": unit, "hold": hold}
+        return cls(**data)
 
     @model_validator(mode="before")
     @classmethod

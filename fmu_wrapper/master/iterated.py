@@ -34,6 +34,9 @@ class Repeated:
         self.weight[[k for k in met if not self.linear[k]]] = WEIGHTS["meet"]
         coupled.need_courses(np.flatnonzero(self.linear))
         self.order = 2 if np.all(np.delete((self.weight == 0.5) | self.linear, met)) and len(self.weight) else 1
+        control = settings.control
+        # the estimate by iteration wants a first pass of order 1
+        self.predicts = settings.predictor == "linear" and (control is None or control.estimate != "iteration")
         self.passes = 0
         self.correction: Vector = np.zeros(len(coupled.links))
         """By how much the last step's result differs from that of its first pass."""
@@ -54,7 +57,7 @@ class Repeated:
     def _iterate(self, coupled: Coupled, moment: Moment, t: float, h: float) -> None:
         start = coupled.values.copy()
         u = start.copy()
-        if self.settings.predictor == "linear" and coupled.rate is not None and self.settings.control is None:
+        if self.predicts and coupled.rate is not None:
             u += h * coupled.rate
         self._begin(coupled)
         first: Vector | None = None

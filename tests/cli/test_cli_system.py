@@ -1,6 +1,7 @@
 """`tlismni cosim SYSTEM.toml`."""
 
 import json
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,9 @@ import pytest
 
 pytest.importorskip("fmpy")
 
+from tlismni.fmu_wrapper.export import HERE, SHIM
+
+needs_shim = pytest.mark.skipif(not (HERE / SHIM).is_file(), reason="the FMU shim is not built")
 Command = Callable[..., Any]
 
 SYSTEM = """
@@ -86,3 +90,14 @@ def test_refusals(tlismni: Command, system: Path, tmp_path: Path) -> None:
     wrong = tlismni("cosim", system)
     assert wrong.code == 1 and "'pendulum.angle'" in wrong.cause
     assert "cannot be read" in tlismni("cosim", tmp_path / "absent.toml").cause
+
+
+@needs_shim
+def test_a_system_as_an_ssp_archive(tlismni: Command, system: Path) -> None:
+    out = system.with_suffix(".ssp")
+    done = tlismni("export", system, "-o", out, "--json")
+    assert done.code == 0 and done.json["instances"] == ["a", "b"] and done.json["bytes"] == out.stat().st_size
+    with zipfile.ZipFile(out) as archive:
+        assert "SystemStructure.ssd" in archive.namelist()
+    assert tlismni("export", system, "-o", system.with_suffix(".fmu")).code == 2
+    assert tlismni("export", system, "-o", out, "--rtol", 1e-3).code == 2

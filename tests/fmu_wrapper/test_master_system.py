@@ -158,6 +158,46 @@ def test_a_step_that_cannot_be_controlled_ends_with_its_reason(folder):
         simulate(folder, SYSTEM, control)
 
 
+SPLIT = """
+    name = "split"
+    record = ["*.hammer.*", "*.anvil.*", "*.normal_force", "*.contact_force"]
+    connections = [
+        { from = "striker.hammer.x", to = "wall.hammer_x", hold = "meet" },
+        "striker.hammer.vx -> wall.hammer_vx",
+        "wall.blow.normal_force -> striker.contact_force",
+    ]
+    [instances.striker]
+    scenario = "split_striker"
+    [instances.wall]
+    scenario = "split_wall"
+    [master]
+    algorithm = "newton"
+    step = 5e-4
+    t_end = 0.014
+"""
+
+
+@needs_shim
+def test_fmus_of_both_versions_in_one_system_are_their_scenarios(tmp_path):
+    """Through the start of a contact, with rollbacks and derivatives."""
+    scenarios = simulate(tmp_path, SPLIT)
+    assert scenarios.stats["rollbacks"] > 10 and scenarios["wall.blow.normal_force"].max() > 100.0
+    text = SPLIT
+    for name, version in (("striker", "2.0"), ("wall", "3.0")):
+        export_fmu(load(f"split_{name}"), tmp_path / f"{name}.fmu", version)
+        text = text.replace(f'scenario = "split_{name}"', f'fmu = "{name}.fmu"')
+    fmus = simulate(tmp_path, text)
+    assert fmus.stats == scenarios.stats
+    for name in scenarios.channels:
+        assert np.array_equal(fmus[name], scenarios[name]), name
+
+
+def test_a_position_that_shall_meet_the_end_needs_its_velocity(tmp_path):
+    velocity = '    "striker.hammer.vx -> wall.hammer_vx",\n'
+    with pytest.raises(MasterError, match=r"hold = 'meet'.*connect 'striker\.hammer\.vx'"):
+        simulate(tmp_path, SPLIT, (velocity, ""))
+
+
 @needs_shim
 def test_an_fmu_that_is_none(folder):
     (folder / "a.fmu").write_text("nothing")

@@ -16,6 +16,7 @@ import numpy as np
 from ...core import simulate
 from ...fmu_wrapper.master import MasterError, SystemResult
 from .coupling_problems import (
+    AITKEN,
     APPROACH_SPEED,
     BLOW_END,
     CONTACT_FREQUENCY,
@@ -25,7 +26,7 @@ from .coupling_problems import (
     GAUSS_SEIDEL_LINEAR,
     GRAVITY,
     HAMMER,
-    NEWTON,
+    LONG_END,
     STIFFNESS,
     Contender,
     blow,
@@ -36,9 +37,12 @@ from .coupling_problems import (
 STEPS = tuple(BLOW_END / (15 * 2**k) for k in range(6))
 """s: 2 ms and its halves."""
 QUICK_STEPS = STEPS[1:4]
-TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
+LONG_STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
+"""s: equal ones, beside the controlled step."""
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
 """Of the controlled step."""
-CONTROLLED = (GAUSS_SEIDEL_LINEAR, NEWTON)
+CONTROLLED = ((GAUSS_SEIDEL_LINEAR, "doubling"), (AITKEN, "doubling"), (AITKEN, "iteration"))
+"""With the estimate of the error."""
 SHORTEST, LONGEST = 2e-5, 1.6e-2
 """s: limits of the search for the longest stable step."""
 LEVEL = 7e-3
@@ -61,6 +65,8 @@ class CouplingRow:
     """Communication step, s; the mean one if it is controlled."""
     tolerance: float | None = None
     """Of the controlled step."""
+    estimate: str = ""
+    """By which it is controlled."""
     error: float = math.nan
     """Of the hammer's velocity after the blow, in parts of the approach speed."""
     energy: float = math.nan
@@ -104,6 +110,7 @@ class CouplingStudy:
 
     rows: tuple[CouplingRow, ...]
     controlled: tuple[CouplingRow, ...]
+    """Of the longer run, with equal steps too."""
     stability: tuple[StabilityRow, ...]
 
     def of(self, contender: Contender) -> list[CouplingRow]:
@@ -140,16 +147,17 @@ class CouplingStudy:
 def coupling_study(*, quick: bool = False, progress: Callable[[float], None] | None = None) -> CouplingStudy:
     """Run every contender with every step, then controlled, then on the press; `progress` gets the share done."""
     steps = QUICK_STEPS if quick else STEPS
-    tolerances = TOLERANCES[1:3] if quick else TOLERANCES
-    plan: list[tuple[Contender, float, float | None]] = [(c, h, None) for c in CONTENDERS for h in steps]
-    plan += [(c, STEPS[0], tolerance) for c in CONTROLLED for tolerance in tolerances]
+    long_steps, tolerances = (LONG_STEPS[:2], TOLERANCES[1:3]) if quick else (LONG_STEPS, TOLERANCES)
+    short, long = Reference(BLOW_END), Reference(LONG_END)
+    plan: list[tuple[Any, ...]] = [(c, h, short) for c in CONTENDERS for h in steps]
+    plan += [(c, h, long) for c in dict.fromkeys(c for c, _ in CONTROLLED) for h in long_steps]
+    plan += [(c, LONG_STEPS[0], long, tol, how) for c, how in CONTROLLED for tol in tolerances]
     total = len(plan) + 2 * len(CONTENDERS)
-    reference = Reference()
     rows: list[CouplingRow] = []
     stability: list[StabilityRow] = []
     with _without_warnings():
-        for contender, step, tolerance in plan:
-            rows.append(strike(contender, step, reference, tolerance))
+        for case in plan:
+            rows.append(strike(*case))
             if progress is not None:
                 progress(len(rows) / total)
         for contender in CONTENDERS:
@@ -157,18 +165,19 @@ def coupling_study(*, quick: bool = False, progress: Callable[[float], None] | N
             if progress is not None:
                 progress((len(plan) + 2 * len(stability)) / total)
     return CouplingStudy(
-        tuple(row for row in rows if row.tolerance is None),
-        tuple(row for row in rows if row.tolerance is not None),
+        tuple(rows[: len(CONTENDERS) * len(steps)]),
+        tuple(rows[len(CONTENDERS) * len(steps) :]),
         tuple(stability),
     )
 
 
 class Reference:
-    """The whole after the blow."""
+    """The whole at `t_end`, s, after the blow."""
 
-    def __init__(self) -> None:
+    def __init__(self, t_end: float = BLOW_END) -> None:
         whole = blow()[0]
-        result = simulate(whole.model, BLOW_END, "irk", rtol=1e-12, atol=1e-15)
+        result = simulate(whole.model, t_end, "irk", rtol=1e-12, atol=1e-15)
+        self.t_end = t_end
         energy = result["energy.kinetic"] + result["energy.strain"]
         self.velocity = float(result["hammer.vx"][-1])
         self.start, self.end = float(energy[0]), float(energy[-1])
@@ -177,16 +186,19 @@ class Reference:
 RECORD = ("*.hammer.vx", "*.energy.kinetic", "*.energy.strain")
 
 
-def strike(contender: Contender, step: float, reference: Reference, tolerance: float | None = None) -> CouplingRow:
+def strike(
+    contender: Contender, step: float, reference: Reference, tolerance: float | None = None, estimate: str = ""
+) -> CouplingRow:
     """One run of the blow, with equal steps (s) or a controlled one that starts with it."""
-    control = {} if tolerance is None else {"control": {"tolerance": tolerance, "absolute": 1e-6}}
+    control = {"tolerance": tolerance, "absolute": 1e-6, "estimate": estimate}
+    more = {} if tolerance is None else {"control": control}
     try:
-        result = couple(blow()[1:], contender, step, BLOW_END, RECORD, **control)
+        result = couple(blow()[1:], contender, step, reference.t_end, RECORD, **more)
     except MasterError as error:
-        return CouplingRow(contender, step, tolerance, failure=str(error))
+        return CouplingRow(contender, step, tolerance, estimate, failure=str(error))
     counts = result.stats
     return CouplingRow(
-        contender, BLOW_END / counts["communication_steps"], tolerance,
+        contender, reference.t_end / counts["communication_steps"], tolerance, estimate,
         abs(float(result["striker.hammer.vx"][-1]) - reference.velocity) / APPROACH_SPEED,
         (_energy(result) - reference.end) / reference.start,
         counts["communication_steps"], counts["passes"], counts["instance_steps"],

@@ -43,12 +43,13 @@ def plot_coupling(study: CouplingStudy, path: Path) -> Path:
     """Write the figure. Raises TlismniError if matplotlib cannot be imported."""
     figure_class, context = _matplotlib()
     with context(STYLE):
-        figure = figure_class(figsize=(12.0, 9.0), layout="constrained", dpi=RESOLUTION)
-        (over_step, over_cost), (energy, limits) = figure.subplots(2, 2)
-        _over_step(over_step, study)
-        _over_cost(over_cost, study)
-        _energy(energy, study)
-        _limits(limits, study)
+        figure = figure_class(figsize=(14.0, 8.6), layout="constrained", dpi=RESOLUTION)
+        panels = figure.subplot_mosaic([["step", "cost", "control"], ["energy", "limits", "limits"]])
+        _over_step(panels["step"], study)
+        _over_cost(panels["cost"], study)
+        _controlled(panels["control"], study)
+        _energy(panels["energy"], study)
+        _limits(panels["limits"], study)
         figure.suptitle("hammer and anvil in two halves that touch, against the whole")
         figure.savefig(path)
     return path
@@ -69,6 +70,7 @@ def _over_step(axes: Any, study: CouplingStudy) -> None:
             )
             axes.annotate(f"h$^{order}$", (1e3 * steps[-1], 0.5 * rows[-1].error), fontsize=8, color="0.5", va="top")
     axes.set(xlabel="communication step, ms", ylabel="error of the hammer's velocity\nafter the blow, relative")
+    _room_below(axes)
     axes.legend(fontsize=7.5, loc="lower right")
 
 
@@ -79,6 +81,21 @@ def _over_cost(axes: Any, study: CouplingStudy) -> None:
             [r.instance_steps for r in rows], [r.error for r in rows], label=contender.label, **_line(contender)
         )
     axes.set(xlabel="steps of both instances, repeated ones too", ylabel="error of the hammer's velocity, relative")
+    axes.legend(fontsize=7.5, loc="lower left")
+
+
+def _controlled(axes: Any, study: CouplingStudy) -> None:
+    groups = dict.fromkeys((row.contender, row.estimate) for row in study.controlled)
+    for contender, estimate in groups:
+        chosen = [r for r in study.controlled if (r.contender, r.estimate) == (contender, estimate) and not r.failure]
+        style = {**_line(contender), "linestyle": {"": "-", "doubling": (0, (4, 2))}.get(estimate, (0, (1, 1.5)))}
+        style["markerfacecolor"] = style["color"] if not estimate else "none"
+        label = f"{contender.label}: {'equal steps' if not estimate else f'controlled by {estimate}'}"
+        axes.loglog([r.instance_steps for r in chosen], [r.error for r in chosen], label=label, **style)
+    axes.set(xlabel="steps of both instances", ylabel="error of the hammer's velocity, relative")
+    axes.set_title("a longer run, mostly free flight", fontsize=9)
+    axes.xaxis.set_minor_formatter("")
+    _room_below(axes)
     axes.legend(fontsize=7.5, loc="lower left")
 
 
@@ -112,6 +129,12 @@ def _limits(axes: Any, study: CouplingStudy) -> None:
     axes.axvline(period, color="0.5", lw=0.8, ls=":")
     axes.text(period, -0.75, "period", fontsize=7.5, ha="center", color="0.4")
     axes.set_xlabel("longest stable step on a contact that stays, ms")
+
+
+def _room_below(axes: Any) -> None:
+    """Half a panel for the legend."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(low / (high / low) ** 0.6, high)
 
 
 def _line(contender: Contender) -> dict[str, Any]:

@@ -16,6 +16,8 @@ SOLVER = {"rtol": 1e-10, "atol": 1e-13}
 """Of both halves: what is left is the coupling's error."""
 BLOW_END = 0.03
 """s; the hammer is off the anvil again."""
+LONG_END = 0.15
+"""s, of a run that is mostly free flight after the blow."""
 APPROACH_SPEED = 1.0
 """m/s, of the blow."""
 GRAVITY, STIFFNESS, DAMPING, HAMMER, ANVIL, ANVIL_FREQUENCY = 20.0, 1e5, 20.0, 1.0, 2.0, 100.0
