@@ -46,7 +46,7 @@ class Model(Record):
 
     @model_validator(mode="after")
     def _check(self) -> "Model":
-        names = [e.name for e in self.elements()] + [i.name for i in (*self.inputs, *self.outputs)]
+        names = [e.name for e in self.elements()] + [i.name for i in self.inputs] + [o.name for o in self.outputs]
         twice = [name for name, count in Counter(names).items() if count > 1]
         if twice:
             raise ValueError(f"names must be unique in a model; used more than once: {twice}")

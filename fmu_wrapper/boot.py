@@ -183,14 +183,15 @@ def _unpack_into(folder, content):  # type: ignore[no-untyped-def]
         for info in content.infolist():  # one date for all, as compiled code is cached by name, date and size
             os.utime(os.path.join(mine, info.filename), (946684800, 946684800))
         if os.path.isdir(folder) and not _complete(folder, content):
-            os.rename(folder, os.path.join(mine, "damaged"))  # somebody has tidied up in it
+            os.rename(folder, f"{mine}-old")  # somebody has tidied up in it
         try:
             os.rename(mine, folder)
         except OSError:
             if not _complete(folder, content):  # else another process was faster
                 raise
     finally:
-        shutil.rmtree(mine, ignore_errors=True)
+        for rest in (mine, f"{mine}-old"):
+            shutil.rmtree(rest, ignore_errors=True)
 
 
 def _complete(folder, content):  # type: ignore[no-untyped-def]

@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from .boot import user_cache
@@ -64,20 +64,15 @@ def _digest() -> str:
     return digest.hexdigest()[:16]
 
 
-def build(
-    names: Sequence[str], output: Path | None = None, said: Callable[[str], None] = lambda text: None
-) -> list[Path]:
-    """The binaries of some platforms, as `binary` gives them, or copied to `output`/PLATFORM; `said` hears of each."""
-    paths = []
+def build(names: Sequence[str], output: Path | None = None) -> Iterator[tuple[str, Path]]:
+    """Names and binaries of some platforms, one by one, as `binary` gives them or copied to `output`/PLATFORM."""
     for name in choose(names or ["all"]):
         path = binary(name)
         if output is not None:
             copy = output / name / path.name
             copy.parent.mkdir(parents=True, exist_ok=True)
             path = Path(shutil.copy(path, copy))
-        said(f"{name}: {path}")
-        paths.append(path)
-    return paths
+        yield name, path
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -91,7 +86,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--output", type=Path, metavar="DIR", help="copy the binaries to DIR/PLATFORM")
     given = parser.parse_args(arguments)
     try:
-        build(given.platforms, given.output, lambda text: sys.stdout.write(f"{text}\n"))
+        for name, path in build(given.platforms, given.output):
+            sys.stdout.write(f"{name}: {path}\n")
     except ExportError as error:
         sys.stderr.write(f"error: {error}\n")
         return 1

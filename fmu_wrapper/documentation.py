@@ -90,6 +90,7 @@ def _row(variable: Variable) -> tuple[Any, ...]:
     start = variable.start
     if start is not None and variable.items:
         start = variable.item(start)
+    listed = variable.items and variable.role != "constant"
     numbers = (variable.minimum, variable.maximum, variable.nominal)
     return (
         variable.name,
@@ -97,7 +98,7 @@ def _row(variable: Variable) -> tuple[Any, ...]:
         variable.unit or "",
         "" if start is None else _number(start),
         *("" if x is None else _number(x) for x in numbers),
-        variable.description,
+        f"{variable.description}: {', '.join(variable.items)}" if listed else variable.description,
     )
 
 

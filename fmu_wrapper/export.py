@@ -2,7 +2,6 @@
 
 import json
 import logging
-import math
 import os
 import platform
 import re
@@ -26,9 +25,11 @@ from .model_description import fmi2_description
 from .model_description3 import fmi3_description
 from .platforms import PLATFORMS, choose, this_platform
 from .python_library import library_record, shared_library
+from .recommended_step import recommended_step
+from .run import build_simulation
 from .settings import Settings
 from .slave import Slave
-from .terminals import terminals_and_icons
+from .terminals import terminals, terminals_and_icons
 from .variables import VariableTable
 from .version import package_version
 
@@ -60,8 +61,7 @@ def export_fmu(
     path : the file to write, "x.fmu".
     fmi_version : "2.0" or "3.0"; "2" and "3" mean the same.
     t_end : stop time of the default experiment, s.
-    communication_step : preferred communication step, s; without it a round number of a hundredth to a
-        thousandth of `t_end`.
+    communication_step : preferred communication step, s; without it that of `recommended_step`.
     bundle : carry the package along; the machine needs only the third-party packages then.
     platforms : further platforms whose binaries the FMU shall have, such as "x86_64-windows", or "all" of
         `platforms.PLATFORMS`; they are built if need be, which takes ziglang and some time.
@@ -88,7 +88,8 @@ def export_fmu(
     slave = Slave(source, **{k: v for k, v in given.items() if v is not None})
     solver_data = slave.settings.as_arguments()
     if solver_data["communication_step"] is None:
-        solver_data["communication_step"] = _round_step(slave.settings.t_end)
+        simulation = build_simulation(None, slave.model, slave.settings)
+        solver_data["communication_step"] = recommended_step(simulation, slave.model, slave.settings.t_end)
         slave = Slave(slave.model, variables=slave.variables, **solver_data)
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
@@ -155,8 +156,10 @@ def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
     folder = "terminalsAndIcons"
     if picture is not None:
         files = {f"{folder}/icon.png": picture, f"{folder}/icon.svg": etree.tostring(to_svg(drawing, names=False))}
-    described = terminals_and_icons(slave.model, slave.variables, picture is not None)
-    return {f"{folder}/terminalsAndIcons.xml": described, **files}
+    if files or terminals(slave.model, slave.variables):
+        described = terminals_and_icons(slave.model, slave.variables, bool(files))
+        files[f"{folder}/terminalsAndIcons.xml"] = described
+    return files
 
 
 def shim_path() -> Path:
@@ -205,10 +208,6 @@ def c_identifier(name: str) -> str:
     """`name` as a C identifier."""
     text = re.sub(r"\W", "_", name, flags=re.ASCII) or "model"
     return f"_{text}" if text[0].isdigit() else text
-
-
-def _round_step(t_end: float | None) -> float | None:
-    return None if t_end is None else float(f"1e{math.floor(math.log10(t_end)) - 2}")
 
 
 def _json(data: Any) -> bytes:

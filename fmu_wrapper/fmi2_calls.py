@@ -51,9 +51,10 @@ class Fmi2Calls(Calls):
         self.slave.reset()
 
     @fmi_call()
-    def fmi2DoStep(self, t: float, h: float) -> None:
-        """One communication step."""
+    def fmi2DoStep(self, t: float, h: float, clock: Any = None) -> None:
+        """One communication step; `clock` is what `tell_clock` writes to."""
         self.slave.do_step(t, h)
+        self.tell_clock(clock)
 
     @fmi_call()
     def fmi2CancelStep(self) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .calls import Calls, fmi_call, numbers_in, references_in, text_of
+from .calls import Calls, fmi_call, numbers_in, put, references_in, text_of
 from .errors import FmuValueError, UnavailableError
 from .variables import Kind
 
@@ -84,13 +84,19 @@ class Fmi3Calls(Calls):
     # steps and events
 
     @fmi_call()
-    def fmi3DoStep(self, t: float, h: float, event_due: Any, terminate: Any, early: Any, last_time: Any) -> None:
-        """One communication step; an event in it may end it, as the instance was made."""
-        due, ended, last = numbers_in(event_due, np.bool_), numbers_in(early, np.bool_), numbers_in(last_time, float)
-        numbers_in(terminate, np.bool_)[:] = due[:] = ended[:] = False
-        last[:] = self.slave.time
+    def fmi3DoStep(
+        self, t: float, h: float, event_due: Any, terminate: Any, early: Any, last_time: Any, clock: Any = None
+    ) -> None:
+        """One communication step; an event in it may end it, as the instance was made. `clock` is what `tell_clock`
+        writes to."""
+        for flag in (event_due, terminate, early):
+            put(flag, "?", False)
+        put(last_time, "d", self.slave.time)
         end = self.slave.do_step(t, h)
-        due[:], ended[:], last[:] = end.event_due, end.early, end.time
+        put(event_due, "?", end.event_due)
+        put(early, "?", end.early)
+        put(last_time, "d", end.time)
+        self.tell_clock(clock)
 
     @fmi_call()
     def fmi3EnterEventMode(self) -> None:

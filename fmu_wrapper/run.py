@@ -50,7 +50,9 @@ def effective(model: Model, settings: Settings, values: Values) -> tuple[Model, 
     table = values.table
     parameters = {v.name: values[v] for v in table.block("parameter")}
     changed = {name: value for name, value in parameters.items() if value != model.parameter_value(name)}
-    given = {v.name.removeprefix("solver."): v.item(values[v]) if v.items else values[v] for v in table.block("solver")}
+    given: dict[str, Any] = {
+        v.name.removeprefix("solver."): v.item(values[v]) if v.items else values[v] for v in table.block("solver")
+    }
     own = {name: given.pop(name) for name in ("method", "rtol", "atol", "step")}
     options = {**settings.options, **given} if own["method"] == settings.method else {}
     return (model.with_parameters(changed) if changed else model), replace(settings, options=options, **own)
@@ -184,6 +186,11 @@ class Run:
             if early:
                 return StepEnd(reached, early=True)
         return StepEnd(t)
+
+    @property
+    def horizon(self) -> float:
+        """Time up to which the solver has gone without an event, s."""
+        return float(self._simulation.horizon)
 
     def handle_event(self) -> bool:
         """Let a contact event at the present time happen, if one is due. True if it entails another at once."""

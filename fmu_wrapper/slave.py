@@ -156,6 +156,19 @@ class Slave(SlaveDerivatives):
         self._log_events(run, seen)
         return end
 
+    @property
+    def horizon(self) -> float:
+        """Time, s, up to which steps with the present inputs only move the clock; minus infinity for none."""
+        if self._phase != Phase.STEP or self._run is None or self._untold or self._values.sloped or self.updates:
+            return -math.inf
+        return min(self._run.horizon, math.inf if self._stop_time is None else self._stop_time)
+
+    def catch_up(self, t: float) -> None:
+        """Move the clock to `t`, s, within the horizon, after steps that nobody told of."""
+        run = self._engine()
+        run.advance(t, self.event_mode, self.early_return)
+        self._arrive(run, t)
+
     def _arrive(self, run: Run, t: float) -> None:
         """The simulation is at `t`, s, and so are the inputs that go on with derivatives."""
         if self._values.go_on(t - self._time):

@@ -140,7 +140,7 @@ def check_value(variable: Variable, value: Any) -> Any:
             meanings = ", ".join(f"{i} {item}" for i, item in enumerate(variable.items))
             raise FmuValueError(f"{name} was set to {value!r}, which is none of its values: {meanings}")
         if not variable.items:
-            _check_limits(variable, name, value)
+            _check_limits(variable, name, int(value))
         return int(value)
     number = float(value)
     if not math.isfinite(number):

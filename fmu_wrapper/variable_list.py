@@ -34,7 +34,7 @@ def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -
     ModelError : for an unknown method.
     """
     scales = Scales.of(model, settings.t_end)
-    laws = tuple(dict.fromkeys([*(law.__name__ for law in LAWS), *(c.law.type for c in model.contacts)]))
+    laws = tuple(dict.fromkeys([*(law.__name__ for law in LAWS), *(type(c.law).__name__ for c in model.contacts)]))
     return VariableTable(
         [
             Variable(TIME, "time", "real", "independent", "time", "s", "simulation time"),
@@ -60,7 +60,7 @@ def _parameter(reference: int, p: Parameter, model: Model) -> Variable:
 def _law(reference: int, contact: Any, laws: tuple[str, ...]) -> Variable:
     return Variable(
         reference, f"{contact.name}.law", "integer", "constant", "law", None, f"contact law of {contact.name}",
-        laws.index(contact.law.type), enumeration="ContactLaw", items=laws,
+        laws.index(type(contact.law).__name__), enumeration="ContactLaw", items=laws,
     )  # fmt: skip
 
 

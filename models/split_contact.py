@@ -6,7 +6,7 @@ contact's force and gives the hammer's motion; the half `split_wall` takes that 
 
 import math
 
-from ..core.contact.contact2d import Contact2D, Disk2D, DiskOnHalfPlane2D, HalfPlane2D
+from ..core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from ..core.description import Model
 from ..core.elements import AppliedForce2D, Bushing2D, Joint, MovingFrame2D, Prismatic2D, RigidBody2D
 from ..core.model.channels import Input
@@ -135,7 +135,7 @@ def _blow(
     relaxation_time: float | None,
     hammer_mass: float,
     anvil_mass: float,
-) -> Contact2D:
+) -> DiskOnHalfPlane2D:
     """The contact of a point of `striker` with the anvil's right side."""
     effective = 1.0 / (1.0 / hammer_mass + 1.0 / anvil_mass)
     found = contact_law(

@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..core import NewtonImpact
+from ..core.contact.laws import ImpactLaw
 from ..core.description import Model
 from ..models import Scenario, load
 from .comparisons.common import Comparison, Progress, Row, Task
 from .comparisons.constraint_contact import compare_constraints
 from .comparisons.force_contact import compare_forces
+from .comparisons.persistent_contact import compare_persistent, persists
+from .comparisons.rod_impact import compare_rods, strikes_rods
 from .comparisons.smooth_motion import compare_motion
 from .exudyn_import import import_exudyn
 from .translation import find_translator
@@ -112,7 +114,11 @@ def crosscheck(
     task = Task(chosen, exudyn_model or chosen.model, step, progress or log.info)
     if not chosen.model.contacts:
         comparison = compare_motion(task)
-    elif any(isinstance(c.law, NewtonImpact) for c in chosen.model.contacts):
+    elif strikes_rods(chosen.model):
+        comparison = compare_rods(task)
+    elif persists(chosen.model):
+        comparison = compare_persistent(task)
+    elif any(isinstance(c.law, ImpactLaw) for c in chosen.model.contacts):
         comparison = compare_constraints(task)
     else:
         comparison = compare_forces(task)

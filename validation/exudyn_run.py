@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..core.description import Model
+from ..core.elements import FlexibleBody
 from .errors import ExudynFailed
 from .exudyn_model import build_exudyn_model
 from .translation import Build
@@ -42,6 +43,13 @@ class ExudynSettings:
     absolute_tolerance: float = 1e-10
     contact_tolerance: float = 1e-3
     linear_solver: str = "EXUdense"
+
+
+def settings_for(model: Model, **given: Any) -> ExudynSettings:
+    """Settings that suit a model: with flexible bodies a kept Jacobian, and a tolerance above their rounding."""
+    flexible = any(isinstance(b, FlexibleBody) for b in model.bodies)
+    stiff = {"modified_newton": True, "absolute_tolerance": 1e-8, "linear_solver": "EigenSparse"} if flexible else {}
+    return ExudynSettings(**{**stiff, **given})
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ def info(fmu: ExistingFmu, json: Json = False, debug: Debug = False) -> None:
         return
     out = stdout()
     out.print(f"{found['model']} (FMI {found['fmi']}): {found['description']}", markup=False)
-    rows = [(title, found[key]) for title, key in _FACTS.items()]
+    rows: list[tuple[Any, ...]] = [(title, found[key]) for title, key in _FACTS.items()]
     rows += [("binaries for", ", ".join(found["binaries"]))]
     rows += [("it can do", ", ".join(found["capabilities"])), *_runs_with(found)]
     print_table("", ("", ""), [(key, "-" if value is None else value) for key, value in rows], left=2)
@@ -37,13 +37,13 @@ def info(fmu: ExistingFmu, json: Json = False, debug: Debug = False) -> None:
         members = [", ".join(f"{m} = {v}" for m, v in t["members"].items()) for t in found["terminals"]]
         rows = [(t["name"], m, t["description"]) for t, m in zip(found["terminals"], members, strict=True)]
         print_table("terminals", columns, rows, left=3)
-    columns = ("variable", "start", "unit", "range", "meaning")
+    headings = ("variable", "start", "unit", "range", "meaning")
     for causality, title in _CAUSALITIES.items():
         of_kind = [v for v in found["variables"] if v["causality"] == causality]
         if of_kind:
-            rows = [_row(v) for v in of_kind]
-            used = [k for k in range(len(columns)) if any(row[k] for row in rows)]
-            print_table(title, [columns[k] for k in used], [[row[k] for k in used] for row in rows], left=len(used))
+            shown = [_row(v) for v in of_kind]
+            used = [k for k in range(len(headings)) if any(row[k] for row in shown)]
+            print_table(title, [headings[k] for k in used], [[row[k] for k in used] for row in shown], left=len(used))
 
 
 def _runs_with(found: dict[str, Any]) -> list[tuple[str, Any]]:

@@ -28,6 +28,7 @@ from ..system.evaluate import evaluate_residuals
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.redundancy import RedundantRow
 from ..system.workspace import Workspace
+from . import motions
 from .contact_side import ContactSide
 from .dense_output import query
 from .near_singular import smooth_query, strained
@@ -147,11 +148,7 @@ class Engine(ContactSide):
         arrays["q"][: a.n] = a.q0
         arrays["v"][: a.n] = a.v0
         arrays["t"][0] = self.settings.t0
-        if a.placed:
-            evaluate_residuals(self.workspace.record)
-            coordinates, rows = (list(x) for x in zip(*a.placed, strict=True))
-            arrays["q"][coordinates] -= arrays["phi"][rows]
-            arrays["v"][coordinates] -= arrays["phid"][rows]
+        motions.place(self.workspace, self.settings.t0)
         refuse = self.settings.redundant == "refuse"
         self.redundant = make_consistent(self.workspace, self.settings.start_tolerance, refuse)
         gap_tolerance = 1e-9 * float(np.max(a.coordinate_scale, initial=1.0))

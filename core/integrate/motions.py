@@ -4,7 +4,10 @@ import logging
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING
 
+from ..errors import SimulationError
 from ..model.motion import DURATION, JUMP, RATE_JUMP, SINCE, InputMotion
+from ..system.evaluate import evaluate_residuals
+from ..system.workspace import Workspace
 from .restore import restart_here
 
 if TYPE_CHECKING:
@@ -15,7 +18,23 @@ logger = logging.getLogger(__name__)
 LARGE_JUMP = 0.01
 """Of the size of the mechanism (a turn: of 1 rad); a larger jump of a position is reported."""
 
+LONGEST_WAY = 1000.0
+"""Of the size of the mechanism (a turn: of 1 rad), within one communication step: more is a slip of the pen, and steps
+that no shape passes through would take for ever."""
+
 State = tuple[InputMotion, float, float]
+
+
+def place(workspace: Workspace, t0: float) -> None:
+    """Begin the motions of inputs at time `t0`, s, and put coordinates where the rows say that they start at."""
+    arrays, assembly = workspace.arrays, workspace.assembly
+    for motion in assembly.motions:
+        arrays["inputs"][motion.jumps] = (0.0, 0.0, t0, 0.0)
+    if assembly.placed:
+        evaluate_residuals(workspace.record)
+        coordinates, rows = (list(x) for x in zip(*assembly.placed, strict=True))
+        arrays["q"][coordinates] -= arrays["phi"][rows]
+        arrays["v"][coordinates] -= arrays["phid"][rows]
 
 
 def led_by(sim: "Simulation", channels: Collection[int]) -> list[State]:
@@ -60,12 +79,18 @@ def start_again(sim: "Simulation") -> None:
 
 
 def close_jumps(sim: "Simulation", t: float) -> None:
-    """Motions that have jumped at the present time join what their channels say at time `t`, s."""
+    """Motions that have jumped at the present time join what their channels say at time `t`, s.
+
+    Raises
+    ------
+    SimulationError : for a motion that goes absurdly far till then.
+    """
     inputs = sim.workspace.arrays["inputs"]
     changed = False
     for motion in sim.assembly.motions:
         row = inputs[motion.jumps]
         if row[DURATION] == 0.0 and (row[JUMP] != 0.0 or row[RATE_JUMP] != 0.0) and t > sim.t:
+            _refuse_long_way(sim, motion, t)
             row[DURATION] = t - row[SINCE]
             changed = True
             _warn_if_large(sim, motion, float(row[JUMP]), float(row[DURATION]))
@@ -73,9 +98,27 @@ def close_jumps(sim: "Simulation", t: float) -> None:
         restart_here(sim)
 
 
+def _refuse_long_way(sim: "Simulation", motion: InputMotion, t: float) -> None:
+    inputs = sim.workspace.arrays["inputs"]
+    way = motion.said(inputs, t)[0] - motion.state(inputs, sim.t)[0]
+    most = LONGEST_WAY * _size(sim)
+    if not abs(way) <= most:
+        names = sim.assembly.input_names
+        led = [names[k] for k in (motion.position, motion.rate) if k >= 0]
+        raise SimulationError(
+            f"inputs {led} ask for a way of {way:.3g} from t = {sim.t:.9g} s to {t:.9g} s, more than {LONGEST_WAY:g} "
+            f"times the mechanism's size: check their values and units ({_size(sim):.3g} is its size)",
+            t=sim.t,
+            loop="event",
+        )
+
+
+def _size(sim: "Simulation") -> float:
+    return float(max(sim.assembly.coordinate_scale, default=1.0))
+
+
 def _warn_if_large(sim: "Simulation", motion: InputMotion, jump: float, duration: float) -> None:
-    size = float(max(sim.assembly.coordinate_scale, default=1.0))
-    if abs(jump) > LARGE_JUMP * size:
+    if abs(jump) > LARGE_JUMP * _size(sim):
         logger.warning(
             "at t = %.9g s the motion is %.3g away from its input '%s': it follows within the next %.3g s. Shorter "
             "communication steps, or a velocity that fits the position, make the jump smaller",

@@ -145,6 +145,12 @@ class Simulation(Engine):
         return min(self.t_internal, target)
 
     @property
+    def horizon(self) -> float:
+        """Time, s, up to which the run is computed with the present inputs and all events have happened."""
+        newest = self.t_internal
+        return math.nextafter(newest, -math.inf) if self.pending else newest
+
+    @property
     def event_due(self) -> bool:
         """True if the present time is that of a contact event that has not happened yet."""
         return bool(self.pending) and self.t_internal == self.t

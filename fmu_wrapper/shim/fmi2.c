@@ -178,7 +178,10 @@ EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[
 
 EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state) {
     (void)no_set_state; /* a stored state lives until it is freed */
-    FORWARD(c, "fmi2DoStep", "(dd)", time, step);
+    if (instance_glide(c, time, step, NULL)) {
+        return STATUS_OK;
+    }
+    FORWARD(c, "fmi2DoStep", "(ddN)", time, step, instance_clock(c));
 }
 
 EXPORT fmi2Status fmi2CancelStep(fmi2Component c) {

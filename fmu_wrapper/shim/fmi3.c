@@ -201,8 +201,12 @@ EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step,
                              fmi3Boolean *event_handling_needed, fmi3Boolean *terminate, fmi3Boolean *early_return,
                              fmi3Float64 *last_successful_time) {
     (void)no_set_state; /* a stored state lives until it is freed */
-    FORWARD(c, "fmi3DoStep", "(ddNNNN)", time, step, OUT(event_handling_needed, 1), OUT(terminate, 1),
-            OUT(early_return, 1), OUT(last_successful_time, 1));
+    if (instance_glide(c, time, step, last_successful_time)) {
+        *event_handling_needed = *terminate = *early_return = false;
+        return STATUS_OK;
+    }
+    FORWARD(c, "fmi3DoStep", "(ddNNNNN)", time, step, OUT(event_handling_needed, 1), OUT(terminate, 1),
+            OUT(early_return, 1), OUT(last_successful_time, 1), instance_clock(c));
 }
 
 EXPORT fmi3Status fmi3EnterEventMode(fmi3Instance c) {

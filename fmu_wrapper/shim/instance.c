@@ -1,5 +1,7 @@
 #include "instance.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -192,6 +194,8 @@ Instance *instance_new(const Instance *model, const Asked *asked, const char *fu
     *self = *model;
     self->magic = MAGIC;
     self->calls = self->strings = NULL;
+    self->horizon = -HUGE_VAL;
+    self->behind = false;
     self->name = copy_of(name && *name ? name : "instance");
     char *resources = resource_location ? path_of(resource_location) : NULL;
     bool made = false;
@@ -229,11 +233,55 @@ bool instance_enter(Instance *self, int *gil) {
     return self && self->magic == MAGIC && python_enter(gil);
 }
 
-static PyObject *call(Instance *self, const char *method, const char *format, va_list values) {
-    PyObject *arguments = py.Py_VaBuildValue(format, values);
+PyObject *instance_clock(Instance *self) {
+    return writable_view_of(&self->time, 2 * sizeof self->time);
+}
+
+bool instance_glide(Instance *self, double time, double step, double *reached) {
+    if (!self || self->magic != MAGIC) {
+        return false;
+    }
+    double end = time + step, size = fabs(time) > step ? fabs(time) : step;
+    double rounding = 4.0 * DBL_EPSILON * size; /* of a master's clock */
+    if (!(step > 0.0 && fabs(time - self->time) <= rounding && end > self->time && end <= self->horizon)) {
+        return false;
+    }
+    self->time = end;
+    self->behind = true;
+    if (reached) {
+        *reached = end;
+    }
+    return true;
+}
+
+static PyObject *call_method(Instance *self, const char *method, PyObject *arguments) {
     PyObject *function = arguments ? py.PyObject_GetAttrString(self->calls, method) : NULL;
     PyObject *answer = function ? py.PyObject_CallObject(function, arguments) : NULL;
     py.Py_DecRef(function);
+    return answer;
+}
+
+/* What comes next may need the present time, and may change what the horizon rests on. */
+static void catch_up(Instance *self) {
+    if (self->behind) {
+        PyObject *arguments = py.Py_BuildValue("(d)", self->time);
+        PyObject *answer = call_method(self, "catch_up", arguments);
+        py.Py_DecRef(arguments);
+        if (!answer) {
+            report_exception(self, "catch_up");
+        }
+        py.Py_DecRef(answer);
+        self->behind = false;
+    }
+}
+
+static PyObject *call(Instance *self, const char *method, const char *format, va_list values) {
+    catch_up(self);
+    if (strncmp(method + strlen("fmi_"), "Get", 3) != 0) {
+        self->horizon = -HUGE_VAL;
+    }
+    PyObject *arguments = py.Py_VaBuildValue(format, values);
+    PyObject *answer = call_method(self, method, arguments);
     py.Py_DecRef(arguments);
     if (!answer) {
         report_exception(self, method);
@@ -254,7 +302,11 @@ int instance_status(Instance *self, const char *method, const char *format, ...)
     va_start(values, format);
     PyObject *answer = call(self, method, format, values);
     va_end(values);
-    return (int)instance_number(answer, STATUS_ERROR);
+    int status = (int)instance_number(answer, STATUS_ERROR);
+    if (status != STATUS_OK) {
+        self->horizon = -HUGE_VAL;
+    }
+    return status;
 }
 
 long long instance_number(PyObject *answer, long long otherwise) {

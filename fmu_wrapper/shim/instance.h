@@ -25,7 +25,18 @@ struct Instance {
     void (*updater)(void); /* the host's callback, of the type that `update` knows */
     void *environment;
     char *name;
+    /* Steps within what the solver has computed need no Python: `horizon` is the time up to which they are that, as of
+     * the last step, and `behind` says that the Python side has not been told of the latest of them, up to `time`. */
+    double time, horizon;
+    bool behind;
 };
+
+/* Make a step without Python, if it is within the horizon and starts at the instance's own time; `reached` (NULL:
+ * not wanted) is where it ends. */
+bool instance_glide(Instance *self, double time, double step, double *reached);
+
+/* A memory view on `time` and `horizon`, for the time of a call. */
+PyObject *instance_clock(Instance *self);
 
 /* What the host asks of a new instance; the event mode and all behind it are FMI 3.0's. */
 typedef struct {

@@ -20,6 +20,7 @@ from tlismni.core import (
     Ramp,
     RigidBody2D,
     Simulation,
+    SimulationError,
     SpringDamper2D,
     State,
     Step,
@@ -199,6 +200,29 @@ def test_the_state_holds_a_jump_that_is_being_closed():
         other.restore(State.from_bytes(stored))
         other.advance(t)
         assert np.array_equal(go_on(other), end)
+
+
+@pytest.mark.parametrize("x, v", [(1e6, 0.0), (0.0, -1e6), (1e300, 1e300)])
+def test_an_absurd_way_is_refused_at_once_and_the_run_can_go_back(x, v):
+    sim = Simulation(wall(Hertz(stiffness=1e4)))
+    sim.advance(0.1)
+    state = sim.state()
+    sim.set_inputs({"x": x, "v": v})
+    with pytest.raises(SimulationError, match=r"inputs \['x', 'v'\] ask for a way of .* check their values and units"):
+        sim.advance(0.2)
+    sim.restore(state)
+    sim.advance(0.2)
+
+
+def test_a_run_may_start_at_any_time():
+    """The motion goes on from the start of the run, not from t = 0."""
+    inputs = (Input(name="x", unit="m", start=0.1), Input(name="v", unit="m/s", start=0.2))
+    for set_again in (False, True):
+        sim = Simulation(wall(Hertz(stiffness=1e4), inputs=inputs), t0=5.0)
+        if set_again:
+            sim.set_inputs({"x": 0.15, "v": 0.2})
+        sim.advance(5.25)
+        assert values(sim)["wall.x"] == pytest.approx((0.15 if set_again else 0.1) + 0.05, abs=1e-12)
 
 
 def test_without_a_rate_the_motion_comes_to_rest_at_each_point():

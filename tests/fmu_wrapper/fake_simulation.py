@@ -92,6 +92,10 @@ class FakeSimulation:
     def _acceleration(self) -> float:
         return self._state.push / self.mass - self.gravity
 
+    @property
+    def horizon(self) -> float:
+        return self.t
+
     def next_point(self, t: float) -> float:
         return min(self.t + 0.03, t)
 

@@ -103,7 +103,7 @@ def test_without_zig_it_says_so(monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(build_module.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ExportError, match="needs Zig's C compiler: python -m pip install ziglang"):
-        build(["x86_64-windows"])
+        list(build(["x86_64-windows"]))
     assert main(["x86_64-windows"]) == 1 and "pip install ziglang" in capsys.readouterr().err
 
 
@@ -117,8 +117,12 @@ def test_a_compiler_that_fails_is_heard(tmp_path):
 def test_the_command(tmp_path, monkeypatch):
     """With a binary that is there already, it copies it; from a shell, it knows its platforms."""
     monkeypatch.setattr(build_module, "binary", lambda name: Path(__file__))
-    (path,) = build(["aarch64-darwin"], tmp_path / "out")
-    assert path == tmp_path / "out" / "aarch64-darwin" / Path(__file__).name and path.is_file()
+    ((name, path),) = build(["aarch64-darwin"], tmp_path / "out")
+    assert (
+        name == "aarch64-darwin"
+        and path == tmp_path / "out" / "aarch64-darwin" / Path(__file__).name
+        and path.is_file()
+    )
     command = [sys.executable, "-m", "tlismni.fmu_wrapper.build", "riscv64-linux"]
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 1 and done.stderr.startswith("error: platform 'riscv64-linux' is unknown")

@@ -7,11 +7,15 @@ import fmpy
 import numpy as np
 import pytest
 from fmu_helpers import ball_model
+from tlismni.core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.contact.friction import CoulombFriction, TanhFriction
+from tlismni.core.contact.laws import KelvinVoigt, NewtonImpact
 from tlismni.core.description import Model
-from tlismni.core.elements import AppliedForce2D, CoordinateDriver, PointMass2D
+from tlismni.core.elements import AppliedForce2D, CoordinateDriver, PointMass2D, RigidBody2D
 from tlismni.core.errors import TlismniError
 from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D
+from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
 from tlismni.fmu_wrapper import CallOrderError, FmuValueError, Slave, export_fmu
 from tlismni.models import load
@@ -136,3 +140,66 @@ def test_when_and_of_what():
     for known, unknown in (("restitution", "stop.gap"), ("torque", "stop.mode"), ("torque", "time")):
         with pytest.raises(TlismniError):
             derivatives(slave, known, unknown)
+
+
+def sled(law, friction, height=0.0, speed=0.0):
+    """A block that inputs push along and onto the floor, with a marker on its corner."""
+    body = Marker2D(body="sled", point=(0.1, 0.05))
+    return Model(
+        name="sled",
+        bodies=[RigidBody2D(name="sled", mass=2.0, inertia=0.3, position=(0.0, 0.2 + height), velocity=(speed, 0.0))],
+        forces=[
+            AppliedForce2D(name="hand", marker=body, force_x=InputSignal(channel="fx"),
+                           force_y=InputSignal(channel="fy"), follower=True),
+        ],
+        contacts=[
+            DiskOnHalfPlane2D(name=name, plane=HalfPlane2D(), law=law, friction=friction,
+                              disk=Disk2D(marker=Marker2D(body="sled", point=(x, -0.2))))
+            for name, x in (("front", 0.4), ("back", -0.4))
+        ],
+        inputs=[Input(name="fx", unit="N"), Input(name="fy", unit="N")],
+        outputs=[MarkerOutput2D(name="corner", marker=Marker2D(body="sled", point=(0.4, 0.2)))],
+    )  # fmt: skip
+
+
+RIGID, HARD = NewtonImpact(restitution=0.0), KelvinVoigt(stiffness=1e4, damping=30.0)
+STATES = {
+    "open": (sled(RIGID, None, height=1.0), {"open"}),
+    "closed": (sled(RIGID, None, speed=1.0), {"closed"}),
+    "sticks": (sled(RIGID, CoulombFriction(coefficient=0.5)), {"closed"}),
+    "slides": (sled(RIGID, CoulombFriction(coefficient=0.3), speed=1.0), {"closed"}),
+    "force law, released too": (sled(HARD, TanhFriction(coefficient=0.3, transition_speed=0.01), 0.05, 0.5),
+                                {"open", "active", "released"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STATES)
+def test_against_extrapolated_differences_in_every_contact_state(name):
+    """Differences of the slave's own outputs at four values of the input, extrapolated: relative 1e-7."""
+    model, wanted_modes = STATES[name]
+    slave = started(model)
+    slave.set_by_name({"fx": 0.4, "fy": -1.0})
+    outputs = [v.name for v in slave.variables.block("channel") if v.kind == "real"]
+    residuals = [n.startswith("residual.") for n in outputs]
+    modes, seen = dict(enumerate(("open", "closed", "active", "released"))), set()
+    for k in range(60 if len(wanted_modes) > 1 else 4):
+        slave.do_step(0.005 * k, 0.005)
+        mode = modes[slave["front.mode"]]
+        if mode in seen and k % 7:
+            continue
+        seen.add(mode)
+        for channel in ("fx", "fy"):
+            found = derivatives(slave, channel, *outputs)
+            snapshot, u = slave.snapshot(), slave[channel]
+
+            def at(value, channel=channel, snapshot=snapshot):
+                slave.set_by_name({channel: value})
+                row = np.array([slave[n] for n in outputs])
+                slave.restore(snapshot)
+                return row
+
+            slopes = [(at(u + d) - at(u - d)) / (2.0 * d) for d in (0.05, 0.1)]
+            expected = (4.0 * slopes[0] - slopes[1]) / 3.0
+            expected[residuals] = 0.0
+            np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-7 * np.max(np.abs(expected)))
+    assert seen == wanted_modes

@@ -297,6 +297,20 @@ def test_terminals_are_written_as_the_schema_wants(tmp_path):
     assert members and set(members) <= variables
 
 
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_without_pillow_there_is_no_icon_but_all_else(tmp_path, monkeypatch, caplog, version):
+    def none(drawing):
+        raise ImportError("No module named 'PIL'")
+
+    monkeypatch.setattr("tlismni.fmu_wrapper.export.to_png", none)
+    with zipfile.ZipFile(export_fmu(driven_crank(), tmp_path / "m.fmu", version, t_end=1.0)) as archive:
+        held = archive.namelist()
+        assert not [name for name in held if name.endswith((".png", "icon.svg"))]
+        assert ("terminalsAndIcons/terminalsAndIcons.xml" in held) == (version == "3.0")
+    assert "the FMU gets no icon: that needs Pillow" in caplog.text
+    assert validate_fmu(str(tmp_path / "m.fmu")) == []
+
+
 # checkers
 
 

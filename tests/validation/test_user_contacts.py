@@ -97,7 +97,7 @@ def test_two_disks_that_rub_follow_the_solver() -> None:
 
 @needs_exudyn
 def test_bristles_hold_a_block_as_their_law_says() -> None:
-    """Under a push of half the static friction a block comes to rest beyond F/s0; it slides under more than all of it."""
+    """Under a push of half the static friction a block comes to rest beyond F/s0; under 1.05 times it slides."""
     friction = LuGreFriction(coefficient=0.3, static_coefficient=0.4, stribeck_speed=0.01, bristle_stiffness=1e3,
                              bristle_damping=30.0)  # fmt: skip
     block = PointMass2D(name="p", mass=1.0, position=(0.0, -0.5 * 9.81e-4))

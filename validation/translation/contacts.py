@@ -30,8 +30,8 @@ BeforeStep = Callable[[Any, float], None]
 
 
 no_equal(
-    "disks at the places that touch (DiskOnDisk2D, DiskOnHalfPlane2D on MaterialPoint2D); exudyn's circle-cable contact "
-    "has one stiffness for each of its segments, and so another force law",
+    "disks at the places that touch (DiskOnDisk2D, DiskOnHalfPlane2D on MaterialPoint2D); exudyn's circle-cable "
+    "contact has one stiffness for each of its segments, and so another force law",
     DiskOnCable2D,
     DiskOnLine2D,
 )

@@ -24,7 +24,7 @@ def axial_rod(record: AxialRod, build: Build) -> None:
     """NodeGenericODE2 with ObjectGenericODE2 of sparse matrices; the reference is the unstrained rod."""
     if record.massless_ends:
         raise NotTranslatable(
-            f"'{record.name}' has massless ends {list(record.massless_ends)}, and exudyn needs a mass at each coordinate:"
+            f"'{record.name}' has massless ends {list(record.massless_ends)}, and exudyn needs mass at each coordinate:"
             " compare it with massless_ends = () and more elements, both tend to the same rod"
         )
     n, length = record.elements + 1, record.length / record.elements

@@ -6,6 +6,7 @@ law of a user's own has nothing but its own formula, which then runs on both sid
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from ...core.contact.friction import (
@@ -93,6 +94,22 @@ def friction_force(law: Any) -> FrictionForce:
 
         return step
     return lambda v, n: law.evaluate(v, n)[0]
+
+
+@dataclass(frozen=True)
+class StickingCoulomb:
+    """Coulomb's friction with a stiff spring and damper while it sticks: the penalty form of the set-valued law.
+
+    A contact's `friction` in models that the cross-check makes for exudyn; no law of the vocabulary.
+    """
+
+    coefficient: float
+    sticking_coefficient: float
+    stiffness: float
+    """N/m."""
+    damping: float
+    """N s/m."""
+    type: str = "Coulomb (stick by penalty)"
 
 
 def _smooth(x: float) -> float:

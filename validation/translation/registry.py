@@ -9,11 +9,9 @@ import numpy as np
 from ...core.contact.contact2d import Disk2D, HalfPlane2D
 from ...core.contact.coordinate_contact import CoordinateContact
 from ...core.description import Model
-from ...core.elements import RigidBody2D
 from ...core.model.markers import GROUND, Marker2D
 from ..errors import NotTranslatable
 from ..exudyn_import import Exudyn
-from .kinematics import States
 
 Translator = Callable[[Any, "Build"], None]
 _TRANSLATORS: dict[type, Translator] = {}
@@ -160,8 +158,8 @@ class Build:
         body = self.bodies[marker.body]
         if body.elements and marker.point[0] != 0.0:
             raise NotTranslatable(
-                f"a marker on '{marker.body}' lies {marker.point[0]:g} m beyond it along the axis, where exudyn's cable "
-                "elements have no point: put a MaterialPoint2D there, or a light RigidBody2D on a Clamp2D"
+                f"a marker on '{marker.body}' lies {marker.point[0]:g} m beyond it along the axis, where exudyn's "
+                "cable elements have no point: put a MaterialPoint2D there, or a light RigidBody2D on a Clamp2D"
             )
         local = [body.local[0] + marker.point[0], body.local[1] + marker.point[1], 0.0]
         kind = "MarkerBodyRigid" if body.rigid else "MarkerBodyPosition"

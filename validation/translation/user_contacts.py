@@ -5,16 +5,20 @@ feel equal and opposite forces at the place of contact. The deflection of LuGre'
 linear in it, so that the trapezoidal rule over the step gives it from the state at the step's end.
 """
 
+import math
+from collections.abc import Sequence
+from operator import add, mul
 from typing import Any
 
 import numpy as np
 
 from ...core.contact.friction import LuGreFriction
-from .formulas import friction_force, lugre, normal_force
+from .formulas import StickingCoulomb, friction_force, lugre, normal_force
 from .registry import Build, UserContact
 from .user_gaps import UserGap, user_gap
 
 Array = np.ndarray
+Numbers = Sequence[float]
 
 
 class Memory:
@@ -25,6 +29,7 @@ class Memory:
         self.gap, self.rate = 0.0, 0.0
         self.t, self.end = 0.0, 0.0
         self.deflection, self.bending = 0.0, 0.0
+        self.slides, self.speed_along = 0.0, 0.0
 
     def approach(self, gap: float, rate: float) -> float:
         """The speed at gap zero: by the line from the last step's end, outside, to this state inside."""
@@ -49,17 +54,16 @@ def add_user_contact(record: Any, build: Build) -> None:
     build.add(
         "ObjectGenericODE2",
         nodeNumbers=list(gap.nodes),
-        forceUserFunction=lambda mbs, t, item, q, v: force(t, np.array(q), np.array(v)).tolist(),
-        jacobianUserFunction=lambda mbs, t, item, q, v, by_q, by_v: force.jacobian(
-            t, np.array(q), np.array(v), by_q, by_v
-        ),
+        forceUserFunction=lambda mbs, t, item, q, v: force(t, list(q), list(v)),
+        jacobianUserFunction=lambda mbs, t, item, q, v, by_q, by_v: force.jacobian(t, list(q), list(v), by_q, by_v),
     )
 
-    def state(mbs: Any) -> list[Array]:
-        return [
-            np.concatenate([np.atleast_1d(mbs.GetNodeOutput(node, kind)) for node in gap.nodes])
-            for kind in (kinds.Coordinates, kinds.Coordinates_t)
-        ]
+    def state(mbs: Any) -> list[list[float]]:
+        found: list[list[float]] = [[], []]
+        for values, kind in zip(found, (kinds.Coordinates, kinds.Coordinates_t), strict=True):
+            for node in gap.nodes:
+                values += np.atleast_1d(mbs.GetNodeOutput(node, kind)).tolist()
+        return found
 
     build.before_step.append(lambda mbs, t: force.before_step(t, *state(mbs)))
     if build.sensors:
@@ -85,7 +89,10 @@ class Force:
         self.memory = Memory(record.law.minimum_approach_speed)
         bristle = isinstance(record.friction, LuGreFriction)
         self.bristles = lugre(record.friction) if bristle else None
-        self.friction = None if record.friction is None or bristle else friction_force(record.friction)
+        self.rubs = record.friction is not None
+        self.coulomb = record.friction if isinstance(record.friction, StickingCoulomb) else None
+        smooth = record.friction is not None and not bristle and self.coulomb is None
+        self.friction = friction_force(record.friction) if smooth else None
 
     def normal(self, gap: float, rate: float) -> float:
         """N; positive where it pushes."""
@@ -100,6 +107,8 @@ class Force:
             return 0.0
         if self.friction is not None:
             return self.friction(speed, normal)
+        if self.coulomb is not None:
+            return self._stick_or_slip(self.coulomb, t, speed, normal)
         return self._bend(t, speed, normal)[2] if self.bristles is not None else 0.0
 
     def _bend(self, t: float, speed: float, normal: float) -> tuple[float, float, float]:
@@ -112,23 +121,52 @@ class Force:
         rate, force = law(z, speed, normal)
         return z, rate, force
 
-    def parts(self, t: float, q: Array, v: Array) -> tuple[float, float, float, float, float, Array, Array]:
+    def _stick_or_slip(self, law: StickingCoulomb, t: float, speed: float, normal: float) -> float:
+        """Spring and damper while the memory says that it sticks, else the kinetic friction."""
+        m = self.memory
+        if m.slides:
+            return -m.slides * law.coefficient * normal
+        stretch = m.deflection + 0.5 * (t - m.t) * (m.speed_along + speed)
+        return -law.stiffness * stretch - law.damping * speed
+
+    def _change_stick(self, law: StickingCoulomb, t: float, speed: float, normal: float) -> None:
+        """Between steps: let go where it holds more than it can, hold where the sliding has turned round."""
+        m = self.memory
+        if normal <= 0.0:
+            m.slides, m.deflection = math.copysign(1.0, speed), 0.0
+        elif m.slides:
+            if m.slides * speed <= 0.0:
+                m.slides, m.deflection = 0.0, 0.0
+        else:
+            m.deflection += 0.5 * (t - m.t) * (m.speed_along + speed)
+            force = -law.stiffness * m.deflection - law.damping * speed
+            if abs(force) > law.sticking_coefficient * normal:
+                m.slides = -math.copysign(1.0, force)
+        m.speed_along = speed
+
+    def parts(self, t: float, q: Numbers, v: Numbers) -> tuple[float, float, float, float, float, Numbers, Numbers]:
         """(gap, rate, F_N, F_T, sliding speed, gradients of gap and sliding)."""
-        gap, along, across = self.gap.evaluate(self.gap.reference + q)
-        rate, speed = float(along @ v), float(across @ v)
-        normal = self.normal(gap, rate)
-        return gap, rate, normal, self.tangential(t, speed, normal), speed, along, across
+        gap, along, across = self.gap.evaluate(list(map(add, self.gap.reference, q)))
+        rate = sum(map(mul, along, v))
+        normal, speed, tangential = self.normal(gap, rate), 0.0, 0.0
+        if self.rubs:
+            speed = sum(map(mul, across, v))
+            tangential = self.tangential(t, speed, normal)
+        return gap, rate, normal, tangential, speed, along, across
 
-    def __call__(self, t: float, q: Array, v: Array) -> Array:
+    def __call__(self, t: float, q: Numbers, v: Numbers) -> list[float]:
         _, _, normal, tangential, _, along, across = self.parts(t, q, v)
-        return normal * along + tangential * across
+        if tangential == 0.0:
+            return [normal * a for a in along]
+        return [normal * a + tangential * b for a, b in zip(along, across, strict=True)]
 
-    def jacobian(self, t: float, q: Array, v: Array, by_q: float, by_v: float) -> Array:
+    def jacobian(self, t: float, q: Numbers, v: Numbers, by_q: float, by_v: float) -> Array:
         """by_q d/dq + by_v d/dv of the force on the left-hand side, the gradients held: for Newton's iteration only."""
         gap, rate, normal, tangential, speed, along, across = self.parts(t, q, v)
         n = len(q)
         if gap >= 0.0:
             return np.zeros((n, n))
+        along, across = np.array(along), np.array(across)
         small_gap, small_rate = -1e-6 * gap, 1e-6 * (abs(rate) + abs(speed)) + 1e-12
         by_gap = (normal - self.normal(gap - small_gap, rate)) / small_gap if small_gap else 0.0
         by_rate = (self.normal(gap, rate + small_rate) - normal) / small_rate
@@ -141,16 +179,18 @@ class Force:
             found += ratio * (by_q * by_gap + by_v * by_rate) * np.outer(across, along)
         return -found
 
-    def before_step(self, end: float, q: Array, v: Array) -> None:
+    def before_step(self, end: float, q: Numbers, v: Numbers) -> None:
         """Remember the state in which a step to time `end` begins; exudyn gives its end as the time then."""
         m = self.memory
         gap, rate, normal, _, speed, _, _ = self.parts(m.end, q, v)
         if self.bristles is not None:
             m.deflection, m.bending, _ = self._bend(m.end, speed, normal) if normal > 0.0 else (0.0, 0.0, 0.0)
+        if self.coulomb is not None:
+            self._change_stick(self.coulomb, m.end, speed, normal)
         m.t, m.end = m.end, end
         m.after_step(gap, rate)
 
-    def measure(self, t: float, q: Array, v: Array) -> list[float]:
+    def measure(self, t: float, q: Numbers, v: Numbers) -> list[float]:
         """What the sensor records."""
         return list(self.parts(t, q, v)[:4])
 

@@ -6,6 +6,7 @@ Written from the geometry, not from the solver's kernels: a cross-check must not
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import mul
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,12 @@ from ...core.elements import Cable2D, MaterialPoint2D
 from ...core.model.markers import GROUND, Marker2D
 from .registry import Build
 
-Array = np.ndarray
-Gap = Callable[[Array], tuple[float, Array, Array]]
-"""Coordinates (n,) -> (gap, its gradient (n,), gradient of the sliding speed with respect to the rates (n,))."""
+Numbers = Sequence[float]
+Gap = Callable[[Numbers], tuple[float, list[float], list[float]]]
+"""Coordinates (n,) -> (gap, its gradient (n,), gradient of the sliding speed with respect to the rates (n,)).
+
+Plain lists: exudyn calls this several times a step, and for a handful of numbers arrays cost more than they save.
+"""
 
 
 @dataclass(frozen=True)
@@ -26,7 +30,7 @@ class UserGap:
     """The nodes that a contact depends on, what exudyn's coordinates there are displacements from, and its gap."""
 
     nodes: tuple[int, ...]
-    reference: Array
+    reference: list[float]
     evaluate: Gap
 
 
@@ -50,11 +54,11 @@ class Nodes:
                 self.slices[node] = slice(len(references), len(references) + each)
                 self.nodes.append(node)
                 references += carrier.reference[first : first + each]
-        self.reference = np.array(references)
+        self.reference = references
 
-    def indices(self, nodes: Sequence[int]) -> Array:
+    def indices(self, nodes: Sequence[int]) -> list[int]:
         """Where the coordinates of these nodes stand."""
-        return np.concatenate([np.arange(self.slices[n].start, self.slices[n].stop) for n in nodes])
+        return [k for n in nodes for k in range(self.slices[n].start, self.slices[n].stop)]
 
 
 def _carrier(build: Build, name: str) -> str:
@@ -62,40 +66,63 @@ def _carrier(build: Build, name: str) -> str:
     return record.body if isinstance(record, MaterialPoint2D) else name
 
 
-Frame = Callable[[Array], tuple[float, float, float, Array]]
-"""Coordinates -> (x, y, angle, their gradients (3, n))."""
+Add = Callable[[list[float], float, float, float], None]
+"""(gradient, c_x, c_y, c_angle): adds c_x grad x + c_y grad y + c_angle grad angle to it."""
+Frame = Callable[[Numbers], tuple[float, float, float, Add]]
+"""Coordinates -> (x, y, angle, how their gradients are added)."""
 
 
 def frame_of(build: Build, body: str, nodes: Nodes) -> Frame:
     """Where the frame of a body is, as a function of the coordinates."""
-    size = len(nodes.reference)
     if body == GROUND:
-        still = np.zeros((3, size))
-        return lambda x: (0.0, 0.0, 0.0, still)
+        return lambda x: (0.0, 0.0, 0.0, lambda gradient, cx, cy, ca: None)
     record = next(b for b in build.model.bodies if b.name == body)
     at = nodes.indices(build.bodies[body].all_nodes)
     if not isinstance(record, MaterialPoint2D):
-        gradient = np.zeros((3, size))
-        gradient[np.arange(len(at)), at] = 1.0
-        if len(at) == 2:
-            return lambda x: (x[at[0]], x[at[1]], 0.0, gradient)
-        return lambda x: (x[at[0]], x[at[1]], x[at[2]], gradient)
+        return _rigid_frame(at)
     carrier = next(b for b in build.model.bodies if b.name == record.body)
     if not isinstance(carrier, Cable2D):  # refused before, when the point itself was translated
         raise TypeError(f"'{record.body}' is a {type(carrier).__name__}, not a Cable2D")
-    length = carrier.length / carrier.elements
-    _, s = carrier.find(record.point[0])
-    place = np.array([1 - 3 * s**2 + 2 * s**3, length * (s - 2 * s**2 + s**3), 3 * s**2 - 2 * s**3,
-                      length * (s**3 - s**2)])  # fmt: skip
-    slope = np.array([6 * (s**2 - s) / length, 1 - 4 * s + 3 * s**2, 6 * (s - s**2) / length, 3 * s**2 - 2 * s])
+    return _cable_frame(carrier, record.point[0], at, len(nodes.reference))
+
+
+def _rigid_frame(at: list[int]) -> Frame:
+    i, j = at[:2]
+    if len(at) == 2:
+
+        def push(gradient: list[float], cx: float, cy: float, ca: float) -> None:
+            gradient[i] += cx
+            gradient[j] += cy
+
+        return lambda x: (x[i], x[j], 0.0, push)
+    k = at[2]
+
+    def add(gradient: list[float], cx: float, cy: float, ca: float) -> None:
+        gradient[i] += cx
+        gradient[j] += cy
+        gradient[k] += ca
+
+    return lambda x: (x[i], x[j], x[k], add)
+
+
+def _cable_frame(cable: Cable2D, point: float, at: list[int], size: int) -> Frame:
+    length = cable.length / cable.elements
+    _, s = cable.find(point)
+    place = (1 - 3 * s**2 + 2 * s**3, length * (s - 2 * s**2 + s**3), 3 * s**2 - 2 * s**3, length * (s**3 - s**2))
+    slope = (6 * (s**2 - s) / length, 1 - 4 * s + 3 * s**2, 6 * (s - s**2) / length, 3 * s**2 - 2 * s)
     maps = np.zeros((4, size))
     for k, shape in enumerate((place, slope)):
         maps[2 * k, at[0::2]], maps[2 * k + 1, at[1::2]] = shape, shape
 
-    def frame(x: Array) -> tuple[float, float, float, Array]:
-        px, py, tx, ty = maps @ x
+    def frame(x: Numbers) -> tuple[float, float, float, Add]:
+        px, py, tx, ty = (float(value) for value in maps @ np.asarray(x))
         turn = (tx * maps[3] - ty * maps[2]) / (tx * tx + ty * ty)
-        return px, py, math.atan2(ty, tx), np.vstack([maps[:2], turn])
+
+        def add(gradient: list[float], cx: float, cy: float, ca: float) -> None:
+            for k, value in enumerate(cx * maps[0] + cy * maps[1] + ca * turn):
+                gradient[k] += float(value)
+
+        return px, py, math.atan2(ty, tx), add
 
     return frame
 
@@ -108,68 +135,68 @@ def user_gap(record: Any, build: Build) -> UserGap:
     nodes = Nodes(build, (a.body, b.body))
     first, second = (_point(build, marker, nodes) for marker in (a, b))
     shape = _half_plane_gap if isinstance(record, DiskOnHalfPlane2D) else _disk_gap
-    return UserGap(tuple(nodes.nodes), nodes.reference, shape(record, first, second))
+    return UserGap(tuple(nodes.nodes), nodes.reference, shape(record, first, second, len(nodes.reference)))
 
 
-Point = Callable[[Array], tuple[float, float, float, Array]]
+Point = Callable[[Numbers], tuple[float, float, float, float, float, Add]]
 
 
 def _point(build: Build, marker: Marker2D, nodes: Nodes) -> Point:
-    """(x, y, angle, gradients (3, n)) of a marker's point."""
+    """(x, y, angle of the frame, the point's arm in the directions of space, how the frame's gradients are added)."""
     frame, (u, w) = frame_of(build, marker.body, nodes), marker.point
 
-    def point(x: Array) -> tuple[float, float, float, Array]:
-        px, py, angle, gradient = frame(x)
+    def point(x: Numbers) -> tuple[float, float, float, float, float, Add]:
+        px, py, angle, add = frame(x)
         if u == 0.0 and w == 0.0:
-            return px, py, angle, gradient
+            return px, py, angle, 0.0, 0.0, add
         c, s = math.cos(angle), math.sin(angle)
-        ax, ay = c * u - s * w, s * u + c * w
-        moved = gradient.copy()
-        moved[0] -= ay * gradient[2]
-        moved[1] += ax * gradient[2]
-        return px + ax, py + ay, angle, moved
+        ox, oy = c * u - s * w, s * u + c * w
+        return px + ox, py + oy, angle, ox, oy, add
 
     return point
 
 
-def _half_plane_gap(record: DiskOnHalfPlane2D, first: Point, second: Point) -> Gap:
-    """Height of the centre over the line; the bodies' material points at the foot of the normal slide past each other.
-
-    Sliding is measured for the line's body at the centre of the disk (on the line's normal) and the disk's rim: with
-    the disk in touch that is the place of contact.
-    """
+def _half_plane_gap(record: DiskOnHalfPlane2D, first: Point, second: Point, size: int) -> Gap:
+    """Height of the centre over the line; what slides past each other are the disk's rim and the point of the line's
+    body that is there while they touch."""
     angle, radius = record.plane.marker.angle, record.disk.radius
 
-    def gap(x: Array) -> tuple[float, Array, Array]:
-        ax, ay, turn, ga = first(x)
-        bx, by, _, gb = second(x)
+    def gap(x: Numbers) -> tuple[float, list[float], list[float]]:
+        ax, ay, turn, aox, aoy, add_a = first(x)
+        bx, by, _, box, boy, add_b = second(x)
         tx, ty = math.cos(turn + angle), math.sin(turn + angle)
         nx, ny = -ty, tx
         dx, dy = bx - ax, by - ay
         height, along = nx * dx + ny * dy, tx * dx + ty * dy
-        moved = gb - ga
-        g_gap = nx * moved[0] + ny * moved[1] - along * ga[2]
-        g_slide = tx * moved[0] + ty * moved[1] + (height - radius) * ga[2] + radius * gb[2]
-        return height - radius, g_gap, g_slide
+        normal, slide = [0.0] * size, [0.0] * size
+        add_b(normal, nx, ny, ny * box - nx * boy)
+        add_a(normal, -nx, -ny, nx * aoy - ny * aox - along)
+        add_b(slide, tx, ty, ty * box - tx * boy + radius)
+        add_a(slide, -tx, -ty, tx * aoy - ty * aox + height - radius)
+        return height - radius, normal, slide
 
     return gap
 
 
-def _disk_gap(record: DiskOnDisk2D, first: Point, second: Point) -> Gap:
+def _disk_gap(record: DiskOnDisk2D, first: Point, second: Point, size: int) -> Gap:
     """Distance of the centres; the rims slide past each other, along the normal turned by -90 degrees."""
     ra, rb = record.a.radius, record.b.radius
 
-    def gap(x: Array) -> tuple[float, Array, Array]:
-        ax, ay, _, ga = first(x)
-        bx, by, _, gb = second(x)
+    def gap(x: Numbers) -> tuple[float, list[float], list[float]]:
+        ax, ay, _, aox, aoy, add_a = first(x)
+        bx, by, _, box, boy, add_b = second(x)
         dx, dy = bx - ax, by - ay
         distance = math.hypot(dx, dy)
         nx, ny = dx / distance, dy / distance
-        moved = gb - ga
-        tx, ty = ny, -nx
-        # phi' = -(t . d')/distance
-        turn = (tx * moved[0] + ty * moved[1]) / distance
-        return distance - ra - rb, nx * moved[0] + ny * moved[1], (ra + rb) * turn + ra * ga[2] + rb * gb[2]
+        # along t = (n_y, -n_x); the direction of the normal turns by -(t . d')/distance
+        share = (ra + rb) / distance
+        tx, ty = share * ny, -share * nx
+        normal, slide = [0.0] * size, [0.0] * size
+        add_b(normal, nx, ny, ny * box - nx * boy)
+        add_a(normal, -nx, -ny, nx * aoy - ny * aox)
+        add_b(slide, tx, ty, ty * box - tx * boy + rb)
+        add_a(slide, -tx, -ty, tx * aoy - ty * aox + ra)
+        return distance - ra - rb, normal, slide
 
     return gap
 
@@ -187,17 +214,18 @@ def _coordinate_gap(record: CoordinateContact, build: Build) -> UserGap:
         references[node] = items.reference[k - k % each : k - k % each + each]
         if node not in used:
             used.append(node)
-    starts, reference = {}, []
+    starts: dict[int, int] = {}
+    reference: list[float] = []
     for node in used:
         starts[node] = len(reference)
         reference += references[node]
 
-    def factors(terms: Sequence[CoordinateTerm]) -> Array:
-        row = np.zeros(len(reference))
+    def factors(terms: Sequence[CoordinateTerm]) -> list[float]:
+        row = [0.0] * len(reference)
         for term in terms:
             node, k = places[term.body, term.coordinate]
             row[starts[node] + k] += term.factor
         return row
 
     along, slide, offset = factors(record.terms), factors(record.slide), record.offset
-    return UserGap(tuple(used), np.array(reference), lambda x: (offset + float(along @ x), along, slide))
+    return UserGap(tuple(used), list(reference), lambda x: (offset + sum(map(mul, along, x)), along, slide))

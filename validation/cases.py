@@ -1,0 +1,126 @@
+"""How each scenario of the catalogue is cross-checked: the parameters with which exudyn can follow, and what cannot be.
+
+A scenario stands here with one case or more: contact as a constraint, contact by force, ... A new scenario that is not
+listed is cross-checked with its defaults.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..models import names
+
+
+@dataclass(frozen=True)
+class Case:
+    """One cross-check of the catalogue.
+
+    Attributes
+    ----------
+    parameters : of the scenario.
+    t_end : s, if not the scenario's.
+    coarse : what changes in the coarse form, for tests: parameters, or `t_end` and `step` of the cross-check.
+    why : why these parameters, or why this end.
+    not_comparable : the reason, if there is nothing in exudyn to compare with; nothing is run then.
+    """
+
+    scenario: str
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    t_end: float | None = None
+    coarse: Mapping[str, Any] = field(default_factory=dict)
+    why: str = ""
+    not_comparable: str = ""
+
+    @property
+    def name(self) -> str:
+        """Of its files: the scenario and what is set."""
+        return "_".join([self.scenario, *(f"{k}-{v}" for k, v in self.parameters.items())]).replace(".", "p")
+
+
+FORCE = {"law": "hunt_crossley"}
+CASES: Mapping[str, Sequence[Case]] = {
+    "bouncing_ball": (
+        Case("bouncing_ball", coarse={"t_end": 1.3}),
+        Case("bouncing_ball", FORCE, coarse={"t_end": 1.3}),
+        Case("bouncing_ball", {"law": "kelvin_voigt_gap", "stiffness": 1e5}, coarse={"t_end": 1.3}),
+        Case("bouncing_ball", {"law": "tsuji", "stiffness": 1e5}, t_end=1.0, why="a law by user function",
+             coarse={"t_end": 0.6, "step": 2e-5}),
+    ),
+    "pendulum_stop": (
+        Case("pendulum_stop", coarse={"t_end": 1.4}),
+        Case("pendulum_stop", FORCE, coarse={"t_end": 1.4}),
+    ),
+    "slider_crank_stop": (
+        Case("slider_crank_stop", coarse={"t_end": 0.6}),
+        Case("slider_crank_stop", FORCE, coarse={"t_end": 0.6}),
+    ),
+    "double_pendulum_wall": (
+        Case("double_pendulum_wall", coarse={"t_end": 1.2}),
+        Case("double_pendulum_wall", FORCE, coarse={"t_end": 1.2, "step": 1e-5}),
+    ),
+    "impact_oscillator": (
+        Case("impact_oscillator", t_end=5.0, why="compared until the second impact", coarse={"t_end": 3.0}),
+        Case("impact_oscillator", FORCE, t_end=3.0, why="compared until the second impact", coarse={"step": 2e-5}),
+    ),
+    "newtons_cradle": (
+        Case("newtons_cradle", not_comparable="balls that touch: how the blow goes through them at once is a choice of "
+             "the impact law (sequential or simultaneous), while a penalty passes it on as a wave, whatever its "
+             "stiffness"),
+        Case("newtons_cradle", {"gap": 2e-3, "balls": 3}, why="with gaps the impacts come one by one",
+             coarse={"t_end": 0.24}),
+        Case("newtons_cradle", {"gap": 2e-3, "balls": 3, "law": "hertz", "stiffness": 1e8}, t_end=0.3,
+             why="with gaps the impacts come one by one", coarse={"t_end": 0.24}),
+    ),
+    "chain": (Case("chain", coarse={"t_end": 0.5}),),
+    "four_bar": (Case("four_bar", t_end=1.0, why="at 1.2 s it passes its stretched position, where its constraints "
+                      "lose rank and exudyn's Newton iteration fails", coarse={"t_end": 0.5}),),
+    "pendulum": (Case("pendulum", coarse={"t_end": 2.0}),),
+    "slider_crank": (Case("slider_crank", coarse={"t_end": 0.3}),),
+    "cable_pendulum": (
+        Case("cable_pendulum", {"damping_time": 1e-3}, t_end=0.5, coarse={"t_end": 0.1, "elements": 4},
+             why="with damping of the material: without, the fast axial waves that the start excites are compared"),
+    ),
+    "cantilever": (
+        Case("cantilever", {"damping_time": 1e-4}, t_end=0.5, coarse={"t_end": 0.1, "elements": 4},
+             why="with damping of the material: without, the fast axial waves that the start excites are compared"),
+    ),
+    "cable_ground": (
+        Case("cable_ground", {"law": "hertz", "elements": 4}, t_end=0.4, coarse={"t_end": 0.25, "step": 1e-4},
+             why="by force; hundreds of impacts of nodes without restitution in a chain of waves have no order that a "
+             "penalty would keep"),
+    ),
+    "hub_beam_stop": (
+        Case("hub_beam_stop", {"formulation": "ancf", "contact": "ccfm"}, coarse={"elements": 4, "t_end": 0.03}),
+        Case("hub_beam_stop", {"formulation": "ancf"}, t_end=0.08, coarse={"elements": 4, "t_end": 0.03, "step": 2e-5}),
+        Case("hub_beam_stop", {"contact": "ccfm"}, coarse={"t_end": 0.03}, t_end=0.06,
+             why="our beam in a floating frame, exudyn's of ANCF elements: two models of one beam"),
+    ),
+    "flexible_slider_crank_stop": (
+        Case("flexible_slider_crank_stop", {**FORCE, "stiffness": 1e6}, t_end=0.12, coarse={"t_end": 0.06},
+             why="our rod in a floating frame without stretch, exudyn's of ANCF elements with it; by force, because an "
+             "impact as a constraint would find another mass at the end of a rod that stretches"),
+    ),
+    "rod_wall": (Case("rod_wall", coarse={"elements": 20}),),
+    "rod_rod": (Case("rod_rod", coarse={"elements": 20}),),
+    "mass_on_rod": (Case("mass_on_rod", coarse={"elements": 20}),),
+    "sphere_beam": (Case("sphere_beam", coarse={"modes": 5}),),
+    "stick_slip": (
+        Case("stick_slip", coarse={"t_end": 1.5, "step": 5e-4}),
+        Case("stick_slip", {"law": "kelvin_voigt_gap", "stiffness": 1e5, "damping": 600.0, "transition_speed": 1e-2},
+             t_end=1.5, why="by force, with Brown's and McPhee's friction", coarse={"t_end": 0.6, "step": 1e-3}),
+    ),
+    "rocking_block": (
+        Case("rocking_block", t_end=1.0, why="until after the second change of corner", coarse={"t_end": 0.5}),
+        Case("rocking_block", {"law": "kelvin_voigt", "stiffness": 1e7, "damping": 2e4, "transition_speed": 1e-2},
+             t_end=0.6, why="by force, with Brown's and McPhee's friction", coarse={"t_end": 0.45, "step": 5e-4}),
+    ),
+    "woodpecker": (
+        Case("woodpecker", t_end=0.1, coarse={"t_end": 0.05}, why="most of a period; what comes after is the same again"),
+    ),
+}  # fmt: skip
+
+
+def cases(scenarios: Sequence[str] | None = None) -> tuple[Case, ...]:
+    """The cases of these scenarios, of the whole catalogue if left out."""
+    chosen = names() if scenarios is None else scenarios
+    return tuple(case for name in chosen for case in CASES.get(name, (Case(name),)))

@@ -1,0 +1,206 @@
+"""Contacts that stay closed or rub as constraints, against the limit of penalty and regularised friction.
+
+exudyn has neither. But a damper c = m/T with a weak spring k = r c, let go when it would pull, stops a mass m within T
+and gives back r T of its speed: it tends to an impact without rebound and to the contact that holds on after it as T
+shrinks (it must not pull: a corner that another one lifts off would be held back by an impulse that does not shrink).
+Coulomb's friction sticks by a critically damped spring of the frequency 1/T and slides as it is. So every quantity is
+a + b T + c T^2 + ..., and a is what the constraint must give. Contacts with restitution get Gonthier's law with a
+duration in proportion to T.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...core import Result
+from ...core.contact.friction import CoulombFriction
+from ...core.contact.laws import Gonthier, ImpactLaw, KelvinVoigt
+from ...core.description import Model
+from ..exudyn_run import ExudynResult, run_exudyn, settings_for
+from ..metrics import power_limit, trajectory_difference
+from ..translation.formulas import StickingCoulomb
+from .common import (
+    Comparison,
+    Curve,
+    Panel,
+    Row,
+    Task,
+    Touch,
+    at_times,
+    energy_panel,
+    is_contact_channel,
+    our_error,
+    our_run,
+    residual_panel,
+    touches,
+    unit_of,
+)
+
+TIMES = (1.0, 0.5, 0.25)
+"""The times T, in parts of the longest one."""
+LONGEST_TIME = 1.0 / 3000.0
+"""In parts of the run."""
+RETURN_RATE = 60.0
+"""r, in parts of 1/(length of the run)."""
+STEPS_IN_TIME = 3.0
+DURATION = 10.0
+"""Of a contact with restitution, in T."""
+LOWEST_RESTITUTION = 0.05
+STATE = 1e-3
+SAMPLES = 1501
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What the penalty laws of one contact are made of: effective mass (kg) and approach speed (m/s)."""
+
+    mass: float
+    approach: float
+
+
+def persists(model: Model) -> bool:
+    """Whether a contact of the model holds on after its impacts, or rubs with Coulomb's friction."""
+    return any(
+        isinstance(c.law, ImpactLaw)
+        and (c.law.restitution < LOWEST_RESTITUTION or isinstance(c.friction, CoulombFriction))
+        for c in model.contacts
+    )
+
+
+def compare_persistent(task: Task) -> Comparison:
+    """Trajectories over the whole run, away from the impacts, and the impulse of every contact at its end."""
+    scenario = task.scenario
+    task.progress("our run")
+    first_run = our_run(scenario)
+    ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
+    found = touches(first_run.events)
+    longest = (task.step or 0.0) * STEPS_IN_TIME or LONGEST_TIME * scenario.t_end
+    scales = {c.name: _scale(scenario.model, c, found) for c in scenario.model.contacts}
+    rate = RETURN_RATE / scenario.t_end
+    runs: list[ExudynResult] = []
+    times = [share * longest for share in TIMES]
+    for time, factor in (*((time, 1.0) for time in times), (times[-1], 2.0)):
+        model = with_time(task.exudyn_model, scales, time, rate)
+        step = factor * time / STEPS_IN_TIME
+        task.progress(f"exudyn, T = {time:.1e} s, step {step:.1e} s")
+        runs.append(run_exudyn(model, scenario.t_end, step, settings_for(model)))
+    coarse = runs.pop()
+    events = np.array(sorted({e.t for e in first_run.events if e.kind != "graze"}))
+    away = _away(ours.t, events, 3.0 * DURATION * longest)
+    rows: list[Row] = []
+    channels = [c for c in scenario.compare if not is_contact_channel(task, c) and c in runs[0].channels]
+    error = our_error(task, ours, [*channels, *(f"{c.name}.impulse" for c in scenario.model.contacts)])
+    for channel in channels:
+        rows += _channel_rows(channel, ours, away, times, runs, coarse, error.get(channel))
+    for contact in scenario.model.contacts:
+        channel = f"{contact.name}.impulse"
+        values = [np.array([r[channel][-1]]) for r in runs]
+        limit, moved = power_limit(np.array(times), np.array(values))
+        moved = moved + abs(float(coarse[channel][-1]) - float(values[-1][0])) / 3.0
+        own = error.get(channel)
+        rows.append(
+            Row(f"{contact.name}: impulse of the whole run", unit_of(ours, channel), float(ours[channel][-1]),
+                float(limit[0]), STATE, "relative", float(moved[0]), ours_uncertainty=0.0 if own is None else own[-1])
+        )  # fmt: skip
+    notes = (
+        "the constraint is compared with the limit of a damper with a weak spring that does not pull (restitution "
+        f"below {LOWEST_RESTITUTION:g}), of Gonthier's law (else) and of sticking by a stiff spring, extrapolated in "
+        f"the time T that a contact takes: {', '.join(f'{x:.1e}' for x in times)} s. exudyn's "
+        "uncertainty is the difference of the quadratic and the linear extrapolation, and a third of what twice the "
+        "step changes",
+        *runs[-1].notes,
+    )
+    panels = _panels(task, ours, runs, times, channels)
+    return Comparison(
+        "persistent contact as a constraint, against the limit of a stiff contact",
+        tuple(rows),
+        (*panels, energy_panel(first_run), residual_panel(first_run)),
+        notes,
+        tuple(r.step for r in runs),
+        runs[-1].version,
+        first_run.stats["wall_time"],
+        sum(r.wall_time for r in runs),
+        events=tuple(first_run.events),
+        result=ours,
+    )
+
+
+def with_time(model: Model, scales: dict[str, Scale], time: float, rate: float) -> Model:
+    """`model` with every constraint contact as a force that takes `time` (s) to stop its mass; `rate` is r, 1/s."""
+    contacts = []
+    for contact in model.contacts:
+        update: dict[str, Any] = {}
+        if isinstance(contact.law, ImpactLaw):
+            scale = scales[contact.name]
+            update["law"] = _law(contact.law.restitution, scale, time, rate)
+            if isinstance(contact.friction, CoulombFriction):
+                mu, static = contact.friction.coefficient, contact.friction.sticking_coefficient
+                spring, damper = scale.mass / time**2, 2.0 * scale.mass / time
+                update["friction"] = StickingCoulomb(mu, static, spring, damper)
+        contacts.append(contact.model_copy(update=update))
+    return model.model_copy(update={"contacts": tuple(contacts), "parameters": ()})
+
+
+def _law(restitution: float, scale: Scale, time: float, rate: float) -> KelvinVoigt | Gonthier:
+    if restitution < LOWEST_RESTITUTION:
+        return KelvinVoigt(stiffness=rate * scale.mass / time, damping=scale.mass / time)
+    # Hertz' duration 2.943 d/v of an impact with m v^2/2 = K d^2.5/2.5
+    depth = DURATION * time * scale.approach / 2.943
+    return Gonthier(stiffness=1.25 * scale.mass * scale.approach**2 / depth**2.5, restitution=restitution)
+
+
+def _scale(model: Model, contact: Any, found: list[Touch]) -> Scale:
+    own = [x for x in found if x.contact == contact.name and x.approach_speed > 0.0 and x.impulse > 0.0]
+    masses = [x.impulse / (x.approach_speed + x.separation_speed) for x in own]
+    bodies = {marker.body for marker in contact.markers()}
+    carried = [getattr(b, "mass", None) for b in model.bodies if b.name in bodies]
+    lightest = min((m for m in carried if isinstance(m, float)), default=1.0)
+    return Scale(max(masses, default=lightest), max((x.approach_speed for x in own), default=1.0))
+
+
+def _away(t: np.ndarray, events: np.ndarray, margin: float) -> np.ndarray:
+    """Where no event is near: there exudyn's contact takes its time, and the constraint none."""
+    if not events.size:
+        return np.ones(len(t), dtype=bool)
+    since = np.abs(t[:, None] - events[None, :]).min(axis=1)
+    kept = since > margin
+    return kept if kept.any() else since >= since.max()
+
+
+def _channel_rows(
+    channel: str,
+    ours: Result,
+    away: np.ndarray,
+    times: list[float],
+    runs: list[ExudynResult],
+    coarse: ExudynResult,
+    error: np.ndarray | None,
+) -> list[Row]:
+    t = ours.t[away]
+    values = [at_times(r.t, r.channels, channel, t) for r in runs]
+    limit, moved = power_limit(np.array(times), np.array(values))
+    moved = moved + np.abs(at_times(coarse.t, coarse.channels, channel, t) - values[-1]) / 3.0
+    mine, own = ours[channel][away], np.zeros(len(t)) if error is None else error[away]
+    found = trajectory_difference(t, mine, limit)
+    worst = int(np.argmin(np.abs(t - found.at)))
+    unit, rows = unit_of(ours, channel), []
+    for k, name in ((len(t) - 1, "at the end"), (worst, "where it differs most")):
+        title = f"{channel} {name} (t = {t[k]:.5g} s)"
+        rows.append(
+            Row(title, unit, float(mine[k]), float(limit[k]), STATE, "relative", float(moved[k]),
+                found.scale or None, ours_uncertainty=float(own[k]))
+        )  # fmt: skip
+    return rows
+
+
+def _panels(task: Task, ours: Result, runs: list[ExudynResult], times: list[float], channels: list[str]) -> list[Panel]:
+    panels = []
+    wanted = [*channels, *(f"{c.name}.impulse" for c in task.scenario.model.contacts[:3])]
+    for channel in wanted:
+        curves = [Curve("tlismni, constraint", ours.t, ours[channel], True)]
+        for run, time in zip(runs, times, strict=True):
+            keep = slice(None, None, max(1, len(run.t) // 4000))
+            curves.append(Curve(f"exudyn, T = {time:.0e} s", run.t[keep], run[channel][keep], False))
+        panels.append(Panel(channel, unit_of(ours, channel), tuple(curves)))
+    return panels
