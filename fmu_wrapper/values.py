@@ -73,8 +73,8 @@ class Values:
         return levels + self.slopes.T.tolist() if self.sloped else levels
 
     def set_slopes(self, rows: Sequence[int], orders: Sequence[int], slopes: Sequence[float], now: float) -> None:
-        """Give the inputs with these numbers derivatives of these orders at time `now`, s; those of other orders that were
-        set before end."""
+        """Give the inputs with these numbers derivatives of these orders at time `now`, s; other orders that were set
+        before end."""
         given = np.asarray(rows, dtype=np.intp)
         self.slopes[given[self.slope_times[given] != now]] = 0.0
         self.slopes[rows, np.asarray(orders, dtype=np.intp) - 1] = slopes
