@@ -95,8 +95,16 @@ CommunicationStep = Annotated[
     float | None,
     typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s."),
 ]
-ComparisonStep = Annotated[
-    float, typer.Option("--communication-step", "-c", callback=positive, help="Communication step in s.")
+SystemOrSource = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENARIO_OR_MODEL_OR_SYSTEM",
+        help="Name of a scenario (see `tlismni list`), a model file, or a system file (.toml).",
+    ),
+]
+Algorithm = Annotated[
+    str | None,
+    typer.Option("--algorithm", help="Of a system file: jacobi, gauss-seidel, iterated or newton in place of its own."),
 ]
 Irregular = Annotated[bool, typer.Option("--irregular", help="Steps of 0.2 to 1.8 times that, the same in every run.")]
 ExudynStep = Annotated[
@@ -104,11 +112,28 @@ ExudynStep = Annotated[
 ]
 FmiVersion = Annotated[str, typer.Option("--fmi", help="Version of the FMI standard: 2 or 3.")]
 FmuFile = Annotated[Path, typer.Option("--output", "-o", help="The FMU to write, .fmu.")]
+Bundle = Annotated[
+    bool,
+    typer.Option("--bundle", help="Carry tlismni along; the machine then needs only numpy, scipy, numba, pydantic."),
+]
+Platforms = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--platform", metavar="NAME",
+        help="Add the binary for another platform, e.g. x86_64-windows, or all; may be repeated. Needs ziglang.",
+    ),
+]  # fmt: skip
 ExistingFmu = Annotated[
     Path, typer.Argument(metavar="FMU", exists=True, dir_okay=False, help="An FMU, .fmu; of any origin.")
 ]
 FmuFolder = Annotated[
-    Path | None, typer.Option("--output", "-o", metavar="DIR", help="Leave FMU, CSV files and figure here.")
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="DIR",
+        help="Leave FMU, CSV files and figure here; of a system, also a file .csv, .json or .npz.",
+    ),
 ]
 ReportFolder = Annotated[
     Path | None, typer.Option("--report", metavar="DIR", help="Write the report, its figures and numbers here.")

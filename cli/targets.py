@@ -1,4 +1,4 @@
-"""Where results go: refused before any work is done if nothing can be written there."""
+"""What commands work on and where results go: refused before any work is done if nothing can be written there."""
 
 import tempfile
 from pathlib import Path
@@ -29,3 +29,8 @@ def _check_place(target: Path, folder: Path) -> None:
             pass
     except OSError as error:
         raise Failure(f"'{target}' cannot be written: '{there}': {error.strerror or error}") from None
+
+
+def is_system_file(source: str) -> bool:
+    """True if `source` means a system file."""
+    return source.lower().endswith(".toml")

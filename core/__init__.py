@@ -50,6 +50,7 @@ from .elements import (
     FloatingBeam2D,
     LinearSystem,
     MaterialPoint2D,
+    MovingFrame2D,
     PointMass2D,
     Prismatic2D,
     ReducedBody2D,
@@ -76,6 +77,7 @@ from .integrate.simulation import Simulation
 from .methods.registry import METHODS
 from .model.channels import Channel, Input, Parameter
 from .model.markers import Marker2D
+from .model.outputs import MarkerOutput2D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
 from .result import Result
 from .simulate import simulate
@@ -133,10 +135,12 @@ __all__ = [
     "LinearSystem",
     "LuGreFriction",
     "Marker2D",
+    "MarkerOutput2D",
     "Material",
     "MaterialPoint2D",
     "Model",
     "ModelError",
+    "MovingFrame2D",
     "NewtonImpact",
     "Parameter",
     "PointMass2D",

@@ -14,7 +14,8 @@ from .elements import Body, BodyElement, Element, Force, Joint, PlanarFrame, Poi
 from .errors import ModelError
 from .model.base import Record, Vector2
 from .model.channels import Input, Parameter
-from .model.markers import GROUND
+from .model.markers import GROUND, Marker2D
+from .model.outputs import MarkerOutput2D
 from .model.signals import InputSignal
 
 
@@ -39,11 +40,13 @@ class Model(Record):
     forces: tuple[Force, ...] = ()
     contacts: tuple[Contact, ...] = ()
     inputs: tuple[Input, ...] = ()
+    outputs: tuple[MarkerOutput2D, ...] = ()
+    """Markers whose motion is shown beside what bodies, joints and contacts show by themselves."""
     parameters: tuple[Parameter, ...] = ()
 
     @model_validator(mode="after")
     def _check(self) -> "Model":
-        names = [e.name for e in self.elements()] + [i.name for i in self.inputs]
+        names = [e.name for e in self.elements()] + [i.name for i in self.inputs] + [o.name for o in self.outputs]
         twice = [name for name, count in Counter(names).items() if count > 1]
         if twice:
             raise ValueError(f"names must be unique in a model; used more than once: {twice}")
@@ -55,27 +58,23 @@ class Model(Record):
         for element in self.elements():
             element.check_in(bodies)
             for marker in element.markers():
-                body = self._find(element, marker.body, bodies)
-                if body is not None and not isinstance(body, PlanarFrame):
-                    raise ValueError(
-                        f"'{element.name}' needs a point of '{body.name}', but a {type(body).__name__} has only its "
-                        f"coordinates {list(body.coordinate_names[:12])}: act on one of these by name "
-                        "(CoordinateDriver, CoordinateLoad), on a MaterialPoint2D of a flexible body, or use a "
-                        "RigidBody2D"
-                    )
-                if isinstance(body, PointMass2D) and marker.point != (0.0, 0.0):
-                    raise ValueError(
-                        f"'{element.name}' has a marker at {marker.point} of point mass '{marker.body}', "
-                        "which has no extension: use (0, 0), or a RigidBody2D"
-                    )
+                self._check_marker(element.name, marker, bodies)
             for name, coordinate in element.moved_coordinates():
-                self._check_coordinate(element, self._find(element, name, bodies), coordinate)
+                self._check_coordinate(element, self._find(element.name, name, bodies), coordinate)
             for signal in element.signals():
-                if isinstance(signal, InputSignal) and signal.channel not in inputs:
+                for channel in signal.channels():
+                    if channel not in inputs:
+                        raise ValueError(
+                            f"'{element.name}' uses input channel '{channel}', which is not declared in inputs; "
+                            f"declared are {sorted(inputs)}"
+                        )
+                if isinstance(signal, InputSignal) and signal.rate is not None and not element.motions():
                     raise ValueError(
-                        f"'{element.name}' uses input channel '{signal.channel}', which is not declared in inputs; "
-                        f"declared are {sorted(inputs)}"
+                        f"'{element.name}' names a rate channel '{signal.rate}' for its input '{signal.channel}', but "
+                        "only motions have a velocity: leave `rate` out"
                     )
+        for output in self.outputs:
+            self._check_marker(output.name, output.marker, bodies)
         for parameter in self.parameters:
             parameter.refuse_outside(self._number_at(parameter, parameter.targets[0]))
             for target in parameter.targets[1:]:
@@ -88,13 +87,28 @@ class Model(Record):
             raise ValueError(f"parameter '{parameter.name}': '{target}' holds {value!r}, which is no number")
         return value
 
+    @classmethod
+    def _check_marker(cls, user: str, marker: Marker2D, bodies: Mapping[str, BodyElement]) -> None:
+        body = cls._find(user, marker.body, bodies)
+        if body is not None and not isinstance(body, PlanarFrame):
+            raise ValueError(
+                f"'{user}' needs a point of '{body.name}', but a {type(body).__name__} has only its "
+                f"coordinates {list(body.coordinate_names[:12])}: act on one of these by name "
+                "(CoordinateDriver, CoordinateLoad), on a MaterialPoint2D of a flexible body, or use a "
+                "RigidBody2D"
+            )
+        if isinstance(body, PointMass2D) and marker.point != (0.0, 0.0):
+            raise ValueError(
+                f"'{user}' has a marker at {marker.point} of point mass '{marker.body}', "
+                "which has no extension: use (0, 0), or a RigidBody2D"
+            )
+
     @staticmethod
-    def _find(element: Element, name: str, bodies: Mapping[str, BodyElement]) -> BodyElement | None:
+    def _find(user: str, name: str, bodies: Mapping[str, BodyElement]) -> BodyElement | None:
         """The body `name`, None for the ground."""
         if name != GROUND and name not in bodies:
             raise ValueError(
-                f"'{element.name}' refers to body '{name}', which does not exist; "
-                f"bodies are {sorted(bodies)} and '{GROUND}'"
+                f"'{user}' refers to body '{name}', which does not exist; bodies are {sorted(bodies)} and '{GROUND}'"
             )
         return bodies.get(name)
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .errors import ModelError
 from .events import Event
 
-FORMAT = "tlismni-state-2"
+FORMAT = "tlismni-state-3"
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,12 +96,30 @@ class Calls:
             raise FmuValueError(f"room for {len(room)} sensitivities was given for {len(found)} unknowns")
         room[:] = found
 
+    def output_derivatives(self, references: Any, orders: Any, values: Any) -> None:
+        """The time derivatives of outputs into the buffer `values`."""
+        found = self.slave.output_derivatives(references_in(references), numbers_in(orders, np.int32).tolist())
+        room = numbers_in(values, np.float64)
+        if len(room) != len(found):
+            raise FmuValueError(f"room for {len(room)} derivatives was given for {len(found)} outputs")
+        room[:] = found
+
     def write_state(self, handle: int, buffer: Any) -> None:
         """Write the bytes of the snapshot under `handle` into `buffer`. Raises SnapshotError if it is too small."""
         data = self.kept(handle).data
         if len(buffer) < len(data):
             raise SnapshotError(f"the buffer holds {len(buffer)} bytes, the stored state needs {len(data)}")
         numbers_in(buffer, np.uint8)[: len(data)] = np.frombuffer(data, dtype=np.uint8)
+
+    def tell_clock(self, clock: Any) -> None:
+        """Write the slave's time and its horizon into the buffer `clock` (two doubles), if there is one."""
+        if clock is not None:
+            put(clock, "d", self.slave.time)
+            put(clock, "d", self.slave.horizon, 1)
+
+    def catch_up(self, t: float) -> None:
+        """The shim has stepped to `t`, s, on its own, within the horizon."""
+        self.slave.catch_up(t)
 
     def free(self) -> None:
         """Drop what the instance holds."""
@@ -117,6 +135,11 @@ def references_in(buffer: Any) -> npt.NDArray[np.uint32]:
 def numbers_in(buffer: Any, dtype: Any) -> npt.NDArray[Any]:
     """Numbers in a buffer, as a view that writes through if the buffer can be written."""
     return np.frombuffer(buffer, dtype=dtype) if len(buffer) else np.empty(0, dtype=dtype)
+
+
+def put(buffer: Any, code: str, value: Any, place: int = 0) -> None:
+    """Write one number into a buffer; `code` is its type as in the module struct."""
+    memoryview(buffer).cast("B").cast(code)[place] = value  # type: ignore[call-overload]
 
 
 def text_of(data: bytes | None, what: str) -> str:

@@ -1,12 +1,39 @@
 """Parts of modelDescription.xml that FMI 2.0 and 3.0 share."""
 
+import inspect
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from ..core.contact.laws import LAWS
+from ..core.methods.registry import METHODS
 from .log import CATEGORIES
 from .settings import Settings
 from .units import parse_unit
 from .variables import Variable, VariableTable
+
+ROLES: dict[str, tuple[str, str, str | None]] = {
+    "independent": ("independent", "continuous", None),
+    "parameter": ("parameter", "fixed", "exact"),
+    "input": ("input", "continuous", None),
+    "output": ("output", "continuous", "calculated"),
+    "constant": ("local", "constant", "exact"),
+}
+"""Causality, variability and `initial` by role."""
+
+DISPLAY_UNITS = {
+    "rad": (("deg", 180.0 / math.pi),),
+    "rad/s": (("deg/s", 180.0 / math.pi), ("rev/min", 30.0 / math.pi)),
+    "rad/s2": (("deg/s2", 180.0 / math.pi),),
+    "m": (("mm", 1e3),),
+    "s": (("ms", 1e3),),
+    "N": (("kN", 1e-3),),
+}
+"""Names and factors of what a host may show instead of a unit."""
+
+DISPLAYED = {"rad": "deg", "rad/s": "deg/s", "rad/s2": "deg/s2"}
+"""What is shown by default."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +90,8 @@ def add_units(root: Any, table: VariableTable) -> None:
         if base is not None:
             factor = None if base.factor == 1.0 else base.factor
             add(element, "BaseUnit", **base.exponents, factor=factor)
+        for name, factor in DISPLAY_UNITS.get(unit, ()):
+            add(element, "DisplayUnit", name=name, factor=factor)
 
 
 def enumerations(table: VariableTable) -> dict[str, tuple[str, ...]]:
@@ -71,9 +100,11 @@ def enumerations(table: VariableTable) -> dict[str, tuple[str, ...]]:
 
 
 def add_items(parent: Any, items: tuple[str, ...]) -> None:
-    """The items of an enumeration."""
+    """The items of an enumeration; methods and laws with their descriptions."""
+    laws = {law.__name__: inspect.getdoc(law) or "" for law in LAWS}
     for value, name in enumerate(items):
-        add(parent, "Item", name=name, value=value)
+        text = METHODS[name].description if name in METHODS else laws.get(name, "").split("\n\n")[0]
+        add(parent, "Item", name=name, value=value, description=" ".join(text.split()) or None)
 
 
 def add_categories(root: Any) -> None:
@@ -97,16 +128,35 @@ def add_experiment(root: Any, settings: Settings) -> None:
 
 def attributes(variable: Variable) -> dict[str, Any]:
     """Attributes of a variable that do not depend on its type."""
-    variability = "continuous" if variable.kind == "real" else "discrete"
-    initial = {"parameter": "exact", "output": "calculated"}.get(variable.role)
+    causality, variability, initial = ROLES[variable.role]
+    if variability == "continuous" and variable.kind != "real":
+        variability = "discrete"
     return {
         "name": variable.name,
         "valueReference": variable.reference,
         "description": variable.description or None,
-        "causality": variable.role,
-        "variability": "fixed" if variable.role == "parameter" else variability,
+        "causality": causality,
+        "variability": variability,
         "initial": initial,
     }
+
+
+def limits(variable: Variable) -> dict[str, Any]:
+    """Unit, least, largest and nominal value; whole numbers have no units and no nominal value."""
+    cast = int if variable.kind == "integer" else float
+    own = {"min": variable.minimum, "max": variable.maximum}
+    found: dict[str, Any] = {key: None if value is None else cast(value) for key, value in own.items()}
+    if variable.kind == "real":
+        found |= {"unit": variable.unit, "nominal": variable.nominal, "displayUnit": DISPLAYED.get(variable.unit or "")}
+    return found
+
+
+def dependencies(knowns: Iterable[int]) -> dict[str, str]:
+    """The attributes that list what an unknown depends on. The factor is one of the state, so the kind is the general
+    one; an empty list says that it depends on nothing."""
+    found = [str(known) for known in knowns]
+    kinds = {"dependenciesKind": " ".join(["dependent"] * len(found))} if found else {}
+    return {"dependencies": " ".join(found), **kinds}
 
 
 def text(value: Any) -> str:

@@ -4,17 +4,34 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from ..core.description import Model
+from ..core.elements import Element
+from ..core.model.markers import GROUND
+from .dependencies import bodies_of
 from .description_parts import About
+from .drawing import add_surroundings, draw, to_svg
 from .settings import Settings
+from .terminals import terminals
 from .variables import Variable, VariableTable
 
-PARTS = ("bodies", "joints", "forces", "contacts")
-STYLE = (
-    "body { font: 15px/1.5 sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em }"
-    " table { border-collapse: collapse; margin-bottom: 1.5em } td, th { text-align: left; padding: 0.15em 1em 0.15em 0"
-    "; border-bottom: 1px solid #ddd; vertical-align: top }"
-)
-ROLES = {"parameter": "Parameters", "input": "Inputs", "output": "Outputs"}
+PARTS = {"bodies": "body", "joints": "joint", "forces": "force", "contacts": "contact"}
+STYLE = """
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 68em; margin: 2em auto; padding: 0 1em; color: #1c2430 }
+h1 { margin-bottom: 0.2em } h2 { margin-top: 1.8em; font-size: 1.15em }
+figure { margin: 1.5em 0 } figure svg { max-width: 100%; max-height: 75vh; height: auto }
+figcaption { color: #6b7280; font-size: 0.9em }
+.wide { overflow-x: auto }
+table { border-collapse: collapse; margin-bottom: 1em; font-size: 0.93em }
+td, th { text-align: left; padding: 0.2em 1.1em 0.2em 0; border-bottom: 1px solid #e3e6ea; vertical-align: top }
+th { font-weight: 600; border-bottom-color: #9aa3ad } td:first-child { font-family: ui-monospace, monospace }
+"""
+ROLES = {"parameter": "Parameters", "input": "Inputs", "output": "Outputs", "constant": "Constants"}
+ABOUT_ROLES = {
+    "parameter": "They are fixed once the FMU is initialized: masses and geometry decide the consistent start, from "
+                 "which everything follows.",
+    "input": "An input set at a communication point holds from there on.",
+    "output": "Values at the present time, events at it included.",
+}  # fmt: skip
+COLUMNS = ("name", "type", "unit", "start", "min", "max", "nominal", "meaning")
 
 
 def documentation(model: Model, table: VariableTable, settings: Settings, about: About) -> bytes:
@@ -24,32 +41,69 @@ def documentation(model: Model, table: VariableTable, settings: Settings, about:
     root = etree.Element("html", lang="en")
     head, body = _add(root, "head"), _add(root, "body")
     _add(head, "meta", charset="utf-8")
+    _add(head, "meta", name="viewport", content="width=device-width, initial-scale=1")
     _add(head, "title", about.name)
     _add(head, "style", STYLE)
     _add(body, "h1", about.name)
     _add(body, "p", about.description)
+    figure = _add(body, "figure")
+    drawing = draw(model)
+    add_surroundings(drawing, model)
+    figure.append(to_svg(drawing, title=f"{about.name} at its start"))
+    _add(figure, "figcaption", "The model at its start. Joints, springs, loads and contacts are where the model has "
+         "them; outlines of bodies are made up of the points that these take hold of.")  # fmt: skip
     _add(body, "p", f"Co-simulation FMU made by {about.generator}. It solves the equations of motion itself, impacts "
          "inside a communication step included.")  # fmt: skip
     _add(body, "h2", "Model")
-    parts = [(part.name, type(part).__name__, kind[:-1] if kind != "bodies" else "body")
-             for kind in PARTS for part in getattr(model, kind, ())]  # fmt: skip
-    _table(body, ("name", "type", "kind"), parts)
+    parts = [(part.name, type(part).__name__, kind, _attached(part))
+             for group, kind in PARTS.items() for part in getattr(model, group)]  # fmt: skip
+    _table(body, ("name", "type", "kind", "at"), parts)
+    _add(body, "p", f"Gravity: ({model.gravity[0]:g}, {model.gravity[1]:g}) m/s².")
     _add(body, "h2", "Solver")
     given = {k: v for k, v in settings.as_arguments().items() if v is not None}
     _table(body, ("setting", "value"), given.items())
+    flanges = terminals(model, table)
+    if flanges:
+        _add(body, "h2", "Flanges")
+        rows = [(f.name, f.description, ", ".join(f"{m} = {v}" for m, v in f.members.items())) for f in flanges]
+        _table(body, ("terminal", "meaning", "members"), rows)
     for role, title in ROLES.items():
         variables = [v for v in table.variables if v.role == role]
         if variables:
             _add(body, "h2", title)
-            _table(body, ("name", "type", "unit", "start", "meaning"), (_row(v) for v in variables))
+            if role in ABOUT_ROLES:
+                _add(body, "p", ABOUT_ROLES[role])
+            used = [k for k in range(len(COLUMNS)) if any(_row(v)[k] != "" for v in variables)]
+            _table(body, [COLUMNS[k] for k in used], ([_row(v)[k] for k in used] for v in variables))
     page: bytes = etree.tostring(root, method="html", encoding="utf-8", doctype="<!DOCTYPE html>", pretty_print=True)
     return page
 
 
+def _attached(part: Element) -> str:
+    """The bodies that an element takes hold of."""
+    names = sorted(bodies_of(part) - {part.name})
+    ground = GROUND in [marker.body for marker in part.markers()]
+    return ", ".join([*names, *([GROUND] if ground else [])])
+
+
 def _row(variable: Variable) -> tuple[Any, ...]:
-    start = "" if variable.start is None else variable.start
-    kind = variable.enumeration or variable.kind
-    return variable.name, kind, variable.unit or "", start, variable.description
+    start = variable.start
+    if start is not None and variable.items:
+        start = variable.item(start)
+    listed = variable.items and variable.role != "constant"
+    numbers = (variable.minimum, variable.maximum, variable.nominal)
+    return (
+        variable.name,
+        variable.enumeration or variable.kind,
+        variable.unit or "",
+        "" if start is None else _number(start),
+        *("" if x is None else _number(x) for x in numbers),
+        f"{variable.description}: {', '.join(variable.items)}" if listed else variable.description,
+    )
+
+
+def _number(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _add(parent: Any, tag: str, text: str = "", **attributes: str) -> Any:
@@ -61,7 +115,7 @@ def _add(parent: Any, tag: str, text: str = "", **attributes: str) -> Any:
 
 
 def _table(parent: Any, columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> None:
-    table = _add(parent, "table")
+    table = _add(_add(parent, "div", **{"class": "wide"}), "table")
     line = _add(table, "tr")
     for column in columns:
         _add(line, "th", column)

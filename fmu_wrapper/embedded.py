@@ -6,10 +6,11 @@ from typing import Any
 
 from ..core.description import Model
 from . import log as logs
-from .calls import Calls
+from .calls import Calls, references_in
 from .errors import ExportError, FmuValueError, Status
 from .fmi2_calls import Fmi2Calls
 from .fmi3_calls import Fmi3Calls
+from .intermediate import UpdateCallback, Updates
 from .log import LogCallback
 from .slave import Slave
 from .variables import VariableTable
@@ -50,8 +51,19 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
     return slave
 
 
-def create(interface: int, name: str, token: str, resources: str, log: LogCallback, **flags: bool) -> Calls:
+def create(
+    interface: int,
+    name: str,
+    token: str,
+    resources: str,
+    log: LogCallback,
+    update: UpdateCallback | None,
+    required: Any,
+    **flags: bool,
+) -> Calls:
     """The calls object that the C shim talks to; `flags` (logging_on, event_mode, early_return) go to `Slave`.
+
+    `update` is called at intermediate updates, `required` holds the references of the variables that are set in them.
 
     Raises
     ------
@@ -60,5 +72,8 @@ def create(interface: int, name: str, token: str, resources: str, log: LogCallba
     if interface not in INTERFACES:
         raise FmuValueError(f"FMI {interface} is not served by tlismni {package_version()}")
     calls = INTERFACES[interface]
-    slave = read_slave(resources, token=token, token_name=calls.token_name, name=name, on_log=log, **flags)
+    updates = None if update is None else Updates(update, frozenset(references_in(required).tolist()))
+    slave = read_slave(
+        resources, token=token, token_name=calls.token_name, name=name, on_log=log, updates=updates, **flags
+    )
     return calls(slave)

@@ -2,7 +2,6 @@
 
 import json
 import logging
-import math
 import os
 import platform
 import re
@@ -10,25 +9,32 @@ import sys
 import tempfile
 import uuid
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from .bundle import package_archive
+from .dependencies import Dependencies
 from .description_parts import About
 from .documentation import documentation
+from .drawing import draw, to_png, to_svg
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
-from .libpython import library_record, python_record, shared_library
+from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
+from .platforms import PLATFORMS, choose, this_platform
+from .python_library import library_record, shared_library
+from .recommended_step import recommended_step
+from .run import build_simulation
 from .settings import Settings
 from .slave import Slave
+from .terminals import terminals, terminals_and_icons
 from .variables import VariableTable
 from .version import package_version
 
 SHIM = {"win32": "tlismni_shim.dll", "darwin": "tlismni_shim.dylib"}.get(sys.platform, "tlismni_shim.so")
 HERE = Path(__file__).parent
-_ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
 _SYSTEMS = {"Linux": "linux", "Windows": "win", "Darwin": "darwin"}
 
 
@@ -39,12 +45,15 @@ def export_fmu(
     *,
     t_end: float | None = None,
     communication_step: float | None = None,
+    bundle: bool = False,
+    platforms: Sequence[str] = (),
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
 
-    The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it; that Python must
-    be on the machine where the FMU runs. The same source and settings give the same file on one machine.
+    The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it, or that of another one
+    on the machine where it runs (docs/fmu.md); with `bundle`, with what it carries along. The same source and settings
+    give the same file on one machine.
 
     Parameters
     ----------
@@ -52,8 +61,10 @@ def export_fmu(
     path : the file to write, "x.fmu".
     fmi_version : "2.0" or "3.0"; "2" and "3" mean the same.
     t_end : stop time of the default experiment, s.
-    communication_step : preferred communication step, s; without it a round number of a hundredth to a
-        thousandth of `t_end`.
+    communication_step : preferred communication step, s; without it that of `recommended_step`.
+    bundle : carry the package along; the machine needs only the third-party packages then.
+    platforms : further platforms whose binaries the FMU shall have, such as "x86_64-windows", or "all" of
+        `platforms.PLATFORMS`; they are built if need be, which takes ziglang and some time.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -69,45 +80,86 @@ def export_fmu(
     SourceError : for what is neither a Model nor a Scenario; an EquationSystem is code, not data.
     """
     fmi_version = known_version(fmi_version)
-    shim, path = shim_path(), Path(path)
+    path = Path(path)
+    shim_path()  # before any work
     if not path.parent.is_dir():
         raise ExportError(f"'{path}' cannot be written: there is no folder '{path.parent}'")
     given = {"t_end": t_end, "communication_step": communication_step, **solver}
     slave = Slave(source, **{k: v for k, v in given.items() if v is not None})
     solver_data = slave.settings.as_arguments()
     if solver_data["communication_step"] is None:
-        solver_data["communication_step"] = _round_step(slave.settings.t_end)
+        simulation = build_simulation(None, slave.model, slave.settings)
+        solver_data["communication_step"] = recommended_step(simulation, slave.model, slave.settings.t_end)
         slave = Slave(slave.model, variables=slave.variables, **solver_data)
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
-    about = About(
-        identifier, slave.model.name, token, text, f"tlismni {package_version()}", derivatives=not slave.drivers
-    )
-    description, platforms = VERSIONS[fmi_version]
+    about = About(identifier, slave.model.name, token, text, f"tlismni {package_version()}", derivatives=True)
+    description, _ = VERSIONS[fmi_version]
     settings = {
         "token": token,
         "tlismni": package_version(),
         "solver": solver_data,
         "variables": slave.variables.to_data(),
     }
+    archive, digest = package_archive() if bundle else (None, None)
     files = {
-        "modelDescription.xml": description(slave.variables, slave.settings, about),
+        "modelDescription.xml": description(
+            slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables)
+        ),
         "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
+        **_pictures(slave, fmi_version),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": _json(settings),
-        f"resources/{PYTHON_FILE}": _json(python_record()),
+        f"resources/{PYTHON_FILE}": _json(python_record(digest)),
         "resources/libpython.txt": library_record().encode(),
-        "resources/boot.py": (HERE / "boot.py").read_bytes(),
-        f"binaries/{platforms()}/{identifier}{shim.suffix}": shim.read_bytes(),
+        **{f"resources/{name}": (HERE / name).read_bytes() for name in ("boot.py", "python_library.py")},
+        **({} if archive is None else {"resources/tlismni.zip": archive}),
+        **_binaries(identifier, fmi_version, platforms),
     }
     if shared_library() is None:
         logging.getLogger(__name__).warning(
             "this Python (%s) has no shared library: the FMU will load in Python hosts such as fmpy only; "
-            "set TLISMNI_LIBPYTHON in the host's environment, or export with a Python that has libpython",
+            "set TLISMNI_PYTHON in the host's environment to one that has, or export with a Python that has libpython",
             sys.prefix,
         )
     return _write(path, files)
+
+
+def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> dict[str, bytes]:
+    """The binary for this machine, and those for other platforms, which replace it if it is among them: they run on
+    older systems too."""
+    from .build import binary  # not above: this module is a program too
+
+    shim = shim_path()
+    files = {f"{VERSIONS[fmi_version][1]()}/{identifier}{shim.suffix}": shim.read_bytes()}
+    for name in choose(platforms):
+        target = PLATFORMS[name]
+        files[f"{target.folder(fmi_version)}/{identifier}{target.suffix}"] = binary(name).read_bytes()
+    return {f"binaries/{name}": data for name, data in files.items()}
+
+
+def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
+    """The icon, and for FMI 3.0 the terminals beside it."""
+    from lxml import etree
+
+    drawing, files = draw(slave.model), {}
+    try:
+        picture = to_png(drawing)
+    except ImportError:
+        logging.getLogger(__name__).warning(
+            "the FMU gets no icon: that needs Pillow, which is not installed (pip install pillow)"
+        )
+        picture = None
+    if fmi_version == "2.0":
+        return {} if picture is None else {"model.png": picture}
+    folder = "terminalsAndIcons"
+    if picture is not None:
+        files = {f"{folder}/icon.png": picture, f"{folder}/icon.svg": etree.tostring(to_svg(drawing, names=False))}
+    if files or terminals(slave.model, slave.variables):
+        described = terminals_and_icons(slave.model, slave.variables, bool(files))
+        files[f"{folder}/terminalsAndIcons.xml"] = described
+    return files
 
 
 def shim_path() -> Path:
@@ -132,12 +184,12 @@ def fmi2_platform() -> str:
 
 def fmi3_platform() -> str:
     """Folder name of this machine's binaries in an FMI 3.0 FMU."""
-    machine = platform.machine().lower()
-    system = {"Linux": "linux", "Windows": "windows", "Darwin": "darwin"}.get(platform.system(), "unknown")
-    return f"{_ARCHITECTURES.get(machine, machine)}-{system}"
+    return this_platform()
 
 
-VERSIONS: dict[str, tuple[Callable[[VariableTable, Settings, About], bytes], Callable[[], str]]] = {
+Description = Callable[[VariableTable, Settings, About, Dependencies], bytes]
+
+VERSIONS: dict[str, tuple[Description, Callable[[], str]]] = {
     "2.0": (fmi2_description, fmi2_platform),
     "3.0": (fmi3_description, fmi3_platform),
 }
@@ -156,10 +208,6 @@ def c_identifier(name: str) -> str:
     """`name` as a C identifier."""
     text = re.sub(r"\W", "_", name, flags=re.ASCII) or "model"
     return f"_{text}" if text[0].isdigit() else text
-
-
-def _round_step(t_end: float | None) -> float | None:
-    return None if t_end is None else float(f"1e{math.floor(math.log10(t_end)) - 2}")
 
 
 def _json(data: Any) -> bytes:

@@ -51,9 +51,10 @@ class Fmi2Calls(Calls):
         self.slave.reset()
 
     @fmi_call()
-    def fmi2DoStep(self, t: float, h: float) -> None:
-        """One communication step."""
+    def fmi2DoStep(self, t: float, h: float, clock: Any = None) -> None:
+        """One communication step; `clock` is what `tell_clock` writes to."""
         self.slave.do_step(t, h)
+        self.tell_clock(clock)
 
     @fmi_call()
     def fmi2CancelStep(self) -> None:
@@ -142,17 +143,17 @@ class Fmi2Calls(Calls):
         """Derivatives of outputs along a direction of inputs, into the buffer `sensitivity`."""
         self.directional_derivative(unknowns, knowns, seed, sensitivity)
 
-    # what this slave does not do
+    @fmi_call()
+    def fmi2SetRealInputDerivatives(self, vr: Any, order: Any, value: Any) -> None:
+        """Time derivatives with which inputs go on from the present time."""
+        self.slave.set_input_derivatives(
+            references_in(vr), numbers_in(order, np.int32).tolist(), numbers_in(value, np.float64).tolist()
+        )
 
     @fmi_call()
-    def fmi2SetRealInputDerivatives(self) -> None:
-        """Refused."""
-        raise UnavailableError("inputs are held over a step (canInterpolateInputs = false)")
-
-    @fmi_call()
-    def fmi2GetRealOutputDerivatives(self) -> None:
-        """Refused."""
-        raise UnavailableError("no output derivatives (maxOutputDerivativeOrder = 0)")
+    def fmi2GetRealOutputDerivatives(self, vr: Any, order: Any, value: Any) -> None:
+        """Time derivatives of outputs at the present time, into the buffer `value`."""
+        self.output_derivatives(vr, order, value)
 
     # status
 

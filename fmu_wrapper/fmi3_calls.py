@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .calls import Calls, fmi_call, numbers_in, references_in, text_of
+from .calls import Calls, fmi_call, numbers_in, put, references_in, text_of
 from .errors import FmuValueError, UnavailableError
 from .variables import Kind
 
@@ -39,7 +39,6 @@ REFUSED: dict[str, str] = {
     **{f"fmi3{name}": NO_CLOCKS for name in _CLOCKS},
     **{f"fmi3{name}": NO_STRUCTURE for name in _STRUCTURE},
     **{f"fmi3{name}": NO_MODEL_EXCHANGE for name in _MODEL_EXCHANGE},
-    "fmi3GetOutputDerivatives": "no output derivatives (maxOutputDerivativeOrder = 0)",
     "fmi3EvaluateDiscreteStates": "providesEvaluateDiscreteStates = false: use fmi3UpdateDiscreteStates",
 }
 """Functions that this FMU has not, and why."""
@@ -85,13 +84,19 @@ class Fmi3Calls(Calls):
     # steps and events
 
     @fmi_call()
-    def fmi3DoStep(self, t: float, h: float, event_due: Any, terminate: Any, early: Any, last_time: Any) -> None:
-        """One communication step; an event in it may end it, as the instance was made."""
-        due, ended, last = numbers_in(event_due, np.bool_), numbers_in(early, np.bool_), numbers_in(last_time, float)
-        numbers_in(terminate, np.bool_)[:] = due[:] = ended[:] = False
-        last[:] = self.slave.time
+    def fmi3DoStep(
+        self, t: float, h: float, event_due: Any, terminate: Any, early: Any, last_time: Any, clock: Any = None
+    ) -> None:
+        """One communication step; an event in it may end it, as the instance was made. `clock` is what `tell_clock`
+        writes to."""
+        for flag in (event_due, terminate, early):
+            put(flag, "?", False)
+        put(last_time, "d", self.slave.time)
         end = self.slave.do_step(t, h)
-        due[:], ended[:], last[:] = end.event_due, end.early, end.time
+        put(event_due, "?", end.event_due)
+        put(early, "?", end.early)
+        put(last_time, "d", end.time)
+        self.tell_clock(clock)
 
     @fmi_call()
     def fmi3EnterEventMode(self) -> None:
@@ -187,6 +192,11 @@ class Fmi3Calls(Calls):
     def fmi3GetDirectionalDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
         """Derivatives of outputs along a direction of inputs, into the buffer `sensitivity`."""
         self.directional_derivative(unknowns, knowns, seed, sensitivity)
+
+    @fmi_call()
+    def fmi3GetOutputDerivatives(self, vr: Any, order: Any, value: Any) -> None:
+        """Time derivatives of outputs at the present time, into the buffer `value`."""
+        self.output_derivatives(vr, order, value)
 
     @fmi_call()
     def fmi3GetAdjointDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:

@@ -98,8 +98,8 @@ class InProcess(Direct, FMU2Slave):
     ) -> int:
         return self._fmi.fmi2GetDirectionalDerivative(unknowns, knowns, seed, sensitivity)
 
-    def _fmi2SetRealInputDerivatives(self, *arguments: Any) -> int:
-        return self._fmi.fmi2SetRealInputDerivatives()
+    def _fmi2SetRealInputDerivatives(self, vr: Any, n: int, order: Any, value: Any) -> int:
+        return self._fmi.fmi2SetRealInputDerivatives(vr, order, value)
 
-    def _fmi2GetRealOutputDerivatives(self, *arguments: Any) -> int:
-        return self._fmi.fmi2GetRealOutputDerivatives()
+    def _fmi2GetRealOutputDerivatives(self, vr: Any, n: int, order: Any, value: Any) -> int:
+        return self._fmi.fmi2GetRealOutputDerivatives(vr, order, value)

@@ -41,6 +41,8 @@ class InProcess3(Direct, FMU3Slave):
             return lambda *arguments: self._fmi.refuse(fname)
         if fname in ("fmi3GetDirectionalDerivative", "fmi3GetAdjointDerivative"):
             return lambda *arguments: getattr(self._fmi, fname)(*arguments[::2])  # without the counts
+        if fname == "fmi3GetOutputDerivatives":
+            return lambda vr, count, order, value, values: self._fmi.fmi3GetOutputDerivatives(vr, order, value)
         if fname.startswith(("fmi3Get", "fmi3Set")):
             return lambda vr, count, value, values: getattr(self._fmi, fname)(vr, value)
         return None

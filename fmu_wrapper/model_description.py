@@ -1,5 +1,6 @@
 """modelDescription.xml for FMI 2.0 co-simulation."""
 
+from .dependencies import Dependencies
 from .description_parts import (
     About,
     add,
@@ -8,18 +9,21 @@ from .description_parts import (
     add_items,
     add_units,
     attributes,
+    dependencies,
     enumerations,
     finish,
+    limits,
     start,
 )
+from .output_derivatives import HIGHEST_ORDER
 from .settings import Settings
 from .variables import VariableTable
 
 CAPABILITIES = {
     "needsExecutionTool": "false",
     "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "false",
-    "maxOutputDerivativeOrder": "0",
+    "canInterpolateInputs": "true",
+    "maxOutputDerivativeOrder": str(HIGHEST_ORDER),
     "canRunAsynchronuously": "false",  # the standard's own spelling
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canNotUseMemoryManagementFunctions": "true",
@@ -30,7 +34,7 @@ CAPABILITIES = {
 _TYPES = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "string": "String"}
 
 
-def fmi2_description(table: VariableTable, settings: Settings, about: About) -> bytes:
+def fmi2_description(table: VariableTable, settings: Settings, about: About, known: Dependencies) -> bytes:
     """The file's bytes."""
     root = start("2.0", "guid", about, numberOfEventIndicators="0")
     derivatives = {"providesDirectionalDerivative": about.derivatives}
@@ -48,12 +52,12 @@ def fmi2_description(table: VariableTable, settings: Settings, about: About) -> 
         if variable.enumeration is not None:
             add(element, "Enumeration", declaredType=variable.enumeration, start=variable.start)
             continue
-        limits = {"min": variable.minimum, "max": variable.maximum}
-        add(element, _TYPES[variable.kind], start=variable.start, unit=variable.unit, **limits)
+        add(element, _TYPES[variable.kind], start=variable.start, **limits(variable))
     structure = add(root, "ModelStructure")
-    for part in ("Outputs", "InitialUnknowns"):
+    index = {v.reference: i for i, v in enumerate(table.variables, start=1)}
+    for part, depends_on in (("Outputs", known.of_output), ("InitialUnknowns", known.at_start)):
         element = add(structure, part)
-        for index, variable in enumerate(table.variables, start=1):
-            if variable.role == "output":
-                add(element, "Unknown", index=index)
+        for variable in table.of_role("output"):
+            found = depends_on(variable)
+            add(element, "Unknown", index=index[variable.reference], **dependencies(index[v.reference] for v in found))
     return finish(root)

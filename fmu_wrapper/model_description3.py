@@ -1,5 +1,6 @@
 """modelDescription.xml for FMI 3.0 co-simulation."""
 
+from .dependencies import Dependencies
 from .description_parts import (
     About,
     add,
@@ -8,10 +9,13 @@ from .description_parts import (
     add_items,
     add_units,
     attributes,
+    dependencies,
     enumerations,
     finish,
+    limits,
     start,
 )
+from .output_derivatives import HIGHEST_ORDER
 from .settings import Settings
 from .variables import VariableTable
 
@@ -22,10 +26,10 @@ CAPABILITIES = {
     "canSerializeFMUState": "true",
     "providesPerElementDependencies": "false",
     "canHandleVariableCommunicationStepSize": "true",
-    "maxOutputDerivativeOrder": "0",
-    "providesIntermediateUpdate": "false",
+    "maxOutputDerivativeOrder": str(HIGHEST_ORDER),
+    "providesIntermediateUpdate": "true",
     "mightReturnEarlyFromDoStep": "true",
-    "canReturnEarlyAfterIntermediateUpdate": "false",
+    "canReturnEarlyAfterIntermediateUpdate": "true",
     "hasEventMode": "true",
     "providesEvaluateDiscreteStates": "false",
 }
@@ -33,7 +37,7 @@ CAPABILITIES = {
 _TYPES = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "string": "String"}
 
 
-def fmi3_description(table: VariableTable, settings: Settings, about: About) -> bytes:
+def fmi3_description(table: VariableTable, settings: Settings, about: About, known: Dependencies) -> bytes:
     """The file's bytes."""
     root = start("3.0", "instantiationToken", about)
     derivatives = dict.fromkeys(("providesDirectionalDerivatives", "providesAdjointDerivatives"), about.derivatives)
@@ -47,18 +51,20 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About) -> 
     add_experiment(root, settings)
     variables = add(root, "ModelVariables")
     for variable in table.variables:
-        own = attributes(variable) | {"unit": variable.unit, "min": variable.minimum, "max": variable.maximum}
+        own = attributes(variable)
+        if variable.role in ("input", "output"):
+            own["intermediateUpdate"] = True
         if variable.kind == "string":
             element = add(variables, "String", **own)
             if variable.start is not None:
                 add(element, "Start", value=variable.start)
         elif variable.enumeration is not None:
-            add(variables, "Enumeration", **attributes(variable), declaredType=variable.enumeration)
+            add(variables, "Enumeration", **own, declaredType=variable.enumeration, start=variable.start)
         else:
-            add(variables, _TYPES[variable.kind], **own, start=variable.start)
+            add(variables, _TYPES[variable.kind], **own, **limits(variable), start=variable.start)
     structure = add(root, "ModelStructure")
-    for part in ("Output", "InitialUnknown"):
-        for variable in table.variables:
-            if variable.role == "output":
-                add(structure, part, valueReference=variable.reference)
+    for part, depends_on in (("Output", known.of_output), ("InitialUnknown", known.at_start)):
+        for variable in table.of_role("output"):
+            found = dependencies(v.reference for v in depends_on(variable))
+            add(structure, part, valueReference=variable.reference, **found)
     return finish(root)

@@ -1,5 +1,6 @@
 """The simulation under a slave: built from variable values, told its inputs, read into variable values."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -8,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.description import Model
-from .derivatives import along, check_finite
+from .derivatives import check_finite
 from .errors import FmuError
 from .settings import Settings
 from .values import Values
@@ -49,10 +50,18 @@ def effective(model: Model, settings: Settings, values: Values) -> tuple[Model, 
     table = values.table
     parameters = {v.name: values[v] for v in table.block("parameter")}
     changed = {name: value for name, value in parameters.items() if value != model.parameter_value(name)}
-    given = {v.name.removeprefix("solver."): values[v] for v in table.block("solver")}
+    given: dict[str, Any] = {
+        v.name.removeprefix("solver."): v.item(values[v]) if v.items else values[v] for v in table.block("solver")
+    }
     own = {name: given.pop(name) for name in ("method", "rtol", "atol", "step")}
     options = {**settings.options, **given} if own["method"] == settings.method else {}
     return (model.with_parameters(changed) if changed else model), replace(settings, options=options, **own)
+
+
+def as_slice(positions: list[int]) -> slice | npt.NDArray[np.intp]:
+    """Positions that follow one another as a slice, which is faster; others as an array."""
+    first, last = (positions[0], positions[-1] + 1) if positions else (0, 0)
+    return slice(first, last) if positions == list(range(first, last)) else np.array(positions, dtype=np.intp)
 
 
 @dataclass(frozen=True)
@@ -79,9 +88,8 @@ class Run:
         self.key = self.key_of(values, t0)
         inputs = values.table.block("input")
         self._input_names = [v.name for v in inputs]
-        self._input_positions = np.array([values.table.position[v.reference] for v in inputs], dtype=np.intp)
-        self._applied = np.array([v.start for v in inputs], dtype=np.float64)
-        self._events = values.table.by_name[EVENTS]
+        self._applied: list[list[float]] = [[float(v.start or 0.0) for v in inputs]]
+        self._events = values.table.position[values.table.by_name[EVENTS].reference]
         changed_model, changed_settings = effective(model, settings, values)
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
         self._set_columns(values.table)
@@ -102,62 +110,92 @@ class Run:
                 "version of tlismni names them differently; export the FMU anew"
             )
         self._names = [channel.name for channel in self._simulation.channels]
-        self._columns = {
-            kind: (
-                np.array([table.position[v.reference] for v in wanted if v.kind == kind], dtype=np.intp),
+        self._columns = [
+            (
+                kind,
+                as_slice([table.position[v.reference] for v in wanted if v.kind == kind]),
                 np.array([column[v.name] for v in wanted if v.kind == kind], dtype=np.intp),
             )
-            for kind in {v.kind for v in wanted}
-        }
+            for kind in sorted({v.kind for v in wanted})
+        ]
 
     @property
-    def applied(self) -> tuple[float, ...]:
-        """The input values that the simulation has been told."""
-        return tuple(self._applied.tolist())
+    def applied(self) -> list[list[float]]:
+        """The courses of the inputs, as the simulation has been told."""
+        return self._applied
 
     @property
     def events(self) -> Sequence[Any]:
         """Events so far."""
         return self._simulation.events
 
-    def inputs(self) -> dict[str, float]:
-        """The input values that the simulation has been told, by name."""
-        return dict(zip(self._input_names, self.applied, strict=True))
-
     def derivatives(self, outputs: Sequence[Variable], direction: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """Derivatives of real outputs along `direction`, by input name, at the present time."""
         column = {name: i for i, name in enumerate(self._names)}
-        found = along(self._simulation, self.inputs(), direction)[[column[v.name] for v in outputs]]
+        found = self._simulation.input_derivatives(direction)[[column[v.name] for v in outputs]]
         check_finite(outputs, found)
         return found
 
+    def close_start(self) -> None:
+        """The start is over: motions that are set from now on go on from where they are."""
+        self._simulation.close_start()
+
+    def rates(self, outputs: Sequence[Variable]) -> npt.NDArray[np.float64]:
+        """Time derivatives of real outputs at the present time, NaN where they are not known."""
+        column = {name: i for i, name in enumerate(self._names)}
+        return np.asarray(self._simulation.output_rates()[[column[v.name] for v in outputs]])
+
     def apply_inputs(self, values: Values) -> None:
         """Tell the simulation the inputs that changed."""
-        wanted = values.vectors["real"][self._input_positions]
-        changed = np.flatnonzero(wanted != self._applied)
-        if changed.size:
-            self._simulation.set_inputs({self._input_names[i]: wanted[i].item() for i in changed})
-            self._applied = wanted
+        wanted = values.courses
+        if wanted == self._applied:
+            return
+        told = dict(zip(self._input_names, wanted[0], strict=True))
+        if len(wanted) > 1:
+            self._simulation.set_inputs(told, dict(zip(self._input_names, zip(*wanted[1:], strict=True), strict=True)))
+        else:
+            self._simulation.set_inputs(told)
+        self._applied = wanted
 
-    def advance(self, t: float, event_mode: bool = False, early_return: bool = False) -> StepEnd:
-        """Integrate to `t`, s, or to a contact event before it if `early_return`.
+    def follow(self, values: Values) -> None:
+        """The inputs have gone on by their derivatives, as the simulation knows."""
+        self._applied = values.courses
 
-        With `event_mode` a contact event at the end is left to `handle_event`. All others happen in here.
+    def next_point(self, t: float) -> float:
+        """Where the solver's newest step ends, s, at most `t`; a step is made if there is none beyond the present."""
+        return float(self._simulation.next_point(t))
+
+    def advance(
+        self, t: float, event_mode: bool = False, early_return: bool = False, goal: float | None = None
+    ) -> StepEnd:
+        """Integrate to `t`, s, on the way to `goal` (None: `t`), or to a contact event before that if `early_return`.
+
+        With `event_mode` a contact event at the goal is left to `handle_event`. All others happen in here.
         """
-        simulation = self._simulation
+        simulation, last = self._simulation, t if goal is None else goal
         if not (event_mode or early_return):
             simulation.advance(t)
             return StepEnd(t)
         while simulation.advance_to_event(t):
             reached = float(simulation.t)
-            early = early_return and reached < t
-            if event_mode and (early or reached >= t):
+            early = early_return and reached < last
+            if event_mode and (early or reached >= last):
                 return StepEnd(reached, event_due=True, early=early)
             while simulation.handle_event():
                 pass
             if early:
                 return StepEnd(reached, early=True)
         return StepEnd(t)
+
+    @property
+    def step_size(self) -> float:
+        """Size of the solver's next step, s."""
+        return float(self._simulation.step_size)
+
+    @property
+    def horizon(self) -> float:
+        """Time up to which the solver has gone without an event, s."""
+        return float(self._simulation.horizon)
 
     def handle_event(self) -> bool:
         """Let a contact event at the present time happen, if one is due. True if it entails another at once."""
@@ -171,23 +209,24 @@ class Run:
         FmuError : if one is not finite.
         """
         found = np.asarray(self._simulation.values(), dtype=np.float64)
-        if not np.isfinite(found).all():
+        # a sum that is finite has finite terms, and costs a third of looking at each
+        if not math.isfinite(found.sum()) and not np.isfinite(found).all():
             bad = [f"{name} = {x}" for name, x in zip(self._names, found, strict=True) if not np.isfinite(x)]
             raise FmuError(
                 f"at t = {self._simulation.t!r} s these values are not finite: {', '.join(bad)}; "
                 "the model runs away or a parameter is wrong: check parameters and inputs, use smaller steps"
             )
-        for kind, (positions, columns) in self._columns.items():
-            values.vectors[kind][positions] = np.rint(found[columns]) if kind == "integer" else found[columns]
-        values[self._events] = len(self.events)
+        for kind, positions, columns in self._columns:
+            values.vectors[kind][positions] = found.take(columns) if kind == "real" else np.rint(found.take(columns))
+        values.vectors["integer"][self._events] = len(self.events)
 
     def state(self) -> Any:
         """The solver's state."""
         return self._simulation.state()
 
-    def restore(self, state: Any, applied: tuple[float, ...]) -> None:
+    def restore(self, state: Any, applied: list[list[float]]) -> None:
         """Take over a solver state (or its bytes) and the inputs that it has been told."""
         if isinstance(state, bytes):
             state = type(self._simulation.state()).from_bytes(state)
         self._simulation.restore(state)
-        self._applied = np.array(applied, dtype=np.float64)
+        self._applied = applied

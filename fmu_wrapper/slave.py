@@ -14,17 +14,20 @@ import numpy as np
 import numpy.typing as npt
 
 from . import log as logs
-from .derivatives import check_knowns, check_unknowns
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
-from .phases import EVENT_PHASES, RUNNING, SETTABLE, Phase
+from .intermediate import Updates
+from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
-from .slave_state import SlaveState
-from .values import check_values
+from .slave_derivatives import SlaveDerivatives
+from .values import MOST_DERIVATIVES, check_values, item_value
 from .variables import Kind, Variable
 
+MOST_STEPS = 1e12
+"""Steps of the solver, as long as its next one, beyond which a communication step is taken for a mistake: months."""
 
-class Slave(SlaveState):
+
+class Slave(SlaveDerivatives):
     """A model with its solver as a co-simulation slave.
 
     Parameters
@@ -36,6 +39,7 @@ class Slave(SlaveState):
     logging_on : True passes on all categories, False errors only.
     event_mode : contact events at the end of a step are left to `update_discrete_states`, in event mode.
     early_return : a step may end before its time, at a contact event.
+    updates : intermediate updates, None for none.
     simulation_factory : makes the simulation; None is `tlismni.core.Simulation`.
     solver : `method`, `rtol`, `atol`, `step` and options of the method; they win over the scenario's.
 
@@ -84,6 +88,7 @@ class Slave(SlaveState):
         """
         self._need("exit initialization mode", Phase.INITIALIZATION)
         self._refresh()
+        self._engine().close_start()
         self._phase = Phase.EVENT if self.event_mode else Phase.STEP
 
     def enter_event_mode(self) -> None:
@@ -104,11 +109,10 @@ class Slave(SlaveState):
         self._need("update discrete states", Phase.EVENT)
         run = self._engine()
         seen = len(run.events)
+        self._stale = True
         with self._failing():
-            run.apply_inputs(self._values)
+            self._tell(run)
             again = run.handle_event()
-            run.read(self._values)
-        self._stale = False
         self._log_events(run, seen)
         return again
 
@@ -138,20 +142,65 @@ class Slave(SlaveState):
         self._need("do step", Phase.STEP)
         target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
+        if h > MOST_STEPS * run.step_size:
+            raise FmuValueError(
+                f"a communication step of {h!r} s would never end: the solver steps by {run.step_size:.3g} s; ask for "
+                "a shorter one"
+            )
         seen = len(run.events)
+        self._stale = True
         try:  # not `_failing`: a context manager at every step is dear
-            run.apply_inputs(self._values)
-            end = run.advance(target, self.event_mode, self.early_return)
-            run.read(self._values)
+            if self.updates is None:
+                self._tell(run)
+                end = run.advance(target, self.event_mode, self.early_return)
+                self._arrive(run, end.time)
+            else:
+                end = self._advance_with_updates(run, target, self.updates)
         except BaseException:
             self._phase = Phase.FAILED
             raise
-        self._set_time(end.time)
-        self._stale = False
         if end.event_due:
             self._phase = Phase.EVENT_DUE
         self._log_events(run, seen)
         return end
+
+    @property
+    def horizon(self) -> float:
+        """Time, s, up to which steps with the present inputs only move the clock; minus infinity for none."""
+        if self._phase != Phase.STEP or self._run is None or self._untold or self._values.sloped or self.updates:
+            return -math.inf
+        return min(self._run.horizon, math.inf if self._stop_time is None else self._stop_time)
+
+    def catch_up(self, t: float) -> None:
+        """Move the clock to `t`, s, within the horizon, after steps that nobody told of."""
+        run = self._engine()
+        run.advance(t, self.event_mode, self.early_return)
+        self._arrive(run, t)
+
+    def _arrive(self, run: Run, t: float) -> None:
+        """The simulation is at `t`, s, and so are the inputs that go on with derivatives."""
+        if self._values.go_on(t - self._time):
+            run.follow(self._values)
+        self._set_time(t)
+        self._stale = True
+
+    def _advance_with_updates(self, run: Run, target: float, updates: Updates) -> StepEnd:
+        """Advance to `target`, s, with an intermediate update where each step of the solver ends on the way."""
+        goal = target
+        while True:
+            self._tell(run)
+            end = run.advance(run.next_point(goal), self.event_mode, self.early_return, goal)
+            self._arrive(run, end.time)
+            if end.early or end.event_due or end.time >= goal:
+                return StepEnd(end.time, end.event_due, end.time < target)
+            self._phase = Phase.INTERMEDIATE
+            wanted = updates.call(end.time, self.early_return)
+            self._phase = Phase.STEP
+            if self.early_return and wanted is not None:
+                goal = min(goal, wanted)
+                if goal <= end.time:
+                    self._tell(run)
+                    return StepEnd(end.time, early=True)
 
     def _log_events(self, run: Run, seen: int) -> None:
         if self.log.wants(logs.EVENTS):
@@ -172,9 +221,10 @@ class Slave(SlaveState):
         """
         self._need("get values", *RUNNING)
         plan = self.variables.plan(kind, references)
-        if self._stale and self._phase != Phase.FAILED and "output" in plan.roles:
+        if self._stale and "output" in plan.roles:
+            self._need("get outputs that were not asked for before", *SOUND)
             self._refresh()
-        return self._values.vectors[kind][plan.positions]
+        return self._values.vectors[kind].take(plan.positions)
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.
@@ -186,14 +236,49 @@ class Slave(SlaveState):
         CallOrderError, FmuValueError
         """
         plan = self.variables.plan(kind, references)
-        self._need("set values", *SETTABLE)
-        if not plan.roles <= SETTABLE[self._phase]:
-            self._refuse(plan.variables)
-        self._values.vectors[kind][plan.positions] = check_values(plan.variables, values)
-        self._stale = True
+        if self._phase is not Phase.STEP or plan.roles != INPUTS:  # by far the most calls
+            self._need("set values", *SETTABLE)
+            if not plan.roles <= SETTABLE[self._phase]:
+                self._refuse(plan.variables)
+        if self._phase == Phase.INTERMEDIATE and self.updates is not None:
+            self.updates.check(plan.variables)
+        self._values.vectors[kind][plan.positions] = check_values(plan, values)
+        self._stale = self._untold = True
+        if self._values.sloped and kind == "real" and "input" in plan.roles:
+            self._values.end_slopes(plan.positions, self._time)
         if "parameter" in plan.roles:
             self._rtol_given |= any(v.name == "solver.rtol" for v in plan.variables)
             self._run = None
+
+    def set_input_derivatives(
+        self, references: npt.NDArray[np.uint32], orders: Sequence[int], values: Sequence[float]
+    ) -> None:
+        """Let the inputs behind `references` go on, from the present time, with these time derivatives of the given
+        orders, 1 or 2: all of them or, on an error, none.
+
+        The value of such an input moves along. Its derivatives hold until it is set without new ones at a later time.
+
+        Raises
+        ------
+        CallOrderError, FmuValueError
+        """
+        plan = self.variables.plan("real", references)
+        self._need("set input derivatives", *SETTABLE)
+        given = [float(value) for value in values]
+        rows = []
+        for variable, order, value in zip(plan.variables, orders, given, strict=True):
+            if variable.role != "input":
+                raise FmuValueError(f"'{variable.name}' is of role {variable.role}: only inputs take derivatives")
+            if not 1 <= order <= MOST_DERIVATIVES:
+                raise FmuValueError(
+                    f"a derivative of order {order} of input '{variable.name}' was given: orders 1 to "
+                    f"{MOST_DERIVATIVES} are taken"
+                )
+            if not math.isfinite(value):
+                raise FmuValueError(f"a derivative of input '{variable.name}' is {value!r}: a finite number is needed")
+            rows.append(self._input_rows[variable.reference])
+        self._values.set_slopes(rows, orders, given, self._time)
+        self._stale = self._untold = True
 
     def _refuse(self, variables: Sequence[Variable]) -> None:
         for v in variables:
@@ -203,15 +288,19 @@ class Slave(SlaveState):
                 raise CallOrderError(f"parameter '{v.name}' is fixed after initialization: reset, then set it before")
 
     def set_by_name(self, values: Mapping[str, Any]) -> None:
-        """`set` for Python users: values by variable name."""
+        """`set` for Python users: values by variable name, those of enumerations by name too."""
         for name, value in values.items():
             variable = self._named(name)
+            if variable.items and isinstance(value, str):
+                value = item_value(variable, value)
             self.set(variable.kind, np.array([variable.reference], dtype=np.uint32), [value])
 
     def __getitem__(self, name: str) -> Any:
-        """Value of the variable `name`."""
+        """Value of the variable `name`; of a setting or law that is an enumeration, its item."""
         variable = self._named(name)
         value = self.get(variable.kind, np.array([variable.reference], dtype=np.uint32))[0]
+        if variable.items and variable.role != "output":
+            return variable.item(value)
         return value if variable.kind == "string" else value.item()
 
     def _named(self, name: str) -> Variable:
@@ -219,32 +308,3 @@ class Slave(SlaveState):
             return self.variables.by_name[name]
         except KeyError:
             raise FmuValueError(f"no variable '{name}'; there are {sorted(self.variables.by_name)}") from None
-
-    def directional_derivative(
-        self,
-        unknowns: npt.NDArray[np.uint32],
-        knowns: npt.NDArray[np.uint32],
-        seed: npt.NDArray[np.float64],
-    ) -> npt.NDArray[np.float64]:
-        """Derivatives of the outputs behind `unknowns` along `seed` in the inputs behind `knowns`, at the present time.
-
-        Coordinates, velocities and contact modes are held: the derivatives are those of accelerations and forces.
-
-        Raises
-        ------
-        CallOrderError : outside initialization, step and event mode.
-        FmuValueError : for other variables than real outputs and inputs, for an input that drives a motion, a wrong
-            seed.
-        SimulationError : if accelerations cannot be computed; if that is so for the inputs set, the slave is in phase
-            `failed`, as in `get`.
-        """
-        self._need("get derivatives", Phase.INITIALIZATION, Phase.STEP, *EVENT_PHASES)
-        outputs, inputs = (self.variables.plan("real", references).variables for references in (unknowns, knowns))
-        check_unknowns(outputs)
-        check_knowns(inputs, seed, self.drivers)
-        if self._stale:
-            self._refresh()
-        direction: dict[str, float] = {}
-        for variable, x in zip(inputs, seed.tolist(), strict=True):
-            direction[variable.name] = direction.get(variable.name, 0.0) + x
-        return self._engine().derivatives(outputs, direction)

@@ -6,13 +6,15 @@ from typing import Any
 
 from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
+from .intermediate import Updates
 from .log import Log, LogCallback
 from .phases import EVENT_PHASES, WAYS, Phase
 from .run import Run, SimulationFactory, build_simulation
 from .settings import Settings
 from .snapshot import Snapshot, identity
 from .values import Values
-from .variables import TIME, VariableTable, build_table
+from .variable_list import build_table
+from .variables import TIME, VariableTable
 
 
 class SlaveState:
@@ -28,18 +30,21 @@ class SlaveState:
         logging_on: bool = False,
         event_mode: bool = False,
         early_return: bool = False,
+        updates: Updates | None = None,
         simulation_factory: SimulationFactory | None = None,
         **solver: Any,
     ) -> None:
         self.model, self.settings = Settings.of(source, **solver)
         self.name = name
         self.log = Log(on_log, logging_on)
-        self.event_mode, self.early_return = event_mode, early_return
+        self.event_mode, self.early_return, self.updates = event_mode, early_return, updates
         self._factory = simulation_factory
         if variables is None:
             channels = build_simulation(simulation_factory, self.model, self.settings).channels
             variables = build_table(self.model, self.settings, channels)
         self.variables = variables
+        self._input_rows = {v.reference: i for i, v in enumerate(variables.block("input"))}
+        self._time_position = variables.position[TIME]
         self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
         self._run: Run | None = None
@@ -56,28 +61,37 @@ class SlaveState:
         return self._time
 
     def reset(self) -> None:
-        """Back to the state of a new slave: start values, no experiment, phase `instantiated`."""
+        """Back to the state of a new slave: start values, no experiment, phase `instantiated`.
+
+        Raises
+        ------
+        CallOrderError : in an intermediate update.
+        """
+        if self._run is not None:
+            self._need("reset", *(p for p in Phase if p != Phase.INTERMEDIATE))
         self._phase = Phase.INSTANTIATED
         self._values = Values(self.variables)
         self._start_time = self._time = 0.0
         self._stop_time: float | None = None
         self._rtol_given = False
         self._run = None
-        self._stale = True
+        self._stale = self._untold = True
 
     # state
 
     def snapshot(self) -> Snapshot:
         """The whole state. Raises CallOrderError after a failed step, whose state is worthless."""
-        self._need("get the state", *(p for p in Phase if p != Phase.FAILED))
+        self._need("get the state", *(p for p in Phase if p not in (Phase.FAILED, Phase.INTERMEDIATE)))
+        values = self._values.copy()
+        values.forget_outputs()
         return Snapshot(
             phase=self._phase,
             start_time=self._start_time,
             stop_time=self._stop_time,
             time=self._time,
             rtol_given=self._rtol_given,
-            values=self._values.copy(),
-            applied=() if self._run is None else self._run.applied,
+            values=values,
+            applied=[] if self._run is None else self._run.applied,
             simulation=None if self._run is None else self._run.state(),
             identity=self.identity,
         )
@@ -89,6 +103,7 @@ class SlaveState:
         ------
         SnapshotError : if it is no snapshot, or belongs to another model or other settings.
         """
+        self._need("set a state", *(p for p in Phase if p != Phase.INTERMEDIATE))
         if not isinstance(snapshot, Snapshot):
             raise SnapshotError(
                 f"a Snapshot is needed to restore, not {type(snapshot).__name__}; bytes go through snapshot_from_bytes"
@@ -114,13 +129,17 @@ class SlaveState:
         self._run, self._values = run, values
         self._phase, self._rtol_given = snapshot.phase, snapshot.rtol_given
         self._start_time, self._stop_time, self._time = snapshot.start_time, snapshot.stop_time, snapshot.time
-        self._stale = run is None or snapshot.applied != tuple(values[v] for v in self.variables.block("input"))
+        self._stale = True
+        self._untold = run is None or snapshot.applied != values.courses
 
     def snapshot_from_bytes(self, data: bytes) -> Snapshot:
         """The snapshot whose `.data` is `data`. Raises SnapshotError if it is none, or not of this slave's kind."""
         return Snapshot.from_data(data, self.variables, self.identity)
 
     # inside
+
+    # `_stale`: the outputs are not those of the present time and inputs; `_untold`: the simulation does not know all
+    # inputs yet. Outputs are read when they are asked for, since a step does not cost much more than asking.
 
     def _need(self, what: str, *phases: Phase) -> None:
         if self._phase not in phases:
@@ -142,19 +161,25 @@ class SlaveState:
         """
         try:
             run = self._engine()
-            run.apply_inputs(self._values)
+            self._tell(run)
             run.read(self._values)
         except BaseException:
             if self._phase == Phase.INITIALIZATION:
-                self._run = None
+                self._run, self._untold = None, True
             else:
                 self._phase = Phase.FAILED
             raise
         self._stale = False
 
+    def _tell(self, run: Run) -> None:
+        """Tell the simulation the inputs, if any were set since it was told."""
+        if self._untold:
+            run.apply_inputs(self._values)
+            self._untold = False
+
     def _set_time(self, t: float) -> None:
         self._time = t
-        self._values[self.variables.by_reference[TIME]] = t
+        self._values.vectors["real"][self._time_position] = t
 
     @contextmanager
     def _failing(self) -> Iterator[None]:

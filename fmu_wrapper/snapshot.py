@@ -15,7 +15,7 @@ from .values import Values
 from .variables import VariableTable
 from .version import package_version
 
-FORMAT = 1
+FORMAT = 2
 MAGIC = b"tlismni-slave-state\n"
 LENGTHS = 4 * 8
 """Bytes of the lengths of head, values and simulation state and of the checksum: 8 each, little endian."""
@@ -32,7 +32,7 @@ class Snapshot:
     time : the slave's own time, s.
     rtol_given : whether `solver.rtol` was set, so that the experiment's tolerance does not replace it.
     values : values of all variables.
-    applied : input values that the simulation has been told.
+    applied : courses of the inputs that the simulation has been told.
     simulation : the solver's state (its bytes if the snapshot came from bytes), or None before it exists.
     identity : hash of model, settings and variables; a snapshot fits only a slave with the same.
     """
@@ -43,7 +43,7 @@ class Snapshot:
     time: float
     rtol_given: bool
     values: Values
-    applied: tuple[float, ...]
+    applied: list[list[float]]
     simulation: Any
     identity: str
 
@@ -110,7 +110,7 @@ class Snapshot:
             time=head["time"],
             rtol_given=head["rtol_given"],
             values=Values.from_bytes(table, body[a:b]),
-            applied=tuple(head["applied"]),
+            applied=head["applied"],
             simulation=body[b:] or None,
             identity=identity,
         )

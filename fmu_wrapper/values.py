@@ -10,15 +10,25 @@ import numpy.typing as npt
 
 from .errors import FmuValueError
 from .settings import check_solver_value
-from .variables import KINDS, Kind, Variable, VariableTable
+from .variables import KINDS, Kind, Plan, Variable, VariableTable
 
 DTYPES: dict[Kind, str] = {"real": "<f8", "integer": "<i4", "boolean": "|b1", "string": "object"}
 NUMERIC: tuple[Kind, ...] = ("real", "integer", "boolean")
+MOST_DERIVATIVES = 2
+"""Order of the highest derivative that an input can go on with."""
 INT32 = range(-(2**31), 2**31)
 
 
 class Values:
-    """Values of the variables of `table`, at their start values; outputs start as 0."""
+    """Values of the variables of `table`, at their start values; outputs start as 0.
+
+    Attributes
+    ----------
+    vectors : values by kind; `inputs` are the positions of the inputs among the reals.
+    slopes : (inputs, MOST_DERIVATIVES) time derivatives with which the inputs go on.
+    slope_times : (inputs,) when these were set, s.
+    sloped : whether any input has derivatives.
+    """
 
     def __init__(self, table: VariableTable) -> None:
         self.table = table
@@ -29,6 +39,11 @@ class Values:
             for i, variable in enumerate(variables):
                 vector[i] = ("" if kind == "string" else 0) if variable.start is None else variable.start
             self.vectors[kind] = vector
+        inputs = table.block("input")
+        self.inputs = np.array([table.position[v.reference] for v in inputs], dtype=np.intp)
+        self.slopes = np.zeros((len(inputs), MOST_DERIVATIVES))
+        self.slope_times = np.full(len(inputs), -np.inf)
+        self.sloped = False
 
     def __getitem__(self, variable: Variable) -> Any:
         value = self.vectors[variable.kind][self.table.position[variable.reference]]
@@ -42,11 +57,45 @@ class Values:
         twin = object.__new__(Values)
         twin.table = self.table
         twin.vectors = {kind: vector.copy() for kind, vector in self.vectors.items()}
+        twin.inputs, twin.slopes, twin.slope_times = self.inputs, self.slopes.copy(), self.slope_times.copy()
+        twin.sloped = self.sloped
         return twin
+
+    def forget_outputs(self) -> None:
+        """Outputs start as 0 again: they follow from the rest."""
+        for kind in NUMERIC:
+            self.vectors[kind][self.table.outputs[kind]] = 0
+
+    @property
+    def courses(self) -> list[list[float]]:
+        """The values of the inputs, and their first and second derivatives if any input has derivatives."""
+        levels: list[list[float]] = [self.vectors["real"].take(self.inputs).tolist()]
+        return levels + self.slopes.T.tolist() if self.sloped else levels
+
+    def set_slopes(self, rows: Sequence[int], orders: Sequence[int], slopes: Sequence[float], now: float) -> None:
+        """Give the inputs with these numbers derivatives of these orders at time `now`, s."""
+        self.slopes[rows, np.asarray(orders, dtype=np.intp) - 1] = slopes
+        self.slope_times[rows] = now
+        self.sloped = bool(self.slopes.any())
+
+    def go_on(self, duration: float) -> bool:
+        """Let the inputs follow their derivatives for `duration`, s. False if there is none with derivatives."""
+        if not self.sloped:
+            return False
+        first, second = self.slopes.T
+        self.vectors["real"][self.inputs] += duration * (first + 0.5 * duration * second)
+        first += duration * second
+        return True
+
+    def end_slopes(self, positions: npt.NDArray[np.intp], now: float) -> None:
+        """Forget the derivatives of the inputs among the reals at `positions`, unless they were set at this time."""
+        self.slopes[np.isin(self.inputs, positions) & (self.slope_times != now)] = 0.0
+        self.sloped = bool(self.slopes.any())
 
     def to_bytes(self) -> bytes:
         """The values bit for bit: reals, integers, booleans, then the strings as JSON."""
         numbers = b"".join(self.vectors[kind].tobytes() for kind in NUMERIC)
+        numbers += self.slopes.tobytes() + self.slope_times.tobytes()
         return numbers + json.dumps(list(self.vectors["string"])).encode()
 
     @classmethod
@@ -58,6 +107,10 @@ class Values:
             count = len(table.of_kind[kind])
             values.vectors[kind] = np.frombuffer(data, DTYPES[kind], count, offset).copy()
             offset += values.vectors[kind].nbytes
+        for part in (values.slopes, values.slope_times):
+            part[...] = np.frombuffer(data, "<f8", part.size, offset).reshape(part.shape)
+            offset += part.nbytes
+        values.sloped = bool(values.slopes.any())
         values.vectors["string"][:] = json.loads(data[offset:])
         return values
 
@@ -83,21 +136,44 @@ def check_value(variable: Variable, value: Any) -> Any:
     if variable.kind == "integer":
         if int(value) != value or int(value) not in INT32:
             raise FmuValueError(f"{name} needs a whole number of 32 bits, not {value!r}")
+        if variable.items and int(value) not in range(len(variable.items)):
+            meanings = ", ".join(f"{i} {item}" for i, item in enumerate(variable.items))
+            raise FmuValueError(f"{name} was set to {value!r}, which is none of its values: {meanings}")
+        if not variable.items:
+            _check_limits(variable, name, int(value))
         return int(value)
     number = float(value)
     if not math.isfinite(number):
         raise FmuValueError(f"{name} was set to {number!r}, which is not finite: check what feeds it")
-    low, high = variable.minimum, variable.maximum
-    if (low is not None and number < low) or (high is not None and number > high):
-        limits = f"[{'-inf' if low is None else low}, {'inf' if high is None else high}]"
-        raise FmuValueError(f"{name} was set to {number!r}, which is outside its range {limits}")
+    _check_limits(variable, name, number)
     if variable.block == "solver" and variable.name in ("solver.rtol", "solver.atol", "solver.step"):
         check_solver_value(variable.name.removeprefix("solver."), number)
     return number
 
 
-def check_values(variables: Sequence[Variable], values: Iterable[Any]) -> list[Any]:
+def _check_limits(variable: Variable, name: str, number: float) -> None:
+    low, high = variable.minimum, variable.maximum
+    if (low is not None and number < low) or (high is not None and number > high):
+        limits = f"[{'-inf' if low is None else low}, {'inf' if high is None else high}]"
+        raise FmuValueError(f"{name} was set to {number!r}, which is outside its range {limits}")
+
+
+def item_value(variable: Variable, name: str) -> int:
+    """The value of an enumeration's item. Raises FmuValueError for a name that it has not."""
+    if name not in variable.items:
+        text = f"'{variable.name}' (value reference {variable.reference}) has no item '{name}'"
+        raise FmuValueError(f"{text}; it has {list(variable.items)}")
+    return variable.items.index(name)
+
+
+def check_values(plan: Plan, values: Iterable[Any]) -> Any:
     """All values checked by `check_value`. Raises FmuValueError if the lengths differ."""
+    variables = plan.variables
+    if plan.unbounded and isinstance(values, np.ndarray) and values.dtype == np.float64:
+        # what comes from C at every step
+        numbers = values.tolist()
+        if len(numbers) == len(variables) and all(map(math.isfinite, numbers)):
+            return numbers
     given = values.tolist() if isinstance(values, np.ndarray) else list(values)
     if len(given) != len(variables):
         raise FmuValueError(f"{len(given)} values were given for {len(variables)} value references")

@@ -7,6 +7,7 @@ a further input does not renumber the outputs:
     1 method  2 rtol  3 atol  4 step        solver settings (`solver.*`), parameters
     10 ...              the method's further options, by name
     100 ...             figures of the solver, outputs: 100 `solver.events`
+    500000 ...          the contacts' laws (`CONTACT.law`), constants, in the order of the model
     1000 ...            the model's parameters, in the order of the model
     1000000 ...         the model's inputs, in the order of the model
     2000000 ...         the channels, in the order of `Simulation.channels`
@@ -19,19 +20,16 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ..core.description import Model
-from ..core.model.channels import Channel
 from .errors import FmuValueError
-from .settings import Settings
 
 Kind = Literal["real", "integer", "boolean", "string"]
-Role = Literal["independent", "parameter", "input", "output"]
-Block = Literal["time", "solver", "figure", "parameter", "input", "channel"]
+Role = Literal["independent", "parameter", "input", "output", "constant"]
+Block = Literal["time", "solver", "figure", "law", "parameter", "input", "channel"]
 
 KINDS: tuple[Kind, ...] = ("real", "integer", "boolean", "string")
 EVENTS = "solver.events"
 TIME, METHOD, FIRST_OPTION, FIRST_FIGURE = 0, 1, 10, 100
-FIRST_PARAMETER, FIRST_INPUT, FIRST_CHANNEL = 1000, 1_000_000, 2_000_000
+FIRST_PARAMETER, FIRST_LAW, FIRST_INPUT, FIRST_CHANNEL = 1000, 500_000, 1_000_000, 2_000_000
 PLANS_KEPT = 256  # a master asks for the same few lists of references over and over
 
 
@@ -39,7 +37,8 @@ PLANS_KEPT = 256  # a master asks for the same few lists of references over and 
 class Variable:
     """One variable of the slave. `block` says where its value lives, `start` is None for outputs and time.
 
-    Of an integer that is a choice, `enumeration` names the type and `items` the values 0, 1, ...
+    Of an integer that is a choice, `enumeration` names the type and `items` the values 0, 1, ...; `nominal` is a
+    typical magnitude, None for 1.
     """
 
     reference: int
@@ -54,6 +53,11 @@ class Variable:
     maximum: float | None = None
     enumeration: str | None = None
     items: tuple[str, ...] = ()
+    nominal: float | None = None
+
+    def item(self, value: Any) -> str:
+        """Name of the value `value` of an enumeration."""
+        return self.items[int(value)]
 
 
 @dataclass(frozen=True)
@@ -65,6 +69,8 @@ class Plan:
     positions: npt.NDArray[np.intp]
     roles: frozenset[Role]
     enumerations: frozenset[bool]
+    unbounded: bool
+    """Whether all are reals that may take any finite value."""
 
 
 class VariableTable:
@@ -90,11 +96,20 @@ class VariableTable:
             kind: tuple(v for v in self.variables if v.kind == kind) for kind in KINDS
         }
         self.position = {v.reference: i for kind in KINDS for i, v in enumerate(self.of_kind[kind])}
+        self.outputs: dict[Kind, npt.NDArray[np.intp]] = {
+            kind: np.array([i for i, v in enumerate(self.of_kind[kind]) if v.role == "output"], dtype=np.intp)
+            for kind in KINDS
+        }
+        """Positions of the outputs among their kind."""
         self._plans: dict[tuple[Kind, bytes], Plan] = {}
 
     def block(self, block: Block) -> list[Variable]:
         """The variables of one block, in the order of their references."""
         return [v for v in self.variables if v.block == block]
+
+    def of_role(self, role: Role) -> list[Variable]:
+        """The variables of one role, in the order of their references."""
+        return [v for v in self.variables if v.role == role]
 
     def plan(self, kind: Kind, references: npt.NDArray[np.uint32]) -> Plan:
         """Where the variables of `kind` behind `references` are.
@@ -109,7 +124,10 @@ class VariableTable:
             variables = tuple(self._find(kind, int(r)) for r in references)
             positions = np.array([self.position[v.reference] for v in variables], dtype=np.intp)
             enumerations = frozenset(v.enumeration is not None for v in variables)
-            plan = Plan(variables, positions, frozenset(v.role for v in variables), enumerations)
+            unbounded = kind == "real" and all(
+                v.minimum is None and v.maximum is None and v.block != "solver" for v in variables
+            )
+            plan = Plan(variables, positions, frozenset(v.role for v in variables), enumerations, unbounded)
             if len(self._plans) >= PLANS_KEPT:
                 self._plans.clear()
             self._plans[key] = plan
@@ -123,9 +141,11 @@ class VariableTable:
                 "variables, their references stand in modelDescription.xml"
             )
         if variable.kind != kind:
+            own = variable.kind if variable.enumeration is None else "enumeration"
+            how = own if variable.enumeration is None else "Integer (FMI 2.0) or Int64 (FMI 3.0)"
             raise FmuValueError(
-                f"value reference {reference} is '{variable.name}', which is of kind {variable.kind}, not "
-                f"{kind}: use the get and set functions for {variable.kind}"
+                f"value reference {reference} is '{variable.name}', which is of kind {own}, not "
+                f"{kind}: use the get and set functions for {how}"
             )
         return variable
 
@@ -148,69 +168,3 @@ def kind_of(value: object) -> Kind | None:
     if isinstance(value, float | np.floating):
         return "real"
     return "string" if isinstance(value, str) else None
-
-
-def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -> VariableTable:
-    """The variables of a slave for `model` with `settings`, whose simulation has `channels`."""
-    return VariableTable(
-        [
-            Variable(TIME, "time", "real", "independent", "time", "s", "simulation time"),
-            *_solver(settings),
-            Variable(FIRST_FIGURE, EVENTS, "integer", "output", "figure", None, "contact events so far"),
-            *(
-                Variable(
-                    FIRST_PARAMETER + i,
-                    p.name,
-                    "real",
-                    "parameter",
-                    "parameter",
-                    p.unit,
-                    p.description,
-                    model.parameter_value(p.name),
-                    p.minimum,
-                    p.maximum,
-                )
-                for i, p in enumerate(model.parameters)
-            ),
-            *(
-                Variable(FIRST_INPUT + i, n.name, "real", "input", "input", n.unit, n.description, n.start)
-                for i, n in enumerate(model.inputs)
-            ),
-            *(
-                Variable(
-                    FIRST_CHANNEL + i,
-                    c.name,
-                    c.kind,
-                    "output",
-                    "channel",
-                    c.unit if c.kind == "real" else None,
-                    c.description,
-                    enumeration=c.enumeration.name if c.enumeration else None,
-                    items=c.enumeration.items if c.enumeration else (),
-                )
-                for i, c in enumerate(channels)
-            ),
-        ]
-    )
-
-
-def _solver(settings: Settings) -> list[Variable]:
-    texts: list[tuple[str, Kind, Any, str | None, str, float | None]] = [
-        ("method", "string", settings.method, None, "integration method", None),
-        ("rtol", "real", settings.rtol, "1", "relative tolerance of the error control", 0.0),
-        ("atol", "real", settings.atol, "1", "absolute tolerance of the error control", 0.0),
-        ("step", "real", settings.step, "s", "fixed internal step; 0 for error control", 0.0),
-    ]
-    variables = [
-        Variable(METHOD + i, f"solver.{name}", kind, "parameter", "solver", unit, text, start, low)
-        for i, (name, kind, start, unit, text, low) in enumerate(texts)
-    ]
-    for name in sorted(settings.options):
-        value = settings.options[name]
-        kind = kind_of(value)
-        if kind is not None:  # a list or the like stays as exported
-            reference = FIRST_OPTION + len(variables) - len(texts)
-            unit = "1" if kind == "real" else None
-            text = f"option of method {settings.method}: {name}"
-            variables.append(Variable(reference, f"solver.{name}", kind, "parameter", "solver", unit, text, value))
-    return variables

@@ -24,6 +24,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     slider_crank,
     slider_crank_stop,
     sphere_beam,
+    split_contact,
     stick_slip,
     woodpecker,
 )

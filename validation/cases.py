@@ -111,7 +111,7 @@ CASES: Mapping[str, Sequence[Case]] = {
     ),
     "rocking_block": (
         Case("rocking_block", t_end=1.0, why="until after the second change of corner",
-             coarse={"t_end": 0.45, "step": 1.5e-4}),
+             coarse={"t_end": 0.35, "step": 2e-4}),
         Case("rocking_block", {"law": "kelvin_voigt", "stiffness": 1e7, "damping": 2e4, "transition_speed": 1e-2},
              t_end=0.6, why="by force, with Brown's and McPhee's friction", coarse={"t_end": 0.45, "step": 1e-4}),
     ),

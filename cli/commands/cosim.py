@@ -1,13 +1,16 @@
-"""`tlismni cosim`: the FMU under fmpy against the same slave in process, bit for bit."""
+"""`tlismni cosim`: the FMU under fmpy against the same slave in process, bit for bit; or a coupled system."""
 
 import tempfile
 from pathlib import Path
 from typing import Any
 
+import typer
+
 from ..errors import Failure, one_line_errors
 from ..options import (
+    Algorithm,
     Atol,
-    ComparisonStep,
+    CommunicationStep,
     Debug,
     EndTime,
     FmiVersion,
@@ -16,25 +19,31 @@ from ..options import (
     Json,
     MethodName,
     MethodOption,
+    PlotFile,
     Rtol,
     Set,
-    Source,
     Step,
+    SystemOrSource,
     check_samples,
+    check_suffix,
 )
 from ..screen import compile_notice, number, print_json, print_table, say, status_line, stdout
-from ..targets import check_folder
+from ..targets import check_file, check_folder, is_system_file
 
 EXAMPLES = (
     "Examples:\n\n  tlismni cosim pendulum_stop -o out/demo\n\n"
-    "  tlismni cosim pendulum_stop --irregular --communication-step 0.03 --json"
+    "  tlismni cosim pendulum_stop --irregular --communication-step 0.03 --json\n\n"
+    "  tlismni cosim system.toml -o result.csv --plot result.png"
 )
+
+STEP = 0.01
+"""Communication step of the comparison, s."""
 
 
 @one_line_errors
 def cosim(
-    source: Source,
-    communication_step: ComparisonStep = 0.01,
+    source: SystemOrSource,
+    communication_step: CommunicationStep = None,
     irregular: Irregular = False,
     fmi: FmiVersion = "2.0",
     folder: FmuFolder = None,
@@ -45,6 +54,8 @@ def cosim(
     atol: Atol = None,
     step: Step = None,
     option: MethodOption = None,
+    algorithm: Algorithm = None,
+    plot: PlotFile = None,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -52,7 +63,20 @@ def cosim(
 
     At every communication point all outputs must be the same bit for bit; if not, the exit code is 1. For
     information, the run is compared with one that has no communication points too.
+
+    With a system file (SYSTEM.toml): run the coupled FMUs that it describes.
     """
+    if is_system_file(source):
+        other = {
+            "--irregular": irregular, "--fmi": fmi != "2.0", "--set": sets, "--method": method, "--rtol": rtol,
+            "--atol": atol, "--step": step, "--option": option,
+        }  # fmt: skip
+        _system(Path(source), folder, plot, json, other, step=communication_step, t_end=t_end, algorithm=algorithm)
+        return
+    for name, value in (("--algorithm", algorithm), ("--plot", plot)):
+        if value is not None:
+            raise typer.BadParameter("it is for a system file (SYSTEM.toml)", param_hint=name)
+    communication_step = communication_step or STEP
     check_folder(folder)
 
     from ...fmu_wrapper import export_fmu
@@ -82,6 +106,28 @@ def cosim(
             f"FMU and slave differ in {len(found.different)} of {len(found.fmu)} outputs, first in '{name}' "
             f"at t = {number(t, 9)} s"
         )
+
+
+def _system(
+    path: Path, output: Path | None, plot: Path | None, json: bool, other: dict[str, Any], **changes: Any
+) -> None:
+    """Run a system file; `other` are options that mean nothing to it."""
+    given = [name for name, value in other.items() if value]
+    if given:
+        raise typer.BadParameter(
+            f"'{path}' describes its instances and their solvers itself: change them there", param_hint=given[0]
+        )
+    check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
+    if output is not None and output.suffix == "":
+        check_folder(output)
+        output, plot = output / f"{path.stem}.csv", plot or output / f"{path.stem}.png"
+    check_suffix(output, (".csv", ".json", ".npz"), "--output")
+    for file in (output, plot):
+        check_file(file)
+
+    from ..system import run_system
+
+    run_system(path, changes, output, plot, json)
 
 
 def _figures(scenario: Any, found: Any, irregular: bool) -> dict[str, Any]:

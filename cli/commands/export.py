@@ -1,8 +1,15 @@
 """`tlismni export`: write an FMU."""
 
+import zipfile
+from pathlib import Path
+
+import typer
+
 from ..errors import one_line_errors
+from ..fmu_file import binaries
 from ..options import (
     Atol,
+    Bundle,
     CommunicationStep,
     Debug,
     EndTime,
@@ -11,6 +18,7 @@ from ..options import (
     Json,
     MethodName,
     MethodOption,
+    Platforms,
     Rtol,
     Set,
     Source,
@@ -18,11 +26,13 @@ from ..options import (
     check_suffix,
 )
 from ..screen import compile_notice, print_json, say
-from ..targets import check_file
+from ..targets import check_file, is_system_file
 
 EXAMPLES = (
     "Examples:\n\n  tlismni export pendulum_stop -o pendulum.fmu\n\n"
     "  tlismni export pendulum_stop -o pendulum3.fmu --fmi 3\n\n"
+    "  tlismni export pendulum_stop -o anywhere.fmu --bundle --platform all\n\n"
+    "  tlismni export system.toml -o system.ssp\n\n"
     "  tlismni export my_model.json -o ball.fmu --t-end 2 --method ebdf --option k=3 --set restitution=0.5"
 )
 
@@ -40,23 +50,34 @@ def export(
     atol: Atol = None,
     step: Step = None,
     option: MethodOption = None,
+    bundle: Bundle = False,
+    platform: Platforms = None,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Export a scenario or a model file as a co-simulation FMU."""
+    """Export a scenario or a model file as a co-simulation FMU, or a system file (.toml) as an SSP archive (.ssp)."""
+    if is_system_file(source):
+        others = (sets, t_end, communication_step, method, rtol, atol, step, option)
+        _system(source, output, json, any(value is not None for value in others), bundle, platform)
+        return
     check_suffix(output, (".fmu",), "--output")
     check_file(output)
 
     from ...fmu_wrapper import export_fmu
     from ...fmu_wrapper.export import known_version
+    from ...fmu_wrapper.platforms import choose
     from ..source import read_source, solver_settings
 
-    fmi = known_version(fmi)
+    fmi, platforms = known_version(fmi), choose(platform or ())
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     output.parent.mkdir(parents=True, exist_ok=True)
     with compile_notice():
-        path = export_fmu(scenario, output, fmi, communication_step=communication_step)
+        path = export_fmu(
+            scenario, output, fmi, communication_step=communication_step, bundle=bundle, platforms=platforms
+        )
     size = path.stat().st_size
+    with zipfile.ZipFile(path) as archive:
+        held = binaries(archive.namelist())
     if json:
         print_json(
             {
@@ -67,8 +88,33 @@ def export(
                 "parameters": dict(scenario.parameters),
                 "t_end": scenario.t_end,
                 "solver": solver_settings(scenario),
+                "bundle": bundle,
+                "platforms": held,
                 "inputs": [channel.name for channel in scenario.model.inputs],
             }
         )
     else:
-        say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB)")
+        carried = ", with tlismni inside" if bundle else ""
+        say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB, for {', '.join(held)}{carried})")
+
+
+def _system(source: str, output: Path, json: bool, more: bool, bundle: bool, platform: list[str] | None) -> None:
+    """Write the SSP archive of a system file."""
+    if more:
+        raise typer.BadParameter(f"'{source}' describes its instances and their solvers itself: change them there")
+    check_suffix(output, (".ssp",), "--output")
+    check_file(output)
+
+    from ...fmu_wrapper.master import read_system, write_ssp
+    from ...fmu_wrapper.platforms import choose
+    from ...models import load
+
+    described = read_system(source)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with compile_notice():
+        carried = {"bundle": bundle, "platforms": choose(platform or ())}
+        path = write_ssp(described, output, Path(source).parent, load_scenario=load, **carried)
+    if json:
+        print_json({"file": str(path), "bytes": path.stat().st_size, "instances": list(described.instances)})
+    else:
+        say(f"wrote {path} (SSP 1.0, {len(described.instances)} instances)")

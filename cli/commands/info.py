@@ -1,96 +1,70 @@
 """`tlismni info`: what an FMU is, says of itself, and needs."""
 
-import json as json_module
-import zipfile
-from pathlib import Path
 from typing import Any
 
-from ..errors import Failure, one_line_errors
+from ..errors import one_line_errors
+from ..fmu_file import read_fmu
 from ..options import Debug, ExistingFmu, Json
 from ..screen import print_json, print_table, stdout
 
 EXAMPLES = "Examples:\n\n  tlismni info pendulum.fmu\n\n  tlismni info pendulum.fmu --json"
 
-_FLAGS = {
-    "state": ("canGetAndSetFMUstate", "canGetAndSetFMUState"),
-    "serialised state": ("canSerializeFMUstate", "canSerializeFMUState"),
-    "variable steps": ("canHandleVariableCommunicationStepSize",),
-    "early return": ("mightReturnEarlyFromDoStep",),
-    "event mode": ("hasEventMode",),
-    "directional derivatives": ("providesDirectionalDerivative", "providesDirectionalDerivatives"),
-    "adjoint derivatives": ("providesAdjointDerivatives",),
+_FACTS = {
+    "generator": "generator",
+    "token": "token",
+    "stop time, s": "t_end",
+    "communication step, s": "communication_step",
+    "tolerance": "tolerance",
 }
-"""Attributes of the co-simulation interface in FMI 2.0 and 3.0, read here: fmpy leaves some out."""
-
-_RECORDS = ("settings.json", "python.json")
+_CAUSALITIES = {"parameter": "parameters", "input": "inputs", "output": "outputs", "local": "constants"}
 
 
 @one_line_errors
 def info(fmu: ExistingFmu, json: Json = False, debug: Debug = False) -> None:
-    """Show what an FMU is: version, experiment, capabilities, variables, and the Python that it was exported with."""
-    found = _read(fmu)
+    """Show what an FMU is: version, experiment, capabilities, terminals, variables, and what it needs to run."""
+    found = read_fmu(fmu)
     if json:
         print_json(found)
         return
     out = stdout()
     out.print(f"{found['model']} (FMI {found['fmi']}): {found['description']}", markup=False)
-    rows = [(key, found[key]) for key in ("generator", "token", "t_end", "communication_step", "tolerance")]
-    rows += [("binaries", ", ".join(found["binaries"])), ("it can do", ", ".join(found["capabilities"]))]
-    if found["python"]:
-        rows.append(("Python", f"{found['python']['version']} in {found['python']['prefix']}"))
-        rows.append(("solver", ", ".join(f"{k}={v}" for k, v in found["solver"].items())))
+    rows: list[tuple[Any, ...]] = [(title, found[key]) for title, key in _FACTS.items()]
+    rows += [("binaries for", ", ".join(found["binaries"]))]
+    rows += [("it can do", ", ".join(found["capabilities"])), *_runs_with(found)]
     print_table("", ("", ""), [(key, "-" if value is None else value) for key, value in rows], left=2)
-    columns = ("variable", "start", "unit", "meaning")
-    for kind in ("parameter", "input", "output"):
-        of_kind = [v for v in found["variables"] if v["causality"] == kind]
+    if found["terminals"]:
+        columns = ("terminal", "members", "meaning")
+        members = [", ".join(f"{m} = {v}" for m, v in t["members"].items()) for t in found["terminals"]]
+        rows = [(t["name"], m, t["description"]) for t, m in zip(found["terminals"], members, strict=True)]
+        print_table("terminals", columns, rows, left=3)
+    headings = ("variable", "start", "unit", "range", "meaning")
+    for causality, title in _CAUSALITIES.items():
+        of_kind = [v for v in found["variables"] if v["causality"] == causality]
         if of_kind:
-            print_table(f"{kind}s", columns, [[v[c] or "" for c in _COLUMNS] for v in of_kind], left=4)
+            shown = [_row(v) for v in of_kind]
+            used = [k for k in range(len(headings)) if any(row[k] for row in shown)]
+            print_table(title, [headings[k] for k in used], [[row[k] for k in used] for row in shown], left=len(used))
 
 
-_COLUMNS = ("name", "start", "unit", "description")
+def _runs_with(found: dict[str, Any]) -> list[tuple[str, Any]]:
+    """What an FMU of ours says of its Python, package and solver."""
+    python = found["python"]
+    if not python:
+        return []
+    carried = f"tlismni {python.get('tlismni')}" + (" (inside the FMU)" if found["bundle"] else "")
+    return [
+        ("exported with", f"Python {python.get('version')} in {python.get('prefix')}"),
+        ("runs with", ", ".join([carried, *found["requires"]])),
+        ("solver", ", ".join(f"{k}={v}" for k, v in found["solver"].items())),
+    ]
 
 
-def _read(fmu: Path) -> dict[str, Any]:
-    import fmpy
-    from lxml import etree
-
-    try:
-        with zipfile.ZipFile(fmu) as archive:
-            names = archive.namelist()
-            records = [
-                json_module.loads(archive.read(f"resources/{name}")) if f"resources/{name}" in names else {}
-                for name in _RECORDS
-            ]
-            root = etree.fromstring(archive.read("modelDescription.xml"))
-        description = fmpy.read_model_description(str(fmu))
-    except (zipfile.BadZipFile, KeyError, etree.XMLSyntaxError) as error:
-        raise Failure(f"'{fmu}' is no FMU: {error}") from None
-    settings, python = records
-    experiment, interface = description.defaultExperiment, root.find("CoSimulation")
-    flags = set() if interface is None else {name for name, value in interface.items() if value in ("true", "1")}
-    return {
-        "file": str(fmu),
-        "fmi": description.fmiVersion,
-        "model": description.modelName,
-        "description": description.description or "",
-        "generator": description.generationTool,
-        "token": description.guid,
-        **{key: _number(getattr(experiment, name, None)) for key, name in _EXPERIMENT.items()},
-        "capabilities": [name for name, attributes in _FLAGS.items() if flags.intersection(attributes)],
-        "binaries": sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and name[9:]}),
-        "python": {key: python[key] for key in ("version", "prefix", "tlismni") if key in python},
-        "solver": {k: v for k, v in settings.get("solver", {}).items() if v is not None},
-        "variables": [_variable(v) for v in description.modelVariables],
-    }
-
-
-_EXPERIMENT = {"t_end": "stopTime", "communication_step": "stepSize", "tolerance": "tolerance"}
-
-
-def _number(text: Any) -> float | None:
-    return None if text is None else float(text)
-
-
-def _variable(variable: Any) -> dict[str, Any]:
-    own = {c: getattr(variable, c) for c in ("name", "causality", "variability", "type", "unit", "description")}
-    return {**own, "reference": variable.valueReference, "start": variable.start}
+def _row(variable: dict[str, Any]) -> tuple[str, str, str, str, str]:
+    low, high = variable["min"], variable["max"]
+    limits = "" if low is None and high is None else f"{'' if low is None else f'{low:g}'} .. "
+    limits += "" if high is None else f"{high:g}"
+    shown = ", ".join(variable.get("choices", ())) if variable["causality"] == "parameter" else limits
+    return (
+        variable["name"], variable["start"] or "", variable["unit"] or "", shown or limits,
+        variable["description"] or "",
+    )  # fmt: skip

@@ -9,6 +9,7 @@ from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
 from .study_contact import CONTACT_EXAMPLES, STIFFNESS_EXAMPLES, contact, stiffness
+from .study_coupling import COUPLING_EXAMPLES, coupling
 from .study_damping import DAMPING_EXAMPLES, damping
 
 ORDERS_EXAMPLES = (
@@ -34,6 +35,7 @@ app = typer.Typer(
 app.command("contact", epilog=CONTACT_EXAMPLES)(contact)
 app.command("stiffness", epilog=STIFFNESS_EXAMPLES)(stiffness)
 app.command("damping", epilog=DAMPING_EXAMPLES)(damping)
+app.command("coupling", epilog=COUPLING_EXAMPLES)(coupling)
 
 Methods = Annotated[
     list[str] | None, typer.Option("--method", "-m", help="Only this method; may be repeated (see `tlismni methods`).")

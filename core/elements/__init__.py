@@ -18,6 +18,7 @@ from .floating_beam2d import Attachment, FloatingBeam2D
 from .floating_body2d import FloatingBody2D
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
+from .moving_frame2d import MovingFrame2D
 from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
 from .reduced_body2d import ReducedBody2D, ReducedPoint
@@ -25,7 +26,15 @@ from .revolute2d import Revolute2D
 from .spring_damper2d import SpringDamper2D
 
 Body = Annotated[
-    PointMass2D | RigidBody2D | LinearSystem | AxialRod | Cable2D | FloatingBeam2D | ReducedBody2D | MaterialPoint2D,
+    PointMass2D
+    | RigidBody2D
+    | LinearSystem
+    | AxialRod
+    | Cable2D
+    | FloatingBeam2D
+    | ReducedBody2D
+    | MaterialPoint2D
+    | MovingFrame2D,
     Field(discriminator="type"),
 ]
 Joint = Annotated[Revolute2D | Prismatic2D | Clamp2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
@@ -54,6 +63,7 @@ __all__ = [
     "Joint",
     "LinearSystem",
     "MaterialPoint2D",
+    "MovingFrame2D",
     "PlanarBody",
     "PlanarFrame",
     "PointMass2D",

@@ -9,7 +9,7 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Name
 from ..model.markers import Marker2D
-from ..model.signals import Constant, Signal, evaluate_signal
+from ..model.signals import INPUT_SIZE, Constant, Signal, evaluate_signal
 from .base import Element, Numbering, Row
 
 
@@ -21,7 +21,7 @@ def applied_load2d_kernel(job: int, t: float, b: Any) -> None:
     coord = imat(b.coord, b.count, 3)
     extra = imat(b.extra, b.count, 4)
     q = vec(b.q, b.n_extended)
-    pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, 3 * b.n_inputs)
+    pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
     for e in range(b.count):
         fx, _, _ = evaluate_signal(pool, inputs, extra[e, 0], t)
         fy, _, _ = evaluate_signal(pool, inputs, extra[e, 1], t)

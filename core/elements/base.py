@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, ClassVar, Protocol
 
 from ..model.base import Name, Record
 from ..model.channels import Channel
 from ..model.markers import Marker2D
 from ..model.signals import Signal
+
+NO_INPUTS: Mapping[str, float] = MappingProxyType({})
 
 
 class Numbering(Protocol):
@@ -36,6 +39,10 @@ class Numbering(Protocol):
 
     def signal(self, signal: Signal) -> int:
         """Offset of a time function in the pool."""
+        ...
+
+    def motion(self, signal: Signal) -> int:
+        """Offset in the pool of a time function that a constraint follows, for `evaluate_motion`."""
         ...
 
     def internal(self, name: str) -> tuple[int, ...]:
@@ -152,6 +159,15 @@ class Element(Record):
         """The time functions it uses."""
         return ()
 
+    def motions(self) -> Sequence[Signal]:
+        """Those among them that its constraint rows follow, one a row; Phi_k = q_k - f(t)."""
+        return ()
+
+    def placed(self, numbering: Numbering) -> Sequence[int]:
+        """The coordinates that start where its constraint rows say, one a row; the model gives them no start of their
+        own."""
+        return ()
+
     def multiplier_channels(self) -> Sequence[Channel]:
         """One channel for each constraint row: what its multiplier means."""
         return ()
@@ -210,8 +226,11 @@ class BodyElement(Element):
         """(q0, v0)."""
         raise NotImplementedError(f"{type(self).__name__} must say where it starts")
 
-    def start_in(self, bodies: "Mapping[str, BodyElement]") -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """(q0, v0) in a model with these bodies, for bodies that start where another one is."""
+    def start_in(
+        self, bodies: "Mapping[str, BodyElement]", inputs: Mapping[str, float] = NO_INPUTS
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """(q0, v0) in a model with these bodies and start values of the inputs, for bodies that start where another one
+        or an input is."""
         return self.initial_state()
 
     def extent(self) -> Sequence[tuple[float, float]]:

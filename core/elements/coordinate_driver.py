@@ -10,7 +10,8 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, vec
 from ..model.base import Name
 from ..model.channels import Channel
-from ..model.signals import Signal, Step, evaluate_signal
+from ..model.motion import evaluate_motion
+from ..model.signals import INPUT_SIZE, InputSignal, Signal, Step
 from .base import UNKNOWN_UNIT, Element, Numbering, Row
 
 
@@ -23,6 +24,7 @@ def coordinate_driver_kernel(job: int, t: float, b: Any) -> None:
     extra = imat(b.extra, b.count, 2)
     lam = vec(b.lam, b.m_extended)
     a = vec(b.a, b.n_extended)
+    pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
     for e in range(b.count):
         i, k = coord[e, 0], row[e, 0]
         if job == TANGENT:
@@ -30,7 +32,7 @@ def coordinate_driver_kernel(job: int, t: float, b: Any) -> None:
             values[imat(b.slot_j, b.count, 1)[e, 0]] += 1.0
             values[imat(b.slot_jt, b.count, 1)[e, 0]] += 1.0
             continue
-        f, df, ddf = evaluate_signal(vec(b.signals, b.n_signals), vec(b.inputs, 3 * b.n_inputs), extra[e, 0], t)
+        f, df, ddf = evaluate_motion(pool, inputs, extra[e, 0], t)
         if job == RESIDUAL:
             vec(b.phi, b.m_extended)[k] = vec(b.q, b.n_extended)[i] - f
             vec(b.phid, b.m_extended)[k] = vec(b.v, b.n_extended)[i] - df
@@ -52,7 +54,8 @@ class CoordinateDriver(Element):
     coordinate: Name
     """"x", "y" or "angle" of a planar body, or the name of one of a LinearSystem's."""
     motion: Signal
-    """Position in m or rad over time in s. An input channel moves with the rate it is given (0 unless set).
+    """Position in m or rad over time in s. An input channel moves with the velocity of its `rate` channel, and the
+    coordinate starts where it says; see `tlismni.core.model.motion` for what happens when the input changes.
     At the ends of a Ramp the velocity jumps: an impact of the driver, with a warning in the log."""
 
     @model_validator(mode="after")
@@ -70,7 +73,14 @@ class CoordinateDriver(Element):
 
     def row(self, numbering: Numbering) -> Row:
         index = numbering.coordinate(self.body, self.coordinate)
-        return Row((), (index,), (numbering.signal(self.motion), numbering.work("input")))
+        return Row((), (index,), (numbering.motion(self.motion), numbering.work("input")))
+
+    def motions(self) -> Sequence[Signal]:
+        return (self.motion,)
+
+    def placed(self, numbering: Numbering) -> Sequence[int]:
+        by_input = isinstance(self.motion, InputSignal)
+        return (numbering.coordinate(self.body, self.coordinate),) if by_input else ()
 
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:
         return ((self.body, self.coordinate),)

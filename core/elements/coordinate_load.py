@@ -7,7 +7,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL
 from ..compiled.views import imat, vec
 from ..model.base import Name
-from ..model.signals import Signal, evaluate_signal
+from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .base import Element, Numbering, Row
 
 
@@ -19,7 +19,7 @@ def coordinate_load_kernel(job: int, t: float, b: Any) -> None:
     extra = imat(b.extra, b.count, 2)
     for e in range(b.count):
         i = coord[e, 0]
-        f, _, _ = evaluate_signal(vec(b.signals, b.n_signals), vec(b.inputs, 3 * b.n_inputs), extra[e, 0], t)
+        f, _, _ = evaluate_signal(vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs), extra[e, 0], t)
         if job == RESIDUAL:
             vec(b.r, b.n_extended)[i] -= f
         else:

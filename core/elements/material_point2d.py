@@ -18,7 +18,7 @@ from ..compiled.views import imat, mat, vec
 from ..model.base import Name, Vector2
 from ..model.channels import Channel
 from ..model.markers import GROUND
-from .base import BodyElement, Coordinate, Form, Numbering, Row
+from .base import NO_INPUTS, BodyElement, Coordinate, Form, Numbering, Row
 from .flexible_body import FlexibleBody, PointShape
 from .planar_body import ANGLE, PlanarFrame, X, Y
 
@@ -185,10 +185,12 @@ class MaterialPoint2D(PlanarFrame):
     def coordinate_records(self) -> Sequence[Coordinate]:
         return (X, Y, ANGLE)
 
-    def start_in(self, bodies: Mapping[str, BodyElement]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def start_in(
+        self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) that follow from the flexible body's."""
         body, shape = bodies[self.body], self._shape(bodies)
-        q, v = body.start_in(bodies)
+        q, v = body.start_in(bodies, inputs)
         index = {name: k for k, name in enumerate(body.coordinate_names)}
         frame = [index[name] for name in shape.frame or ()]
         frame_q, frame_v = ([x[k] for k in frame] or [0.0] * 3 for x in (q, v))

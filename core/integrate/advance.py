@@ -93,6 +93,8 @@ def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> 
             # only now: until the run goes on from here, samples before this time need the history
             restart_at(sim, due)
             continue
+        if t - now <= NO_STEP * abs(t):
+            return
         aim(sim, t, stop)
         if sim.clock[STOP_TIME] - now <= NO_STEP * abs(now):
             return

@@ -135,6 +135,11 @@ class ContactSide:
                 f"no accelerations and multipliers at t = {arrays['t'][0]:.9g} s: the augmented system "
                 "[M Phi_q^T; Phi_q 0] is singular or a force is not finite there"
             )
+        self.begin_rates()
+
+    def begin_rates(self) -> None:
+        """Rates of the work accounts at the workspace's point, and what Newmark's formula starts from."""
+        arrays = self.workspace.arrays
         evaluate_power(self.workspace.record)
         # with the rates of the work accounts: Newmark's formula integrates them from here
         arrays["aux"][:] = arrays["a"]

@@ -16,6 +16,9 @@ from ..system.evaluate import evaluate_residuals
 from ..system.records import OK, SINGULAR
 from .records import NO_STEP
 
+APART = 0.1
+"""Of the newest step: rows nearer to one another than this make divided differences of rounding."""
+
 
 @internal
 def _divided_differences(z: Any, table: Any, count: int) -> None:
@@ -41,19 +44,32 @@ def _newton_value(z: Any, table: Any, count: int, s: float) -> Any:
     return f, df
 
 
+@internal
+def third_row(ms: Any) -> int:
+    """The newest row that is well apart from the newest two; 0 if there is none."""
+    start = history_time(ms, 1)
+    apart = APART * (history_time(ms, 0) - start)
+    for back in range(2, rows_available(ms)):
+        if start - history_time(ms, back) >= apart:
+            return back
+    return 0
+
+
 @compiled
 def interpolate(ws: Any, ms: Any, t: float) -> None:
     """q, v and the work accounts at t from the newest rows, into the workspace."""
     n = ws.n_ext
-    rows = min(rows_available(ms), 3)
+    third = third_row(ms)
+    rows = 2 if third == 0 else 3
     h = history_time(ms, 0) - history_time(ms, 1)
     s = (t - history_time(ms, 0)) / h
     z, table = vec(ws.scratch, 9), mat(ws.scratch + 9 * 8, 9, 3)
     q, v = vec(ws.q, n), vec(ws.v, n)
     for i in range(ws.n):
         for j in range(rows):
-            row = history_row(ws, ms, j)
-            node = (history_time(ms, j) - history_time(ms, 0)) / h
+            back = third if j == 2 else j
+            row = history_row(ws, ms, back)
+            node = (history_time(ms, back) - history_time(ms, 0)) / h
             for l in range(3):
                 z[3 * j + l] = node
                 table[3 * j + l, 0] = row[i]
@@ -64,8 +80,9 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
         q[i], v[i] = f, df / h
     for i in range(n - ws.n_work, n):
         for j in range(rows):
-            row = history_row(ws, ms, j)
-            node = (history_time(ms, j) - history_time(ms, 0)) / h
+            back = third if j == 2 else j
+            row = history_row(ws, ms, back)
+            node = (history_time(ms, back) - history_time(ms, 0)) / h
             for l in range(2):
                 z[2 * j + l] = node
                 table[2 * j + l, 0] = row[n + i]

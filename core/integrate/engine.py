@@ -28,6 +28,7 @@ from ..system.evaluate import evaluate_residuals
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.redundancy import RedundantRow
 from ..system.workspace import Workspace
+from . import motions
 from .contact_side import ContactSide
 from .dense_output import query
 from .near_singular import smooth_query, strained
@@ -102,6 +103,8 @@ class Engine(ContactSide):
         self.t = float(t0)
         self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
+        self.input_times = (float(t0), math.inf)
+        self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
         self._method = build_method(self.formula, self.settings, self.workspace.row_length)
@@ -145,6 +148,7 @@ class Engine(ContactSide):
         arrays["q"][: a.n] = a.q0
         arrays["v"][: a.n] = a.v0
         arrays["t"][0] = self.settings.t0
+        motions.place(self.workspace, self.settings.t0)
         refuse = self.settings.redundant == "refuse"
         self.redundant = make_consistent(self.workspace, self.settings.start_tolerance, refuse)
         gap_tolerance = 1e-9 * float(np.max(a.coordinate_scale, initial=1.0))

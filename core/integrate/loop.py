@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
@@ -71,6 +69,7 @@ LOG_SIZE = len(LOG_COLUMNS)
 # Rounding of a coordinate, relative to the largest, that differences over several steps make of 2e-16.
 ROUNDING = 2e-13
 AWAY = 8.0  # decrease of the condition after which a singular position is looked for anew
+LARGEST = 1e100
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
 LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
 REDUNDANT_TOLERANCE = 1e-8  # violation of a redundant row that shows that it is not; absolute up to 1, then relative
@@ -99,11 +98,11 @@ def set_weights(ws: Any, ms: Any) -> None:
 
 @internal
 def all_finite(ws: Any) -> bool:
-    """No NaN or infinity in q, v, a, lam."""
+    """No NaN or infinity in q, v, a, lam, nor what would make one of the energies and the other outputs."""
     for address, count in ((ws.q, ws.n), (ws.v, ws.n_ext), (ws.a, ws.n_ext), (ws.lam, ws.m_ext - 1)):
         x = vec(address, count)
         for i in range(count):
-            if not np.isfinite(x[i]):
+            if not abs(x[i]) < LARGEST:
                 return False
     return True
 

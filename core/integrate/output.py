@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel, Enumeration
 from ..system.assembly import Assembly
+from .marker_channels import MarkerChannels
 
 CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
 
@@ -62,15 +63,25 @@ class InContact:
         return ((mode == CLOSED) | (mode == ACTIVE)).astype(np.float64)
 
 
+@dataclass(frozen=True)
+class OfMarker:
+    """A channel of a marker: its number among those of all markers."""
+
+    number: int
+
+
 class ChannelTable:
     """The output channels of a system and how to compute them."""
 
     def __init__(self, system: Any, assembly: Assembly) -> None:
         self.layout = layout = SampleLayout(assembly)
         self.initial_energy = 0.0
-        self._formulas: list[tuple[Channel, int | Sum | InContact]] = []
+        self._formulas: list[tuple[Channel, int | Sum | InContact | OfMarker]] = []
         for channel, at in system.coordinate_channels(assembly, layout):
             self._formulas.append((channel, at))
+        self._markers = MarkerChannels(assembly.markers, (layout.q.start, layout.v.start, layout.a.start))
+        for k, channel in enumerate(self._markers.channels):
+            self._formulas.append((channel, OfMarker(k)))
         for k, channel in enumerate(assembly.multiplier_channels):
             self._formulas.append((channel, layout.multipliers.start + k))
         for k, contact in enumerate(assembly.contacts):
@@ -93,13 +104,21 @@ class ChannelTable:
         """The formulas as index arrays, for one sample at a time."""
         plain = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, int)]
         flags = [(k, f.column) for k, (_, f) in enumerate(self._formulas) if isinstance(f, InContact)]
+        self._of_markers = np.array(
+            [k for k, (_, f) in enumerate(self._formulas) if isinstance(f, OfMarker)], dtype=np.intp
+        )
         sums = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, Sum)]
         terms = [
             *((k, column, 1.0) for k, f in sums for column in f.columns),
             *((k, column, -1.0) for k, f in sums for column in f.less),
         ]
-        self._plain, self._flags = _pairs(plain), _pairs(flags)
-        self._terms = _pairs([(k, column) for k, column, _ in terms])
+        # a place for every channel, so that one `take` fills all; sums and flags are put in after it
+        self._places = np.zeros(len(self._formulas), dtype=np.intp)
+        self._places[[k for k, _ in plain]] = [column for _, column in plain]
+        self._flags = _pairs(flags)
+        self._summed = np.array([k for k, _ in sums], dtype=np.intp)
+        number = {k: i for i, (k, _) in enumerate(sums)}
+        self._terms = _pairs([(number[k], column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
 
     def _add_contact(self, k: int, name: str, friction: bool) -> None:
@@ -160,21 +179,36 @@ class ChannelTable:
         formula = self._formulas[k][1]
         if isinstance(formula, int):
             return samples[:, formula]
+        if isinstance(formula, OfMarker):
+            return self._markers(samples)[:, formula.number]
         found = formula(samples)
         return found - self.initial_energy if k == self._balance else found
 
     def values(self, sample: NDArray[np.float64]) -> NDArray[np.float64]:
         """All channels (channels,) of one sample, the same bits as `column` gives."""
+        out: NDArray[np.float64] = sample.take(self._places)
         # bincount adds the terms of each channel in their order
-        channel, column = self._terms
-        out = np.bincount(channel, self._signs * sample[column], len(self._formulas)).astype(np.float64, copy=False)
+        number, column = self._terms
+        out[self._summed] = np.bincount(number, self._signs * sample.take(column), len(self._summed))
         out[self._balance] -= self.initial_energy
-        channel, column = self._plain
-        out[channel] = sample[column]
         channel, column = self._flags
-        mode = sample[column]
-        out[channel] = (mode == CLOSED) | (mode == ACTIVE)
+        if len(channel):
+            mode = sample.take(column)
+            out[channel] = (mode == CLOSED) | (mode == ACTIVE)
+        if len(self._of_markers):
+            out[self._of_markers] = self._markers(sample[None, :])[0]
         return out
+
+    def rates(self, sample: NDArray[np.float64], rates: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates of all channels (channels,) from those of the columns of a sample; NaN: not known."""
+        found = np.full(len(self._formulas), np.nan)
+        for k, (_, formula) in enumerate(self._formulas):
+            if isinstance(formula, int):
+                found[k] = rates[formula]
+            elif isinstance(formula, Sum):
+                found[k] = formula(rates[None, :])[0]
+        found[self._of_markers] = self._markers.rates(sample)
+        return found
 
     def total_energy(self, sample: NDArray[np.float64]) -> float:
         """Stored energy in one sample, J."""

@@ -9,10 +9,10 @@ import numpy as np
 from ..errors import ModelError, SimulationError
 from ..events import Fallback
 from ..methods.history import recall
+from ..stage.accelerations import solve_accelerations
 from ..state import State
-from ..system.records import OK
+from ..system.records import FACTOR_AGE, OK
 from .dense_output import query
-from .watch import remember
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -55,6 +55,8 @@ def get_state(sim: "Simulation") -> State:
         "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
         "handled": [repr(sim._times_handled[0]), sim._times_handled[1]],
         "outer": sim.outer,
+        "start_open": sim.start_open,
+        "input_times": [repr(x) for x in sim.input_times],
         "fallbacks": [[f.t, f.outer, f.reason] for f in sim.fallbacks],
     }
     return State(arrays, facts, sim.model_hash, sim.stored_events)
@@ -100,6 +102,8 @@ def set_state(sim: "Simulation", state: State) -> None:
     sim.t = float(facts["t"])
     sim.pending = [int(k) for k in facts["pending"]]
     sim.open_accounts = {int(k): (v[0], v[1]) for k, v in facts["open_accounts"].items()}
+    sim.start_open = bool(facts["start_open"])
+    sim.input_times = (float(facts["input_times"][0]), float(facts["input_times"][1]))
     sim._times_handled = (float(facts["handled"][0]), int(facts["handled"][1]))
     sim.events, sim.stored_events = list(state.events), state.events
 
@@ -111,11 +115,30 @@ def restart_here(sim: "Simulation") -> None:
         recall(ws, ms, 0)
     elif query(ws, ms, sim.t) != OK:
         raise SimulationError(
-            f"the state at t = {sim.t:.9g} s cannot be projected onto the constraints", t=sim.t, loop="inner"
+            f"at t = {sim.t:.9g} s no state meets the constraints and the equations of motion with the inputs set: "
+            "they ask for a position out of reach, or make a force that is not finite",
+            t=sim.t,
+            loop="inner",
         )
     if sim.t != sim.t_internal:
         sim.pending = []
-    sim.use_modes()
+        _drop_records(sim)
+    # the modes are the same and the structure fits them; only pivots that have degraded call for a new one
+    if solve_accelerations(ws) == OK:
+        sim.begin_rates()
+        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+    else:
+        sim.use_modes()
     sim._new_history()
     sim.pending += [k for k in sim.unsettled() if k not in sim.pending]
-    remember(ws, sim._loop.record)
+
+
+def _drop_records(sim: "Simulation") -> None:
+    """Forget what was recorded beyond the present time `sim.t`."""
+    sim.flush()
+    for records in (sim.samples, sim.step_logs):
+        while records and records[-1][-1, 0] > sim.t:
+            kept = records.pop()
+            kept = kept[kept[:, 0] <= sim.t]
+            if len(kept):
+                records.append(kept)

@@ -1,10 +1,9 @@
 """Simulation: one run that can be stepped, asked, driven, stored and restored."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -15,13 +14,19 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
 from ..state import State
 from ..system.records import COUNTERS_SIZE
-from . import advance, restore
+from . import advance, inputs, motions, output_rates, restore, sensitivity
 from .engine import Engine, user_errors
+from .records import FIXED_STEP, STEP_SIZE
 
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
     "residual_evaluations", "stages", "analyses", "krylov_iterations",
 )  # fmt: skip
+
+
+def just_after(t: float) -> float:
+    """A time after `t`, s, that no step ends before: a step is longer."""
+    return t + 8.0 * math.ulp(t)
 
 
 class Simulation(Engine):
@@ -72,14 +77,30 @@ class Simulation(Engine):
         ModelError : if t is not finite or before the present time.
         SimulationError : if the run fails; what was reached stays.
         """
-        self._advance_to(*self._goal(t))
-        self.t = float(t)
+        goal = self._goal(t)
+        self._close_jumps(goal[0])
+        newest = self.t_internal
+        # most points of a fine grid lie within the newest step: there is nothing to do but to ask
+        if newest < goal[0] or (newest == goal[0] and self.pending):
+            self._advance_to(*goal)
+        self.t = goal[0]
+
+    def close_start(self) -> None:
+        """From now on motions that inputs lead go on from where they are; until then (or the first step) the run
+        starts where they are set."""
+        self.start_open = False
+
+    def _close_jumps(self, t: float) -> None:
+        if self.assembly.motions:
+            self.close_start()
+            with self._failures():
+                motions.close_jumps(self, t)
 
     def _goal(self, t: float) -> tuple[float, float]:
-        """Where to go, and where the last step must end: inputs may change at `t`."""
+        """Where to go, and where a step must end because inputs are expected to change."""
         if not math.isfinite(t) or t < self.t:
             raise ModelError(f"cannot advance from t = {self.t!r} to {t!r}: the time must be finite and not earlier")
-        return float(t), float(t) if self.assembly.input_names else math.inf
+        return float(t), inputs.next_stop(self.input_times, self.t, float(t))
 
     def advance_to_event(self, t: float) -> bool:
         """Integrate to `t` (s) or to the first contact event before or at it; True if there is one.
@@ -93,6 +114,7 @@ class Simulation(Engine):
         ModelError, SimulationError : as `advance`.
         """
         start, (target, stop) = self.t, self._goal(t)
+        self._close_jumps(target)
         with self._failures():
             while True:
                 while self.event_due:
@@ -104,6 +126,35 @@ class Simulation(Engine):
                 if self.t_internal > start:
                     self.t = self.t_internal
                     return True
+
+    def next_point(self, t: float) -> float:
+        """Where the solver's newest step ends, s, but at most `t`; a step is made if none goes beyond the present time.
+
+        The present time stays: `advance` or `advance_to_event` go there.
+
+        Raises
+        ------
+        ModelError, SimulationError : as `advance`.
+        """
+        target, stop = self._goal(t)
+        self._close_jumps(target)
+        with self._failures():
+            while self.event_due:
+                self._handle_pending()
+            if self.t_internal <= self.t:
+                advance.advance_to(self, just_after(self.t), stop, hold=True)
+        return min(self.t_internal, target)
+
+    @property
+    def step_size(self) -> float:
+        """Size of the solver's next step, s: the fixed one, or what error control proposes."""
+        return float(self.clock[FIXED_STEP] or self.clock[STEP_SIZE])
+
+    @property
+    def horizon(self) -> float:
+        """Time, s, up to which the run is computed with the present inputs and all events have happened."""
+        newest = self.t_internal
+        return math.nextafter(newest, -math.inf) if self.pending else newest
 
     @property
     def event_due(self) -> bool:
@@ -145,7 +196,7 @@ class Simulation(Engine):
             elif (due := advance.due_break(self)) is not None:
                 advance.restart_at(self, due)
             elif now < t_end:
-                advance.advance_to(self, math.nextafter(now, math.inf), float(t_end))
+                advance.advance_to(self, just_after(now), float(t_end))
         self.t = self.t_internal
 
     @property
@@ -190,28 +241,34 @@ class Simulation(Engine):
         counts = {name: int(counters[k]) for k, name in enumerate(_COUNTER_NAMES[:COUNTERS_SIZE])}
         return {**counts, "fallbacks": len(self.fallbacks)}
 
-    def set_inputs(self, values: Mapping[str, float]) -> None:
-        """Set input channels; they hold from the present time on.
+    def set_inputs(self, values: Mapping[str, float], derivatives: Mapping[str, Sequence[float]] | None = None) -> None:
+        """Set input channels from the present time on.
+
+        They keep these values, or go on with the first and second time derivatives in `derivatives`, by the same names.
+        Setting an input to what it is at this time anyway changes nothing, bit for bit.
 
         Raises
         ------
-        ModelError : for an unknown name or a value that is not finite.
+        ModelError : for an unknown name or a value that is not finite; nothing has happened.
+        ConsistencyError, SimulationError : if there are no accelerations for these inputs; they are as before.
         """
-        names = self.assembly.input_names
-        for name, value in values.items():
-            if name not in names:
-                raise ModelError(f"there is no input '{name}'; inputs are {names}")
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-                raise ModelError(f"input '{name}' = {value!r}: a finite number is needed")
-        inputs = self.workspace.arrays["inputs"]
-        changed = False
-        for name, value in values.items():
-            k = names.index(name)
-            if inputs[k, 0] != value:
-                inputs[k, 0] = value
-                changed = True
-        if changed:
-            restore.restart_here(self)
+        inputs.set_inputs(self, values, derivatives or {})
+
+    def input_derivatives(self, direction: Mapping[str, float]) -> NDArray[np.float64]:
+        """Derivatives (channels,) of all channels along `direction`, by input name, at the present time.
+
+        Coordinates, velocities and contact modes are held; exact to rounding. The simulation stays as it is, bit for
+        bit. Those with respect to a motion are zero: it is followed by the next steps (`tlismni.core.model.motion`).
+
+        Raises
+        ------
+        SimulationError : if accelerations cannot be computed.
+        """
+        return sensitivity.input_derivatives(self, direction)
+
+    def output_rates(self) -> NDArray[np.float64]:
+        """Time derivatives (channels,) of all channels at the present time, NaN where they are not known exactly."""
+        return output_rates.output_rates(self)
 
     def state(self) -> State:
         """The present state as a value."""

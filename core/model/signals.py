@@ -15,6 +15,9 @@ from .base import Name, Positive, Record
 
 CONSTANT, STEP, RAMP, SINE, POLYNOMIAL, TABLE, INPUT = range(7)
 
+INPUT_SIZE = 4
+"""Numbers of an input: value, first and second derivative, and the time (s) at which it has these."""
+
 
 class TimeFunction(Record):
     """Base of the time functions."""
@@ -22,6 +25,10 @@ class TimeFunction(Record):
     def longest_step(self) -> float:
         """Step beyond which error control could miss what the function does, s."""
         return math.inf
+
+    def channels(self) -> tuple[str, ...]:
+        """The input channels that it needs."""
+        return ()
 
 
 class Constant(TimeFunction):
@@ -135,10 +142,17 @@ class Table(TimeFunction):
 
 
 class InputSignal(TimeFunction):
-    """The value of the model's input channel `channel`."""
+    """The model's input channel `channel`: the value that was set last, going on with the derivatives that it was given
+    (none unless set). As a motion it may have its velocity in another channel, `rate`, see `motion.py`; forces have no
+    use for that."""
 
     type: Literal["Input"] = "Input"
     channel: Name
+    rate: Name | None = None
+    """Input channel with the velocity of a motion, in the position's unit per s."""
+
+    def channels(self) -> tuple[str, ...]:
+        return (self.channel,) if self.rate is None else (self.channel, self.rate)
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
         return [INPUT, inputs[self.channel]]
@@ -158,8 +172,9 @@ def evaluate_signal(pool: Any, inputs: Any, offset: int, t: float) -> Any:
     if kind == CONSTANT:
         return pool[offset + 1], 0.0, 0.0
     if kind == INPUT:
-        k = int(pool[offset + 1])
-        return inputs[3 * k], inputs[3 * k + 1], inputs[3 * k + 2]
+        k = INPUT_SIZE * int(pool[offset + 1])
+        rate, curvature, x = inputs[k + 1], inputs[k + 2], t - inputs[k + 3]
+        return inputs[k] + x * (rate + 0.5 * x * curvature), rate + x * curvature, curvature
     if kind == SINE:
         amplitude, w = pool[offset + 1], pool[offset + 2]
         s = math.sin(w * t + pool[offset + 3])

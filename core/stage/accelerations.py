@@ -14,9 +14,11 @@ from .solver import solve_increment
 
 @internal
 def _largest(x: Any, n: int) -> float:
-    """Largest magnitude of the first n entries."""
+    """Largest magnitude of the first n entries; infinity if one is not a number."""
     largest = 0.0
     for i in range(n):
+        if np.isnan(x[i]):
+            return np.inf
         largest = max(largest, abs(x[i]))
     return largest
 
@@ -44,4 +46,4 @@ def solve_accelerations(ws: Any) -> int:
             break
         previous = norm
     evaluate_residuals(ws)
-    return OK if norm <= 1e-8 * (1.0 + size) else OUTER_SLOW
+    return OK if norm <= 1e-8 * (1.0 + size) < np.inf else OUTER_SLOW

@@ -15,6 +15,8 @@ from ..elements.base import Coordinate, Element, Form, Row
 from ..elements.internal import internal_coordinates_kernel
 from ..errors import ModelError
 from ..model.channels import Channel
+from ..model.motion import InputMotion
+from ..model.outputs import MarkerPlace
 from .numbering import GROUND_SLOTS, ModelNumbering
 
 
@@ -86,6 +88,12 @@ class Assembly:
     """Step beyond which error control could miss what a time function does, s."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
     """Rows of massless ends, each with the contacts that take its place when they close."""
+    markers: tuple[MarkerPlace, ...] = ()
+    """Those whose motion is shown."""
+    motions: tuple[InputMotion, ...] = ()
+    """Motions that are inputs."""
+    placed: tuple[tuple[int, int], ...] = ()
+    """(coordinate, row) pairs: it starts where that row of Phi says, Phi_row = q - f(t)."""
     linear: bool = False
     """All elements are linear with constant coefficients."""
     n_internal: int = 0
@@ -114,7 +122,7 @@ class Assembly:
 
     @property
     def is_internal(self) -> NDArray[np.bool_]:
-        """Which coordinates are internal ones, (n,)."""
+        """Which coordinates are internal ones."""
         return np.arange(self.n) >= self.n - self.n_internal
 
     @property
@@ -159,6 +167,7 @@ def assemble(model: Model) -> Assembly:
     multipliers: list[Channel] = []
     contact_rows: dict[str, tuple[int, ...]] = {}
     massless: dict[int, int] = {}
+    placed: list[tuple[int, int]] = []
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
         for part in element.parts(numbering):
@@ -169,6 +178,7 @@ def assemble(model: Model) -> Assembly:
                 contact_rows[element.name] = rows
             if part.massless >= 0:
                 massless[rows[0]] = part.massless
+            placed += zip(element.placed(numbering), rows, strict=False)
             address = kernel_address(form.kernel)
             for row in part.rows:
                 key = (address, len(row.coordinates))
@@ -194,7 +204,7 @@ def assemble(model: Model) -> Assembly:
         batches.append(_internal_batch(internal))
     rest = ((0.0,) * len(internal),) * 2
     states: list[tuple[Sequence[float], Sequence[float]]] = [
-        *(body.start_in(numbering.bodies) for body in model.bodies),
+        *(body.start_in(numbering.bodies, numbering.input_start) for body in model.bodies),
         rest,
     ]
     columns, names = [], []
@@ -236,6 +246,9 @@ def assemble(model: Model) -> Assembly:
         body_columns=columns,
         coordinate_scale=_coordinate_scale(model, columns, len(internal)),
         replaced_rows=_replaced_rows(model, massless, batches),
+        markers=tuple(MarkerPlace(o.name, o.marker, numbering.place(o.marker.body)) for o in model.outputs),
+        motions=tuple(numbering.motions),
+        placed=tuple(placed),
         linear=all(element.linear for element in model.elements()),
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
@@ -270,8 +283,7 @@ def _replaced_rows(model: Model, massless: Mapping[int, int], batches: Sequence[
 def _internal_batch(internal: NDArray[np.int64]) -> Batch:
     """The unit masses of internal coordinates."""
     count = len(internal)
-    nothing = np.zeros((count, 0), dtype=np.int64)
-    address = kernel_address(internal_coordinates_kernel)
+    nothing, address = np.zeros((count, 0), dtype=np.int64), kernel_address(internal_coordinates_kernel)
     none = np.full(count, -1, dtype=np.int64)
     return Batch(address, np.zeros((count, 0)), internal[:, None].copy(), nothing, nothing, ((0, 0),), (), none)
 

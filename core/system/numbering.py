@@ -6,7 +6,8 @@ from ..description import Model
 from ..elements.base import BodyElement
 from ..elements.planar_body import PlanarFrame
 from ..model.markers import GROUND
-from ..model.signals import Signal
+from ..model.motion import InputMotion
+from ..model.signals import InputSignal, Signal
 
 GROUND_SLOTS = 3
 """Extended vectors end in the ground's (x, y, angle), which stay zero, and the work accounts."""
@@ -21,6 +22,8 @@ class ModelNumbering:
         self.index: dict[str, tuple[int, ...]] = {}
         self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
         self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
+        self.input_start = {record.name: record.start for record in model.inputs}
+        self.motions: list[InputMotion] = []
         self.pool: list[float] = []
         self.work_names: list[str] = []
         self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
@@ -42,7 +45,7 @@ class ModelNumbering:
             own = tuple(range(start, start + count))
             if isinstance(body, PlanarFrame):
                 own += tuple(range(n + count, n + GROUND_SLOTS))
-                q0 = body.start_in(self.bodies)[0]
+                q0 = body.start_in(self.bodies, self.input_start)[0]
                 self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
             self.index[body.name] = own
             start += count
@@ -56,12 +59,26 @@ class ModelNumbering:
             self.places[body] = dict(zip(self.names[body], self.index[body], strict=False))
         return self.places[body][name]
 
+    def place(self, body: str) -> tuple[int, int, int]:
+        """Indices of a frame's own (x, y, angle); -1 for those that it does not have."""
+        x, y, angle = (k if k < self.n else -1 for k in self.coordinates(body))
+        return x, y, angle
+
     def initial(self, body: str) -> tuple[float, float, float]:
         return self.initial_positions[body]
 
     def signal(self, signal: Signal) -> int:
         offset = len(self.pool)
         self.pool.extend(float(x) for x in signal.pool(self.inputs))
+        return offset
+
+    def motion(self, signal: Signal) -> int:
+        if not isinstance(signal, InputSignal):
+            return self.signal(signal)
+        offset = len(self.pool)
+        found = InputMotion.of(signal, self.inputs, len(self.motions))
+        self.motions.append(found)
+        self.pool.extend(found.pool())
         return offset
 
     def internal(self, name: str) -> tuple[int, ...]:

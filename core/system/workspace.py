@@ -10,6 +10,8 @@ from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord
 from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
+from ..model.motion import input_rows
+from ..model.signals import INPUT_SIZE
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .records import (
@@ -64,7 +66,7 @@ class Workspace:
             "energy": np.zeros(3),
             "monitor": np.zeros(2 * max(contacts, 1)),
             "memory": np.zeros((max(contacts, 1), MEMORY_SIZE)),
-            "inputs": np.zeros((max(len(a.input_names), 1), 3)),
+            "inputs": np.zeros((input_rows(len(a.input_names), len(a.motions)), INPUT_SIZE)),
             "signals": a.signals.copy(),
             "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
             "batches": np.zeros(len(a.batches), dtype=np.int64),

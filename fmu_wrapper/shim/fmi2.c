@@ -82,7 +82,8 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
         instance_report(&model, "fmi2Instantiate: this FMU does co-simulation only, type %d was asked", type);
         return NULL;
     }
-    return instance_new(&model, 2, false, false, "fmi2Instantiate", name, guid, resources, logging_on);
+    Asked asked = {2, logging_on, false, false, NULL, 0};
+    return instance_new(&model, &asked, "fmi2Instantiate", name, guid, resources);
 }
 
 EXPORT void fmi2FreeInstance(fmi2Component c) {
@@ -177,7 +178,10 @@ EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[
 
 EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state) {
     (void)no_set_state; /* a stored state lives until it is freed */
-    FORWARD(c, "fmi2DoStep", "(dd)", time, step);
+    if (instance_glide(c, time, step, NULL)) {
+        return STATUS_OK;
+    }
+    FORWARD(c, "fmi2DoStep", "(ddN)", time, step, instance_clock(c));
 }
 
 EXPORT fmi2Status fmi2CancelStep(fmi2Component c) {
@@ -214,16 +218,12 @@ EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueR
             OUT(sensitivity, unknowns));
 }
 
-/* what this FMU does not do, as its capability flags say: refused, with a line in the log */
-
 EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                                               const fmi2Integer order[], const fmi2Real value[]) {
-    (void)vr, (void)n, (void)order, (void)value;
-    FORWARD(c, "fmi2SetRealInputDerivatives", "()");
+    FORWARD(c, "fmi2SetRealInputDerivatives", "(NNN)", IN(vr, n), IN(order, n), IN(value, n));
 }
 
 EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                                                const fmi2Integer order[], fmi2Real value[]) {
-    (void)vr, (void)n, (void)order, (void)value;
-    FORWARD(c, "fmi2GetRealOutputDerivatives", "()");
+    FORWARD(c, "fmi2GetRealOutputDerivatives", "(NNN)", IN(vr, n), IN(order, n), OUT(value, n));
 }

@@ -25,6 +25,13 @@ static void log_to_host(const Instance *self, int status, const char *category, 
     }
 }
 
+static bool update_of_host(const Instance *self, double time, bool can_return_early, double *end) {
+    fmi3Boolean wanted = false;
+    ((fmi3IntermediateUpdateCallback)self->updater)(self->environment, time, true, true, true, can_return_early,
+                                                    &wanted, end);
+    return can_return_early && wanted;
+}
+
 /* version and logging */
 
 EXPORT const char *fmi3GetVersion(void) {
@@ -52,10 +59,11 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String toke
                                                 fmi3LogMessageCallback logger,
                                                 fmi3IntermediateUpdateCallback intermediate_update) {
     (void)visible; /* there is nothing to show */
-    (void)intermediate, (void)intermediates, (void)intermediate_update; /* providesIntermediateUpdate = false */
     Instance model = model_of(environment, logger);
-    return instance_new(&model, 3, event_mode, early_return, "fmi3InstantiateCoSimulation", name, token, resources,
-                        logging_on);
+    model.update = intermediate_update ? update_of_host : NULL;
+    model.updater = (void (*)(void))intermediate_update;
+    Asked asked = {3, logging_on, event_mode, early_return, intermediate, intermediate ? intermediates : 0};
+    return instance_new(&model, &asked, "fmi3InstantiateCoSimulation", name, token, resources);
 }
 
 EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
@@ -154,6 +162,13 @@ EXPORT fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference vr[], s
 DERIVATIVE(fmi3GetDirectionalDerivative)
 DERIVATIVE(fmi3GetAdjointDerivative)
 
+/* derivatives of outputs in time */
+
+EXPORT fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                                           const fmi3Int32 order[], fmi3Float64 value[], size_t values) {
+    FORWARD(c, "fmi3GetOutputDerivatives", "(NNN)", IN(vr, n), IN(order, n), OUT(value, values));
+}
+
 /* state */
 
 EXPORT fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
@@ -186,8 +201,12 @@ EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step,
                              fmi3Boolean *event_handling_needed, fmi3Boolean *terminate, fmi3Boolean *early_return,
                              fmi3Float64 *last_successful_time) {
     (void)no_set_state; /* a stored state lives until it is freed */
-    FORWARD(c, "fmi3DoStep", "(ddNNNN)", time, step, OUT(event_handling_needed, 1), OUT(terminate, 1),
-            OUT(early_return, 1), OUT(last_successful_time, 1));
+    if (instance_glide(c, time, step, last_successful_time)) {
+        *event_handling_needed = *terminate = *early_return = false;
+        return STATUS_OK;
+    }
+    FORWARD(c, "fmi3DoStep", "(ddNNNNN)", time, step, OUT(event_handling_needed, 1), OUT(terminate, 1),
+            OUT(early_return, 1), OUT(last_successful_time, 1), instance_clock(c));
 }
 
 EXPORT fmi3Status fmi3EnterEventMode(fmi3Instance c) {

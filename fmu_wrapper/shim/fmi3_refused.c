@@ -1,6 +1,6 @@
 /* The functions of FMI 3.0 that this FMU has not, as its model description says: types of variables that it does not
- * use, clocks, structural parameters, model exchange, scheduled execution, derivatives in time. Each is there, since importers
- * look up all of them, and answers Error with a line in the log; `refuse` (fmi3_calls.py) knows why. */
+ * use, clocks, structural parameters, model exchange, scheduled execution. Each is there, since importers look up all of
+ * them, and answers Error with a line in the log; `refuse` (fmi3_calls.py) knows why. */
 
 #include "forward.h"
 
@@ -65,10 +65,6 @@ REFUSED_PLAIN(fmi3ExitConfigurationMode)
 REFUSED(fmi3GetNumberOfVariableDependencies, fmi3ValueReference vr, size_t *count)
 REFUSED(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t element[], fmi3ValueReference independent[],
         size_t independent_element[], fmi3DependencyKind kind[], size_t count)
-
-/* derivatives in time */
-
-REFUSED(fmi3GetOutputDerivatives, REFERENCES, const int32_t order[], double value[], size_t values)
 
 /* model exchange */
 

@@ -1,5 +1,7 @@
 #include "instance.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,6 +49,23 @@ static PyObject *log_from_python(PyObject *capsule, PyObject *arguments) {
     py.PyEval_RestoreThread(thread);
     return py.Py_BuildValue("");
 }
+
+/* update(time, can_return_early), called from Python: the time at which the step shall end, or None. */
+static PyObject *update_from_python(PyObject *capsule, PyObject *arguments) {
+    double time, end;
+    int can_return_early;
+    const Instance *self = py.PyCapsule_GetPointer(capsule, CAPSULE);
+    if (!self || !py.PyArg_ParseTuple(arguments, "di", &time, &can_return_early)) {
+        return NULL;
+    }
+    end = time;
+    void *thread = py.PyEval_SaveThread();
+    bool ends = self->update(self, time, can_return_early != 0, &end);
+    py.PyEval_RestoreThread(thread);
+    return ends ? py.Py_BuildValue("d", end) : py.Py_BuildValue("");
+}
+
+static PyMethodDef update_method = {"update", update_from_python, METH_VARARGS, "An intermediate update."};
 
 static PyMethodDef log_method = {"log", log_from_python, METH_VARARGS, "Hand a message to the host's logger."};
 
@@ -133,12 +152,6 @@ static PyObject *boot(Instance *self, const char *function, const char *source, 
     return result;
 }
 
-/* What the host asked of an instance. */
-typedef struct {
-    int interface; /* FMI major version */
-    bool event_mode, early_return, logging_on;
-} Asked;
-
 /* Make the Python side of `self`. */
 static bool populate(Instance *self, const Asked *asked, const char *function, const char *token,
                      const char *resources) {
@@ -158,9 +171,11 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
     } else {
         PyObject *capsule = py.PyCapsule_New(self, CAPSULE, NULL);
         PyObject *log = capsule ? py.PyCFunction_NewEx(&log_method, capsule, NULL) : NULL;
-        PyObject *arguments = log ? py.Py_BuildValue("(isssiNii)", asked->interface, self->name, token, resources,
-                                                     (int)asked->logging_on, log, (int)asked->event_mode,
-                                                     (int)asked->early_return) : NULL;
+        PyObject *update = self->update ? py.PyCFunction_NewEx(&update_method, capsule, NULL) : py.Py_BuildValue("");
+        PyObject *arguments = log && update ? py.Py_BuildValue(
+            "(isssiNiiiNN)", asked->interface, self->name, token, resources, (int)asked->logging_on, log,
+            (int)asked->event_mode, (int)asked->early_return, (int)python_is_own(), update,
+            view_of(asked->intermediate, asked->intermediates * sizeof *asked->intermediate)) : NULL;
         self->calls = boot(self, function, source, path, arguments);
         py.Py_DecRef(arguments);
         py.Py_DecRef(capsule);
@@ -170,8 +185,8 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
     return self->calls != NULL;
 }
 
-Instance *instance_new(const Instance *model, int interface, bool event_mode, bool early_return, const char *function,
-                       const char *name, const char *token, const char *resource_location, bool logging_on) {
+Instance *instance_new(const Instance *model, const Asked *asked, const char *function, const char *name,
+                       const char *token, const char *resource_location) {
     Instance *self = malloc(sizeof *self);
     if (!self) {
         return NULL;
@@ -179,6 +194,8 @@ Instance *instance_new(const Instance *model, int interface, bool event_mode, bo
     *self = *model;
     self->magic = MAGIC;
     self->calls = self->strings = NULL;
+    self->horizon = -HUGE_VAL;
+    self->behind = false;
     self->name = copy_of(name && *name ? name : "instance");
     char *resources = resource_location ? path_of(resource_location) : NULL;
     bool made = false;
@@ -186,8 +203,7 @@ Instance *instance_new(const Instance *model, int interface, bool event_mode, bo
         instance_report(self, "%s: the resource location is NULL: the URI of the FMU's resources folder is needed",
                         function);
     } else if (self->name) {
-        Asked asked = {interface, event_mode, early_return, logging_on};
-        made = populate(self, &asked, function, token ? token : "", resources);
+        made = populate(self, asked, function, token ? token : "", resources);
     }
     free(resources);
     if (!made) {
@@ -217,11 +233,55 @@ bool instance_enter(Instance *self, int *gil) {
     return self && self->magic == MAGIC && python_enter(gil);
 }
 
-static PyObject *call(Instance *self, const char *method, const char *format, va_list values) {
-    PyObject *arguments = py.Py_VaBuildValue(format, values);
+PyObject *instance_clock(Instance *self) {
+    return writable_view_of(&self->time, 2 * sizeof self->time);
+}
+
+bool instance_glide(Instance *self, double time, double step, double *reached) {
+    if (!self || self->magic != MAGIC) {
+        return false;
+    }
+    double end = time + step, size = fabs(time) > step ? fabs(time) : step;
+    double rounding = 4.0 * DBL_EPSILON * size; /* of a master's clock */
+    if (!(step > 0.0 && fabs(time - self->time) <= rounding && end > self->time && end <= self->horizon)) {
+        return false;
+    }
+    self->time = end;
+    self->behind = true;
+    if (reached) {
+        *reached = end;
+    }
+    return true;
+}
+
+static PyObject *call_method(Instance *self, const char *method, PyObject *arguments) {
     PyObject *function = arguments ? py.PyObject_GetAttrString(self->calls, method) : NULL;
     PyObject *answer = function ? py.PyObject_CallObject(function, arguments) : NULL;
     py.Py_DecRef(function);
+    return answer;
+}
+
+/* What comes next may need the present time, and may change what the horizon rests on. */
+static void catch_up(Instance *self) {
+    if (self->behind) {
+        PyObject *arguments = py.Py_BuildValue("(d)", self->time);
+        PyObject *answer = call_method(self, "catch_up", arguments);
+        py.Py_DecRef(arguments);
+        if (!answer) {
+            report_exception(self, "catch_up");
+        }
+        py.Py_DecRef(answer);
+        self->behind = false;
+    }
+}
+
+static PyObject *call(Instance *self, const char *method, const char *format, va_list values) {
+    catch_up(self);
+    if (strncmp(method + strlen("fmi_"), "Get", 3) != 0) {
+        self->horizon = -HUGE_VAL;
+    }
+    PyObject *arguments = py.Py_VaBuildValue(format, values);
+    PyObject *answer = call_method(self, method, arguments);
     py.Py_DecRef(arguments);
     if (!answer) {
         report_exception(self, method);
@@ -242,7 +302,11 @@ int instance_status(Instance *self, const char *method, const char *format, ...)
     va_start(values, format);
     PyObject *answer = call(self, method, format, values);
     va_end(values);
-    return (int)instance_number(answer, STATUS_ERROR);
+    int status = (int)instance_number(answer, STATUS_ERROR);
+    if (status != STATUS_OK) {
+        self->horizon = -HUGE_VAL;
+    }
+    return status;
 }
 
 long long instance_number(PyObject *answer, long long otherwise) {

@@ -12,20 +12,44 @@ typedef struct Instance Instance;
 /* Hands one message to the host, in the manner of the instance's FMI version. */
 typedef void (*HostLogger)(const Instance *, int status, const char *category, const char *message);
 
+/* Intermediate update (FMI 3.0) at `time`: true if the host wants the step to end at `*end`. */
+typedef bool (*HostUpdate)(const Instance *, double time, bool can_return_early, double *end);
+
 struct Instance {
     unsigned magic;
     PyObject *calls;    /* Fmi2Calls or Fmi3Calls */
     PyObject *strings;  /* list of bytes that the last "get string" gave: the host holds pointers into them */
     HostLogger log;
     void (*logger)(void); /* the host's callback, of the type that `log` knows; NULL for none */
+    HostUpdate update;     /* NULL: the host wants no intermediate updates */
+    void (*updater)(void); /* the host's callback, of the type that `update` knows */
     void *environment;
     char *name;
+    /* Steps within what the solver has computed need no Python: `horizon` is the time up to which they are that, as of
+     * the last step, and `behind` says that the Python side has not been told of the latest of them, up to `time`. */
+    double time, horizon;
+    bool behind;
 };
 
+/* Make a step without Python, if it is within the horizon and starts at the instance's own time; `reached` (NULL:
+ * not wanted) is where it ends. */
+bool instance_glide(Instance *self, double time, double step, double *reached);
+
+/* A memory view on `time` and `horizon`, for the time of a call. */
+PyObject *instance_clock(Instance *self);
+
+/* What the host asks of a new instance; the event mode and all behind it are FMI 3.0's. */
+typedef struct {
+    int interface; /* FMI major version */
+    bool logging_on, event_mode, early_return;
+    const unsigned *intermediate; /* value references of the inputs that are set in intermediate updates */
+    size_t intermediates;
+} Asked;
+
 /* A new instance, or NULL with a line in the host's log. Takes over nothing; `model` is filled in by the caller
- * with `log`, `logger`, `environment` and is copied. `event_mode` and `early_return` are FMI 3.0's. */
-Instance *instance_new(const Instance *model, int interface, bool event_mode, bool early_return, const char *function,
-                       const char *name, const char *token, const char *resource_location, bool logging_on);
+ * with `log`, `logger`, `update`, `updater`, `environment` and is copied. */
+Instance *instance_new(const Instance *model, const Asked *asked, const char *function, const char *name,
+                       const char *token, const char *resource_location);
 
 /* Free an instance; NULL is allowed. */
 void instance_free(Instance *self);

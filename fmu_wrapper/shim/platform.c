@@ -56,6 +56,39 @@ const char *platform_load_error(void) {
     return text;
 }
 
+void platform_path_of(void *library, const char *name, char *path, size_t size) {
+    wchar_t buffer[4096];
+    DWORD length = GetModuleFileNameW((HMODULE)library, buffer, sizeof buffer / sizeof *buffer);
+    (void)name;
+    path[0] = '\0';
+    if (length && length < sizeof buffer / sizeof *buffer) {
+        if (!WideCharToMultiByte(CP_UTF8, 0, buffer, -1, path, (int)size, NULL, NULL)) {
+            path[0] = '\0';
+        }
+    }
+    for (; *path; path++) {
+        *path = *path == '\\' ? '/' : *path;
+    }
+}
+
+int platform_run(const char *program, const char *script, char *output, size_t size) {
+    char command[8192];
+    output[0] = '\0';
+    if (strchr(program, '"') || strchr(script, '"')) {
+        return -1; /* no file name has it */
+    }
+    /* cmd.exe takes away the outermost quotes */
+    snprintf(command, sizeof command, "\"\"%s\" -I \"%s\" 2>NUL\"", program, script);
+    wchar_t *name = wide(command);
+    FILE *pipe = name ? _wpopen(name, L"rb") : NULL;
+    free(name);
+    if (!pipe) {
+        return -1;
+    }
+    output[fread(output, 1, size - 1, pipe)] = '\0';
+    return _pclose(pipe);
+}
+
 void platform_pin(void) {
     HMODULE self;
     GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_PIN,
@@ -84,7 +117,15 @@ void platform_unlock(void) {
 #else /* Linux, macOS */
 
 #include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
+#include <spawn.h>
+#include <stdint.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
@@ -104,6 +145,53 @@ void *platform_symbol(void *library, const char *name) {
 const char *platform_load_error(void) {
     const char *text = dlerror();
     return text ? text : "unknown cause";
+}
+
+void platform_path_of(void *library, const char *name, char *path, size_t size) {
+    Dl_info info;
+    void *function = dlsym(library, name);
+    char *resolved = function && dladdr(function, &info) && info.dli_fname ? realpath(info.dli_fname, NULL) : NULL;
+    snprintf(path, size, "%s", resolved ? resolved : "");
+    free(resolved);
+}
+
+int platform_run(const char *program, const char *script, char *output, size_t size) {
+    int ends[2], status = -1;
+    output[0] = '\0';
+    if (pipe(ends) != 0) {
+        return -1;
+    }
+    char *arguments[] = {(char *)(uintptr_t)program, "-I", (char *)(uintptr_t)script, NULL};
+    posix_spawn_file_actions_t actions;
+    pid_t child;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addclose(&actions, ends[0]);
+    int failed = posix_spawnp(&child, program, &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
+    if (!failed) {
+        size_t used = 0;
+        while (used < size - 1) {
+            ssize_t got = read(ends[0], output + used, size - 1 - used);
+            if (got > 0) {
+                used += (size_t)got;
+            } else if (got == 0 || errno != EINTR) {
+                break;
+            }
+        }
+        output[used] = '\0';
+        pid_t ended;
+        while ((ended = waitpid(child, &status, 0)) < 0 && errno == EINTR) {
+        }
+        if (ended < 0) {
+            status = used ? 0 : -1; /* the host has its children reaped by the system */
+        }
+    }
+    close(ends[0]);
+    return status;
 }
 
 void platform_pin(void) {

@@ -3,6 +3,7 @@
 #define TLISMNI_PLATFORM_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 #ifdef _WIN32
@@ -21,6 +22,13 @@ bool platform_loaded_python(void **library);
 
 /* Address of a function of `library`, or NULL. */
 void *platform_symbol(void *library, const char *name);
+
+/* Path of the file that a function of `library` comes from, as UTF-8, links resolved; empty if it is unknown. */
+void platform_path_of(void *library, const char *name, char *path, size_t size);
+
+/* Run `program` with the file `script` as its one argument and read what it prints, at most `size` - 1 bytes.
+ * Gives its exit status, or -1 if it cannot be run. */
+int platform_run(const char *program, const char *script, char *output, size_t size);
 
 /* Why the last platform_load failed. */
 const char *platform_load_error(void);

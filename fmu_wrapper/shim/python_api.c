@@ -1,110 +1,13 @@
 #include "python_api.h"
+#include "find_python.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE 4096
-
 PythonApi py;
 
-static bool ready;
+static bool ready, own;
 static _Thread_local bool thread_known;
-
-/* What the export recorded of its Python, a line each: shared library, home, a file of its standard library. */
-typedef struct {
-    char library[LINE];
-    char home[LINE];
-    char landmark[LINE];
-} Record;
-
-static void read_line(FILE *file, char *line) {
-    line[0] = '\0';
-    if (fgets(line, LINE, file)) {
-        line[strcspn(line, "\r\n")] = '\0';
-    }
-}
-
-static void read_record(const char *resources, Record *record) {
-    char path[LINE + 32];
-    memset(record, 0, sizeof *record);
-    snprintf(path, sizeof path, "%s/libpython.txt", resources);
-    FILE *file = platform_open(path);
-    if (file) {
-        read_line(file, record->library);
-        read_line(file, record->home);
-        read_line(file, record->landmark);
-        fclose(file);
-    }
-}
-
-static bool can_read(const char *path) {
-    FILE *file = platform_open(path);
-    if (file) {
-        fclose(file);
-    }
-    return file != NULL;
-}
-
-/* Load the library of one of the usual names. */
-static bool load_usual(void **library) {
-    static const char *const patterns[] = {
-#if defined _WIN32
-        "python3%d.dll",
-#elif defined __APPLE__
-        "libpython3.%d.dylib",
-#else
-        "libpython3.%d.so.1.0",
-        "libpython3.%d.so",
-#endif
-    };
-    char name[64];
-    for (int minor = 20; minor >= 11; minor--) {
-        for (size_t i = 0; i < sizeof patterns / sizeof *patterns; i++) {
-            snprintf(name, sizeof name, patterns[i], minor);
-            *library = platform_load(name);
-            if (*library) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-/* Find the library that has Python: in the process, by the environment, as recorded, by the usual names.
- * `recorded` tells whether it is the recorded one, so that the recorded home belongs to it. */
-static bool find_library(const Record *record, void **library, bool *recorded, char *message, size_t size) {
-    *recorded = false;
-    if (platform_loaded_python(library)) {
-        return true;
-    }
-    const char *chosen = getenv("TLISMNI_LIBPYTHON");
-    if (chosen && *chosen) {
-        *library = platform_load(chosen);
-        if (!*library) {
-            snprintf(message, size, "TLISMNI_LIBPYTHON names '%s', which cannot be loaded: %s; correct or unset it",
-                     chosen, platform_load_error());
-        }
-        return *library != NULL;
-    }
-    char cause[512] = "none was recorded in resources/libpython.txt";
-    if (record->library[0]) {
-        *library = platform_load(record->library);
-        if (*library) {
-            *recorded = true;
-            return true;
-        }
-        snprintf(cause, sizeof cause, "the recorded one failed: %s", platform_load_error());
-    }
-    if (load_usual(library)) {
-        return true;
-    }
-    snprintf(message, size,
-             "no Python library found: %s; libpython3.11 to 3.20 are not on the system's path either. Install the "
-             "Python that the FMU was exported with, or set the environment variable TLISMNI_LIBPYTHON to the path "
-             "of a libpython3.x that has tlismni",
-             cause);
-    return false;
-}
 
 static bool find_functions(void *library, char *message, size_t size) {
     void *address;
@@ -120,41 +23,40 @@ static bool find_functions(void *library, char *message, size_t size) {
     return true;
 }
 
-/* Start the interpreter in this process, whose main program is no Python. */
-static bool initialize(const Record *record, bool recorded, char *message, size_t size) {
-    /* Without a home Python looks for one beside the first python3 in PATH, which may be another Python.
-     * A wrong home ends the process (Py_FatalError), so look first. */
-    bool set_home = recorded && record->home[0] && !getenv("PYTHONHOME");
-    if (set_home && !can_read(record->landmark)) {
-        snprintf(message, size, "the Python that the FMU was exported with is incomplete: '%s' cannot be read; "
-                 "repair it, or set TLISMNI_LIBPYTHON and PYTHONHOME to another one", record->landmark);
+/* Start the interpreter in this process, whose main program is no Python.
+ * Without a home Python looks for one beside the first python3 in PATH, which may be another Python; and a wrong home
+ * ends the process (Py_FatalError), so it is looked at first. */
+static bool initialize(FoundPython *found, char *message, size_t size) {
+    bool set_home = !getenv("PYTHONHOME");
+    if (set_home && !python_home(found, py.Py_GetVersion(), message, size)) {
         return false;
     }
     if (set_home) {
-        platform_setenv("PYTHONHOME", record->home);
+        platform_setenv("PYTHONHOME", found->home);
     }
     py.Py_InitializeEx(0); /* 0: the host's signal handlers stay */
     if (set_home) {
         platform_setenv("PYTHONHOME", NULL); /* not for programs that the host starts */
     }
     py.PyEval_SaveThread(); /* this thread keeps its Python state, but not the lock */
-    thread_known = true;
+    thread_known = own = true;
     return true;
 }
 
 static bool start(const char *resources, char *message, size_t size) {
-    Record record;
-    void *library;
-    bool recorded;
-    read_record(resources, &record);
-    if (!find_library(&record, &library, &recorded, message, size) || !find_functions(library, message, size)) {
+    FoundPython found;
+    if (!find_python(resources, &found, message, size) || !find_functions(found.library, message, size)) {
         return false;
     }
-    if (!py.Py_IsInitialized() && !initialize(&record, recorded, message, size)) {
+    if (!py.Py_IsInitialized() && !initialize(&found, message, size)) {
         return false;
     }
     platform_pin();
     return true;
+}
+
+bool python_is_own(void) {
+    return own;
 }
 
 bool python_start(const char *resources, char *message, size_t size) {

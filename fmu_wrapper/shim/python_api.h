@@ -30,6 +30,7 @@ enum { PyGILState_LOCKED = 0, PyGILState_UNLOCKED = 1 };
 #define PYTHON_FUNCTIONS(X)                                                      \
     X(int, Py_IsInitialized, (void))                                             \
     X(void, Py_InitializeEx, (int))                                              \
+    X(const char *, Py_GetVersion, (void))                                       \
     X(int, PyGILState_Ensure, (void))                                            \
     X(void, PyGILState_Release, (int))                                           \
     X(void *, PyEval_SaveThread, (void))                                         \
@@ -76,6 +77,9 @@ extern PythonApi py;
 
 /* Find Python and start it if nobody has. On false, `message` says what was tried and what to do. */
 bool python_start(const char *resources, char *message, size_t size);
+
+/* Whether python_start has started it: then nobody else needs its environment. */
+bool python_is_own(void);
 
 /* Take the interpreter's lock for this thread. False if Python is not (or no longer) running. */
 bool python_enter(int *gil);

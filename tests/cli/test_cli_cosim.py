@@ -45,7 +45,8 @@ def test_export(tlismni: Command, tmp_path: Path) -> None:
     assert done.json["inputs"] == ["torque"]
     starts = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
     assert float(starts["restitution"]) == 0.25
-    assert starts["solver.method"] == "irk"
+    method = next(v for v in fmpy.read_model_description(str(path)).modelVariables if v.name == "solver.method")
+    assert {item.name: item.value for item in method.declaredType.items}["irk"] == starts["solver.method"]
 
 
 @pytest.mark.parametrize(("given", "version"), [("2", "2.0"), ("3", "3.0"), ("3.0", "3.0")])
@@ -73,6 +74,28 @@ def test_info(tlismni: Command, tmp_path: Path, version: str) -> None:
     assert (torque["causality"], torque["unit"], torque["reference"]) == ("input", "N.m", 1_000_000)
     shown = tlismni("info", path)
     assert shown.code == 0 and all(name in shown.out for name in ("FMI " + version, "stop.normal_force", "torque"))
+
+
+def test_a_bundled_fmu_says_so(tlismni: Command, tmp_path: Path) -> None:
+    path = tmp_path / "p.fmu"
+    assert tlismni("export", "pendulum_stop", "-o", path, "--fmi", "3", "--bundle", "--json").json["bundle"] is True
+    found = tlismni("info", path, "--json").json
+    assert found["bundle"] and found["icon"] and found["documentation"]
+    assert {need.split(">=")[0] for need in found["requires"]} == {"numpy", "scipy", "numba", "pydantic"}
+    (drive,) = found["terminals"]
+    assert drive["name"] == "drive" and drive["members"]["torque"] == "torque"
+    variables = {v["name"]: v for v in found["variables"]}
+    assert variables["solver.method"]["start"] == "ebdf" and "irk" in variables["solver.method"]["choices"]
+    assert (variables["restitution"]["min"], variables["restitution"]["max"]) == (0.0, 1.0)
+    assert variables["stop.law"]["start"] == "NewtonImpact"
+    shown = tlismni("info", path).out
+    assert "inside" in shown and "numba>=" in shown and "terminals" in shown and "constants" in shown
+
+
+def test_export_for_an_unknown_platform(tlismni: Command, tmp_path: Path) -> None:
+    done = tlismni("export", "pendulum_stop", "-o", tmp_path / "p.fmu", "--platform", "amiga")
+    assert done.code == 1 and "platform 'amiga' is unknown: choose from" in done.cause
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_info_of_what_is_no_fmu(tlismni: Command, tmp_path: Path) -> None:

@@ -142,3 +142,31 @@ def test_damping(tlismni: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: An
     assert {row["method"] for row in done.json["rows"]} == {"hht", "hht_ggl"}
     (claim,) = done.json["claims"]
     assert claim["name"] == "C5" and claim["verdict"] == "does not hold here"
+
+
+def test_coupling_as_table_json_and_figure(tlismni: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With two contenders and two steps, to be quick."""
+    pytest.importorskip("fmpy")
+    from tlismni.validation.study import coupling
+    from tlismni.validation.study.coupling_problems import JACOBI, NEWTON
+
+    monkeypatch.setattr(coupling, "CONTENDERS", (JACOBI, NEWTON))
+    monkeypatch.setattr(coupling, "CONTROLLED", ((NEWTON, "iteration"),))
+    monkeypatch.setattr(coupling, "QUICK_STEPS", (1e-3, 5e-4))
+    monkeypatch.setattr(coupling, "SHORTEST", 4e-3)
+    monkeypatch.setattr(coupling, "FEWEST", 30)
+    monkeypatch.setattr(coupling, "LONG_END", 0.04)
+    monkeypatch.setattr(coupling, "LONG_STEPS", (2e-3,))
+    monkeypatch.setattr(coupling, "TOLERANCES", (1.0, 1e-1))
+    study = coupling.coupling_study(quick=True)
+    monkeypatch.setattr(coupling, "coupling_study", lambda **arguments: study)
+    done = tlismni("study", "coupling", "--quick", "--json", "--plot", tmp_path / "c.png")
+    assert done.code == 0
+    jacobi, newton = ([r for r in done.json["rows"] if r["contender"] == c.label] for c in (JACOBI, NEWTON))
+    assert [r["step"] for r in jacobi] == pytest.approx([1e-3, 5e-4])
+    assert all(n["error"] < 0.05 * j["error"] for j, n in zip(jacobi, newton, strict=True))
+    beyond = {row["contender"]: row["beyond"] for row in done.json["stability"]}
+    assert beyond == {JACOBI.label: "below", NEWTON.label: "none up to"}
+    assert (tmp_path / "c.png").read_bytes().startswith(PNG)
+    shown = tlismni("study", "coupling", "--quick").out
+    assert all(text in shown for text in ("A blow", "A contact that stays", JACOBI.label, "observed orders"))

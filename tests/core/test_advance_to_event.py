@@ -80,7 +80,7 @@ def test_a_time_before_the_present_is_refused():
 
 
 def test_an_event_within_rounding_of_a_communication_point():
-    """A model with inputs ends its steps at these points: the event may lie before one by less than any step."""
+    """The event may lie before one by less than any step."""
 
     def stopped(target):
         sim = simulation("pendulum_stop")

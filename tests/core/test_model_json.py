@@ -39,9 +39,11 @@ from tlismni.core import (
     Line2D,
     LinearSystem,
     Marker2D,
+    MarkerOutput2D,
     MaterialPoint2D,
     Model,
     ModelError,
+    MovingFrame2D,
     NewtonImpact,
     Parameter,
     PointMass2D,
@@ -76,7 +78,7 @@ signal = st.one_of(
     st.builds(Table, times=st.just((0.0, 0.1, 0.5, 2.0)), values=st.tuples(number, number, number, number)),
     st.just(InputSignal(channel="u")),
 )
-motion = signal.filter(lambda s: not isinstance(s, Step))
+motion = signal.filter(lambda s: not isinstance(s, Step)) | st.just(InputSignal(channel="u", rate="u"))
 e = st.floats(0.01, 1.0)
 law = st.one_of(
     st.builds(NewtonImpact, restitution=e, rest_ratio=st.floats(0.0, 0.5)),
@@ -120,6 +122,7 @@ ELEMENTS = {
             MaterialPoint2D, name=st.just("x"), body=st.just("rope"),
             point=st.tuples(st.floats(0.0, 1.0), st.just(0.0)),
         ),
+        st.builds(MovingFrame2D, name=st.just("x"), x=motion, y=motion, angle=motion),
         st.builds(
             AxialRod, name=st.just("x"), elements=st.integers(3, 5), length=positive, axial_stiffness=positive,
             mass_per_length=positive, mass_matrix=st.sampled_from(["consistent", "lumped"]), damping_time=positive,
@@ -199,13 +202,15 @@ ELEMENTS = {
             friction=st.builds(CoulombFriction, coefficient=st.floats(0.0, 2.0)),
         ),
     ],
+    "outputs": [st.builds(MarkerOutput2D, name=st.just("x"), marker=marker)],
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
 ROPE = Cable2D(name="rope", elements=1, length=1.0, mass_per_length=1.0, axial_stiffness=1.0, bending_stiffness=0.0)
 
 
 def model_with(kind, element):
-    parts = {"bodies": [BODY, ROPE], "joints": [], "forces": [], "contacts": [], "inputs": [Input(name="u", unit="N")]}
+    parts = {"bodies": [BODY, ROPE], "joints": [], "forces": [], "contacts": [], "outputs": []}
+    parts["inputs"] = [Input(name="u", unit="N")]
     parts[kind] = [*parts[kind], element]
     return Model(name="journey", **parts)
 
@@ -239,7 +244,7 @@ def test_the_list_of_elements_above_is_complete():
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
         "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
-        "Clamp2D", "AxialRod", "ReducedBody2D", "FloatingBeam2D", "DiskOnCable2D",
+        "Clamp2D", "AxialRod", "MovingFrame2D", "MarkerOutput2D", "ReducedBody2D", "FloatingBeam2D", "DiskOnCable2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

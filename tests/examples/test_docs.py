@@ -68,6 +68,18 @@ def test_the_fmu_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert (tmp_path / "ball.fmu").is_file()
 
 
+def test_the_page_on_co_simulation_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("fmpy")
+    if not (HERE / SHIM).is_file():
+        pytest.skip("the FMU shim is not built")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "system.toml").write_text(blocks("co-simulation.md", "toml")[0])
+    names: dict[str, Any] = {}
+    exec(blocks("co-simulation.md", "python")[0], names)
+    assert names["result"]["wall.blow.normal_force"].max() > 100.0
+    assert (tmp_path / "system.ssp").is_file()
+
+
 def test_the_page_of_exponents_runs() -> None:
     names: dict[str, Any] = {}
     for block in blocks("lyapunov.md", "python"):

@@ -128,3 +128,26 @@ def test_rope_on_the_ground_loses_energy_at_impacts_and_in_the_material_only() -
     assert f["deepest"] > -1e-8
     assert 0.0 < f["lost_at_impacts"] < f["start"] and 0.0 < f["lost_in_material"] < f["start"]
     assert abs(f["shapes"][0, -1, 0] - 1.0) < 1e-12 and f["shapes"][:, :, 1].min() > -0.05
+
+
+def test_halves_that_touch_come_to_the_whole_with_the_order_of_their_coupling() -> None:
+    pytest.importorskip("fmpy")
+    f = figures("split_mechanism")
+    first, second = (example("split_mechanism").STEPS[k] for k in (1, 2))
+    for algorithm, order in (("jacobi", 1.0), ("newton", 2.0)):
+        errors = [f["errors"][algorithm, step] for step in (first, second)]
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.35)
+    assert f["errors"]["newton", second] < 0.01 * f["errors"]["jacobi", second]
+
+
+def test_a_late_force_gives_energy_to_the_blow_and_one_in_time_does_not() -> None:
+    pytest.importorskip("fmpy")
+    f = figures("split_mechanism")
+    step = example("split_mechanism").STEPS[1]
+    whole = f["whole"]["energy.kinetic"][-1] + f["whole"]["energy.strain"][-1]
+    gained = {}
+    for algorithm in ("jacobi", "newton"):
+        r = f["runs"][algorithm, step]
+        gained[algorithm] = sum(r[f"{i}.energy.{k}"][-1] for i in ("striker", "wall") for k in ("kinetic", "strain"))
+        gained[algorithm] -= whole
+    assert gained["jacobi"] > 0.01 and abs(gained["newton"]) < 0.1 * gained["jacobi"]

@@ -76,8 +76,32 @@ class FakeSimulation:
     def set_inputs(self, values: dict[str, float]) -> None:
         self._state = replace(self._state, push=values["push"])
 
+    def input_derivatives(self, direction: dict[str, float]) -> np.ndarray:
+        slope = np.zeros(len(CHANNELS))
+        slope[2] = direction.get("push", 0.0) / self.mass
+        return slope
+
+    def close_start(self) -> None:
+        pass
+
+    def output_rates(self) -> np.ndarray:
+        rates = np.full(len(CHANNELS), np.nan)
+        rates[:2] = self._state.v, self._acceleration()
+        return rates
+
     def _acceleration(self) -> float:
         return self._state.push / self.mass - self.gravity
+
+    @property
+    def step_size(self) -> float:
+        return 1e-3
+
+    @property
+    def horizon(self) -> float:
+        return self.t
+
+    def next_point(self, t: float) -> float:
+        return min(self.t + 0.03, t)
 
     def advance(self, t: float) -> None:
         while self.advance_to_event(t):

@@ -1,12 +1,19 @@
 """Models and a log for the tests of the FMU wrapper."""
 
 from tlismni.core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.contact.laws import NewtonImpact
+from tlismni.core.contact.laws import LAWS, NewtonImpact
 from tlismni.core.description import Model
 from tlismni.core.elements import AppliedForce2D, PointMass2D
+from tlismni.core.methods.registry import METHODS as REGISTRY
 from tlismni.core.model.channels import Input, Parameter
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.signals import InputSignal
+
+METHODS = list(REGISTRY)
+"""Items of `solver.method`: its values are 0, 1, ..."""
+
+LAW_NAMES = [law.__name__ for law in LAWS]
+"""Items of `CONTACT.law`."""
 
 
 def ball_model(name: str = "driven_ball", height: float = 1.0) -> Model:

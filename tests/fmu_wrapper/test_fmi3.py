@@ -13,7 +13,7 @@ import pytest
 from fake_simulation import FakeSimulation
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave, fmi3FMUState
-from fmu_helpers import ball_model
+from fmu_helpers import METHODS, ball_model
 from tlismni.fmu_wrapper.fmi3_calls import REFUSED
 from tlismni.fmu_wrapper.in_process3 import InProcess3
 
@@ -77,7 +77,9 @@ def update(fmu):
 
 @pytest.fixture(params=["in process", "binary"])
 def make_host(request, fake_fmu, tmp_path, messages):
-    return lambda **more: Host(request.param, fake_fmu(fmi_version="3.0", **more), tmp_path, messages)
+    return lambda **more: Host(
+        request.param, fake_fmu(fmi_version="3.0", **{"variant": "plain", **more}), tmp_path, messages
+    )
 
 
 @pytest.fixture
@@ -98,7 +100,7 @@ def test_description(host):
     assert flags.hasEventMode and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
     assert flags.canHandleVariableCommunicationStepSize
     kinds = {v.name: (v.type, v.causality, v.variability, v.start) for v in host.description.modelVariables}
-    assert kinds["solver.method"] == ("String", "parameter", "fixed", "ebdf")
+    assert kinds["solver.method"] == ("Enumeration", "parameter", "fixed", str(METHODS.index("ebdf")))
     assert kinds["push"] == ("Float64", "input", "continuous", "1.0")
     assert kinds["floor.in_contact"] == ("Boolean", "output", "discrete", None)
     outputs = {v.name for v in host.description.modelVariables if v.causality == "output"}
@@ -240,13 +242,15 @@ def test_all_kinds_of_values(make_host):
     fmu, vr = host.instance(), host.vr
     fmu.setInt32([vr["solver.order"]], [5])
     fmu.setBoolean([vr["solver.light"]], [True])
-    fmu.setString([vr["solver.variant"], vr["solver.method"]], ["grün %d", "ebdf"])
+    fmu.setString([vr["solver.variant"]], ["grün %d"])
+    fmu.setInt64([vr["solver.method"]], [METHODS.index("ebdf")])
     fmu.setFloat64([vr["mass"], vr["push"]], [1.0, 2.0])
     fmu.enterInitializationMode(tolerance=1e-3, stopTime=1.0)
     assert fmu.getInt32([vr["solver.order"], vr["solver.events"]]) == [5, 0]
     assert fmu.getBoolean([vr["solver.light"], vr["floor.in_contact"]]) == [True, False]
     assert fmu.getInt64([vr["floor.state"]]) == [0]
-    assert fmu.getString([vr["solver.method"], vr["solver.variant"]]) == ["ebdf", "grün %d"]
+    assert fmu.getString([vr["solver.variant"], vr["solver.variant"]]) == ["grün %d", "grün %d"]
+    assert fmu.getInt64([vr["solver.method"], vr["floor.law"]]) == [METHODS.index("ebdf"), 0]
     assert fmu.getFloat64([vr["mass"], vr["ball.ay"], vr["solver.rtol"]]) == [1.0, 2.0 / 0.5 - 9.81, 1e-3]
     assert fmu.getFloat64([]) == [] and fmu.getString([]) == []
     fmu.setFloat64([], [])
@@ -277,9 +281,9 @@ def test_derivatives(host):
         (lambda f, vr: f.setFloat64([4711], [1.0]), "fmi3SetFloat64: FmuValueError: value reference 4711 is unknown"),
         (lambda f, vr: f.setFloat64([vr["push"]], [1.0, 2.0]), "fmi3SetFloat64: FmuValueError: 2 values were given"),
         (lambda f, vr: f.getFloat64([vr["ball.y"]], 2), "fmi3GetFloat64: FmuValueError: room for 2 values was given"),
-        (lambda f, vr: f.getString([vr["solver.method"]], 2),
+        (lambda f, vr: f.getString([vr["solver.variant"]], 2),
          "fmi3GetString: FmuValueError: room for 2 values was given for 1 scalar variables"),
-        (lambda f, vr: f.getString([vr["solver.method"]] * 2, 1),
+        (lambda f, vr: f.getString([vr["solver.variant"]] * 2, 1),
          "fmi3GetString: FmuValueError: room for 1 values was given for 2 scalar variables"),
         (lambda f, vr: f.getFloat64([vr["solver.events"]]), "fmi3GetFloat64: FmuValueError: value reference 100 is"),
         (lambda f, vr: f.getInt32([vr["floor.state"]]), "fmi3GetInt32: FmuValueError: ['floor.state'] are enumer"),
@@ -306,7 +310,10 @@ def test_derivatives(host):
          "fmi3GetDirectionalDerivative: FmuValueError: a seed of 2 numbers was given for 1 inputs"),
         (lambda f, vr: f.getAdjointDerivative([vr["ball.y"]], [vr["push"]], [1.0, 2.0], 1),
          "fmi3GetAdjointDerivative: FmuValueError: a seed of 2 numbers and room for 1 sensitivities"),
-        (lambda f, vr: f.getOutputDerivatives([vr["ball.y"]], [1]), "fmi3GetOutputDerivatives: UnavailableError: no"),
+        (lambda f, vr: f.getOutputDerivatives([vr["ball.ay"]], [1]),
+         "fmi3GetOutputDerivatives: UnavailableError: the time derivatives of ball.ay are not known exactly"),
+        (lambda f, vr: f.getOutputDerivatives([vr["ball.y"]], [2]),
+         "fmi3GetOutputDerivatives: FmuValueError: a derivative of order 2 of 'ball.y' was asked"),
     ],
 )  # fmt: skip
 def test_errors_are_statuses_with_one_line_in_the_log_and_the_instance_lives_on(host, messages, call, message):
@@ -319,6 +326,13 @@ def test_errors_are_statuses_with_one_line_in_the_log_and_the_instance_lives_on(
     assert messages.errors[0].startswith(message)
     assert host.read(fmu) == before
     fmu.doStep(0.0, 0.125)
+
+
+def test_output_derivatives(host):
+    fmu = host.started(stop=2.0)
+    fmu.doStep(0.0, 0.25)
+    v, a = fmu.getFloat64([host.vr["ball.vy"], host.vr["ball.ay"]])
+    assert list(fmu.getOutputDerivatives([host.vr["ball.y"], host.vr["ball.vy"]], [1, 1])) == [v, a]
 
 
 def test_a_step_while_an_event_is_due_is_refused(host, messages):

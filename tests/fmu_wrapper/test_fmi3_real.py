@@ -11,11 +11,12 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from fmu_helpers import ball_model
 from tlismni.core import Simulation
-from tlismni.fmu_wrapper import export_fmu
+from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.export import fmi3_platform, shim_path
 from tlismni.fmu_wrapper.in_process3 import InProcess3
 from tlismni.models import load, names
@@ -270,3 +271,52 @@ def test_a_host_without_python_hears_what_is_wrong(host, ball):
     assert done.stdout.startswith(
         "log 3 logStatusError fmi3InstantiateCoSimulation: FmuValueError: the instantiation token given is '{wrong}'"
     )
+
+
+@pytest.mark.parametrize("event_mode", [False, True])
+def test_steps_that_the_binary_makes_alone_are_those_of_the_slave(tmp_path, event_mode):
+    """On a grid far finer than the solver's steps most of them never reach Python: nothing may tell the two apart."""
+    fmu = Fmu3(ball_model(), tmp_path, rtol=1e-8)
+    binary = fmu.instance(event_mode=event_mode, early_return=event_mode)
+    slave = Slave(ball_model(), rtol=1e-8, t_end=20.0, event_mode=event_mode, early_return=event_mode)
+    slave.enter_initialization()
+    slave.exit_initialization()
+    if event_mode:
+        slave.update_discrete_states()
+        slave.enter_step_mode()
+    random, t, stored = np.random.default_rng(3), 0.0, None
+    for _ in range(3000):
+        h = float(random.choice([1e-5, 1e-3, 3e-3]))
+        due, _, early, last = binary.doStep(t, h)
+        end = slave.do_step(t, h)
+        assert (due, early, last) == (end.event_due, end.early, end.time)
+        t = last
+        if due:
+            binary.enterEventMode()
+            slave.enter_event_mode()
+            assert binary.updateDiscreteStates()[0] == slave.update_discrete_states()
+            binary.enterStepMode()
+            slave.enter_step_mode()
+        what = random.integers(40)
+        if what == 0:
+            push = float(random.integers(-3, 3))
+            binary.setFloat64([fmu.vr["push"]], [push])
+            slave.set_by_name({"push": push})
+        elif what == 1:
+            assert binary.getFloat64([fmu.vr["ball.y"], fmu.vr["time"]]) == [slave["ball.y"], t]
+        elif what == 2:
+            stored = t, binary.getFMUState(), slave.snapshot()
+        elif what == 3 and stored is not None and random.random() < 0.1:
+            t = stored[0]
+            binary.setFMUState(stored[1])
+            slave.restore(stored[2])
+            assert binary.getFloat64([fmu.vr["time"]]) == [t]
+        elif what == 4:
+            for wrong in ((t, -h), (t + 0.5, h), (t - 0.5, h), (float("nan"), h), (t, float("nan")), (t, 1e-30)):
+                with pytest.raises(FMICallException):
+                    binary.doStep(*wrong)
+            assert binary.getFloat64([fmu.vr["time"]]) == [t]
+    assert binary.getInt32([fmu.vr["solver.events"]]) == [slave["solver.events"]] and slave["solver.events"] > 3
+    binary.terminate()
+    assert binary.getFloat64([fmu.vr["time"], fmu.vr["ball.vy"]]) == [t, slave["ball.vy"]]
+    binary.freeInstance()

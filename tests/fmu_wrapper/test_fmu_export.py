@@ -11,7 +11,7 @@ import pytest
 import tlismni.fmu_wrapper.export as export_module
 from fake_simulation import FakeSimulation
 from fmpy.validation import validate_fmu
-from fmu_helpers import ball_model
+from fmu_helpers import LAW_NAMES, METHODS, ball_model
 from lxml import etree
 from tlismni.core.description import Model
 from tlismni.core.errors import ModelError
@@ -34,7 +34,7 @@ def test_variables_and_value_references(fake_fmu):
     }
     assert found == {
         "time": (0, "Real", "independent", "continuous", "s", None),
-        "solver.method": (1, "String", "parameter", "fixed", None, "ebdf"),
+        "solver.method": (1, "Enumeration", "parameter", "fixed", None, str(METHODS.index("ebdf"))),
         "solver.rtol": (2, "Real", "parameter", "fixed", "1", "1e-06"),
         "solver.atol": (3, "Real", "parameter", "fixed", "1", "1e-09"),
         "solver.step": (4, "Real", "parameter", "fixed", "s", "0.0"),
@@ -44,6 +44,7 @@ def test_variables_and_value_references(fake_fmu):
         "solver.events": (100, "Integer", "output", "discrete", None, None),
         "restitution": (1000, "Real", "parameter", "fixed", "1", "0.7"),
         "mass": (1001, "Real", "parameter", "fixed", "kg", "2.0"),
+        "floor.law": (500_000, "Enumeration", "local", "constant", None, str(LAW_NAMES.index("NewtonImpact"))),
         "push": (1_000_000, "Real", "input", "continuous", "N", "1.0"),
         "ball.y": (2_000_000, "Real", "output", "continuous", "m", None),
         "ball.vy": (2_000_001, "Real", "output", "continuous", "m/s", None),
@@ -94,7 +95,7 @@ def test_default_experiment_and_capabilities(fake_fmu):
     assert given == [0.0, 2.5, 1e-7, 0.01]
     flags = description.coSimulation
     assert flags.canHandleVariableCommunicationStepSize and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
-    assert not flags.canInterpolateInputs and flags.providesDirectionalDerivative and not flags.needsExecutionTool
+    assert flags.canInterpolateInputs and flags.providesDirectionalDerivative and not flags.needsExecutionTool
 
 
 def test_a_scenario_gives_its_settings(fake_fmu, model):
@@ -103,7 +104,11 @@ def test_a_scenario_gives_its_settings(fake_fmu, model):
     )
     description = fmpy.read_model_description(fake_fmu(source=scenario, t_end=None, rtol=1e-5))
     start = {v.name: v.start for v in description.modelVariables}
-    assert (start["solver.method"], start["solver.order"], start["solver.atol"]) == ("bdf", "2", "0.0001")
+    assert (start["solver.method"], start["solver.order"], start["solver.atol"]) == (
+        str(METHODS.index("bdf")),
+        "2",
+        "0.0001",
+    )
     assert start["solver.rtol"] == "1e-05"  # given beats the scenario's
     assert float(description.defaultExperiment.stopTime) == 0.5
     assert description.description == "text"

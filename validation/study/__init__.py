@@ -4,6 +4,7 @@ from .cases import Setting, contenders, order_cases
 from .claims import Claim
 from .contact_claim import fourth_claim
 from .contact_failure import ContactRow, contact_study
+from .coupling import CouplingStudy, coupling_study
 from .damping import DampingRow, damping_study, fifth_claim
 from .impact_orders import ImpactOrderRow, impact_orders
 from .iterations import IterationStudy, iteration_study
@@ -17,6 +18,7 @@ __all__ = [
     "STIFFNESS_CASES",
     "Claim",
     "ContactRow",
+    "CouplingStudy",
     "DampingRow",
     "ImpactOrderRow",
     "IterationStudy",
@@ -27,6 +29,7 @@ __all__ = [
     "Swing",
     "contact_study",
     "contenders",
+    "coupling_study",
     "damping_study",
     "fifth_claim",
     "fourth_claim",

@@ -21,15 +21,17 @@ class TimeFunction:
 
 
 def time_function(signal: Signal, model: Model) -> TimeFunction:
-    """The time function that `signal` means. An input channel keeps its start value.
+    """The time function that `signal` means. An input channel keeps its start value, a motion with a rate channel goes
+    on with the start value of that.
 
     Raises
     ------
     NotTranslatable : for a kind of signal that is not known here.
     """
     if isinstance(signal, InputSignal):
-        start = next(i.start for i in model.inputs if i.name == signal.channel)
-        return _constant(start)
+        starts = {i.name: i.start for i in model.inputs}
+        start, rate = starts[signal.channel], starts.get(signal.rate or "", 0.0)
+        return TimeFunction(lambda t: start + rate * t, lambda t: rate) if rate else _constant(start)
     if isinstance(signal, Constant):
         return _constant(signal.value)
     if isinstance(signal, Sine):

@@ -1,0 +1,134 @@
+"""Bodies as shapes. A model knows where bodies are joined and touched, not their outlines: these are made up."""
+
+import math
+
+from ...core.elements import (
+    AxialRod,
+    BodyElement,
+    FlexibleBody,
+    LinearSystem,
+    MaterialPoint2D,
+    MovingFrame2D,
+    PointMass2D,
+    Prismatic2D,
+    RigidBody2D,
+)
+from . import symbols
+from .places import Places
+from .shapes import FLEX, INK, STEEL, Circle, Drawing, Label, Path, Point, between, hull, moved, turned
+
+MOST_NAMES = 8
+LINK = 2.6  # width of a link, in hundredths of the drawing's size
+
+
+def draw_bodies(drawing: Drawing, places: Places) -> None:
+    """All bodies with their names; of many bodies of a kind, the first one's and the last one's."""
+    shown = [b for b in places.model.bodies if not isinstance(b, MaterialPoint2D | MovingFrame2D)]
+    named = {b.name for b in (shown if len(shown) <= MOST_NAMES else (shown[0], shown[-1]))}
+    boxes, labels = 0, []
+    for body in shown:
+        if isinstance(body, LinearSystem) and _along_x(body) is None:
+            _coordinates(drawing, places, body, boxes)
+            boxes += 1
+            continue
+        label = _draw(drawing, places, body)
+        if body.name in named:
+            labels.append(label)
+    drawing.shapes += labels
+
+
+def _draw(drawing: Drawing, places: Places, body: BodyElement) -> Label:
+    """Draw a body; gives its name."""
+    u = 0.01 * drawing.size
+    if isinstance(body, RigidBody2D):
+        return _rigid(drawing, places, body)
+    if isinstance(body, PointMass2D):
+        centre = places.frame(body.name)[0]
+        radius = max(_disk_radius(places, body.name), 2.0 * u)
+        drawing.shapes.append(Circle(centre, radius, INK, STEEL, 0.5))
+        return Label(moved(centre, (1.0, 0.0), radius + u), body.name)
+    if isinstance(body, LinearSystem):
+        centre = (_along_x(body) or 0.0) - 4.0 * u, 0.0
+        _block(drawing, centre, 0.0, 4.0 * u, 3.0 * u)
+        return Label((centre[0], centre[1] + 5.0 * u), body.name)
+    if isinstance(body, FlexibleBody):
+        return _flexible(drawing, places, body)
+    return Label(places.frame(body.name)[0], body.name)
+
+
+def _flexible(drawing: Drawing, places: Places, body: FlexibleBody) -> Label:
+    axis = places.axis(body)
+    if isinstance(body, AxialRod):
+        (x0, y), (x1, _) = axis
+        _block(drawing, (0.5 * (x0 + x1), y), 0.0, 0.5 * (x1 - x0), 0.02 * drawing.size, FLEX, "#cfe9df")
+    elif len(axis) > 1:
+        drawing.shapes.append(Path(axis, FLEX, width=1.3))
+        if len(axis) <= 21:
+            drawing.shapes += [Circle(p, 0.007 * drawing.size, FLEX, "white", 0.3) for p in axis]
+    middle = axis[len(axis) // 2] if axis else places.frame(body.name)[0]
+    if len(axis) == 2:
+        middle = 0.5 * (axis[0][0] + axis[1][0]), 0.5 * (axis[0][1] + axis[1][1])
+    return Label((middle[0], middle[1] + 0.035 * drawing.size), body.name, FLEX)
+
+
+def _rigid(drawing: Drawing, places: Places, body: RigidBody2D) -> Label:
+    centre = places.frame(body.name)[0]
+    u = 0.01 * drawing.size
+    corners = hull(p for p in (*places.points_on(body.name), centre))
+    guide = next((j for j in places.model.joints if isinstance(j, Prismatic2D) and j.b.body == body.name), None)
+    if guide is not None:
+        along = turned((1.0, 0.0), -places.direction(guide.a))
+        reach = [p[0] * along[0] - p[1] * along[1] for p in corners]
+        middle = centre[0] * along[0] - centre[1] * along[1]
+        half = max(5.0 * u, *(abs(r - middle) for r in reach))
+        _block(drawing, centre, places.direction(guide.a), half, 3.2 * u)
+    elif len(corners) == 1:
+        radius = _disk_radius(places, body.name) or min(math.sqrt(body.inertia / body.mass), 0.2 * drawing.size)
+        drawing.shapes.append(Circle(centre, radius, INK, STEEL, 0.5))
+    elif len(corners) == 2:
+        drawing.shapes += [Path(corners, INK, width=LINK + 0.9), Path(corners, STEEL, width=LINK)]
+    else:
+        drawing.shapes += [
+            Path(corners, INK, INK, LINK + 0.9, closed=True),
+            Path(corners, STEEL, STEEL, LINK, closed=True),
+        ]
+    symbols.centre_of_mass(drawing, centre)
+    if guide is not None or len(corners) != 2:
+        return Label((centre[0] + 2.5 * u, centre[1] + 5.5 * u), body.name)
+    (x0, y0), (x1, y1) = corners
+    normal, _ = between((y1, x0), (y0, x1))
+    if normal[1] < -0.1 or (normal[1] < 0.1 and normal[0] < 0.0):
+        normal = -normal[0], -normal[1]
+    return Label(moved(centre, normal, 4.0 * u), body.name, INK, "left" if normal[0] < -0.3 else "right")
+
+
+def _block(
+    drawing: Drawing, centre: Point, angle: float, half: float, height: float, stroke: str = INK, fill: str = STEEL
+) -> None:
+    corners = [turned(p, angle) for p in ((-half, -height), (half, -height), (half, height), (-half, height))]
+    outline = [(centre[0] + dx, centre[1] + dy) for dx, dy in corners]
+    drawing.shapes.append(Path(outline, stroke, fill, 0.5, closed=True))
+
+
+def _disk_radius(places: Places, body: str) -> float:
+    """Largest disk about a body's own origin."""
+    disks = (getattr(c, name, None) for c in places.model.contacts for name in ("disk", "a", "b"))
+    radii = [d.radius for d in disks if d is not None and d.marker.body == body and d.marker.point == (0.0, 0.0)]
+    return max(radii, default=0.0)
+
+
+def _along_x(body: LinearSystem) -> float | None:
+    """Where a single coordinate in m stands along x; None for generalised coordinates that have no place."""
+    if len(body.coordinates) == 1 and body.coordinate_records()[0].unit == "m":
+        return body.position[0] if body.position else 0.0
+    return None
+
+
+def _coordinates(drawing: Drawing, places: Places, body: LinearSystem, row: int) -> None:
+    """A box for what has coordinates but no place, below everything."""
+    (x0, y0), (x1, _) = drawing.box()
+    u = 0.01 * drawing.size
+    middle, y, half = 0.5 * (x0 + x1), y0 - 5.0 * u, 22.0 * u
+    _block(drawing, (middle, y), 0.0, half, 4.0 * u, FLEX, "#cfe9df")
+    names = body.coordinates if len(body.coordinates) <= 3 else (body.coordinates[0], "…", body.coordinates[-1])
+    drawing.shapes.append(Label((middle, y), f"{body.name}: {', '.join(names)}", INK, "centre"))

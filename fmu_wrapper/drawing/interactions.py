@@ -1,0 +1,261 @@
+"""Joints, forces and contacts as shapes."""
+
+import math
+import re
+from functools import singledispatch
+from typing import Any
+
+from ...core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ...core.contact.coordinate_contact import CoordinateContact
+from ...core.contact.disk_on_cable import DiskOnCable2D
+from ...core.contact.disk_on_line import DiskOnLine2D
+from ...core.contact.segment2d import DiskOnSegment2D
+from ...core.elements import (
+    AppliedForce2D,
+    AppliedTorque2D,
+    Bushing2D,
+    Clamp2D,
+    CoordinateDriver,
+    CoordinateLoad,
+    Distance2D,
+    MovingFrame2D,
+    PlanarFrame,
+    Prismatic2D,
+    Revolute2D,
+    SpringDamper2D,
+)
+from ...core.model.markers import GROUND
+from ...core.model.signals import Constant, InputSignal
+from . import symbols
+from .places import Places
+from .shapes import GROUND as GROUND_COLOUR
+from .shapes import INK, PORT, TOUCH, Circle, Drawing, Label, Path, Point, moved, turned
+
+_PLACE = re.compile(r"([xy])\d*$")
+
+
+@singledispatch
+def draw_interaction(element: Any, drawing: Drawing, places: Places) -> None:
+    """Draw a joint, force or contact; what has no symbol stays out of the drawing."""
+
+
+# joints
+
+
+@draw_interaction.register
+def _(element: Revolute2D, drawing: Drawing, places: Places) -> None:
+    at = places.at(element.a)
+    if GROUND in (element.a.body, element.b.body):
+        symbols.bearing(drawing, at)
+    symbols.pin(drawing, at)
+
+
+@draw_interaction.register
+def _(element: Clamp2D, drawing: Drawing, places: Places) -> None:
+    at, u = places.at(element.a), 0.05 * drawing.size
+    if GROUND in (element.a.body, element.b.body):
+        across = turned((0.0, u), places.direction(element.b if element.a.body == GROUND else element.a))
+        ends = (at[0] + across[0], at[1] + across[1]), (at[0] - across[0], at[1] - across[1])
+        symbols.wall(drawing, *ends)
+    else:
+        u *= 0.25
+        corners = [(at[0] + sx * u, at[1] + sy * u) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        drawing.shapes.append(Path(corners, INK, INK, 0.3, closed=True))
+
+
+@draw_interaction.register
+def _(element: Prismatic2D, drawing: Drawing, places: Places) -> None:
+    at, along = places.at(element.b), turned((1.0, 0.0), places.direction(element.a))
+    reach = 0.16 * drawing.size
+    drawing.behind.append(Path((moved(at, along, -reach), moved(at, along, reach)), GROUND_COLOUR, width=0.4))
+    if element.a.body == GROUND:
+        foot = moved(at, turned(along, -0.5 * math.pi), 0.036 * drawing.size)
+        symbols.wall(drawing, moved(foot, along, -reach), moved(foot, along, reach))
+
+
+@draw_interaction.register
+def _(element: Distance2D, drawing: Drawing, places: Places) -> None:
+    a, b = places.at(element.a), places.at(element.b)
+    drawing.behind.append(Path((a, b), INK, width=0.5))
+    for marker, at in ((element.a, a), (element.b, b)):
+        if marker.body == GROUND:
+            symbols.wall(
+                drawing, moved(at, (1.0, 0.0), 0.03 * drawing.size), moved(at, (-1.0, 0.0), 0.03 * drawing.size)
+            )
+            symbols.pin(drawing, at)
+
+
+@draw_interaction.register
+def _(element: CoordinateDriver, drawing: Drawing, places: Places) -> None:
+    _coordinate(element.body, element.coordinate, _name(element.motion, element.name), drawing, places)
+
+
+@draw_interaction.register
+def _(element: MovingFrame2D, drawing: Drawing, places: Places) -> None:
+    """A frame is seen by what is put on it, and by its motion."""
+    for coordinate, motion in zip(("x", "y", "angle"), element.motions(), strict=True):
+        if not isinstance(motion, Constant):
+            _coordinate(element.name, coordinate, _name(motion, element.name), drawing, places)
+
+
+# forces
+
+
+@draw_interaction.register
+def _(element: SpringDamper2D, drawing: Drawing, places: Places) -> None:
+    symbols.spring(drawing, places.at(element.a), places.at(element.b), element.damping > 0.0, element.stiffness > 0.0)
+    _anchors(element, drawing, places)
+
+
+@draw_interaction.register
+def _(element: Bushing2D, drawing: Drawing, places: Places) -> None:
+    a, b = places.at(element.a), places.at(element.b)
+    if math.dist(a, b) > 0.08 * drawing.size:
+        symbols.spring(drawing, a, b, element.damping > 0.0, element.stiffness > 0.0)
+        _anchors(element, drawing, places)
+    else:
+        drawing.shapes.append(Circle(b, 0.022 * drawing.size, symbols.SPRING, None, 0.6))
+
+
+def _anchors(element: Any, drawing: Drawing, places: Places) -> None:
+    for marker, other in ((element.a, element.b), (element.b, element.a)):
+        if marker.body == GROUND:
+            at, far = places.at(marker), places.at(other)
+            across = turned((0.0, 1.0), math.atan2(far[1] - at[1], far[0] - at[0]))
+            reach = 0.05 * drawing.size
+            symbols.wall(drawing, moved(at, across, -reach), moved(at, across, reach))
+
+
+@draw_interaction.register
+def _(element: AppliedForce2D, drawing: Drawing, places: Places) -> None:
+    at = places.at(element.marker)
+    angle = places.frame(element.marker.body)[1] if element.follower else 0.0
+    for signal, axis in ((element.force_x, (1.0, 0.0)), (element.force_y, (0.0, 1.0))):
+        if not _is_zero(signal):
+            sign = math.copysign(1.0, signal.value) if isinstance(signal, Constant) else 1.0
+            start = symbols.arrow(drawing, at, turned((sign * axis[0], sign * axis[1]), angle))
+            drawing.shapes.append(Label(start, _name(signal, element.name), PORT, _side(sign, axis)))
+
+
+@draw_interaction.register
+def _(element: AppliedTorque2D, drawing: Drawing, places: Places) -> None:
+    pinned = [places.at(j.a) for j in places.model.joints if isinstance(j, Revolute2D) and _joins(j, element.body)]
+    at = symbols.round_arrow(drawing, pinned[0] if pinned else places.frame(element.body)[0])
+    drawing.shapes.append(Label(at, _name(element.torque, element.name), PORT))
+
+
+@draw_interaction.register
+def _(element: CoordinateLoad, drawing: Drawing, places: Places) -> None:
+    _coordinate(element.body, element.coordinate, _name(element.load, element.name), drawing, places)
+
+
+def _joins(joint: Revolute2D, body: str) -> bool:
+    return {joint.a.body, joint.b.body} == {GROUND, body}
+
+
+def _coordinate(body: str, coordinate: str, name: str, drawing: Drawing, places: Places) -> None:
+    """An arrow along a coordinate that is driven or loaded."""
+    at = _node(body, coordinate, places)
+    if at is None:
+        return
+    if coordinate == "angle":
+        drawing.shapes.append(Label(symbols.round_arrow(drawing, at), name, PORT))
+        return
+    axis = (0.0, 1.0) if coordinate.startswith("y") else (1.0, 0.0)
+    start = symbols.arrow(drawing, moved(at, axis, 0.14 * drawing.size), axis)
+    tip = moved(start, axis, 0.15 * drawing.size)
+    drawing.shapes.append(Label(tip, name, PORT, "right" if axis[0] else "above"))
+
+
+def _node(body: str, coordinate: str, places: Places) -> Point | None:
+    """Where a coordinate stands in the plane, or None if it has no place there."""
+    if isinstance(places.bodies[body], PlanarFrame):
+        return places.frame(body)[0]
+    start = places.start(body)
+    if not _PLACE.match(coordinate):
+        return (start[coordinate], 0.0) if len(start) == 1 else None
+    number = coordinate[1:]
+    return start.get(f"x{number}", 0.0), start.get(f"y{number}", 0.0)
+
+
+def _is_zero(signal: Any) -> bool:
+    return isinstance(signal, Constant) and signal.value == 0.0
+
+
+def _name(signal: Any, otherwise: str) -> str:
+    return signal.channel if isinstance(signal, InputSignal) else otherwise
+
+
+def _side(sign: float, axis: Point) -> str:
+    if axis[0]:
+        return "left" if sign > 0.0 else "right"
+    return "below" if sign > 0.0 else "above"
+
+
+# contacts
+
+
+@draw_interaction.register
+def _(element: DiskOnHalfPlane2D, drawing: Drawing, places: Places) -> None:
+    foot = places.at(element.plane.marker)
+    along = turned((1.0, 0.0), places.direction(element.plane.marker))
+    disk = places.at(element.disk.marker)
+    reach = (disk[0] - foot[0]) * along[0] + (disk[1] - foot[1]) * along[1]
+    ends = sorted((0.0, reach))
+    half = 0.13 * drawing.size
+    # behind the line, on the right-hand side of its direction: the half-plane's normal is to the left
+    symbols.wall(drawing, moved(foot, along, ends[0] - half), moved(foot, along, ends[1] + half), TOUCH)
+    _disk(element.disk, drawing, places)
+
+
+@draw_interaction.register
+def _(element: DiskOnDisk2D, drawing: Drawing, places: Places) -> None:
+    _disk(element.a, drawing, places)
+    _disk(element.b, drawing, places)
+
+
+@draw_interaction.register
+def _(element: DiskOnSegment2D, drawing: Drawing, places: Places) -> None:
+    start = places.at(element.segment.marker)
+    along = turned((1.0, 0.0), places.direction(element.segment.marker))
+    width = max(0.8, 200.0 * element.segment.radius / drawing.size)
+    drawing.shapes.append(Path((start, moved(start, along, element.segment.length)), TOUCH, width=width))
+    _disk(element.disk, drawing, places)
+
+
+@draw_interaction.register
+def _(element: DiskOnLine2D, drawing: Drawing, places: Places) -> None:
+    nodes = [places.at(node) for node in element.line.nodes]
+    drawing.shapes.append(Path(nodes, TOUCH, width=max(0.6, 200.0 * element.line.radius / drawing.size)))
+    _disk(element.disk, drawing, places)
+
+
+@draw_interaction.register
+def _(element: DiskOnCable2D, drawing: Drawing, places: Places) -> None:
+    _disk(element.disk, drawing, places)
+
+
+@draw_interaction.register
+def _(element: CoordinateContact, drawing: Drawing, places: Places) -> None:
+    """A wall, if the gap is that of one place along x or y."""
+    if len(element.terms) != 1 or not element.terms[0].factor:
+        return
+    term = element.terms[0]
+    at = _node(term.body, term.coordinate, places)
+    if at is None:
+        return
+    limit, half = -element.offset / term.factor, 0.08 * drawing.size
+    # hatched on the side where the gap is negative
+    s = math.copysign(half, term.factor)
+    if term.coordinate.startswith("y"):
+        symbols.wall(drawing, (at[0] - s, limit), (at[0] + s, limit), TOUCH)
+    else:
+        symbols.wall(drawing, (limit, s), (limit, -s), TOUCH)
+
+
+def _disk(disk: Disk2D, drawing: Drawing, places: Places) -> None:
+    at = places.at(disk.marker)
+    if disk.radius > 0.004 * drawing.size:
+        drawing.shapes.append(Circle(at, disk.radius, TOUCH, None, 0.5))
+    else:
+        drawing.shapes.append(Circle(at, 0.008 * drawing.size, TOUCH, TOUCH, 0.2))

@@ -1,0 +1,103 @@
+"""Where a model's bodies and markers are at its start."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...core.description import Model
+from ...core.elements import AxialRod, BodyElement, Cable2D, FlexibleBody, PlanarFrame, PointMass2D
+from ...core.errors import ModelError
+from ...core.model.markers import GROUND, Marker2D
+from .shapes import Point, bounds, turned
+
+AXIS_POINTS = 41
+
+
+class Places:
+    """Positions (m) and angles (rad) at the start of `model`, as its bodies give them."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
+        inputs = {channel.name: channel.start for channel in model.inputs}
+        self._starts = {name: body.start_in(self.bodies, inputs)[0] for name, body in self.bodies.items()}
+        self.size = self._size()
+
+    def start(self, body: str) -> dict[str, float]:
+        """The coordinates of a body by name."""
+        return dict(zip(self.bodies[body].coordinate_names, self._starts[body], strict=True))
+
+    def frame(self, body: str) -> tuple[Point, float]:
+        """Origin and angle of a body's frame; those of the ground are zero."""
+        if body == GROUND or not isinstance(self.bodies[body], PlanarFrame):
+            return (0.0, 0.0), 0.0
+        x, y, *angle = self._starts[body]
+        # a point mass keeps the directions of the ground
+        return (x, y), 0.0 if isinstance(self.bodies[body], PointMass2D) else angle[0]
+
+    def at(self, marker: Marker2D) -> Point:
+        """Position of a marker."""
+        (x, y), angle = self.frame(marker.body)
+        dx, dy = turned(marker.point, angle)
+        return x + dx, y + dy
+
+    def direction(self, marker: Marker2D) -> float:
+        """Angle of a marker's first axis."""
+        return self.frame(marker.body)[1] + marker.angle
+
+    def points_on(self, body: str) -> list[Point]:
+        """Where other elements are attached to a body, without repetitions."""
+        found = [self.at(m) for element in self.model.elements() for m in element.markers() if m.body == body]
+        return list(dict.fromkeys(found))
+
+    def axis(self, body: FlexibleBody) -> list[Point]:
+        """Points along the axis of a flexible body, or those that it has."""
+        if isinstance(body, Cable2D):
+            nodes = body.start_shape()
+            if body.elements == 1:  # a cubic between two nodes may be bent
+                return self._material(body, body.length)
+            return [(float(x), float(y)) for x, y in nodes[:, :2]]
+        if isinstance(body, AxialRod):
+            return [(body.position, 0.0), (body.position + body.length, 0.0)]
+        if length := getattr(body, "length", None):
+            return self._material(body, float(length))
+        points = getattr(body, "points", ())
+        return [p for point in points if (p := self._point(body, point.point)) is not None]
+
+    def _material(self, body: FlexibleBody, length: float) -> list[Point]:
+        places = (self._point(body, (float(s), 0.0)) for s in np.linspace(0.0, length, AXIS_POINTS))
+        return [p for p in places if p is not None]
+
+    def _point(self, body: FlexibleBody, point: Point) -> Point | None:
+        """Where a material point starts, or None if the body has no such point."""
+        try:
+            shape = body.material_point(point)
+        except ModelError:
+            return None
+        q = self.start(body.name)
+        place = shape.place([q[name] for name in shape.frame or ()] or [0.0] * 3, [q[name] for name in shape.local])
+        return place[0], place[1]
+
+    def _size(self) -> float:
+        """Diagonal of the box around all bodies, joints and disks, m; 1 for a model that is one point."""
+        (x0, y0), (x1, y1) = bounds(self._all_points())
+        return math.hypot(x1 - x0, y1 - y0) or 1.0
+
+    def _all_points(self) -> Iterator[Point]:
+        for body in self.bodies.values():
+            if isinstance(body, PlanarFrame):
+                yield self.frame(body.name)[0]
+            if isinstance(body, FlexibleBody):
+                yield from self.axis(body)
+            elif isinstance(body, PlanarFrame):
+                yield from self.points_on(body.name)
+        for element in (*self.model.joints, *self.model.forces, *self.model.contacts):
+            for marker in element.markers():
+                yield self.at(marker)
+        for contact in self.model.contacts:
+            for name in ("disk", "a", "b"):
+                disk = getattr(contact, name, None)
+                if disk is not None:
+                    (x, y), r = self.at(disk.marker), disk.radius
+                    yield from ((x - r, y - r), (x + r, y + r))

@@ -1,0 +1,130 @@
+"""terminalsAndIcons.xml of FMI 3.0: the icon, and where forces and motions go in and come out.
+
+A flange is where one load or driver of the model is an input: its members are that input, and what belongs to it of
+the body's motion and forces. The members of a flange that takes a force and gives the motion have the same names as
+those of one that takes the motion and gives the force, so that the rule "bus" (members of one name are connected)
+couples the two; both are of the kind `tlismni.flange`.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from ..core.description import Model
+from ..core.elements import AppliedForce2D, AppliedTorque2D, CoordinateDriver, CoordinateLoad, MovingFrame2D
+from ..core.model.signals import InputSignal
+from .description_parts import add
+from .variables import VariableTable
+
+KIND = "tlismni.flange"
+FORCES = {"x": "force_x", "y": "force_y", "angle": "torque"}
+"""Name of the force on a coordinate."""
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """A flange: its kind, and its members with the names of their variables."""
+
+    name: str
+    kind: str
+    description: str
+    members: dict[str, str]
+
+
+def terminals(model: Model, table: VariableTable) -> list[Terminal]:
+    """The flanges of an FMU, in the order of the model's elements."""
+    found = []
+    for element in model.elements():
+        flange = _flange(model, element)
+        if flange is None:
+            continue
+        members = flange.members | dict(_motion(model, flange))
+        members = {member: variable for member, variable in members.items() if variable in table.by_name}
+        what = "takes the motion, gives the force" if flange.takes == "motion" else "takes the force, gives the motion"
+        text = f"{element.name} on {flange.body}: {what}"
+        found.append(Terminal(element.name, KIND, text, members))
+    return found
+
+
+@dataclass(frozen=True)
+class Flange:
+    """What it takes, "force" or "motion", its body, members of its own, and the coordinates that move with it."""
+
+    takes: str
+    body: str
+    members: dict[str, str]
+    coordinates: tuple[str, ...]
+
+
+def _flange(model: Model, element: Any) -> Flange | None:
+    """The flange of an element; None if no input acts there."""
+    if isinstance(element, AppliedForce2D):
+        signals = {"force_x": element.force_x, "force_y": element.force_y}
+        inputs = {name: s.channel for name, s in signals.items() if isinstance(s, InputSignal)}
+        at_origin = element.marker.point == (0.0, 0.0) and not element.follower
+        moving = tuple(name[-1] for name in inputs) if at_origin else ()
+        return Flange("force", element.marker.body, inputs, moving) if inputs else None
+    if isinstance(element, AppliedTorque2D) and isinstance(element.torque, InputSignal):
+        return Flange("force", element.body, {"torque": element.torque.channel}, ("angle",))
+    if isinstance(element, CoordinateLoad) and isinstance(element.load, InputSignal):
+        # a generalised force is named like its coordinate, so that the two are told apart
+        force = FORCES.get(element.coordinate, f"force_{element.coordinate}")
+        return Flange("force", element.body, {force: element.load.channel}, (element.coordinate,))
+    if isinstance(element, CoordinateDriver) and isinstance(element.motion, InputSignal):
+        force = FORCES.get(element.coordinate, f"force_{element.coordinate}")
+        members = {element.coordinate: element.motion.channel, force: f"{element.name}.reaction"}
+        if element.motion.rate is not None:
+            members |= dict(_rates(model, element.body, element.coordinate, element.motion.rate))
+        return Flange("motion", element.body, members, ())
+    if isinstance(element, MovingFrame2D):
+        return _frame(element)
+    return None
+
+
+def _frame(frame: MovingFrame2D) -> Flange | None:
+    """The flange of a frame that inputs move: motion and reaction along the coordinates that they lead."""
+    members: dict[str, str] = {}
+    for c, motion in zip(frame.coordinate_records(), frame.motions(), strict=True):
+        if isinstance(motion, InputSignal):
+            members[c.name] = motion.channel
+            if motion.rate is not None:
+                members[c.rate] = motion.rate
+            members[FORCES[c.name]] = f"{frame.name}.reaction_{'torque' if c.name == 'angle' else c.name}"
+    return Flange("motion", frame.name, members, ()) if members else None
+
+
+def _rates(model: Model, body: str, coordinate: str, channel: str) -> Iterator[tuple[str, str]]:
+    """Member and variable of the velocity of a coordinate that an input leads."""
+    for record in (b for b in model.bodies if b.name == body):
+        yield from ((c.rate, channel) for c in record.coordinate_records() if c.name == coordinate)
+
+
+def _motion(model: Model, flange: Flange) -> Iterator[tuple[str, str]]:
+    """Members and variables of the motion at a flange."""
+    for body in (b for b in model.bodies if b.name == flange.body):
+        for c in body.coordinate_records():
+            if c.name in flange.coordinates:
+                yield c.name, f"{body.name}.{c.name}"
+                yield c.rate, f"{body.name}.{c.rate}"
+
+
+def terminals_and_icons(model: Model, table: VariableTable, icon: bool) -> bytes:
+    """The file's bytes; `icon` says whether there is an icon beside it."""
+    from lxml import etree
+
+    root = etree.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    if icon:
+        graphics = add(root, "GraphicalRepresentation")
+        square = {"x1": -100.0, "y1": -100.0, "x2": 100.0, "y2": 100.0}
+        add(graphics, "CoordinateSystem", **square, suggestedScalingFactorTo_mm=0.1)
+        add(graphics, "Icon", **square)
+    flanges = terminals(model, table)
+    if flanges:
+        parent = add(root, "Terminals")
+        for flange in flanges:
+            terminal = add(parent, "Terminal", name=flange.name, matchingRule="bus", terminalKind=flange.kind,
+                           description=flange.description)  # fmt: skip
+            for member, variable in flange.members.items():
+                add(terminal, "TerminalMemberVariable", variableName=variable, memberName=member, variableKind="signal")
+    data: bytes = etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
+    return data
