@@ -78,7 +78,7 @@ def run_case(
     Raises what `crosscheck` raises.
     """
     changes = dict(case.coarse) if coarse else {}
-    step, t_end = changes.pop("step", None), changes.pop("t_end", case.t_end)
+    step, t_end = changes.pop("step", case.step), changes.pop("t_end", case.t_end)
     scenario = load(case.scenario, **{**case.parameters, **changes})
     other = as_cables(scenario.model) if has_floating_beams(scenario.model) else None
     flexible = any(isinstance(b, FlexibleBody) for b in scenario.model.bodies)
