@@ -114,7 +114,7 @@ def crosscheck_all(
     for number, case in enumerate(chosen, 1):
         label = f"[{number}/{len(chosen)}] {case.name}"
         tell(label)
-        outcomes.append(_outcome(case, folder, lambda text, label=label: tell(f"{label}: {text}"), coarse))
+        outcomes.append(_outcome(case, folder, _labelled(tell, label), coarse))
         tell(f"{label}: {outcomes[-1].verdict} ({outcomes[-1].seconds:.0f} s)")
     found = CatalogueCheck(tuple(outcomes))
     if folder is None:
@@ -122,6 +122,10 @@ def crosscheck_all(
     from .report import write_overview
 
     return CatalogueCheck(found.outcomes, write_overview(found, folder))
+
+
+def _labelled(tell: Progress, label: str) -> Progress:
+    return lambda text: tell(f"{label}: {text}")
 
 
 def _outcome(case: Case, folder: Path | None, tell: Progress, coarse: bool) -> Outcome:
