@@ -78,7 +78,7 @@ def run_case(
     Raises what `crosscheck` raises.
     """
     changes = dict(case.coarse) if coarse else {}
-    step, t_end = changes.pop("step", None), changes.pop("t_end", case.t_end)
+    step, t_end = changes.pop("step", case.step), changes.pop("t_end", case.t_end)
     scenario = load(case.scenario, **{**case.parameters, **changes})
     other = as_cables(scenario.model) if has_floating_beams(scenario.model) else None
     flexible = any(isinstance(b, FlexibleBody) for b in scenario.model.bodies)
@@ -114,7 +114,7 @@ def crosscheck_all(
     for number, case in enumerate(chosen, 1):
         label = f"[{number}/{len(chosen)}] {case.name}"
         tell(label)
-        outcomes.append(_outcome(case, folder, lambda text, label=label: tell(f"{label}: {text}"), coarse))
+        outcomes.append(_outcome(case, folder, _labelled(tell, label), coarse))
         tell(f"{label}: {outcomes[-1].verdict} ({outcomes[-1].seconds:.0f} s)")
     found = CatalogueCheck(tuple(outcomes))
     if folder is None:
@@ -122,6 +122,10 @@ def crosscheck_all(
     from .report import write_overview
 
     return CatalogueCheck(found.outcomes, write_overview(found, folder))
+
+
+def _labelled(tell: Progress, label: str) -> Progress:
+    return lambda text: tell(f"{label}: {text}")
 
 
 def _outcome(case: Case, folder: Path | None, tell: Progress, coarse: bool) -> Outcome:
