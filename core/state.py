@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .errors import ModelError
 from .events import Event
 
-FORMAT = "tlismni-state-3"
+FORMAT = "tlismni-state-4"
 
 
 @dataclass(frozen=True, eq=False)

@@ -174,8 +174,10 @@ class Slave(SlaveDerivatives):
     def catch_up(self, t: float) -> None:
         """Move the clock to `t`, s, within the horizon, after steps that nobody told of."""
         run = self._engine()
-        run.advance(t, self.event_mode, self.early_return)
-        self._arrive(run, t)
+        self._stale = True
+        with self._failing():
+            run.advance(t, self.event_mode, self.early_return)
+            self._arrive(run, t)
 
     def _arrive(self, run: Run, t: float) -> None:
         """The simulation is at `t`, s, and so are the inputs that go on with derivatives."""
@@ -256,7 +258,8 @@ class Slave(SlaveDerivatives):
         """Let the inputs behind `references` go on, from the present time, with these time derivatives of the given
         orders, 1 or 2: all of them or, on an error, none.
 
-        The value of such an input moves along. Its derivatives hold until it is set without new ones at a later time.
+        The value of such an input moves along. Its derivatives hold until, at a later time, it is set without new
+        ones or is given others.
 
         Raises
         ------

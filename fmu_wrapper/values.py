@@ -73,7 +73,10 @@ class Values:
         return levels + self.slopes.T.tolist() if self.sloped else levels
 
     def set_slopes(self, rows: Sequence[int], orders: Sequence[int], slopes: Sequence[float], now: float) -> None:
-        """Give the inputs with these numbers derivatives of these orders at time `now`, s."""
+        """Give the inputs with these numbers derivatives of these orders at time `now`, s; other orders that were set
+        before end."""
+        given = np.asarray(rows, dtype=np.intp)
+        self.slopes[given[self.slope_times[given] != now]] = 0.0
         self.slopes[rows, np.asarray(orders, dtype=np.intp) - 1] = slopes
         self.slope_times[rows] = now
         self.sloped = bool(self.slopes.any())

@@ -48,20 +48,33 @@ def _figure(panel: Panel) -> dict[str, Any]:
             }
         )
     axis: dict[str, Any] = {"title": {"text": "time (s)"}}
+    heights: dict[str, Any] = {"title": {"text": panel.unit}, "type": "linear"}
+    if panel.logarithmic:
+        heights |= {"type": "log", "exponentformat": "power"}
     if panel.window:
         axis["range"] = list(panel.window)
+        if not panel.logarithmic:
+            heights["range"] = _heights(panel, panel.window)
     return {
         "data": data,
         "layout": {
             "title": {"text": panel.title, "x": 0.02, "font": {"size": 14}},
             "xaxis": axis,
-            "yaxis": {"title": {"text": panel.unit}, "type": "log" if panel.logarithmic else "linear"},
+            "yaxis": heights,
             "legend": {"orientation": "h", "y": -0.25},
             "margin": {"l": 60, "r": 15, "t": 40, "b": 40},
             "height": 360,
             "template": "none",
         },
     }
+
+
+def _heights(panel: Panel, window: tuple[float, float]) -> list[float]:
+    """What the curves cover within the window, with a margin: plotly itself would take all of them."""
+    inside = [np.asarray(c.y)[(c.t >= window[0]) & (c.t <= window[1])] for c in panel.curves]
+    low, high = min(map(np.nanmin, inside)), max(map(np.nanmax, inside))
+    margin = 0.06 * (high - low) or 1.0
+    return [float(low - margin), float(high + margin)]
 
 
 def _thinned(curve: Curve, panel: Panel) -> tuple[np.ndarray, np.ndarray]:

@@ -57,6 +57,7 @@ def get_state(sim: "Simulation") -> State:
         "outer": sim.outer,
         "start_open": sim.start_open,
         "input_times": [repr(x) for x in sim.input_times],
+        "initial_energy": repr(sim.table.initial_energy),
         "fallbacks": [[f.t, f.outer, f.reason] for f in sim.fallbacks],
     }
     return State(arrays, facts, sim.model_hash, sim.stored_events)
@@ -104,6 +105,7 @@ def set_state(sim: "Simulation", state: State) -> None:
     sim.open_accounts = {int(k): (v[0], v[1]) for k, v in facts["open_accounts"].items()}
     sim.start_open = bool(facts["start_open"])
     sim.input_times = (float(facts["input_times"][0]), float(facts["input_times"][1]))
+    sim.table.initial_energy = float(facts["initial_energy"])
     sim._times_handled = (float(facts["handled"][0]), int(facts["handled"][1]))
     sim.events, sim.stored_events = list(state.events), state.events
 
@@ -123,6 +125,8 @@ def restart_here(sim: "Simulation") -> None:
     if sim.t != sim.t_internal:
         sim.pending = []
         _drop_records(sim)
+        # the newest row itself, where that is nearer than a step can be: what is due at once is due at this time
+        sim.workspace.arrays["t"][0] = sim.t
     # the modes are the same and the structure fits them; only pivots that have degraded call for a new one
     if solve_accelerations(ws) == OK:
         sim.begin_rates()

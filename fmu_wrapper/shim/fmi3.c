@@ -201,7 +201,7 @@ EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step,
                              fmi3Boolean *event_handling_needed, fmi3Boolean *terminate, fmi3Boolean *early_return,
                              fmi3Float64 *last_successful_time) {
     (void)no_set_state; /* a stored state lives until it is freed */
-    if (instance_glide(c, time, step, last_successful_time)) {
+    if (event_handling_needed && terminate && early_return && instance_glide(c, time, step, last_successful_time)) {
         *event_handling_needed = *terminate = *early_return = false;
         return STATUS_OK;
     }

@@ -1,9 +1,23 @@
 """Going from event to event is the same run as going through them, and shows both sides of each."""
 
+import math
+
 import numpy as np
 import pytest
-from tlismni.core import Simulation
+from tlismni.core import (
+    AppliedForce2D,
+    Disk2D,
+    DiskOnHalfPlane2D,
+    HalfPlane2D,
+    Input,
+    InputSignal,
+    Model,
+    NewtonImpact,
+    PointMass2D,
+    Simulation,
+)
 from tlismni.core.errors import ModelError
+from tlismni.core.model.markers import Marker2D
 from tlismni.models import load
 
 T_END = {"pendulum_stop": 1.0, "bouncing_ball": 1.0, "stick_slip": 2.0, "newtons_cradle": 0.5}
@@ -102,3 +116,29 @@ def test_an_event_within_rounding_of_a_communication_point():
         sim.advance(0.5)
         assert len(sim.events) == 1
     assert near  # the case was met
+
+
+def test_an_event_due_at_a_point_just_after_a_row_happens_there():
+    """A force lifts a ball off the floor one unit of rounding after the newest row, where no step can end."""
+    marker = Marker2D(body="ball")
+    model = Model(
+        bodies=[PointMass2D(name="ball", mass=2.0)],
+        forces=[AppliedForce2D(name="lift", marker=marker, force_y=InputSignal(channel="push"))],
+        contacts=[
+            DiskOnHalfPlane2D(
+                name="floor", plane=HalfPlane2D(), disk=Disk2D(marker=marker, radius=0.0),
+                law=NewtonImpact(restitution=0.5),
+            )
+        ],
+        inputs=[Input(name="push", unit="N")],
+    )  # fmt: skip
+    sim = Simulation(model)
+    sim.advance(1.0)
+    sim.set_inputs({"push": 1.0})  # from here there is one row and no step
+    assert not sim.advance_to_event(math.nextafter(1.0, 2.0))
+    sim.set_inputs({"push": 30.0})
+    assert sim.event_due
+    assert not sim.advance_to_event(1.5)
+    acceleration = 30.0 / 2.0 - 9.81
+    height = dict(zip([c.name for c in sim.channels], sim.values(), strict=True))["ball.y"]
+    assert height == pytest.approx(0.5 * acceleration * 0.5**2, rel=1e-9)

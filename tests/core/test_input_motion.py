@@ -202,6 +202,24 @@ def test_the_state_holds_a_jump_that_is_being_closed():
         assert np.array_equal(go_on(other), end)
 
 
+def test_the_balance_of_energy_belongs_to_the_state():
+    """Inputs make the start, and its energy with it: a run that started elsewhere goes on with that of the state."""
+    body = RigidBody2D(name="body", mass=2.0, inertia=1.0)
+    model = Model(
+        bodies=[body], joints=[CoordinateDriver(name="lift", body="body", coordinate="y", motion=LED)], inputs=INPUTS
+    )
+    here, elsewhere = Simulation(model), Simulation(model)
+    here.set_inputs({"x": 3.0, "v": 1.0})
+    elsewhere.set_inputs({"x": -7.0, "v": 2.0})
+    for sim in (here, elsewhere):
+        sim.advance(0.2)
+    state = here.state()
+    elsewhere.restore(State.from_bytes(state.to_bytes()))
+    assert elsewhere.state() == state
+    assert abs(values(here)["energy.balance"]) < 1e-9
+    assert elsewhere.values().tobytes() == here.values().tobytes()
+
+
 @pytest.mark.parametrize("x, v", [(1e6, 0.0), (0.0, -1e6), (1e300, 1e300)])
 def test_an_absurd_way_is_refused_at_once_and_the_run_can_go_back(x, v):
     sim = Simulation(wall(Hertz(stiffness=1e4)))

@@ -86,6 +86,18 @@ def test_a_slope_alone_starts_from_where_the_input_is():
     assert slave["push"] == pytest.approx(0.0, abs=1e-15)
 
 
+@pytest.mark.parametrize("first", ["value", "slope"])
+def test_a_slope_ends_the_curvature_of_an_earlier_point_in_either_order(first):
+    slave = started()
+    slope(slave, "push", 5.0, 3.0)
+    slave.do_step(0.0, 0.1)
+    calls = [lambda: slave.set_by_name({"push": 2.0}), lambda: slope(slave, "push", 1.0)]
+    for call in calls if first == "value" else reversed(calls):
+        call()
+    slave.do_step(slave.time, 0.1)
+    assert slave["push"] == pytest.approx(2.1, rel=1e-14)
+
+
 def test_slopes_are_part_of_the_state():
     slave = started()
     slope(slave, "push", 5.0, 3.0)

@@ -308,6 +308,20 @@ class HalfSet(FakeSimulation):
             raise SimulationError("the state cannot be projected onto the constraints", t=self.t, loop="inner")
 
 
+def test_a_clock_that_cannot_be_moved_hands_out_no_old_values(fake_slave):
+    slave = started(fake_slave(fail_at=0.5))
+    slave.do_step(0.0, 0.1)
+    before = slave["ball.y"]
+    with pytest.raises(SimulationError):
+        slave.catch_up(0.6)
+    assert slave.phase == "failed"
+    with pytest.raises(CallOrderError, match="stored state, or reset"):
+        slave["ball.y"]
+    slave.reset()
+    started(slave).do_step(0.0, 0.1)
+    assert slave["ball.y"] == before
+
+
 def ask_output(slave):
     return slave["ball.ay"]
 

@@ -10,8 +10,10 @@ import pytest
 from tlismni.core import simulate
 from tlismni.models import load
 from tlismni.validation import crosscheck
+from tlismni.validation.comparisons.common import Curve, Panel
 from tlismni.validation.drawing import drawing
 from tlismni.validation.exudyn_import import exudyn_available
+from tlismni.validation.interactive import figures
 from tlismni.validation.report import render
 
 needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot be imported")
@@ -99,3 +101,16 @@ def test_without_exudyn_all_else_works(monkeypatch: pytest.MonkeyPatch) -> None:
         assert "libgl1" in outcome.output.replace("\n", " ")
     assert CliRunner().invoke(app, ["run", "pendulum", "--t-end", "0.05"]).exit_code == 0
     assert CliRunner().invoke(app, ["crosscheck"]).exit_code != 0
+
+
+def test_a_panel_with_a_window_is_as_high_as_what_it_shows() -> None:
+    """A gap of millimetres at a contact is not to be seen on the scale of the whole flight."""
+    t = np.linspace(0.0, 2.0, 2001)
+    gap = Curve("gap", t, 1e-3 * np.cos(40.0 * (t - 1.0)) + 5.0 * (np.abs(t - 1.0) > 0.1), ours=True)
+    shown = json.loads(figures((Panel("gap", "m", (gap,), window=(0.95, 1.05)),))[0])["layout"]
+    low, high = shown["yaxis"]["range"]
+    assert shown["xaxis"]["range"] == [0.95, 1.05]
+    assert -2e-3 < low < -4e-4 and 1e-3 < high < 2e-3
+    flat = Curve("none", t, np.zeros_like(t), ours=False)
+    low, high = json.loads(figures((Panel("none", "N", (flat,), window=(0.0, 1.0)),))[0])["layout"]["yaxis"]["range"]
+    assert low < 0.0 < high
