@@ -116,6 +116,9 @@ Bundle = Annotated[
     bool,
     typer.Option("--bundle", help="Carry tlismni along; the machine then needs only numpy, scipy, numba, pydantic."),
 ]
+Arrays = Annotated[
+    bool, typer.Option("--arrays", help="FMI 3: describe vectors as arrays too; not every master reads such FMUs.")
+]
 Platforms = Annotated[
     list[str] | None,
     typer.Option(

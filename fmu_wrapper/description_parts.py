@@ -39,7 +39,8 @@ DISPLAYED = {"rad": "deg", "rad/s": "deg/s", "rad/s2": "deg/s2"}
 @dataclass(frozen=True)
 class About:
     """What a description says of the FMU as a whole. `identifier` is the file name of the binary, `token` ties the
-    description to the resources; `derivatives` says whether there are those with respect to all inputs."""
+    description to the resources; `derivatives` says whether there are those with respect to all inputs, `arrays`
+    whether the vectors stand in it as arrays too (FMI 3.0)."""
 
     identifier: str
     name: str
@@ -47,6 +48,7 @@ class About:
     description: str
     generator: str
     derivatives: bool
+    arrays: bool = False
 
 
 def start(version: str, token_name: str, about: About, **more: str) -> Any:

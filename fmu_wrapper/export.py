@@ -47,6 +47,7 @@ def export_fmu(
     communication_step: float | None = None,
     bundle: bool = False,
     platforms: Sequence[str] = (),
+    arrays: bool = False,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
@@ -65,6 +66,7 @@ def export_fmu(
     bundle : carry the package along; the machine needs only the third-party packages then.
     platforms : further platforms whose binaries the FMU shall have, such as "x86_64-windows", or "all" of
         `platforms.PLATFORMS`; they are built if need be, which takes ziglang and some time.
+    arrays : describe vectors as arrays too (FMI 3.0); not every master reads FMUs that have some.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -81,6 +83,10 @@ def export_fmu(
     """
     fmi_version = known_version(fmi_version)
     path = Path(path)
+    if arrays and fmi_version != "3.0":
+        raise ExportError(
+            f"arrays were asked of FMI {fmi_version}, which has none: export for FMI 3.0, or without them"
+        )
     shim_path()  # before any work
     if not path.parent.is_dir():
         raise ExportError(f"'{path}' cannot be written: there is no folder '{path.parent}'")
@@ -94,7 +100,8 @@ def export_fmu(
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
-    about = About(identifier, slave.model.name, token, text, f"tlismni {package_version()}", derivatives=True)
+    generator = f"tlismni {package_version()}"
+    about = About(identifier, slave.model.name, token, text, generator, derivatives=True, arrays=arrays)
     description, _ = VERSIONS[fmi_version]
     settings = {
         "token": token,

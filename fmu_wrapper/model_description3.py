@@ -62,7 +62,8 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
             add(variables, "Enumeration", **own, declaredType=variable.enumeration, start=variable.start)
         else:
             add(variables, _TYPES[variable.kind], **own, **limits(variable), start=variable.start)
-    for array in table.arrays:
+    arrays = table.arrays if about.arrays else ()
+    for array in arrays:
         first = array.elements[0]
         what = f"{array.name} as an array: " + ", ".join(e.name.rpartition(".")[2] for e in array.elements)
         element = add(
@@ -83,7 +84,7 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
         for variable in table.of_role("output"):
             found = dependencies(v.reference for v in depends_on(variable))
             add(structure, part, valueReference=variable.reference, **found)
-        for array in table.arrays:
+        for array in arrays:
             felt = {v.reference for element in array.elements for v in depends_on(element)}
             add(structure, part, valueReference=array.reference, **dependencies(sorted(felt)))
     return finish(root)

@@ -8,6 +8,7 @@ import typer
 from ..errors import one_line_errors
 from ..fmu_file import binaries
 from ..options import (
+    Arrays,
     Atol,
     Bundle,
     CommunicationStep,
@@ -51,13 +52,14 @@ def export(
     step: Step = None,
     option: MethodOption = None,
     bundle: Bundle = False,
+    arrays: Arrays = False,
     platform: Platforms = None,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Export a scenario or a model file as a co-simulation FMU, or a system file (.toml) as an SSP archive (.ssp)."""
     if is_system_file(source):
-        others = (sets, t_end, communication_step, method, rtol, atol, step, option)
+        others = (sets, t_end, communication_step, method, rtol, atol, step, option, arrays or None)
         _system(source, output, json, any(value is not None for value in others), bundle, platform)
         return
     check_suffix(output, (".fmu",), "--output")
@@ -73,7 +75,13 @@ def export(
     output.parent.mkdir(parents=True, exist_ok=True)
     with compile_notice():
         path = export_fmu(
-            scenario, output, fmi, communication_step=communication_step, bundle=bundle, platforms=platforms
+            scenario,
+            output,
+            fmi,
+            communication_step=communication_step,
+            bundle=bundle,
+            platforms=platforms,
+            arrays=arrays,
         )
     size = path.stat().st_size
     with zipfile.ZipFile(path) as archive:

@@ -17,6 +17,7 @@ from fmpy.validation import validate_fmu
 from fmu_helpers import ball_model
 from tlismni.core import Simulation
 from tlismni.fmu_wrapper import Slave, export_fmu
+from tlismni.fmu_wrapper.errors import ExportError
 from tlismni.fmu_wrapper.export import fmi3_platform, shim_path
 from tlismni.fmu_wrapper.in_process3 import InProcess3
 from tlismni.models import load, names
@@ -324,7 +325,8 @@ def test_steps_that_the_binary_makes_alone_are_those_of_the_slave(tmp_path, even
 
 def test_arrays_are_their_scalars(tmp_path):
     """Vectors of bodies and joints: values, dependencies and derivatives of the elements, two behind one reference."""
-    fmu = Fmu3(load("slider_crank_stop", driven=True), tmp_path)
+    fmu = Fmu3(load("slider_crank_stop", driven=True), tmp_path, arrays=True)
+    assert validate_fmu(str(fmu.path)) == []
     arrays = {v.name: v for v in fmu.description.modelVariables if v.dimensions}
     assert {"crank.position", "crank.velocity", "crank.acceleration", "rod.position"} <= set(arrays)
     parts = {
@@ -356,3 +358,9 @@ def test_arrays_are_their_scalars(tmp_path):
     felt = {v.name for v in unknowns["crank.acceleration"].dependencies}
     assert felt == {v.name for part in ("ax", "ay") for v in unknowns[f"crank.{part}"].dependencies} == {"torque"}
     instance.freeInstance()
+
+
+def test_arrays_are_left_out_unless_asked_for(ball, tmp_path):
+    assert not any(v.dimensions for v in ball.description.modelVariables)
+    with pytest.raises(ExportError, match=r"arrays were asked of FMI 2\.0"):
+        export_fmu(ball_model(), tmp_path / "x.fmu", "2.0", arrays=True)
