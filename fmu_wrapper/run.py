@@ -188,6 +188,11 @@ class Run:
         return StepEnd(t)
 
     @property
+    def step_size(self) -> float:
+        """Size of the solver's next step, s."""
+        return float(self._simulation.step_size)
+
+    @property
     def horizon(self) -> float:
         """Time up to which the solver has gone without an event, s."""
         return float(self._simulation.horizon)

@@ -23,6 +23,9 @@ from .slave_derivatives import SlaveDerivatives
 from .values import MOST_DERIVATIVES, check_values, item_value
 from .variables import Kind, Variable
 
+MOST_STEPS = 1e12
+"""Steps of the solver, as long as its next one, beyond which a communication step is taken for a mistake: months."""
+
 
 class Slave(SlaveDerivatives):
     """A model with its solver as a co-simulation slave.
@@ -139,6 +142,11 @@ class Slave(SlaveDerivatives):
         self._need("do step", Phase.STEP)
         target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
+        if h > MOST_STEPS * run.step_size:
+            raise FmuValueError(
+                f"a communication step of {h!r} s would never end: the solver steps by {run.step_size:.3g} s; ask for "
+                "a shorter one"
+            )
         seen = len(run.events)
         self._stale = True
         try:  # not `_failing`: a context manager at every step is dear

@@ -3,7 +3,7 @@
 import json
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,8 @@ from .comparisons.persistent_contact import compare_persistent, persists
 from .comparisons.rod_impact import compare_rods, strikes_rods
 from .comparisons.smooth_motion import compare_motion
 from .exudyn_import import import_exudyn
+from .provenance import provenance
+from .third_opinion import with_third_opinion
 from .translation import find_translator
 
 log = logging.getLogger(__name__)
@@ -37,6 +39,10 @@ class CrossCheck:
     description: str
     parameters: Mapping[str, Any]
     comparison: Comparison
+    name: str = ""
+    why: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    model: Model | None = None
     figures: tuple[Path, ...] = ()
     report: Path | None = None
 
@@ -67,6 +73,10 @@ class CrossCheck:
             "notes": list(c.notes),
             "exudyn": {"version": c.version, "steps": list(c.steps), "seconds": c.exudyn_seconds},
             "seconds": c.our_seconds,
+            "settings": dict(self.settings),
+            "machine": provenance(),
+            "name": self.name,
+            "why": self.why,
             "figures": [str(path) for path in self.figures],
             "report": None if self.report is None else str(self.report),
         }
@@ -80,6 +90,9 @@ def crosscheck(
     t_end: float | None = None,
     step: float | None = None,
     exudyn_model: Model | None = None,
+    name: str | None = None,
+    why: str = "",
+    least_tolerance: float = 0.0,
     **parameters: Any,
 ) -> CrossCheck:
     """Run a scenario here and in exudyn, and compare.
@@ -91,7 +104,9 @@ def crosscheck(
     progress : called with a line of text before each run.
     t_end : end time in s, if not the scenario's.
     step : exudyn's step in s; left out: from the duration of the contacts, or of the run.
-    exudyn_model : the model that exudyn gets, if not the same one (to see that a fault is found).
+    exudyn_model : the model that exudyn gets, if not the same one (to see that a fault is found, or `as_cables`).
+    least_tolerance : relative; of every quantity, where the two sides are different models of one thing.
+    name, why : what its files are called (the scenario), and what its report says about the choice of parameters.
 
     Returns
     -------
@@ -106,7 +121,7 @@ def crosscheck(
     """
     chosen = _scenario(scenario, t_end, parameters)
     import_exudyn()  # before our own run: say at once if it is missing, or if something has no equal there
-    for element in chosen.model.elements():
+    for element in (exudyn_model or chosen.model).elements():
         find_translator(element)
     folder = None if report_dir is None else Path(report_dir)
     if folder is not None:
@@ -122,8 +137,19 @@ def crosscheck(
         comparison = compare_constraints(task)
     else:
         comparison = compare_forces(task)
-    found = CrossCheck(chosen.name, chosen.description, chosen.parameters, comparison)
+    if least_tolerance:
+        comparison = replace(comparison, rows=tuple(_widened(row, least_tolerance) for row in comparison.rows))
+    comparison = with_third_opinion(chosen, comparison)
+    settings = {"method": chosen.method, "t_end": chosen.t_end, **dict(chosen.options)}
+    found = CrossCheck(
+        chosen.name, chosen.description, chosen.parameters, comparison, name or chosen.name, why, settings, chosen.model
+    )
     return found if folder is None else _reported(found, folder)
+
+
+def _widened(row: Row, least: float) -> Row:
+    size = abs(row.exudyn) if row.tolerance_kind == "absolute" else 1.0
+    return replace(row, tolerance=max(row.tolerance, least * size))
 
 
 def _scenario(scenario: str | Scenario | Model, t_end: float | None, parameters: Mapping[str, Any]) -> Scenario:
@@ -155,8 +181,8 @@ def _reported(found: CrossCheck, folder: Path) -> CrossCheck:
     from .report import write_report
 
     figures = save_figures(found, folder)
-    written = replace(found, figures=figures, report=folder / f"{found.scenario}_crosscheck.html")
+    written = replace(found, figures=figures, report=folder / f"{found.name}_crosscheck.html")
     write_report(written)
-    numbers = folder / f"{found.scenario}_crosscheck.json"
+    numbers = folder / f"{found.name}_crosscheck.json"
     numbers.write_text(json.dumps(written.to_dict(), indent=2), encoding="utf-8")
     return written

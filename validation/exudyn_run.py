@@ -92,7 +92,8 @@ def run_exudyn(model: Model, t_end: float, step: float, settings: ExudynSettings
     wall_time, steps = solve(build, t_end, step, settings or ExudynSettings())
     if not build.columns:
         raise ExudynFailed(f"model '{model.name}' has no bodies: there is nothing to record")
-    sensors = {c.sensor for c in (*build.columns, *build.contacts, *build.user_contacts)}
+    sensors = {c.sensor for c in build.columns} | {c.sensor for c in build.contacts}
+    sensors |= {c.sensor for c in build.user_contacts}
     data = {sensor: build.mbs.GetSensorStoredData(sensor) for sensor in sensors}
     t = data[build.columns[0].sensor][:, 0]
     channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}

@@ -38,7 +38,7 @@ def save_figures(found: "CrossCheck", folder: Path) -> tuple[Path, ...]:
     panels = found.comparison.panels
     if not panels:
         return ()
-    path = folder / f"{found.scenario}_crosscheck.png"
+    path = folder / f"{found.name or found.scenario}_crosscheck.png"
     with context(STYLE):
         rows = (len(panels) + 1) // 2
         figure = figure_class(figsize=(10.5, 2.9 * rows), layout="constrained", dpi=RESOLUTION)

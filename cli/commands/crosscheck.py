@@ -1,6 +1,9 @@
 """`tlismni crosscheck`: the same scenario in exudyn, quantity by quantity."""
 
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
 
 from ..errors import Failure, one_line_errors
 from ..options import (
@@ -14,20 +17,26 @@ from ..options import (
     ReportFolder,
     Rtol,
     Set,
-    Source,
 )
 from ..screen import compile_notice, number, print_json, print_table, say, status_line, stdout
 from ..targets import check_folder
 
+SourceOrNone = Annotated[
+    str | None,
+    typer.Argument(metavar="[SCENARIO_OR_MODEL]", help="Name of a scenario (see `tlismni list`), or a model file."),
+]
 EXAMPLES = (
     "Examples:\n\n  tlismni crosscheck pendulum_stop --report out/check\n\n"
-    "  tlismni crosscheck pendulum_stop --set law=hunt_crossley --json"
+    "  tlismni crosscheck pendulum_stop --set law=hunt_crossley --json\n\n"
+    "  tlismni crosscheck --all --report out/all"
 )
 
 
 @one_line_errors
 def crosscheck(
-    source: Source,
+    source: SourceOrNone = None,
+    everything: Annotated[bool, typer.Option("--all", help="Every scenario, with an overview.")] = False,
+    coarse: Annotated[bool, typer.Option("--coarse", help="With --all: the short form that the tests take.")] = False,
     report: ReportFolder = None,
     exudyn_step: ExudynStep = None,
     sets: Set = None,
@@ -41,6 +50,12 @@ def crosscheck(
 ) -> None:
     """Run a scenario or a model file here and in exudyn, and compare; exit code 1 if a quantity differs."""
     check_folder(report)
+    if everything:
+        if source is not None:
+            raise typer.BadParameter("--all takes no scenario: give one or the other")
+        return _everything(report, coarse, json)
+    if source is None:
+        raise typer.BadParameter("name a scenario or a model file, or say --all")
 
     from ...validation import crosscheck as check
     from ..source import read_source
@@ -59,6 +74,27 @@ def crosscheck(
     if not found.ok:
         differing = [row.quantity for row in found.rows if row.required and row.verdict == "differ"]
         raise Failure(f"{len(differing)} of {len(found.rows)} quantities differ: {', '.join(differing)}")
+
+
+def _everything(report: Path | None, coarse: bool, json: bool) -> None:
+    from ...validation import crosscheck_all
+
+    with compile_notice(), status_line("cross-checking the catalogue") as tell:
+        found = crosscheck_all(report, tell, coarse=coarse)
+    if json:
+        print_json([outcome.to_dict() for outcome in found.outcomes])
+    else:
+        rows = [
+            (o.case.scenario, " ".join(f"{k}={v}" for k, v in o.case.parameters.items()), o.verdict,
+             number(o.seconds, 3), o.reason or o.case.why)
+            for o in found.outcomes
+        ]  # fmt: skip
+        print_table("", ("scenario", "with", "verdict", "s", "why"), rows, left=2)
+        if found.report is not None:
+            say(f"wrote {found.report}")
+    if not found.ok:
+        wrong = [o.case.name for o in found.outcomes if o.verdict in ("differ", "failed")]
+        raise Failure(f"{len(wrong)} of {len(found.outcomes)} cases differ or fail: {', '.join(wrong)}")
 
 
 def _print(figures: dict[str, Any]) -> None:

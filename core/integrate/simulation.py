@@ -16,6 +16,7 @@ from ..state import State
 from ..system.records import COUNTERS_SIZE
 from . import advance, inputs, motions, output_rates, restore, sensitivity
 from .engine import Engine, user_errors
+from .records import FIXED_STEP, STEP_SIZE
 
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
@@ -143,6 +144,11 @@ class Simulation(Engine):
             if self.t_internal <= self.t:
                 advance.advance_to(self, just_after(self.t), stop, hold=True)
         return min(self.t_internal, target)
+
+    @property
+    def step_size(self) -> float:
+        """Size of the solver's next step, s: the fixed one, or what error control proposes."""
+        return float(self.clock[FIXED_STEP] or self.clock[STEP_SIZE])
 
     @property
     def horizon(self) -> float:

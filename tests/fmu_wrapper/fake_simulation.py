@@ -93,6 +93,10 @@ class FakeSimulation:
         return self._state.push / self.mass - self.gravity
 
     @property
+    def step_size(self) -> float:
+        return 1e-3
+
+    @property
     def horizon(self) -> float:
         return self.t
 

@@ -18,6 +18,7 @@ from tlismni.core.elements import (
     CoordinateLoad,
     Distance2D,
     LinearSystem,
+    MovingFrame2D,
     PointMass2D,
     Prismatic2D,
     Revolute2D,
@@ -92,6 +93,22 @@ def test_double_pendulum_follows_minimal_coordinates() -> None:
     assert np.abs(r["link2.x"] - np.cos(exact[0]) - 0.5 * np.cos(exact[1])).max() < 2e-5
     hinge = r["link1.x"] + 0.5 * np.cos(r["link1.angle"]) - r["link2.x"] + 0.5 * np.cos(r["link2.angle"])
     assert np.abs(hinge).max() < 1e-10
+
+
+def test_a_moving_frame_drags_what_is_on_it() -> None:
+    """A mass on a spring to a frame that swings: the driven oscillator in closed form."""
+    frame = MovingFrame2D(
+        name="f", x=Sine(amplitude=0.1, angular_frequency=3.0), angle=Polynomial(coefficients=(0.2, 0.5))
+    )
+    mass = PointMass2D(name="p", mass=1.0, position=(1.0, 0.0))
+    spring = Bushing2D(name="s", a=Marker2D(body="p", point=(0.0, 0.0)), b=Marker2D(body="f"), stiffness=25.0)
+    model = Model(gravity=(0.0, -9.81), bodies=(frame, mass), forces=(spring,))
+    r = run_exudyn(model, 1.0, 2e-4)
+    assert np.allclose(r["f.x"], 0.1 * np.sin(3.0 * r.t), atol=1e-9)
+    assert np.allclose(r["f.angle"], 0.2 + 0.5 * r.t, atol=1e-9)
+    forced = 25.0 * 0.1 / (25.0 - 9.0)
+    exact = forced * np.sin(3.0 * r.t) + np.cos(5.0 * r.t) - 3.0 * forced / 5.0 * np.sin(5.0 * r.t)
+    assert np.abs(r["p.x"] - exact).max() < 1e-5
 
 
 def test_linear_system_with_driver_and_load_follows_the_solver() -> None:

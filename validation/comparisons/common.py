@@ -49,6 +49,9 @@ class Row:
     """Absolute, from our own convergence."""
     reason: str = ""
     """Why the two cannot be compared."""
+    channel: str = ""
+    at: float | None = None
+    """The channel and the time (s) that the row is about, where it is about a trajectory."""
     third: float | None = None
     """A third opinion on the quantity, and in `third_source` where it comes from."""
     third_source: str = ""

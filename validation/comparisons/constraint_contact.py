@@ -13,7 +13,7 @@ import numpy as np
 from ...core import Gonthier, NewtonImpact, Result
 from ...core.description import Model
 from ..errors import NotTranslatable
-from ..exudyn_run import ExudynResult, run_exudyn
+from ..exudyn_run import ExudynResult, run_exudyn, settings_for
 from ..metrics import ContactInterval, contact_intervals, impulse, power_limit, speeds
 from .common import (
     Comparison,
@@ -72,7 +72,7 @@ def compare_constraints(task: Task) -> Comparison:
     for stiffness in STIFFNESSES:
         step = min(task.step or np.inf, _step(task, found[0], stiffness))
         task.progress(f"exudyn, K = {stiffness:.0e} N/m^1.5, step {step:.1e} s")
-        result = run_exudyn(with_stiffness(task.exudyn_model, stiffness), t_end, step)
+        result = run_exudyn(with_stiffness(task.exudyn_model, stiffness), t_end, step, settings_for(task.exudyn_model))
         runs.append(PenaltyRun(stiffness, result, _contacts(task, result)))
     rows = _impact_rows(found, runs) if all(r.contacts for r in runs) else []
     if not rows:
@@ -101,6 +101,8 @@ def compare_constraints(task: Task) -> Comparison:
         runs[-1].result.version,
         first_run.stats["wall_time"],
         sum(r.result.wall_time for r in runs),
+        tuple(first_run.events),
+        ours,
     )
 
 
@@ -196,7 +198,8 @@ def _flight_rows(task: Task, found: list[Touch], ours: Result, runs: list[Penalt
         unit = unit_of(ours, channel)
         limit, moved = _limit(runs, [at_times(r.result.t, r.result.channels, channel, flight) for r in runs])
         mine = ours[channel][inside]
-        scale = 0.5 * float(np.ptp(limit)) or None
+        # in a short flight little moves: then a part of the motion of the whole run counts
+        scale = max(0.5 * float(np.ptp(limit)), 0.05 * float(np.ptp(ours[channel]))) or None
         worst = int(np.argmax(np.abs(mine - limit)))
         for k, name in ((len(flight) - 1, ending), (worst, "where it differs most in flight")):
             title = f"{channel} {name} (t = {flight[k]:.5f} s)"

@@ -11,9 +11,10 @@ import numpy as np
 
 from ...core import ForceLaw, KelvinVoigt, Result
 from ...core.description import Model
-from ..exudyn_run import ExudynResult, run_exudyn
+from ..exudyn_run import ExudynResult, run_exudyn, settings_for
 from ..metrics import contact_intervals, impulse, peak, released, speeds, trajectory_difference
 from .common import (
+    RATES,
     Comparison,
     Row,
     Task,
@@ -63,13 +64,16 @@ def compare_forces(task: Task) -> Comparison:
         notes.append("no contact begins and ends before the end of the run: only trajectories are compared")
     ours = our_run(scenario, _times(found, scenario.t_end))
     step = task.step or _step(scenario.model, found, first_run, scenario.t_end)
+    if found and task.step is None:
+        # rather a longer step, and an error bar that says so, than an end before the first contact
+        step = max(step, 1.2 * found[0].end / MOST_STEPS)
     t_end = _end(found, step, scenario.t_end)
     if t_end < scenario.t_end:
         notes.append(f"exudyn stops at {t_end:.4g} s, to keep the number of its steps bearable")
     runs = []
     for h in (2.0 * step, step):
         task.progress(f"exudyn, step {h:.1e} s")
-        runs.append(run_exudyn(task.exudyn_model, t_end, h))
+        runs.append(run_exudyn(task.exudyn_model, t_end, h, settings_for(task.exudyn_model)))
     coarse, fine = runs
     rows: list[Row] = []
     entry = max((_entry_error(scenario.model, touch) for touch in found[:1]), default=0.0) * fine.step
@@ -79,7 +83,7 @@ def compare_forces(task: Task) -> Comparison:
         )
     rows += _state_rows(task, found, ours, coarse, fine)
     if entry > 0.0:
-        rows = [replace(r, uncertainty=r.uncertainty + entry * (r.scale or abs(r.exudyn))) for r in rows]
+        rows = [replace(r, uncertainty=r.uncertainty + entry * _moved_by(r, ours, found[0])) for r in rows]
         notes.append(
             "the force jumps at first touch, but exudyn has it for the whole step of the touch or not at all: "
             f"{entry:.1e} of the speed at most, which is added to its uncertainty"
@@ -97,7 +101,9 @@ def compare_forces(task: Task) -> Comparison:
         (coarse.step, fine.step),
         fine.version,
         first_run.stats["wall_time"],
-        fine.wall_time,
+        coarse.wall_time + fine.wall_time,
+        tuple(first_run.events),
+        ours,
     )
 
 
@@ -135,6 +141,18 @@ def _step(model: Model, found: list[Touch], run: Result, t_end: float) -> float:
             limits.append(APPROACH_SPEED * touch.approach_speed / max(acceleration, 1e-12))
         limits.append(ENTRY / max(_entry_error(model, touch), 1e-12))
     return nice_step(min(limits))
+
+
+def _moved_by(row: Row, ours: Result, touch: Touch) -> float:
+    """How much a row's value changes for each unit of relative error of the speed after the touch: with its own size,
+    and a place with the distance flown since then."""
+    own = row.scale or abs(row.exudyn)
+    body, _, name = row.channel.rpartition(".")
+    rate = f"{body}.{RATES.get(name, '')}"
+    if row.at is None or row.at <= touch.end or rate not in ours.channels:
+        return own
+    after = (ours.t >= touch.end) & (ours.t <= row.at)
+    return max(own, float(np.abs(ours[rate][after]).max(initial=0.0)) * (row.at - touch.end))
 
 
 def _entry_error(model: Model, touch: Touch) -> float:
@@ -221,6 +239,8 @@ def _state_rows(task: Task, found: list[Touch], ours: Result, coarse: ExudynResu
     for touch in found[:1]:
         apart = (ours.t < touch.start - 2.0 * coarse.step) | (ours.t > touch.end + 2.0 * coarse.step)
     grid = ours.t[(ours.t <= until) & apart]
+    if not grid.size:  # it starts in contact
+        grid = ours.t[ours.t <= until]
     now = np.array([until])
     rows = []
     for channel in task.scenario.compare:
@@ -236,7 +256,7 @@ def _state_rows(task: Task, found: list[Touch], ours: Result, coarse: ExudynResu
         scale = max(abs(others[1]), trajectory.scale or 0.0) or None
         moved = abs(others[0] - others[1])
         title = f"{channel} {name} (t = {until:.5f} s)"
-        rows.append(Row(title, unit, mine, others[1], STATE, "relative", moved, scale))
+        rows.append(Row(title, unit, mine, others[1], STATE, "relative", moved, scale, channel=channel, at=until))
         rows.append(trajectory)
     return rows
 
@@ -259,6 +279,8 @@ def _trajectory_row(
         "relative",
         moved,
         found.scale or None,
+        channel=channel,
+        at=found.at,
     )
 
 

@@ -41,7 +41,7 @@ TIMES = (1.0, 0.5, 0.25)
 """The times T, in parts of the longest one."""
 LONGEST_TIME = 1.0 / 3000.0
 """In parts of the run."""
-RETURN_RATE = 60.0
+RETURN_RATE = 20.0
 """r, in parts of 1/(length of the run)."""
 STEPS_IN_TIME = 3.0
 DURATION = 10.0
@@ -189,7 +189,7 @@ def _channel_rows(
         title = f"{channel} {name} (t = {t[k]:.5g} s)"
         rows.append(
             Row(title, unit, float(mine[k]), float(limit[k]), STATE, "relative", float(moved[k]),
-                found.scale or None, ours_uncertainty=float(own[k]))
+                found.scale or None, ours_uncertainty=float(own[k]), channel=channel, at=float(t[k]))
         )  # fmt: skip
     return rows
 

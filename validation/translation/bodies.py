@@ -1,9 +1,11 @@
 """Bodies and their weight, and linear systems."""
 
 from collections.abc import Sequence
+from typing import Any
 
-from ...core.elements import BodyElement, LinearSystem, PointMass2D, RigidBody2D
+from ...core.elements import BodyElement, LinearSystem, MovingFrame2D, PointMass2D, RigidBody2D
 from .registry import BodyItems, Build, Column, translates
+from .signals import TimeFunction, time_function
 
 
 @translates(RigidBody2D, PointMass2D)
@@ -27,6 +29,35 @@ def body(record: RigidBody2D | PointMass2D, build: Build) -> None:
         marker = build.add("MarkerBodyMass", bodyNumber=item)
         build.add("LoadMassProportional", markerNumber=marker, loadVector=[*build.model.gravity, 0.0])
     node_columns(record, build, (node,), q0)
+
+
+@translates(MovingFrame2D)
+def moving_frame(record: MovingFrame2D, build: Build) -> None:
+    """NodeRigidBody2D of unit mass without weight, all three coordinates held to the motion by constraints."""
+    q0, v0 = build.start(record.name)
+    node = build.add(
+        "NodeRigidBody2D", referenceCoordinates=list(q0), initialCoordinates=[0.0] * 3, initialVelocities=list(v0)
+    )
+    item = build.add("ObjectRigidBody2D", nodeNumber=node, mass=1.0, inertia=1.0)
+    build.bodies[record.name] = BodyItems(node, item, True, reference=q0)
+    for name, signal, start in zip(record.coordinate_names, record.motions(), q0, strict=True):
+        driven, _ = build.coordinate(record.name, name, record.name)
+        add_motion(build, driven, time_function(signal, build.model), start)
+    node_columns(record, build, (node,), q0)
+
+
+def add_motion(build: Build, driven: Any, motion: TimeFunction, reference: float) -> Any:
+    """ObjectConnectorCoordinate between the ground and a coordinate, with the motion as offset; returns its index."""
+    functions: dict[str, Any] = {}
+    if motion.constant is None:
+        functions = {
+            "offsetUserFunction": lambda mbs, t, item, offset: motion.value(t) - reference,
+            "offsetUserFunction_t": lambda mbs, t, item, offset: motion.rate(t),
+        }
+    return build.add(
+        "ObjectConnectorCoordinate", markerNumbers=[build.ground_coordinate(), driven],
+        offset=motion.value(0.0) - reference, **functions,
+    )  # fmt: skip
 
 
 @translates(LinearSystem)

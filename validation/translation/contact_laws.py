@@ -18,7 +18,7 @@ _LARGEST_CHI_OF_FIRST_BRANCH = 8.0 / 3.0  # both branches of model 2 give this a
 _NEARLY_ELASTIC = 1.0 - 1e-15
 
 
-def is_native(record: Any) -> bool:
+def is_native(record: Any, on_flexible: bool) -> bool:
     """Whether exudyn's contact objects have the law of a contact, and it has no friction.
 
     Raises NotTranslatable for constraint contact.
@@ -26,8 +26,10 @@ def is_native(record: Any) -> bool:
     if isinstance(record.law, ImpactLaw):
         contact_parameters(record.law, record.name)
     law = record.law
+    # letting go early needs the state of bodies, which points of flexible bodies do not have in exudyn
+    early = on_flexible and law.release == "force" and type(law) is KelvinVoigt
     family = isinstance(law, HuntCrossleyFamily) and type(law).formula is HuntCrossleyFamily.formula
-    return record.friction is None and (family or type(law) in (KelvinVoigt, Hertz))
+    return record.friction is None and (family or type(law) in (KelvinVoigt, Hertz)) and not early
 
 
 def contact_parameters(law: object, contact: str) -> dict[str, float | int]:

@@ -53,7 +53,7 @@ def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
     exudyn needs a sphere with a radius, and one deeper than its diameter passes through: so the sphere gets
     a large radius, and the triangle is drawn back as much, which leaves gap and force line unchanged.
     """
-    if not is_native(record):
+    if not is_native(record, _on_flexible(record, build)):
         return add_user_contact(record, build)
     plane, disk = record.plane, record.disk
     size = _size(build)
@@ -82,7 +82,7 @@ def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
 @translates(DiskOnDisk2D)
 def disk_on_disk(record: DiskOnDisk2D, build: Build) -> None:
     """ObjectContactSphereSphere; a user function for laws that exudyn lacks, and for friction."""
-    if not is_native(record):
+    if not is_native(record, _on_flexible(record, build)):
         return add_user_contact(record, build)
     _add(
         build,
@@ -112,6 +112,10 @@ def _add(
     if isinstance(record.law, KelvinVoigt) and record.law.release == "force":
         build.before_step.append(_release(build, item, memory, record.law, shapes))
         build.notes.append(f"{record.name}: switched off at the start of the step where its force would be tensile")
+
+
+def _on_flexible(record: DiskOnHalfPlane2D | DiskOnDisk2D, build: Build) -> bool:
+    return any(m.body != GROUND and build.bodies[m.body].elements for m in record.markers())
 
 
 def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Shapes) -> BeforeStep:

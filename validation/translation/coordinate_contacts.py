@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...core.contact.coordinate_contact import CoordinateContact
-from ...core.contact.laws import Hertz, KelvinVoigt
+from ...core.contact.laws import ForceLaw, Hertz, KelvinVoigt
 from .contact_laws import contact_parameters
 from .formulas import normal_force
 from .registry import Build, CoordinateColumns
@@ -14,7 +14,12 @@ def add_coordinate_contact(record: CoordinateContact, build: Build) -> bool:
     constant), a force that needs no approach speed and no release of its own, no friction."""
     law, factors = record.law, sorted(term.factor for term in record.terms)
     simple = type(law) is Hertz or (type(law) is KelvinVoigt and (law.release == "gap" or law.damping == 0.0))
-    if record.friction is not None or not simple or factors not in ([-1.0], [1.0], [-1.0, 1.0]):
+    if (
+        record.friction is not None
+        or not isinstance(law, ForceLaw)
+        or not simple
+        or factors not in ([-1.0], [1.0], [-1.0, 1.0])
+    ):
         return False
     ends, offset = {1.0: build.ground_coordinate(), -1.0: build.ground_coordinate()}, record.offset
     bodies = {b.name: b for b in build.model.bodies}
@@ -41,8 +46,8 @@ def coordinate_channels(
     """(gap, gap rate, normal force) from the channels of the coordinates; `rates` names that of a coordinate's rate."""
     record = columns.record
     names = [(f"{term.body}.{term.coordinate}", term.factor) for term in record.terms]
-    gap = record.offset + sum(factor * channels[name] for name, factor in names)
-    rate = sum(factor * channels[rates[name]] for name, factor in names)
+    gap = record.offset + np.sum([factor * channels[name] for name, factor in names], axis=0)
+    rate = np.sum([factor * channels[rates[name]] for name, factor in names], axis=0)
     inside = gap < 0.0
     force = np.zeros_like(gap)
     force[inside] = [columns.law(-g, -r, 1.0) for g, r in zip(gap[inside], rate[inside], strict=True)]

@@ -10,6 +10,7 @@ from ...core.elements import Clamp2D, CoordinateDriver, Distance2D, Prismatic2D,
 from ...core.elements.base import Element
 from ...core.model.markers import GROUND
 from ..errors import NotTranslatable
+from .bodies import add_motion
 from .registry import Build, Column, Derived, translates
 from .signals import time_function
 
@@ -96,14 +97,5 @@ def driver(record: CoordinateDriver, build: Build) -> None:
         raise NotTranslatable(f"'{record.name}' drives the ground, which cannot move: name a body")
     driven, reference = build.coordinate(record.body, record.coordinate, record.name)
     motion = time_function(record.motion, build.model)
-    markers = [build.ground_coordinate(), driven]
-    functions: dict[str, Any] = {}
-    if motion.constant is None:
-        functions = {
-            "offsetUserFunction": lambda mbs, t, item, offset: motion.value(t) - reference,
-            "offsetUserFunction_t": lambda mbs, t, item, offset: motion.rate(t),
-        }
-    item = build.add(
-        "ObjectConnectorCoordinate", markerNumbers=markers, offset=motion.value(0.0) - reference, **functions
-    )
+    item = add_motion(build, driven, motion, reference)
     _force_columns(record, build, item, "Force", (1.0,))

@@ -166,17 +166,17 @@ class Force:
         n = len(q)
         if gap >= 0.0:
             return np.zeros((n, n))
-        along, across = np.array(along), np.array(across)
+        push_along, rub_along = np.array(along), np.array(across)
         small_gap, small_rate = -1e-6 * gap, 1e-6 * (abs(rate) + abs(speed)) + 1e-12
         by_gap = (normal - self.normal(gap - small_gap, rate)) / small_gap if small_gap else 0.0
         by_rate = (self.normal(gap, rate + small_rate) - normal) / small_rate
-        push = np.outer(along, along)
+        push = np.outer(push_along, push_along)
         found = (by_q * by_gap + by_v * by_rate) * push
         if tangential != 0.0:
             by_speed = (self.tangential(t, speed + small_rate, normal) - tangential) / small_rate
             ratio = tangential / normal
-            found += by_v * by_speed * np.outer(across, across)
-            found += ratio * (by_q * by_gap + by_v * by_rate) * np.outer(across, along)
+            found += by_v * by_speed * np.outer(rub_along, rub_along)
+            found += ratio * (by_q * by_gap + by_v * by_rate) * np.outer(rub_along, push_along)
         return -found
 
     def before_step(self, end: float, q: Numbers, v: Numbers) -> None:
