@@ -1,5 +1,6 @@
 """FMI 3.0 with the solver: bit for bit the simulation, impacts at their instants, states elsewhere, a C host."""
 
+import ctypes
 import json
 import os
 import shutil
@@ -320,3 +321,18 @@ def test_steps_that_the_binary_makes_alone_are_those_of_the_slave(tmp_path, even
     binary.terminate()
     assert binary.getFloat64([fmu.vr["time"], fmu.vr["ball.vy"]]) == [t, slave["ball.vy"]]
     binary.freeInstance()
+
+
+def test_flags_of_a_step_that_are_null_are_refused(ball):
+    """By the first step, which Python makes, and by one that the binary could make alone."""
+    fmu = ball.instance()
+    step = ctypes.CDLL(fmu.dll._name).fmi3DoStep
+    step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_bool, *[ctypes.c_void_p] * 4]
+    component = fmu.component if isinstance(fmu.component, int) else fmu.component.value
+    assert step(component, 0.0, 1e-5, True, None, None, None, None) == 3
+    for k in range(3):
+        fmu.doStep(k * 1e-5, 1e-5)
+    assert step(component, 3e-5, 1e-5, True, None, None, None, None) == 3
+    fmu.doStep(3e-5, 1e-5)
+    assert fmu.getFloat64([ball.vr["time"]]) == [pytest.approx(4e-5)]
+    fmu.freeInstance()
