@@ -62,9 +62,28 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
             add(variables, "Enumeration", **own, declaredType=variable.enumeration, start=variable.start)
         else:
             add(variables, _TYPES[variable.kind], **own, **limits(variable), start=variable.start)
+    for array in table.arrays:
+        first = array.elements[0]
+        what = f"{array.name} as an array: " + ", ".join(e.name.rpartition(".")[2] for e in array.elements)
+        element = add(
+            variables,
+            "Float64",
+            name=array.name,
+            valueReference=array.reference,
+            description=what,
+            causality="output",
+            variability="continuous",
+            initial="calculated",
+            intermediateUpdate=True,
+            **{k: v for k, v in limits(first).items() if k != "nominal"},
+        )
+        add(element, "Dimension", start=len(array.elements))
     structure = add(root, "ModelStructure")
     for part, depends_on in (("Output", known.of_output), ("InitialUnknown", known.at_start)):
         for variable in table.of_role("output"):
             found = dependencies(v.reference for v in depends_on(variable))
             add(structure, part, valueReference=variable.reference, **found)
+        for array in table.arrays:
+            felt = {v.reference for element in array.elements for v in depends_on(element)}
+            add(structure, part, valueReference=array.reference, **dependencies(sorted(felt)))
     return finish(root)

@@ -11,6 +11,7 @@ a further input does not renumber the outputs:
     1000 ...            the model's parameters, in the order of the model
     1000000 ...         the model's inputs, in the order of the model
     2000000 ...         the channels, in the order of `Simulation.channels`
+    3000000 ...         arrays of channels (FMI 3.0), which hold no values of their own
 """
 
 from collections.abc import Iterable, Mapping
@@ -20,6 +21,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import arrays_of
 from .errors import FmuValueError
 
 Kind = Literal["real", "integer", "boolean", "string"]
@@ -30,6 +32,7 @@ KINDS: tuple[Kind, ...] = ("real", "integer", "boolean", "string")
 EVENTS = "solver.events"
 TIME, METHOD, FIRST_OPTION, FIRST_FIGURE = 0, 1, 10, 100
 FIRST_PARAMETER, FIRST_LAW, FIRST_INPUT, FIRST_CHANNEL = 1000, 500_000, 1_000_000, 2_000_000
+FIRST_ARRAY = 3_000_000
 PLANS_KEPT = 256  # a master asks for the same few lists of references over and over
 
 
@@ -101,6 +104,8 @@ class VariableTable:
             for kind in KINDS
         }
         """Positions of the outputs among their kind."""
+        self.arrays = arrays_of(self.variables, FIRST_ARRAY)
+        self._elements = {array.reference: array.elements for array in self.arrays}
         self._plans: dict[tuple[Kind, bytes], Plan] = {}
 
     def block(self, block: Block) -> list[Variable]:
@@ -121,7 +126,7 @@ class VariableTable:
         key = (kind, references.tobytes())
         plan = self._plans.get(key)
         if plan is None:
-            variables = tuple(self._find(kind, int(r)) for r in references)
+            variables = tuple(v for r in references for v in self._find(kind, int(r)))
             positions = np.array([self.position[v.reference] for v in variables], dtype=np.intp)
             enumerations = frozenset(v.enumeration is not None for v in variables)
             unbounded = kind == "real" and all(
@@ -133,7 +138,10 @@ class VariableTable:
             self._plans[key] = plan
         return plan
 
-    def _find(self, kind: Kind, reference: int) -> Variable:
+    def _find(self, kind: Kind, reference: int) -> tuple[Variable, ...]:
+        """The variable, or the elements of the array."""
+        if kind == "real" and reference in self._elements:
+            return self._elements[reference]
         variable = self.by_reference.get(reference)
         if variable is None:
             raise FmuValueError(
@@ -147,7 +155,7 @@ class VariableTable:
                 f"value reference {reference} is '{variable.name}', which is of kind {own}, not "
                 f"{kind}: use the get and set functions for {how}"
             )
-        return variable
+        return (variable,)
 
     def to_data(self) -> list[dict[str, Any]]:
         """The table as JSON data."""

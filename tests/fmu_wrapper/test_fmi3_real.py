@@ -336,3 +336,39 @@ def test_flags_of_a_step_that_are_null_are_refused(ball):
     fmu.doStep(3e-5, 1e-5)
     assert fmu.getFloat64([ball.vr["time"]]) == [pytest.approx(4e-5)]
     fmu.freeInstance()
+
+
+def test_arrays_are_their_scalars(tmp_path):
+    """Vectors of bodies and joints: values, dependencies and derivatives of the elements, two behind one reference."""
+    fmu = Fmu3(load("slider_crank_stop", driven=True), tmp_path)
+    arrays = {v.name: v for v in fmu.description.modelVariables if v.dimensions}
+    assert {"crank.position", "crank.velocity", "crank.acceleration", "rod.position"} <= set(arrays)
+    parts = {
+        "position": ("x", "y"),
+        "velocity": ("vx", "vy"),
+        "acceleration": ("ax", "ay"),
+        "force": ("force_x", "force_y"),
+    }
+    instance = fmu.instance()
+    instance.setFloat64([fmu.vr["torque"]], [0.3])
+    instance.doStep(0.0, 0.05)
+    units = {v.name: v.unit for v in fmu.description.modelVariables}
+    for name, array in arrays.items():
+        owner, _, vector = name.rpartition(".")
+        scalars = [f"{owner}.{part}" for part in parts[vector]]
+        references = [fmu.vr[scalar] for scalar in scalars]
+        assert instance.getFloat64([array.valueReference], nValues=2) == instance.getFloat64(references)
+        assert {units[scalar] for scalar in scalars} == {array.unit}
+    mixed = [fmu.vr["time"], fmu.vr["crank.position"], fmu.vr["crank.x"]]
+    values = instance.getFloat64(mixed, nValues=4)
+    assert values[0] == 0.05 and values[1] == values[3]
+    gradient = instance.getDirectionalDerivative([fmu.vr["crank.ax"], fmu.vr["crank.ay"]], [fmu.vr["torque"]], [1.0])
+    assert any(gradient)
+    with pytest.raises(FMICallException):
+        instance.getFloat64([fmu.vr["crank.position"]])  # room for one
+    with pytest.raises(FMICallException):
+        instance.setFloat64([fmu.vr["crank.position"]], [0.0, 0.0])
+    unknowns = {u.variable.name: u for u in fmu.description.outputs}
+    felt = {v.name for v in unknowns["crank.acceleration"].dependencies}
+    assert felt == {v.name for part in ("ax", "ay") for v in unknowns[f"crank.{part}"].dependencies} == {"torque"}
+    instance.freeInstance()
