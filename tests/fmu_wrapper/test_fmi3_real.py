@@ -372,3 +372,28 @@ def test_arrays_are_their_scalars(tmp_path):
     felt = {v.name for v in unknowns["crank.acceleration"].dependencies}
     assert felt == {v.name for part in ("ax", "ay") for v in unknowns[f"crank.{part}"].dependencies} == {"torque"}
     instance.freeInstance()
+
+
+def test_derivatives_of_arrays_are_those_of_their_elements(tmp_path):
+    fmu = Fmu3(load("slider_crank_stop", driven=True), tmp_path)
+    instance = fmu.instance()
+    instance.setFloat64([fmu.vr["torque"]], [0.3])
+    instance.doStep(0.0, 0.05)
+    known = [fmu.vr["torque"]]
+    scalars, array = [fmu.vr["crank.ax"], fmu.vr["crank.ay"]], [fmu.vr["crank.acceleration"]]
+    forward = instance.getDirectionalDerivative(scalars, known, [1.0])
+    values = (ctypes.c_double * 1)()
+    for unknowns in (scalars, array):
+        instance.fmi3GetAdjointDerivative(
+            instance.component, (ctypes.c_uint32 * len(unknowns))(*unknowns), len(unknowns),
+            (ctypes.c_uint32 * 1)(*known), 1, (ctypes.c_double * 2)(2.0, -3.0), 2, values, 1,
+        )  # fmt: skip
+        assert values[0] == pytest.approx(2.0 * forward[0] - 3.0 * forward[1], rel=1e-12) != 0.0
+    rates = (ctypes.c_double * 3)()
+    mixed = [fmu.vr["crank.y"], fmu.vr["crank.position"]]
+    instance.fmi3GetOutputDerivatives(
+        instance.component, (ctypes.c_uint32 * 2)(*mixed), 2, (ctypes.c_int32 * 2)(1, 1), rates, 3
+    )
+    vx, vy = instance.getFloat64([fmu.vr["crank.vx"], fmu.vr["crank.vy"]])
+    assert list(rates) == [vy, vx, vy]
+    instance.freeInstance()
