@@ -17,6 +17,7 @@ from ...core import Result
 from ...core.contact.friction import CoulombFriction
 from ...core.contact.laws import Gonthier, ImpactLaw, KelvinVoigt
 from ...core.description import Model
+from ...core.elements import FlexibleBody
 from ..exudyn_run import ExudynResult, run_exudyn, settings_for
 from ..metrics import power_limit, trajectory_difference
 from ..translation.formulas import StickingCoulomb
@@ -43,6 +44,9 @@ LONGEST_TIME = 1.0 / 3000.0
 """In parts of the run."""
 RETURN_RATE = 20.0
 """r, in parts of 1/(length of the run)."""
+FLEXIBLE_RETURN_RATE = 400.0
+"""The same on flexible bodies: at their contacts is next to no mass, so that little is given back, but the spring that
+follows from it has to hold what bends the whole body."""
 STEPS_IN_TIME = 3.0
 DURATION = 10.0
 """Of a contact with restitution, in T."""
@@ -77,7 +81,8 @@ def compare_persistent(task: Task) -> Comparison:
     found = touches(first_run.events)
     longest = (task.step or 0.0) * STEPS_IN_TIME or LONGEST_TIME * scenario.t_end
     scales = {c.name: _scale(scenario.model, c, found) for c in scenario.model.contacts}
-    rate = RETURN_RATE / scenario.t_end
+    flexible = any(isinstance(b, FlexibleBody) for b in task.exudyn_model.bodies)
+    rate = (FLEXIBLE_RETURN_RATE if flexible else RETURN_RATE) / scenario.t_end
     runs: list[ExudynResult] = []
     times = [share * longest for share in TIMES]
     for time, factor in (*((time, 1.0) for time in times), (times[-1], 2.0)):
