@@ -138,7 +138,9 @@ def numbers_in(buffer: Any, dtype: Any) -> npt.NDArray[Any]:
 
 
 def put(buffer: Any, code: str, value: Any, place: int = 0) -> None:
-    """Write one number into a buffer; `code` is its type as in the module struct."""
+    """Write one number into a buffer; `code` is its type as in the module struct. Raises FmuValueError for NULL."""
+    if not len(buffer):
+        raise FmuValueError("NULL was given for what the call answers with: pass the address of a variable")
     memoryview(buffer).cast("B").cast(code)[place] = value  # type: ignore[call-overload]
 
 

@@ -203,10 +203,11 @@ class Fmi3Calls(Calls):
         """Derivatives with respect to each input of the outputs' sum with weights `seed`, into `sensitivity`."""
         outputs, inputs = references_in(unknowns), references_in(knowns)
         weights, room = numbers_in(seed, np.float64), numbers_in(sensitivity, np.float64)
-        if len(weights) != len(outputs) or len(room) != len(inputs):
+        unknown = len(self.slave.variables.plan("real", outputs).variables)  # an array has several
+        if len(weights) != unknown or len(room) != len(inputs):
             raise FmuValueError(
                 f"a seed of {len(weights)} numbers and room for {len(room)} sensitivities were given for "
-                f"{len(outputs)} unknowns and {len(inputs)} knowns"
+                f"{unknown} unknowns and {len(inputs)} knowns"
             )
         room[:] = [
             weights @ self.slave.directional_derivative(outputs, inputs[i : i + 1], np.ones(1))

@@ -52,6 +52,9 @@ class SlaveDerivatives(SlaveState):
         """
         self._need("get output derivatives", Phase.STEP, Phase.INTERMEDIATE, *EVENT_PHASES, Phase.TERMINATED)
         outputs = self.variables.plan("real", references).variables
+        if len(outputs) != len(references) == len(orders):  # the order of an array is that of its elements
+            sizes = [len(self.variables.plan("real", references[i : i + 1]).variables) for i in range(len(references))]
+            orders = np.repeat(np.asarray(orders), sizes).tolist()
         check_orders(outputs, orders)
         if self._stale:
             self._refresh()

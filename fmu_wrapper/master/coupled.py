@@ -48,13 +48,24 @@ class Coupled:
         self.rollbacks = 0
 
     def read(self, links: Iterable[int]) -> Vector:
-        """What the outputs at the other ends of `links` make their inputs."""
+        """What the outputs at the other ends of `links` make their inputs. Raises CouplingError for one that is not
+        finite."""
         links = list(links)
         found = np.empty(len(links))
         for i in dict.fromkeys(self.links[k].source for k in links):
             places = [p for p, k in enumerate(links) if self.links[k].source == i]
             found[places] = self.instances[i].get([self.links[links[p]].output.reference for p in places])
+        if not np.isfinite(found).all():
+            self._refuse(links, found)
         return np.asarray(found * self.factors[links])
+
+    def _refuse(self, links: Sequence[int], found: Vector) -> None:
+        k, x = next((k, x) for k, x in zip(links, found.tolist(), strict=True) if not np.isfinite(x))
+        raise CouplingError(
+            f"output '{self.links[k].output.name}' of instance '{self.instances[self.links[k].source].name}' is {x!r}: "
+            "the instance runs away or is out of its range; check its parameters and inputs, use a smaller step or a "
+            "controlled one"
+        )
 
     def write(self, links: Iterable[int], values: Vector) -> None:
         """Set inputs."""
@@ -107,7 +118,7 @@ class Coupled:
 
         Raises
         ------
-        CouplingError : if an algebraic loop has no solution that Newton's iteration finds.
+        CouplingError : if an algebraic loop has no solution that Newton's iteration finds, or an output is not finite.
         """
         for stage in self.graph.stages:
             links = list(stage.links)

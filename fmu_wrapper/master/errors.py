@@ -11,7 +11,8 @@ class MasterError(FmuError):
 
 
 class CouplingError(MasterError):
-    """An iteration between the instances does not converge. A variable step is tried anew with a smaller one."""
+    """An iteration between the instances does not converge, or an output is not finite. A variable step is tried anew
+    with a smaller one."""
 
 
 def near(wanted: str, known: Iterable[str], most: int = 4) -> str:

@@ -1,5 +1,6 @@
 """FMI 3.0 with the solver: bit for bit the simulation, impacts at their instants, states elsewhere, a C host."""
 
+import ctypes
 import json
 import os
 import shutil
@@ -323,6 +324,21 @@ def test_steps_that_the_binary_makes_alone_are_those_of_the_slave(tmp_path, even
     binary.freeInstance()
 
 
+def test_flags_of_a_step_that_are_null_are_refused(ball):
+    """By the first step, which Python makes, and by one that the binary could make alone."""
+    fmu = ball.instance()
+    step = ctypes.CDLL(fmu.dll._name).fmi3DoStep
+    step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_bool, *[ctypes.c_void_p] * 4]
+    component = fmu.component if isinstance(fmu.component, int) else fmu.component.value
+    assert step(component, 0.0, 1e-5, True, None, None, None, None) == 3
+    for k in range(3):
+        fmu.doStep(k * 1e-5, 1e-5)
+    assert step(component, 3e-5, 1e-5, True, None, None, None, None) == 3
+    fmu.doStep(3e-5, 1e-5)
+    assert fmu.getFloat64([ball.vr["time"]]) == [pytest.approx(4e-5)]
+    fmu.freeInstance()
+
+
 def test_arrays_are_their_scalars(tmp_path):
     """Vectors of bodies and joints: values, dependencies and derivatives of the elements, two behind one reference."""
     fmu = Fmu3(load("slider_crank_stop", driven=True), tmp_path, arrays=True)
@@ -364,3 +380,28 @@ def test_arrays_are_left_out_unless_asked_for(ball, tmp_path):
     assert not any(v.dimensions for v in ball.description.modelVariables)
     with pytest.raises(ExportError, match=r"arrays were asked of FMI 2\.0"):
         export_fmu(ball_model(), tmp_path / "x.fmu", "2.0", arrays=True)
+
+
+def test_derivatives_of_arrays_are_those_of_their_elements(tmp_path):
+    fmu = Fmu3(load("slider_crank_stop", driven=True), tmp_path, arrays=True)
+    instance = fmu.instance()
+    instance.setFloat64([fmu.vr["torque"]], [0.3])
+    instance.doStep(0.0, 0.05)
+    known = [fmu.vr["torque"]]
+    scalars, array = [fmu.vr["crank.ax"], fmu.vr["crank.ay"]], [fmu.vr["crank.acceleration"]]
+    forward = instance.getDirectionalDerivative(scalars, known, [1.0])
+    values = (ctypes.c_double * 1)()
+    for unknowns in (scalars, array):
+        instance.fmi3GetAdjointDerivative(
+            instance.component, (ctypes.c_uint32 * len(unknowns))(*unknowns), len(unknowns),
+            (ctypes.c_uint32 * 1)(*known), 1, (ctypes.c_double * 2)(2.0, -3.0), 2, values, 1,
+        )  # fmt: skip
+        assert values[0] == pytest.approx(2.0 * forward[0] - 3.0 * forward[1], rel=1e-12) != 0.0
+    rates = (ctypes.c_double * 3)()
+    mixed = [fmu.vr["crank.y"], fmu.vr["crank.position"]]
+    instance.fmi3GetOutputDerivatives(
+        instance.component, (ctypes.c_uint32 * 2)(*mixed), 2, (ctypes.c_int32 * 2)(1, 1), rates, 3
+    )
+    vx, vy = instance.getFloat64([fmu.vr["crank.vx"], fmu.vr["crank.vy"]])
+    assert list(rates) == [vy, vx, vy]
+    instance.freeInstance()

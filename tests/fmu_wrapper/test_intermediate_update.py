@@ -6,7 +6,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 from fmu_helpers import ball_model
-from test_input_derivatives import MASS, mass_model
+from test_input_slopes import MASS, mass_model
 from tlismni.core import Simulation
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.in_process3 import InProcess3

@@ -122,3 +122,15 @@ def test_inputs_that_go_on_linearly_need_instances_that_let_them():
     for algorithm, settings in (("jacobi", {"extrapolation": "linear"}), ("newton", {"hold": "linear"})):
         with pytest.raises(MasterError, match=r"takes no derivatives of inputs, which '[ab]\.force' needs"):
             UNDAMPED.run(algorithm, 0.05, 0.5, fmi="3.0", **settings)
+
+
+@pytest.mark.parametrize("control", [None, {"tolerance": 1e-3, "smallest": 0.01}])
+@pytest.mark.parametrize("algorithm", ["jacobi", "gauss-seidel"])
+def test_an_output_that_is_not_finite_ends_the_run(monkeypatch, algorithm, control):
+    """An instance of somebody else's that hands out NaN after a while."""
+    a, b = UNDAMPED.instances()
+    plain = a.get
+    monkeypatch.setattr(a, "get", lambda references: plain(references) * (np.nan if a.steps > 5 else 1.0))
+    settings = MasterSettings(algorithm=algorithm, step=0.05, t_end=1.0, control=control)
+    with pytest.raises(MasterError, match=r"'mass\.x' of instance 'a'.*nan"):
+        run([a, b], connections(40.0), settings, ("*.mass.x",))
