@@ -143,9 +143,10 @@ def native(fmu: Fmu, folder: Path, steps: int, amplitude: float) -> tuple[float,
     location = resources.as_uri() if fmu.version == 2 else f"{resources}{os.sep}"
     variables = sysconfig.get_config_vars()
     library = Path(variables["LIBDIR"]) / variables["LDLIBRARY"]
-    # pythonfmu's binary wants libpython in the host already, and Python finds its packages by the interpreter on PATH
-    path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
-    environment = {**os.environ, "LD_PRELOAD": str(library), "PATH": path, "PYTHONPATH": str(HERE / "fmu_peers")}
+    # pythonfmu's binary wants libpython in the host already, and to be told where its packages are
+    packages = sysconfig.get_path("purelib")
+    peers = {"PYTHONPATH": os.pathsep.join((str(HERE / "fmu_peers"), packages)), "PEER_SITE": packages}
+    environment = {**os.environ, **({} if fmu.identifier == "chain" else {"LD_PRELOAD": str(library), **peers})}
     answer = subprocess.run(
         [str(host), str(fmu.library), location, fmu.token, *map(str, fmu.vr), str(STEP), str(steps), str(amplitude)],
         capture_output=True, text=True, env=environment, check=False,

@@ -87,8 +87,8 @@ def _extend(record, own):  # type: ignore[no-untyped-def]
         folders = []  # compiled packages of another version do not load
     before = list(sys.path)
     for folder in folders:
-        if folder not in sys.path:
-            site.addsitedir(folder)  # honours the .pth file of an editable install, which an entry would not
+        # an entry of sys.path, which PYTHONPATH may have made, does not honour the .pth file of an editable install
+        site.addsitedir(folder)
     if own:  # a venv's packages go before those of the Python that it is made from
         added = [entry for entry in sys.path if entry not in before]
         first = next(

@@ -8,9 +8,11 @@ is met by the next step: nothing feels it at once, but the start of all that is 
 
 from collections.abc import Callable, Iterator
 
+from ..core.contact.contact2d import Contact2D
 from ..core.contact.laws import ForceLaw
 from ..core.description import Model
 from ..core.elements import Element
+from ..core.elements.base import BodyElement
 from ..core.model.markers import GROUND
 from .variables import EVENTS, Variable, VariableTable
 
@@ -68,18 +70,14 @@ class Dependencies:
                 self._led.setdefault(v.name, set()).add(channel)
 
 
-def bodies_of(element: Element) -> set[str]:
+def bodies_of(element: Element) -> frozenset[str]:
     """The bodies that an element acts on, a body itself included; without the ground."""
-    found = {marker.body for marker in element.markers()} | {body for body, _ in element.moved_coordinates()}
-    found |= {name for name in (getattr(element, "body", None), getattr(element, "cable", None)) if name}
-    if hasattr(element, "coordinate_records"):
-        found.add(element.name)
-    return found - {GROUND}
+    return element.acts_on() - {GROUND}
 
 
 def _felt_channels(element: Element) -> Iterator[str]:
     """Names of the channels of an element that feel a force at once."""
-    if hasattr(element, "coordinate_records"):
+    if isinstance(element, BodyElement):
         yield from (f"{element.name}.{c.acceleration}" for c in element.coordinate_records())
     if element.constraint_rows:
         yield from (channel.name for channel in element.multiplier_channels())
@@ -87,12 +85,8 @@ def _felt_channels(element: Element) -> Iterator[str]:
         yield from (f"{element.name}.{name}" for name in FELT_BY_CONTACT)
 
 
-def _is_force_contact(element: Element) -> bool:
-    return isinstance(getattr(element, "law", None), ForceLaw)
-
-
 def _is_impact_contact(element: Element) -> bool:
-    return hasattr(element, "law") and not _is_force_contact(element)
+    return isinstance(element, Contact2D) and not isinstance(element.law, ForceLaw)
 
 
 def _groups(model: Model, ties: Callable[[Element], bool]) -> list[set[str]]:

@@ -1,5 +1,11 @@
 """The case that all contenders of fmu_cost.py step: a chain of ten links with a torque as input."""
 
+import os
+import site
+
+if "PEER_SITE" in os.environ:  # in a native host Python does not know the environment of the benchmark
+    site.addsitedir(os.environ["PEER_SITE"])
+
 from tlismni.core import AppliedTorque2D, Input, InputSignal, Model, Simulation
 from tlismni.models import load
 

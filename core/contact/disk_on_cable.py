@@ -56,6 +56,9 @@ class DiskOnCable2D(Contact2D):
             raise ValueError(f"contact '{self.name}': its disk is on '{on.name}', a point of '{self.cable}' itself: "
                              "the two would touch for ever; give the disk another body")  # fmt: skip
 
+    def acts_on(self) -> frozenset[str]:
+        return super().acts_on() | {self.cable}
+
     def extent(self) -> float:
         return self.disk.radius + self.thickness
 

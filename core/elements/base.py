@@ -155,6 +155,10 @@ class Element(Record):
         """(body, coordinate name) pairs that it acts on by name (they must exist)."""
         return ()
 
+    def acts_on(self) -> frozenset[str]:
+        """Names of the bodies whose motion it feels or changes, its own if it is one; the ground may be among them."""
+        return frozenset((*(marker.body for marker in self.markers()), *(body for body, _ in self.moved_coordinates())))
+
     def signals(self) -> Sequence[Signal]:
         """The time functions it uses."""
         return ()
@@ -216,6 +220,9 @@ class BodyElement(Element):
     def coordinate_records(self) -> Sequence[Coordinate]:
         """Its coordinates, in the order of `initial_state`."""
         raise NotImplementedError(f"{type(self).__name__} must name its coordinates")
+
+    def acts_on(self) -> frozenset[str]:
+        return super().acts_on() | {self.name}
 
     @property
     def coordinate_names(self) -> tuple[str, ...]:

@@ -182,6 +182,9 @@ class MaterialPoint2D(PlanarFrame):
                              f"({flexible or 'there is none yet'}), or put a Marker2D on a rigid body")  # fmt: skip
         body.material_point(self.point)
 
+    def acts_on(self) -> frozenset[str]:
+        return super().acts_on() | {self.body}
+
     def coordinate_records(self) -> Sequence[Coordinate]:
         return (X, Y, ANGLE)
 

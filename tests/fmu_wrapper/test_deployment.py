@@ -283,3 +283,22 @@ def test_the_same_sources_give_the_same_file(tmp_path):
     assert paths[0].read_bytes() == paths[1].read_bytes()
     with zipfile.ZipFile(paths[0]) as content:
         assert fmpy.read_model_description(paths[0]) and "resources/tlismni.zip" in content.namelist()
+
+
+def test_an_editable_install_behind_an_entry_of_the_path(tmp_path):
+    """PYTHONPATH with the packages' folder makes an entry without its .pth files: tlismni is found all the same."""
+    path = export_fmu(ball_model(), tmp_path / "x.fmu")
+    with zipfile.ZipFile(path) as archive:
+        archive.extractall(tmp_path / "unzipped")
+    token = json.loads((tmp_path / "unzipped" / "resources" / "settings.json").read_text())["token"]
+    script = """
+import runpy, sys
+sys.path.append(sys.argv[1])
+boot = runpy.run_path(sys.argv[2] + "/boot.py")
+calls = boot["create"](2, "it", sys.argv[3], sys.argv[2], 0, print, 0, 0, 1, None, b"")
+print(type(calls).__name__)
+"""
+    packages, resources = sysconfig.get_path("purelib"), str(tmp_path / "unzipped" / "resources")
+    command = [sys.executable, "-S", "-c", script, packages, resources, token]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.stdout.strip() == "Fmi2Calls", done.stderr[-1500:]
