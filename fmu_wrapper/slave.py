@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.model.signals import MOST_DERIVATIVES
 from . import log as logs
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
@@ -20,7 +21,7 @@ from .intermediate import Updates
 from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, SOUND, Phase
 from .run import Run, StepEnd
 from .slave_derivatives import SlaveDerivatives
-from .values import MOST_DERIVATIVES, check_values, item_value
+from .values import check_values, item_value
 from .variables import Kind, Variable
 
 MOST_STEPS = 1e12

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.model.signals import MOST_DERIVATIVES
 from .errors import FmuValueError
 from .settings import check_solver_value
 from .variables import KINDS, Kind, Plan, Variable, VariableTable
 
 DTYPES: dict[Kind, str] = {"real": "<f8", "integer": "<i4", "boolean": "|b1", "string": "object"}
 NUMERIC: tuple[Kind, ...] = ("real", "integer", "boolean")
-MOST_DERIVATIVES = 2
-"""Order of the highest derivative that an input can go on with."""
 INT32 = range(-(2**31), 2**31)
 
 

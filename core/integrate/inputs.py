@@ -6,14 +6,13 @@ from numbers import Real
 from typing import TYPE_CHECKING
 
 from ..errors import ModelError
-from ..model.signals import INPUT_SIZE
+from ..model.signals import MOST_DERIVATIVES
 from . import motions
 from .restore import restart_here
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-MOST_DERIVATIVES = INPUT_SIZE - 2
 SAME = 1e-14
 """Relative difference up to which an input with derivatives goes on as it did: what a caller computes along a straight
 line comes with rounding. Inputs without derivatives are compared bit by bit."""

@@ -17,6 +17,8 @@ CONSTANT, STEP, RAMP, SINE, POLYNOMIAL, TABLE, INPUT = range(7)
 
 INPUT_SIZE = 4
 """Numbers of an input: value, first and second derivative, and the time (s) at which it has these."""
+MOST_DERIVATIVES = INPUT_SIZE - 2
+"""Order of the highest derivative that an input can go on with."""
 
 
 class TimeFunction(Record):
