@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
-from ..compiled.records import ArrayRecord
+from ..compiled.records import ArrayRecord, Record
 from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
 from ..model.motion import input_rows
@@ -117,7 +117,7 @@ class Workspace:
             assembly.bind(self)
 
     @property
-    def record(self) -> np.void:
+    def record(self) -> Record:
         """The workspace record."""
         return self._record.record
 
