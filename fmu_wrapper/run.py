@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -64,8 +64,7 @@ def as_slice(positions: list[int]) -> slice | npt.NDArray[np.intp]:
     return slice(first, last) if positions == list(range(first, last)) else np.array(positions, dtype=np.intp)
 
 
-@dataclass(frozen=True)
-class StepEnd:
+class StepEnd(NamedTuple):
     """How a step ended: where (s), whether with an event that has not happened yet, whether before its time."""
 
     time: float

@@ -168,9 +168,9 @@ class Slave(SlaveDerivatives):
     @property
     def horizon(self) -> float:
         """Time, s, up to which steps with the present inputs only move the clock; minus infinity for none."""
-        if self._phase != Phase.STEP or self._run is None or self._untold or self._values.sloped or self.updates:
+        if not self.steady or self._run is None or self._untold:
             return -math.inf
-        return min(self._run.horizon, math.inf if self._stop_time is None else self._stop_time)
+        return self._run.horizon if self._stop_time is None else min(self._run.horizon, self._stop_time)
 
     def catch_up(self, t: float) -> None:
         """Move the clock to `t`, s, within the horizon, after steps that nobody told of."""
@@ -224,10 +224,27 @@ class Slave(SlaveDerivatives):
         """
         self._need("get values", *RUNNING)
         plan = self.variables.plan(kind, references)
-        if self._stale and "output" in plan.roles:
+        if "output" in plan.roles:
+            self.look()
+        return self._values.vectors[kind].take(plan.positions)
+
+    def look(self) -> None:
+        """Make the outputs those of the present time and inputs. Raises what `get` raises."""
+        self._need("get values", *RUNNING)
+        if self._stale:
             self._need("get outputs that were not asked for before", *SOUND)
             self._refresh()
-        return self._values.vectors[kind].take(plan.positions)
+
+    def foresee(self) -> bool:
+        """After a step, make the outputs those of its end. False if they cannot be computed: who asks will hear why."""
+        if self._untold or self._run is None or self._phase not in SOUND:
+            return False
+        try:
+            self._run.read(self._values)
+        except Exception:
+            return False
+        self._stale = False
+        return True
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.

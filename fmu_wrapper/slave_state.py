@@ -4,12 +4,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
 from .intermediate import Updates
 from .log import Log, LogCallback
 from .phases import EVENT_PHASES, WAYS, Phase
-from .run import Run, SimulationFactory, build_simulation
+from .run import Run, SimulationFactory, as_slice, build_simulation
 from .settings import Settings
 from .snapshot import Snapshot, identity
 from .values import Values
@@ -44,6 +47,7 @@ class SlaveState:
             variables = build_table(self.model, self.settings, channels)
         self.variables = variables
         self._input_rows = {v.reference: i for i, v in enumerate(variables.block("input"))}
+        self._inputs = as_slice([variables.position[v.reference] for v in variables.block("input")])
         self._time_position = variables.position[TIME]
         self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
@@ -59,6 +63,27 @@ class SlaveState:
     def time(self) -> float:
         """The slave's own time, s."""
         return self._time
+
+    # what the shim sets and gets by itself (`shared_calls.py`)
+
+    @property
+    def reals(self) -> npt.NDArray[np.float64]:
+        """Values of all real variables."""
+        return self._values.vectors["real"]
+
+    @property
+    def steady(self) -> bool:
+        """Whether inputs are numbers that can be set between steps, and nothing else has to be thought of."""
+        return self._phase is Phase.STEP and not self._values.sloped and self.updates is None
+
+    def give_inputs(self, reals: npt.NDArray[np.float64]) -> None:
+        """Put the inputs into `reals`, in the order of `self.reals`."""
+        reals[self._inputs] = self._values.vectors["real"][self._inputs]
+
+    def take_inputs(self, reals: npt.NDArray[np.float64]) -> None:
+        """Set the inputs to those in `reals`, finite ones, while `steady`."""
+        self._values.vectors["real"][self._inputs] = reals[self._inputs]
+        self._stale = self._untold = True
 
     def reset(self) -> None:
         """Back to the state of a new slave: start values, no experiment, phase `instantiated`.
