@@ -92,6 +92,7 @@ class Run:
         changed_model, changed_settings = effective(model, settings, values)
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
         self._set_columns(values.table)
+        self._exchange = getattr(self._simulation, "exchange", None)
 
     @staticmethod
     def key_of(values: Values, t0: float) -> tuple[Any, ...]:
@@ -156,6 +157,22 @@ class Run:
             self._simulation.set_inputs(told)
         self._applied = wanted
 
+    @property
+    def quick(self) -> bool:
+        """Whether there is `drive`."""
+        return self._exchange is not None
+
+    def drive(self, values: Values, t: float, read: bool) -> bool:
+        """Tell the simulation the inputs, which have no derivatives, integrate to `t`, s, events included, and read if
+        that is wanted. False if it was not, or the values have to be asked for."""
+        courses = values.courses
+        found = self._exchange(courses[0], t, read)  # type: ignore[misc]
+        self._applied = courses
+        if found is None:
+            return False
+        self._put(found, values)
+        return True
+
     def follow(self, values: Values) -> None:
         """The inputs have gone on by their derivatives, as the simulation knows."""
         self._applied = values.courses
@@ -215,9 +232,13 @@ class Run:
                 f"at t = {self._simulation.t!r} s these values are not finite: {', '.join(bad)}; "
                 "the model runs away or a parameter is wrong: check parameters and inputs, use smaller steps"
             )
+        self._put(found, values)
+
+    def _put(self, found: npt.NDArray[np.float64], values: Values) -> None:
+        """Put finite channels and the number of events into `values`."""
         for kind, positions, columns in self._columns:
             values.vectors[kind][positions] = found.take(columns) if kind == "real" else np.rint(found.take(columns))
-        values.vectors["integer"][self._events] = len(self.events)
+        values.vectors["integer"][self._events] = len(self._simulation.events)
 
     def state(self) -> Any:
         """The solver's state."""

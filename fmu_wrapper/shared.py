@@ -1,5 +1,5 @@
-"""What the slave of an FMU shares with the shim (shim/shared.h): real values and what holds of them, so that calls whose
-answer is known need no Python."""
+"""What the slave of an FMU shares with the shim (shim/shared.h): real values and what holds of them, so that calls
+whose answer is known need no Python."""
 
 from typing import Any
 

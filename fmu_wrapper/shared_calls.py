@@ -52,14 +52,14 @@ class SharedCalls:
         plan = self.slave.variables.plan("real", np.frombuffer(references, dtype=np.uint32))
         return plan.positions.astype(np.int32).tobytes() if plan.roles == {"input"} and plan.unbounded else b""
 
-    def settle(self) -> None:
-        """Tell the slave of the steps and inputs that it has not been told of."""
+    def settle(self, read: bool = False) -> None:
+        """Tell the slave of the steps and inputs that it has not been told of; `read`: outputs are asked next."""
         shared, slave = self._shared, self.slave
         flags = shared.flags
         if flags[BEHIND]:
             flags[BEHIND] = 0
             try:
-                slave.catch_up(shared.numbers[TIME])
+                slave.catch_up(shared.numbers[TIME], read and bool(flags[TOLD]))
             except Exception as error:
                 self.report("catch_up", error)
         if not flags[TOLD]:
@@ -70,16 +70,18 @@ class SharedCalls:
         """The step that is asked; the outputs too if they have been read after the last one."""
         shared, slave = self._shared, self.slave
         numbers, flags = shared.numbers, shared.flags
-        asked, flags[ASKED] = flags[ASKED], 0
         try:
             if flags[BEHIND] or not flags[TOLD]:
                 self.settle()
+            if flags[ASKED]:
+                flags[ASKED] = 0
+                slave.expect_questions()
             numbers[REACHED] = slave.time
             end = slave.do_step(numbers[POINT], numbers[STEP])
             numbers[TIME] = numbers[REACHED] = end.time
             if end.event_due or end.early:
                 flags[EVENT_DUE], flags[EARLY] = end.event_due, end.early
-            if asked and slave.foresee():
+            if slave.fresh:
                 shared.values[:] = slave.reals
                 flags[FRESH] = 1
             else:
@@ -97,7 +99,7 @@ class SharedCalls:
         flags = shared.flags
         try:
             if flags[BEHIND] or not flags[TOLD]:
-                self.settle()
+                self.settle(read=True)
             slave.look()
             shared.values[:] = slave.reals
             flags[FRESH] = 1

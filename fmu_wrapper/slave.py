@@ -8,6 +8,7 @@ methods raise; `calls.py` turns what they raise into FMI statuses.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -149,21 +150,39 @@ class Slave(SlaveDerivatives):
                 "a shorter one"
             )
         seen = len(run.events)
-        self._stale = True
+        asked, self._asked, self._stale = self._asked, False, True
         try:  # not `_failing`: a context manager at every step is dear
-            if self.updates is None:
+            if self.updates is not None:
+                end = self._advance_with_updates(run, target, self.updates)
+            elif run.quick and not (self.event_mode or self.early_return or self._values.sloped):
+                end = self._drive(run, target, asked)
+            else:
                 self._tell(run)
                 end = run.advance(target, self.event_mode, self.early_return)
                 self._arrive(run, end.time)
-            else:
-                end = self._advance_with_updates(run, target, self.updates)
         except BaseException:
             self._phase = Phase.FAILED
             raise
         if end.event_due:
             self._phase = Phase.EVENT_DUE
-        self._log_events(run, seen)
+        if len(run.events) != seen:
+            self._log_events(run, seen)
+        if asked and self._stale:
+            self._foresee(run)
         return end
+
+    def _drive(self, run: Run, t: float, read: bool) -> StepEnd:
+        """Take the simulation to `t`, s, with the present inputs, and read the outputs if wanted and easily had."""
+        self._stale = not run.drive(self._values, t, read)
+        self._untold = False
+        self._set_time(t)
+        return StepEnd(t)
+
+    def _foresee(self, run: Run) -> None:
+        """After a step, make the outputs those of its end. If they cannot be computed, who asks will hear why."""
+        with suppress(Exception):
+            run.read(self._values)
+            self._stale = False
 
     @property
     def horizon(self) -> float:
@@ -172,13 +191,16 @@ class Slave(SlaveDerivatives):
             return -math.inf
         return self._run.horizon if self._stop_time is None else min(self._run.horizon, self._stop_time)
 
-    def catch_up(self, t: float) -> None:
-        """Move the clock to `t`, s, within the horizon, after steps that nobody told of."""
+    def catch_up(self, t: float, read: bool = False) -> None:
+        """Move the clock to `t`, s, within the horizon, after steps that nobody told of; `read`: outputs come next."""
         run = self._engine()
         self._stale = True
         with self._failing():
-            run.advance(t, self.event_mode, self.early_return)
-            self._arrive(run, t)
+            if run.quick and not (self.event_mode or self.early_return):
+                self._drive(run, t, read)
+            else:
+                run.advance(t, self.event_mode, self.early_return)
+                self._arrive(run, t)
 
     def _arrive(self, run: Run, t: float) -> None:
         """The simulation is at `t`, s, and so are the inputs that go on with derivatives."""
@@ -231,20 +253,10 @@ class Slave(SlaveDerivatives):
     def look(self) -> None:
         """Make the outputs those of the present time and inputs. Raises what `get` raises."""
         self._need("get values", *RUNNING)
+        self._asked = True
         if self._stale:
             self._need("get outputs that were not asked for before", *SOUND)
             self._refresh()
-
-    def foresee(self) -> bool:
-        """After a step, make the outputs those of its end. False if they cannot be computed: who asks will hear why."""
-        if self._untold or self._run is None or self._phase not in SOUND:
-            return False
-        try:
-            self._run.read(self._values)
-        except Exception:
-            return False
-        self._stale = False
-        return True
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.

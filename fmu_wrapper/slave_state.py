@@ -71,6 +71,15 @@ class SlaveState:
         """Values of all real variables."""
         return self._values.vectors["real"]
 
+    def expect_questions(self) -> None:
+        """Somebody has looked at outputs since the last step, and will do so after the next one."""
+        self._asked = True
+
+    @property
+    def fresh(self) -> bool:
+        """Whether the outputs are those of the present time and inputs."""
+        return not self._stale
+
     @property
     def steady(self) -> bool:
         """Whether inputs are numbers that can be set between steps, and nothing else has to be thought of."""
@@ -101,6 +110,7 @@ class SlaveState:
         self._rtol_given = False
         self._run = None
         self._stale = self._untold = True
+        self._asked = False
 
     # state
 
@@ -164,7 +174,8 @@ class SlaveState:
     # inside
 
     # `_stale`: the outputs are not those of the present time and inputs; `_untold`: the simulation does not know all
-    # inputs yet. Outputs are read when they are asked for, since a step does not cost much more than asking.
+    # inputs yet; `_asked`: outputs have been asked for since the last step. Outputs are read when they are asked for,
+    # since a step does not cost much more than asking; or with the step, if they were asked for after the one before.
 
     def _need(self, what: str, *phases: Phase) -> None:
         if self._phase not in phases:

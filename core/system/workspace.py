@@ -121,6 +121,11 @@ class Workspace:
         """The workspace record."""
         return self._record.record
 
+    @property
+    def address(self) -> int:
+        """Address of the record."""
+        return self._record.address
+
     def use_stage(self, address: int) -> None:
         """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE)."""
         self._record.table["stage_function"] = address
