@@ -139,7 +139,7 @@ def _stop(times: Any) -> float:
 
 @internal
 def _advance(ex: Any, ws: Any, ms: Any, lc: Any) -> int:
-    """`advance_to` as long as nothing happens: REACHED, what else `run` returned, or CHUNK where a breakpoint is due."""
+    """`advance_to` as long as nothing happens: REACHED, what else `run` returned, CHUNK where a breakpoint is due."""
     times, clock = vec(ex.times, TIMES_SIZE), vec(lc.clock, CLOCK_SIZE)
     breakpoints = vec(ex.breakpoints, ex.n_breakpoints)
     goal, stop = times[GOAL], _stop(times)
