@@ -165,9 +165,9 @@ class Run:
     def drive(self, values: Values, t: float, read: bool) -> bool:
         """Tell the simulation the inputs, which have no derivatives, integrate to `t`, s, events included, and read if
         that is wanted. False if it was not, or the values have to be asked for."""
-        courses = values.courses
-        found = self._exchange(courses[0], t, read)  # type: ignore[misc]
-        self._applied = courses
+        inputs = values.vectors["real"].take(values.inputs).tolist()
+        found = self._exchange(inputs, t, read)  # type: ignore[misc]
+        self._applied = [inputs]
         if found is None:
             return False
         self._put(found, values)

@@ -141,7 +141,8 @@ class Slave(SlaveDerivatives):
         FmuValueError : for a wrong `t`, an `h` that is not positive, a step past the stop time. Nothing happened.
         SimulationError, FmuError : the solver failed; the slave is in phase `failed`.
         """
-        self._need("do step", Phase.STEP)
+        if self._phase is not Phase.STEP:
+            self._need("do step", Phase.STEP)
         target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
         if h > MOST_STEPS * run.step_size:

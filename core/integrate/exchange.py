@@ -19,6 +19,7 @@ from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
 from ..description import Model
+from ..errors import ModelError
 from ..methods.history import history_time, recall, restart
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
@@ -244,14 +245,12 @@ class Exchange:
             },
         )  # fmt: skip
         self.record = self._record.record
-        # their elements are written in half the time of those of arrays
-        self.clock, self.inputs = memoryview(self.times), memoryview(self.wanted)
-        self._reads = 0
+        self.clock = memoryview(self.times)  # whose elements are written in half the time of those of the array
+        self.reads = False
 
-    def reads(self, wanted: bool) -> None:
-        """Whether the channels are to be read."""
-        if wanted != self._reads:
-            self._record.table["read"] = self._reads = int(wanted)
+    def set_reads(self, wanted: bool) -> None:
+        """Say whether the channels are to be read."""
+        self._record.table["read"] = self.reads = wanted
 
 
 def possible(sim: "Simulation") -> bool:
@@ -262,23 +261,23 @@ def possible(sim: "Simulation") -> bool:
 
 def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: bool) -> NDArray[np.float64] | None:
     """See `Simulation.exchange`."""
-    ex = sim.crossing
-    if ex is None or sim.pending or sim.progress is not None or not sim.t <= t < math.inf:
+    ex, now, times = sim.crossing, sim.t, sim.input_times
+    if ex is None or sim.pending or sim.progress or not now <= t < math.inf or len(inputs) != len(ex.wanted):
         return _at_length(sim, inputs, t)
     clock = ex.clock
-    for k, value in enumerate(inputs):
-        ex.inputs[k] = value
-    clock[NOW], clock[GOAL], clock[INITIAL_ENERGY] = sim.t, t, sim.table.initial_energy
-    clock[LAST_CHANGE], clock[INTERVAL] = sim.input_times
-    ex.reads(read)
+    ex.wanted[:] = inputs
+    clock[NOW], clock[GOAL], clock[INITIAL_ENERGY] = now, t, sim.table.initial_energy
+    clock[LAST_CHANGE], clock[INTERVAL] = times
+    if read != ex.reads:
+        ex.set_reads(read)
     code = exchange(ex.record)
     if code == DECLINED:
         return _at_length(sim, inputs, t)
-    if clock[LAST_CHANGE] != sim.input_times[0]:
+    if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
-    if code not in (ARRIVED, READ):
+    if code < DECLINED:
         sim.go_on(t, code)
-    sim.t = t
+    sim.t = float(t)
     if code != READ:
         return None
     values = ex.channels.copy()
@@ -287,5 +286,8 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
 
 
 def _at_length(sim: "Simulation", inputs: Sequence[float], t: float) -> None:
-    sim.set_inputs(dict(zip(sim.assembly.input_names, inputs, strict=True)))
+    names = sim.assembly.input_names
+    if len(inputs) != len(names):
+        raise ModelError(f"{len(inputs)} inputs were given: there are {len(names)}, in the order {names}")
+    sim.set_inputs(dict(zip(names, inputs, strict=True)))
     sim.advance(t)

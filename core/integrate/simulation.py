@@ -148,7 +148,7 @@ class Simulation(Engine):
     @property
     def step_size(self) -> float:
         """Size of the solver's next step, s: the fixed one, or what error control proposes."""
-        return float(self.clock[FIXED_STEP] or self.clock[STEP_SIZE])
+        return float(self.clock.item(FIXED_STEP) or self.clock.item(STEP_SIZE))
 
     @property
     def horizon(self) -> float:

@@ -157,3 +157,9 @@ def test_runs_that_have_no_quick_way():
     other.set_inputs({"u": 0.2})
     other.advance(0.05)
     assert sloped.values().tobytes() == other.values().tobytes()
+
+
+@pytest.mark.parametrize("inputs", [[], [0.1, 0.2]])
+def test_as_many_inputs_as_there_are(inputs):
+    with pytest.raises(ModelError, match=rf"{len(inputs)} inputs were given: there are 1, in the order \['u'\]"):
+        Simulation(rod()).exchange(inputs, 0.1)
