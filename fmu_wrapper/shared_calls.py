@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import Status
+from .phases import Phase
 from .shared import (
     ASKED,
     BEHIND,
@@ -102,7 +103,7 @@ class SharedCalls:
                 self.settle(read=True)
             slave.look()
             shared.values[:] = slave.reals
-            flags[FRESH] = 1
+            flags[FRESH] = slave.phase is not Phase.INTERMEDIATE  # where the slave goes on without telling the shim
         except Exception as error:
             return int(self.report(self.get_name, error))
         return OK
