@@ -46,6 +46,7 @@ from .records import (
     VIOLATED,
 )
 from .repair import repair
+from .step_budget import step_count, steps_left
 from .watch import crossed, friction_margin
 
 if TYPE_CHECKING:
@@ -80,9 +81,12 @@ def steps_at_once(n: int) -> int:
     return max(1, CHUNK_STEPS * 100 // max(100, n))
 
 
-def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False, code: int | None = None) -> None:
+def advance_to(
+    sim: "Simulation", t: float, stop: float, hold: bool = False, came: tuple[int, int] | None = None
+) -> None:
     """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending.
-    `code`: what `run`, aimed at `t`, has returned a moment ago."""
+    `came`: the step count at the beginning, and what `run`, aimed at `t`, has returned a moment ago."""
+    first, code = (step_count(sim), None) if came is None else came
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     repaired_at = math.nan
     chunk = steps_at_once(sim.assembly.n)
@@ -108,7 +112,8 @@ def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False, cod
                 return
             # while a contact slides, each step is looked at
             sliding = sliding_contacts(sim)
-            code = run(ws, ms, lc, 1 if sliding else chunk)
+            left = steps_left(sim, first, t)
+            code = run(ws, ms, lc, 1 if sliding else min(chunk, left))
         code, returned = None, code
         sim.flush()
         if sliding and returned == CHUNK and sim.t_internal > now:

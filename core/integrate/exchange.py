@@ -6,6 +6,7 @@ leaves it, Python goes on from there; where it cannot go it, nothing has happene
 """
 
 import math
+import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,16 @@ from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
 from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import evaluate_power, evaluate_residuals
-from ..system.records import FACTOR_AGE, LEAST_CONDITION, OK, RATE_SIZE, WORKSPACE_TYPE, WORST_CONDITION
+from ..system.records import (
+    COUNTERS_SIZE,
+    FACTOR_AGE,
+    LEAST_CONDITION,
+    OK,
+    RATE_SIZE,
+    STEPS,
+    WORKSPACE_TYPE,
+    WORST_CONDITION,
+)
 from . import advance
 from .dense_output import query
 from .inputs import PUNCTUAL
@@ -60,7 +70,8 @@ NOW = 0
 GOAL = 1
 LAST_CHANGE, INTERVAL = 2, 3  # of inputs
 INITIAL_ENERGY = 4  # J
-TIMES_SIZE = 5
+FIRST_STEP = 5  # steps made before
+TIMES_SIZE = 6
 
 # what `exchange` returns, besides what `run` does
 DECLINED = 200
@@ -143,6 +154,7 @@ def _advance(ex: Any, ws: Any, ms: Any, lc: Any) -> int:
     """`advance_to` as long as nothing happens: REACHED, what else `run` returned, CHUNK where a breakpoint is due."""
     times, clock = vec(ex.times, TIMES_SIZE), vec(lc.clock, CLOCK_SIZE)
     breakpoints = vec(ex.breakpoints, ex.n_breakpoints)
+    times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS]
     goal, stop = times[GOAL], _stop(times)
     while True:
         now = history_time(ms, 0)
@@ -161,7 +173,7 @@ def _advance(ex: Any, ws: Any, ms: Any, lc: Any) -> int:
         if clock[STOP_TIME] - now <= NO_STEP * abs(now):
             return REACHED
         code = call_run(ex.run, ws, ms, lc, ex.chunk)
-        if code != REACHED and code != CHUNK:
+        if code != REACHED:
             return code
 
 
@@ -224,7 +236,7 @@ class Exchange:
     def __init__(self, sim: "Simulation") -> None:
         assembly, table, loop = sim.assembly, sim.table, sim._loop
         inputs, channels, length = len(assembly.input_names), len(table.channels), int(loop.table["sample_length"][0])
-        self.chunk = advance.steps_at_once(assembly.n)
+        chunk = min(advance.steps_at_once(assembly.n), sim.settings.max_steps or sys.maxsize)
         self.wanted, self.times = np.zeros(inputs), np.zeros(TIMES_SIZE)
         self.channels, self.sample = np.zeros(channels), np.zeros(length)
         formulas = table.index_arrays()
@@ -239,7 +251,7 @@ class Exchange:
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": loop.address,
                 "query": address_of(query, QUERY_SIGNATURE), "run": address_of(run, RUN_SIGNATURE),
                 "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
-                "n_inputs": inputs, "n_breakpoints": len(assembly.breakpoints), "chunk": self.chunk, "read": 0,
+                "n_inputs": inputs, "n_breakpoints": len(assembly.breakpoints), "chunk": chunk, "read": 0,
                 "sample_length": length, "n_channels": channels, "n_sums": len(formulas["summed"]),
                 "n_terms": len(formulas["number"]), "n_flags": len(formulas["flags"]), "balance": table.balance,
             },
@@ -276,7 +288,7 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
     if code < DECLINED:
-        sim.go_on(t, code)
+        sim.go_on(t, int(clock[FIRST_STEP]), code)
     sim.t = float(t)
     if code != READ:
         return None

@@ -40,6 +40,8 @@ class Simulation(Engine):
         "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are 1e-9.
     step : fixed step in s; None: error-controlled steps.
     max_step, first_step : bounds of error-controlled steps, s.
+    max_steps : most steps between two times that are asked for, None for no limit: a SimulationError then, in place of
+        a run that would not end in this life.
     t0 : start time, s.
     outer : "newton", "simple" or "jfnk", the outer loop of the stage solver (`tlismni.core.stage.OUTER_LOOPS`).
     acceleration : "none", "aitken" or "anderson", of outer = "simple"; depth : that of Anderson's, 1 to 5.
@@ -271,10 +273,10 @@ class Simulation(Engine):
         """
         return exchange.exchange_values(self, values, t, read)
 
-    def go_on(self, t: float, code: int) -> None:
-        """Integrate to `t` (s) after the time loop has returned `code` on the way."""
+    def go_on(self, t: float, first: int, code: int) -> None:
+        """Integrate to `t` (s), after the time loop has returned `code` on a way that began at step `first`."""
         with self._failures():
-            advance.advance_to(self, t, inputs.next_stop(self.input_times, self.t, t), code=code)
+            advance.advance_to(self, t, inputs.next_stop(self.input_times, self.t, t), came=(first, code))
 
     def input_derivatives(self, direction: Mapping[str, float]) -> NDArray[np.float64]:
         """Derivatives (channels,) of all channels along `direction`, by input name, at the present time.
