@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..core.model.signals import MOST_DERIVATIVES
 from . import log as logs
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
 from .intermediate import Updates
-from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, SOUND, Phase
+from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, Phase
 from .run import Run, StepEnd
 from .slave_derivatives import SlaveDerivatives
 from .values import check_values, item_value
@@ -185,13 +184,6 @@ class Slave(SlaveDerivatives):
             run.read(self._values)
             self._stale = False
 
-    @property
-    def horizon(self) -> float:
-        """Time, s, up to which steps with the present inputs only move the clock; minus infinity for none."""
-        if not self.steady or self._run is None or self._untold:
-            return -math.inf
-        return self._run.horizon if self._stop_time is None else min(self._run.horizon, self._stop_time)
-
     def catch_up(self, t: float, read: bool = False) -> None:
         """Move the clock to `t`, s, within the horizon, after steps that nobody told of; `read`: outputs come next."""
         run = self._engine()
@@ -251,14 +243,6 @@ class Slave(SlaveDerivatives):
             self.look()
         return self._values.vectors[kind].take(plan.positions)
 
-    def look(self) -> None:
-        """Make the outputs those of the present time and inputs. Raises what `get` raises."""
-        self._need("get values", *RUNNING)
-        self._asked = True
-        if self._stale:
-            self._need("get outputs that were not asked for before", *SOUND)
-            self._refresh()
-
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.
 
@@ -282,37 +266,6 @@ class Slave(SlaveDerivatives):
         if "parameter" in plan.roles:
             self._rtol_given |= any(v.name == "solver.rtol" for v in plan.variables)
             self._run = None
-
-    def set_input_derivatives(
-        self, references: npt.NDArray[np.uint32], orders: Sequence[int], values: Sequence[float]
-    ) -> None:
-        """Let the inputs behind `references` go on, from the present time, with these time derivatives of the given
-        orders, 1 or 2: all of them or, on an error, none.
-
-        The value of such an input moves along. Its derivatives hold until, at a later time, it is set without new
-        ones or is given others.
-
-        Raises
-        ------
-        CallOrderError, FmuValueError
-        """
-        plan = self.variables.plan("real", references)
-        self._need("set input derivatives", *SETTABLE)
-        given = [float(value) for value in values]
-        rows = []
-        for variable, order, value in zip(plan.variables, orders, given, strict=True):
-            if variable.role != "input":
-                raise FmuValueError(f"'{variable.name}' is of role {variable.role}: only inputs take derivatives")
-            if not 1 <= order <= MOST_DERIVATIVES:
-                raise FmuValueError(
-                    f"a derivative of order {order} of input '{variable.name}' was given: orders 1 to "
-                    f"{MOST_DERIVATIVES} are taken"
-                )
-            if not math.isfinite(value):
-                raise FmuValueError(f"a derivative of input '{variable.name}' is {value!r}: a finite number is needed")
-            rows.append(self._input_rows[variable.reference])
-        self._values.set_slopes(rows, orders, given, self._time)
-        self._stale = self._untold = True
 
     def _refuse(self, variables: Sequence[Variable]) -> None:
         for v in variables:

@@ -1,5 +1,6 @@
 """What a slave holds: the values of its variables, its simulation, its phase; all of it can be stored and restored."""
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,7 +12,7 @@ from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
 from .intermediate import Updates
 from .log import Log, LogCallback
-from .phases import EVENT_PHASES, WAYS, Phase
+from .phases import EVENT_PHASES, RUNNING, SOUND, WAYS, Phase
 from .run import Run, SimulationFactory, as_slice, build_simulation
 from .settings import Settings
 from .snapshot import Snapshot, identity
@@ -84,6 +85,21 @@ class SlaveState:
     def steady(self) -> bool:
         """Whether inputs are numbers that can be set between steps, and nothing else has to be thought of."""
         return self._phase is Phase.STEP and not self._values.sloped and self.updates is None
+
+    @property
+    def horizon(self) -> float:
+        """Time, s, up to which steps with the present inputs only move the clock; minus infinity for none."""
+        if not self.steady or self._run is None or self._untold:
+            return -math.inf
+        return self._run.horizon if self._stop_time is None else min(self._run.horizon, self._stop_time)
+
+    def look(self) -> None:
+        """Make the outputs those of the present time and inputs. Raises what `get` raises."""
+        self._need("get values", *RUNNING)
+        self._asked = True
+        if self._stale:
+            self._need("get outputs that were not asked for before", *SOUND)
+            self._refresh()
 
     def give_inputs(self, reals: npt.NDArray[np.float64]) -> None:
         """Put the inputs into `reals`, in the order of `self.reals`."""

@@ -1,4 +1,5 @@
 #include "instance.h"
+#include "resources.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -6,15 +7,6 @@
 #define MAGIC 0x71150001u
 #define MESSAGE 4096
 #define CAPSULE "tlismni.instance"
-
-static char *copy_of(const char *text) {
-    size_t size = strlen(text) + 1;
-    char *copy = malloc(size);
-    if (copy) {
-        memcpy(copy, text, size);
-    }
-    return copy;
-}
 
 void instance_report(const Instance *self, const char *format, ...) {
     char message[MESSAGE];
@@ -67,65 +59,6 @@ static PyMethodDef update_method = {"update", update_from_python, METH_VARARGS, 
 
 static PyMethodDef log_method = {"log", log_from_python, METH_VARARGS, "Hand a message to the host's logger."};
 
-static int hex_digit(char c) {
-    if (c >= '0' && c <= '9') {
-        return c - '0';
-    }
-    c |= 0x20;
-    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
-/* The path in a file URI, or the text itself if it is none (FMI 3.0 passes paths). */
-static char *path_of(const char *location) {
-    char *path = copy_of(location);
-    if (!path || strncmp(location, "file:", 5) != 0) {
-        return path;
-    }
-    const char *from = location + 5;
-    if (from[0] == '/' && from[1] == '/') {
-        from += 2;
-        from += strcspn(from, "/"); /* the host, empty or localhost */
-    }
-#ifdef _WIN32
-    if (from[0] == '/' && from[1] && from[2] == ':') {
-        from++;
-    }
-#endif
-    char *to = path;
-    for (; *from; from++) {
-        int high = *from == '%' ? hex_digit(from[1]) : -1;
-        int low = high >= 0 ? hex_digit(from[2]) : -1;
-        *to++ = low >= 0 ? (char)(16 * high + low) : *from;
-        from += low >= 0 ? 2 : 0;
-    }
-    while (to > path + 1 && to[-1] == '/') {
-        to--;
-    }
-    *to = '\0';
-    return path;
-}
-
-static char *read_file(const char *path) {
-    FILE *file = platform_open(path);
-    char *text = NULL;
-    if (file && fseek(file, 0, SEEK_END) == 0) {
-        long size = ftell(file);
-        rewind(file);
-        text = size >= 0 ? malloc((size_t)size + 1) : NULL;
-        if (text && fread(text, 1, (size_t)size, file) != (size_t)size) {
-            free(text);
-            text = NULL;
-        }
-        if (text) {
-            text[size] = '\0';
-        }
-    }
-    if (file) {
-        fclose(file);
-    }
-    return text;
-}
-
 /* Run resources/boot.py in a namespace of its own and call its `create`. */
 static PyObject *boot(Instance *self, const char *function, const char *source, const char *path,
                       PyObject *arguments) {
@@ -171,7 +104,7 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
     char message[MESSAGE], path[MESSAGE];
     int gil;
     snprintf(path, sizeof path, "%s/boot.py", resources);
-    char *source = read_file(path);
+    char *source = resources_read(path);
     if (!source) {
         instance_report(self, "%s: cannot read '%s': the FMU's resources are missing; unzip the FMU completely and "
                         "pass the URI of its resources folder", function, path);
@@ -212,8 +145,8 @@ Instance *instance_new(const Instance *model, const Asked *asked, const char *fu
     self->calls = self->strings = self->step = self->look = NULL;
     self->shared = NULL;
     self->gets.count = self->sets.count = 0;
-    self->name = copy_of(name && *name ? name : "instance");
-    char *resources = resource_location ? path_of(resource_location) : NULL;
+    self->name = text_copy(name && *name ? name : "instance");
+    char *resources = resource_location ? resources_path(resource_location) : NULL;
     bool made = false;
     if (!resources) {
         instance_report(self, "%s: the resource location is NULL: the URI of the FMU's resources folder is needed",
