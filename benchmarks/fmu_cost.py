@@ -175,10 +175,10 @@ def main() -> None:
             for version in ("2.0", "3.0")
         } | peers(folder)
         for what, amplitude in (("input changes at every step", CHANGING), ("input holds", 0.0)):
-            bare = Stepper()
+            bare, once = Stepper(), Stepper()
             steppers: dict[str, StepCall] = {
                 "solver": lambda u, t, h, s=bare: s.step(u, t + h),
-                "in one call": lambda u, t, h, s=Stepper(): s.exchange(u, t + h),
+                "in one call": lambda u, t, h, s=once: s.exchange(u, t + h),
                 "slave": slave_step(),
             }
             starts = {}

@@ -11,7 +11,8 @@ TIME, HORIZON, POINT, STEP, REACHED = range(5)
 the last step has ended."""
 EVENT_DUE, EARLY, BEHIND, TOLD, SETTABLE, FRESH, ASKED = range(7)
 """Flags: how the last step has ended; the time has moved; no inputs have been set that the slave does not know; inputs
-can be set; the values are those of now; values have been read since the last step."""
+can be set; the values are those of now; what came first after the last step that was made here, READING or GLIDE."""
+READING, GLIDE = 1, 2
 NUMBERS, FLAGS = 5, 7
 
 

@@ -14,6 +14,7 @@ from .shared import (
     HORIZON,
     POINT,
     REACHED,
+    READING,
     SETTABLE,
     STEP,
     TIME,
@@ -68,15 +69,15 @@ class SharedCalls:
             slave.take_inputs(shared.values)
 
     def step(self) -> int:
-        """The step that is asked; the outputs too if they have been read after the last one."""
+        """The step that is asked; the outputs too if those of the last one were read at once."""
         shared, slave = self._shared, self.slave
         numbers, flags = shared.numbers, shared.flags
         try:
             if flags[BEHIND] or not flags[TOLD]:
                 self.settle()
             if flags[ASKED]:
+                slave.expect_questions(flags[ASKED] == READING)
                 flags[ASKED] = 0
-                slave.expect_questions()
             numbers[REACHED] = slave.time
             end = slave.do_step(numbers[POINT], numbers[STEP])
             numbers[TIME] = numbers[REACHED] = end.time

@@ -189,7 +189,7 @@ class Slave(SlaveDerivatives):
         run = self._engine()
         self._stale = True
         with self._failing():
-            if run.quick and not (self.event_mode or self.early_return):
+            if read and run.quick and not (self.event_mode or self.early_return):
                 self._drive(run, t, read)
             else:
                 run.advance(t, self.event_mode, self.early_return)

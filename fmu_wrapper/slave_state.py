@@ -72,9 +72,9 @@ class SlaveState:
         """Values of all real variables."""
         return self._values.vectors["real"]
 
-    def expect_questions(self) -> None:
-        """Somebody has looked at outputs since the last step, and will do so after the next one."""
-        self._asked = True
+    def expect_questions(self, asked: bool) -> None:
+        """Whether somebody has looked at outputs after the last step, and so will after the next one."""
+        self._asked = asked
 
     @property
     def fresh(self) -> bool:

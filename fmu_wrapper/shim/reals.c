@@ -41,9 +41,7 @@ int forward_get_reals(Instance *c, const char *method, const unsigned vr[], size
         return STATUS_ERROR;
     }
     status = instance_status(c, method, "(NN)", IN(vr, n), OUT(value, values));
-    if (c->shared) {
-        c->shared->asked = 1;
-    }
+    shared_asked(c->shared);
     if (status == STATUS_OK && vr && n) {
         learn(c, &c->gets, "get_places", vr, n);
     }

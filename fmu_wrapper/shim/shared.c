@@ -74,15 +74,22 @@ bool shared_glide(Shared *shared, double time, double step) {
     }
     shared->time = end;
     shared->behind = 1;
-    shared->fresh = shared->asked = 0;
+    shared->fresh = 0;
+    shared->asked = shared->asked ? shared->asked : GLIDE;
     return true;
+}
+
+void shared_asked(Shared *shared) {
+    if (shared && !shared->asked) {
+        shared->asked = READING;
+    }
 }
 
 void shared_read(Shared *shared, const List *list, double value[]) {
     for (size_t i = 0; i < list->values; i++) {
         value[i] = shared->values[list->places[i]];
     }
-    shared->asked = 1;
+    shared_asked(shared);
 }
 
 bool shared_write(Shared *shared, const List *list, const double value[]) {

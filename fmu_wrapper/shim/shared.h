@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { READING = 1, GLIDE = 2 };
+
 /* In memory of the Python side (shared.py), which lives as long as the instance's calls. */
 typedef struct {
     double time;    /* of the instance */
@@ -18,7 +20,7 @@ typedef struct {
     int64_t told;     /* 0: the Python side has not been told of inputs among `values` */
     int64_t settable; /* inputs can be set here: each of `values` that is one is what the slave has */
     int64_t fresh;    /* each of `values` is what the slave has at this time, with these inputs */
-    int64_t asked;    /* values have been read since the last step */
+    int64_t asked;    /* what came after the last step that Python made, first of all: nothing yet, a READING, a GLIDE */
     double values[];  /* of all reals */
 } Shared;
 
@@ -55,6 +57,9 @@ void shared_forget(Shared *shared);
 
 /* Make a step without Python, if it is within the horizon and starts at the instance's own time. */
 bool shared_glide(Shared *shared, double time, double step);
+
+/* Values are read. */
+void shared_asked(Shared *shared);
 
 /* The values of a list, which must be fresh. */
 void shared_read(Shared *shared, const List *list, double value[]);
