@@ -30,7 +30,7 @@ class Shared:
         memory = np.zeros(NUMBERS + FLAGS + count)
         self.address = int(memory.ctypes.data)
         # elements of memory views are read and written in half the time of those of arrays
-        self.numbers: Any = memoryview(memory[:NUMBERS])
-        self.flags: Any = memoryview(memory[NUMBERS : NUMBERS + FLAGS].view(np.int64))
+        self.numbers: Any = memory[:NUMBERS].data
+        self.flags: Any = memory[NUMBERS : NUMBERS + FLAGS].view(np.int64).data
         self.values: npt.NDArray[np.float64] = memory[NUMBERS + FLAGS :]
         self.numbers[HORIZON], self.flags[TOLD] = -np.inf, 1

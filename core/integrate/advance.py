@@ -114,7 +114,7 @@ def advance_to(
             sliding = sliding_contacts(sim)
             left = steps_left(sim, first, t)
             code = run(ws, ms, lc, 1 if sliding else min(chunk, left))
-        code, returned = None, code
+        returned, code = code, None
         sim.flush()
         if sliding and returned == CHUNK and sim.t_internal > now:
             refuse_passed_jam(sim, sliding)

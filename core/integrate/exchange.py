@@ -257,7 +257,8 @@ class Exchange:
             },
         )  # fmt: skip
         self.record = self._record.record
-        self.clock = memoryview(self.times)  # whose elements are written in half the time of those of the array
+        # whose elements are written in half the time of those of the array
+        self.clock: Any = self.times.data
         self.reads = False
 
     def set_reads(self, wanted: bool) -> None:
@@ -275,7 +276,8 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     """See `Simulation.exchange`."""
     ex, now, times = sim.crossing, sim.t, sim.input_times
     if ex is None or sim.pending or sim.progress or not now <= t < math.inf or len(inputs) != len(ex.wanted):
-        return _at_length(sim, inputs, t)
+        _at_length(sim, inputs, t)
+        return None
     clock = ex.clock
     ex.wanted[:] = inputs
     clock[NOW], clock[GOAL], clock[INITIAL_ENERGY] = now, t, sim.table.initial_energy
@@ -284,7 +286,8 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
         ex.set_reads(read)
     code = exchange(ex.record)
     if code == DECLINED:
-        return _at_length(sim, inputs, t)
+        _at_length(sim, inputs, t)
+        return None
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
     if code < DECLINED:
