@@ -1,18 +1,20 @@
 """From laws of the vocabulary to those of `mechanism`, and from a course to an opinion."""
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from ...core.contact.laws import ContactLaw, ForceLaw, ImpactLaw
 from ..third_opinion import Opinion
-from ..translation.formulas import normal_force
+from ..translation.formulas import friction_force, normal_force
 from .mechanism import Blow, Course, Law
 
 
-def law_of(law: ContactLaw) -> Law:
-    """The law with formulas of its own."""
+def law_of(law: ContactLaw, friction: Any = None) -> Law:
+    """The law with formulas of its own; `friction` is a regularised one, or none."""
     if isinstance(law, ForceLaw):
         force, least = normal_force(law), law.minimum_approach_speed
-        return Law(force=lambda d, dd, v0: force(d, dd, max(v0, least)), release=law.release)
+        rubs = None if friction is None else friction_force(friction)
+        return Law(force=lambda d, dd, v0: force(d, dd, max(v0, least)), release=law.release, friction=rubs)
     if isinstance(law, ImpactLaw):
         return Law(restitution=law.restitution)
     raise TypeError(f"a contact law is an ImpactLaw or a ForceLaw, not {type(law).__name__}")

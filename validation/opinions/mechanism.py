@@ -16,12 +16,16 @@ from scipy.integrate import solve_ivp
 RTOL, ATOL = 1e-12, 1e-13
 LONGEST_STEP = 1.0 / 200.0
 """In parts of the run: so that no contact is passed over between two ends of steps."""
+CLOSED = 1e-12
+"""m; contacts that start closed are no farther apart."""
 MOST_TOUCHES = 40
 """Impacts that accumulate have no end."""
 SAMPLES = 4001
 Array = np.ndarray
 Force = Callable[[float, float, float], float]
 """(penetration m, its rate m/s, approach speed m/s) -> N, positive where it pushes."""
+Friction = Callable[[float, float], float]
+"""(sliding speed m/s, normal force N) -> N along the sliding direction."""
 
 
 @dataclass(frozen=True)
@@ -31,17 +35,24 @@ class Law:
     restitution: float | None = None
     force: Force | None = None
     release: str = "gap"
+    friction: Friction | None = None
 
 
 @dataclass(frozen=True)
 class Mechanism:
-    """M(q) q'' = force(t, q, v), with gaps g(q) (k,) and their gradients G(q) (k, n)."""
+    """M(q) q'' = force(t, q, v), with gaps g(q) (k,), their gradients G(q) (k, n), and sliding speeds S(q) v + s.
+
+    Friction goes with contacts that are forces.
+    """
 
     mass: Callable[[Array], Array]
     force: Callable[[float, Array, Array], Array]
     gaps: Callable[[Array], Array] = lambda q: np.zeros(0)
     gradients: Callable[[Array], Array] = lambda q: np.zeros((0, len(q)))
     laws: Sequence[Law] = ()
+    slides: Callable[[Array], Array] | None = None
+    belt: Array | float = 0.0
+    """s (k,), m/s."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +117,12 @@ class _Run:
         q, v = y[:n], y[n : 2 * n]
         force, pushed = np.array(self.m.force(t, q, v), dtype=float), np.zeros(self.k)
         for contact in self.pushing:
-            pushed[contact] = self.push(contact, y)
-            force += pushed[contact] * self.m.gradients(q)[contact]
+            pushed[contact] = normal = self.push(contact, y)
+            force += normal * self.m.gradients(q)[contact]
+            rubs = self.m.laws[contact].friction
+            if rubs is not None and self.m.slides is not None and normal > 0.0:
+                along = self.m.slides(q)[contact]
+                force += rubs(float(along @ v) + np.broadcast_to(self.m.belt, self.k)[contact], normal) * along
         return np.concatenate([v, np.linalg.solve(self.m.mass(q), force), pushed])
 
     def event(self, contact: int) -> Callable[[float, Array], float]:
@@ -136,6 +151,10 @@ def run(mechanism: Mechanism, q: Sequence[float], v: Sequence[float], t_end: flo
     n, k = work.n, work.k
     course = Course(size=n)
     t, y = 0.0, np.concatenate([np.asarray(q, dtype=float), np.asarray(v, dtype=float), np.zeros(k)])
+    for contact in np.flatnonzero(np.abs(mechanism.gaps(y[:n])) < CLOSED):
+        rate = float(mechanism.gradients(y[:n])[contact] @ y[n : 2 * n])
+        if rate <= 0.0 and mechanism.laws[contact].force is not None:
+            work.pushing[int(contact)] = (0.0, -rate)
     while t < t_end and len(course.blows) < MOST_TOUCHES:
         part = solve_ivp(
             work.rates, (t, t_end), y, "DOP853", events=[work.event(c) for c in range(k)], rtol=RTOL, atol=ATOL,
