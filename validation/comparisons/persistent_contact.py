@@ -49,8 +49,8 @@ FLEXIBLE_RETURN_RATE = 400.0
 """The same on flexible bodies: at their contacts is next to no mass, so that little is given back, but the spring that
 follows from it has to hold what bends the whole body."""
 STEPS_IN_TIME, FLEXIBLE_STEPS_IN_TIME = 5.0, 3.0
-"""exudyn's steps in T. A blow begins anywhere in a step, and the rates after it have irregular errors that do not shrink
-with T but with the step in T: 0.5 % with 3 steps, 0.01 % with 5 (`rocking_block`, against Housner's block)."""
+"""exudyn's steps in T. A blow begins anywhere in a step: the rates after it have irregular errors that do not shrink with
+T, but with the step in T: 0.5 % with 3 steps, 0.01 % with 5 (`rocking_block`, against Housner's block)."""
 FARTHEST = 0.02
 """Part of the run by which exudyn's contact may begin or end off our event."""
 DURATION = 10.0
@@ -171,7 +171,7 @@ def _scale(model: Model, contact: Any, found: list[Touch]) -> Scale:
 
 
 def _away(t: np.ndarray, events: Sequence[Event], runs: Sequence[ExudynResult], margin: float) -> np.ndarray:
-    """Where no event is near: there exudyn's contact takes its time, and comes early or late, and the constraint none."""
+    """Where no event is near: there exudyn's contact takes its time, comes early or late; the constraint takes none."""
     if not events:
         return np.ones(len(t), dtype=bool)
     apart = np.full(len(t), np.inf)

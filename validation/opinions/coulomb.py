@@ -119,7 +119,7 @@ def _solved(
     fits: Callable[[dict[int, str], Array, Array, Array], bool],
     ended: tuple[int, str] | None = None,
 ) -> tuple[dict[int, str], Array, Array]:
-    """(modes, pushes (k,), motion (n,)) so that contacts that hold reach `goal` along G; those with known slip keep it."""
+    """(modes, pushes (k,), motion (n,)): contacts that hold reach `goal` along G, those with known slip keep it."""
     contacts, k = sorted(goal), len(system.offsets)
     choices = [(STICK, AHEAD, BACK, OPEN) if slips[c] is None else (AHEAD if slips[c] > 0.0 else BACK, OPEN)
                for c in contacts]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Third opinion on the rocking block: Housner's one angle for the constraint, scipy in x, y and the angle for forces."""
+"""Third opinion on the rocking block: Housner's angle for the constraint, scipy in x, y and the angle for forces."""
 
 import math
 

@@ -16,7 +16,7 @@ LENGTH = 1.0
 
 @opinion("stick_slip")
 def stick_slip(scenario: Scenario) -> Opinion | None:
-    """Stick and slip in closed form, for Coulomb's friction without damping; by scipy, for contact and friction by force."""
+    """Stick and slip in closed form, for Coulomb's friction without damping; by scipy, for forces."""
     p = scenario.parameters
     (contact,) = scenario.model.contacts
     if not isinstance(contact.law, ImpactLaw):

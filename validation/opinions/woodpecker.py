@@ -1,4 +1,4 @@
-"""Third opinion on the woodpecker: Glocker's three coordinates, impacts and friction by trying all modes, scipy between."""
+"""Third opinion on the woodpecker: Glocker's three coordinates, impacts and friction by trying all modes."""
 
 import numpy as np
 
@@ -18,8 +18,8 @@ START, RATES = (0.0, -(BORE - POLE) / EDGE, -0.2788), (-0.3411, 0.0, -7.4583)
 
 @opinion("woodpecker")
 def woodpecker(scenario: Scenario) -> Opinion | None:
-    """Height of the sleeve, angles of sleeve and bird, from kinetic energy m_s y'^2/2 + J_s s'^2/2 + m_b (y' + a s' + b p')^2/2
-    + J_b p'^2/2, with a and b the arms to spring and bird."""
+    """Height of the sleeve, angles of sleeve and bird, from the kinetic energy
+    m_s y'^2/2 + J_s s'^2/2 + m_b (y' + a s' + b p')^2/2 + J_b p'^2/2, a and b the arms to spring and bird."""
     p = scenario.parameters
     mu, e, gravity = float(p["friction"]), float(p["restitution"]), float(p["gravity"])
     arms = np.array([1.0, SPRING_ARM, BIRD_ARM])
