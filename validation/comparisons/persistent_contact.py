@@ -49,8 +49,8 @@ FLEXIBLE_RETURN_RATE = 400.0
 """The same on flexible bodies: at their contacts is next to no mass, so that little is given back, but the spring that
 follows from it has to hold what bends the whole body."""
 STEPS_IN_TIME, FLEXIBLE_STEPS_IN_TIME = 5.0, 3.0
-"""exudyn's steps in T. A blow begins anywhere in a step: the rates after it have irregular errors that do not shrink with
-T, but with the step in T: 0.5 % with 3 steps, 0.01 % with 5 (`rocking_block`, against Housner's block)."""
+"""exudyn's steps in T. A blow begins anywhere in a step: the rates after it have irregular errors that shrink not with
+T but with the step in T: 0.5 % with 3 steps, 0.01 % with 5 (`rocking_block`, against Housner's block)."""
 FARTHEST = 0.02
 """Part of the run by which exudyn's contact may begin or end off our event."""
 DURATION = 10.0
