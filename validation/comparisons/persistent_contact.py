@@ -8,13 +8,12 @@ a + b T + c T^2 + ..., and a is what the constraint must give. Contacts with res
 duration in proportion to T.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ...core import Event, Result
+from ...core import Result
 from ...core.contact.friction import CoulombFriction
 from ...core.contact.laws import Gonthier, ImpactLaw, KelvinVoigt
 from ...core.description import Model
@@ -38,21 +37,20 @@ from .common import (
     touches,
     unit_of,
 )
+from .events import away_from
 
 TIMES = (1.0, 0.5, 0.25)
 """The times T, in parts of the longest one."""
 LONGEST_TIME = 1.0 / 3000.0
 """In parts of the run."""
 RETURN_RATE = 20.0
-"""r, in parts of 1/(length of the run)."""
+"""The least r, in parts of 1/(length of the run)."""
 FLEXIBLE_RETURN_RATE = 400.0
 """The same on flexible bodies: at their contacts is next to no mass, so that little is given back, but the spring that
 follows from it has to hold what bends the whole body."""
 STEPS_IN_TIME, FLEXIBLE_STEPS_IN_TIME = 5.0, 3.0
 """exudyn's steps in T. A blow begins anywhere in a step: the rates after it have irregular errors that shrink not with
 T but with the step in T: 0.5 % with 3 steps, 0.01 % with 5 (`rocking_block`, against Housner's block)."""
-FARTHEST = 0.02
-"""Part of the run by which exudyn's contact may begin or end off our event."""
 DURATION = 10.0
 """Of a contact with restitution, in T."""
 LOWEST_RESTITUTION = 0.05
@@ -62,10 +60,15 @@ SAMPLES = 1501
 
 @dataclass(frozen=True)
 class Scale:
-    """What the penalty laws of one contact are made of: effective mass (kg) and approach speed (m/s)."""
+    """What the penalty laws of one contact are made of: effective mass (kg), approach speed (m/s), mean load (N)."""
 
     mass: float
     approach: float
+    load: float = 0.0
+
+    def return_rate(self, least: float) -> float:
+        """r, 1/s: at least so large that the load sinks no deeper than the blow, N T/(r m) <= v T."""
+        return max(least, self.load / (self.mass * self.approach))
 
 
 def persists(model: Model) -> bool:
@@ -84,8 +87,9 @@ def compare_persistent(task: Task) -> Comparison:
     first_run = our_run(scenario)
     ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
     found = touches(first_run.events)
-    scales = {c.name: _scale(scenario.model, c, found) for c in scenario.model.contacts}
     flexible = any(isinstance(b, FlexibleBody) for b in task.exudyn_model.bodies)
+    loads = {c.name: 0.0 if flexible else _load(ours[f"{c.name}.normal_force"]) for c in scenario.model.contacts}
+    scales = {c.name: _scale(scenario.model, c, found, loads[c.name]) for c in scenario.model.contacts}
     steps_in_time = FLEXIBLE_STEPS_IN_TIME if flexible else STEPS_IN_TIME
     longest = (task.step or 0.0) * steps_in_time or LONGEST_TIME * scenario.t_end
     rate = (FLEXIBLE_RETURN_RATE if flexible else RETURN_RATE) / scenario.t_end
@@ -98,7 +102,7 @@ def compare_persistent(task: Task) -> Comparison:
         runs.append(run_exudyn(model, scenario.t_end, step, settings_for(model)))
     coarse = runs.pop()
     events = [e for e in first_run.events if e.kind != "graze"]
-    away = _away(ours.t, events, runs, 3.0 * DURATION * longest if flexible else DURATION * longest)
+    away = away_from(ours.t, events, runs, 3.0 * DURATION * longest if flexible else DURATION * longest)
     rows: list[Row] = []
     channels = [c for c in scenario.compare if not is_contact_channel(task, c) and c in runs[0].channels]
     error = our_error(task, ours, [*channels, *(f"{c.name}.impulse" for c in scenario.model.contacts)])
@@ -155,43 +159,25 @@ def with_time(model: Model, scales: dict[str, Scale], time: float, rate: float) 
 
 def _law(restitution: float, scale: Scale, time: float, rate: float) -> KelvinVoigt | Gonthier:
     if restitution < LOWEST_RESTITUTION:
-        return KelvinVoigt(stiffness=rate * scale.mass / time, damping=scale.mass / time)
+        return KelvinVoigt(stiffness=scale.return_rate(rate) * scale.mass / time, damping=scale.mass / time)
     # Hertz' duration 2.943 d/v of an impact with m v^2/2 = K d^2.5/2.5
     depth = DURATION * time * scale.approach / 2.943
     return Gonthier(stiffness=1.25 * scale.mass * scale.approach**2 / depth**2.5, restitution=restitution)
 
 
-def _scale(model: Model, contact: Any, found: list[Touch]) -> Scale:
+def _load(force: np.ndarray) -> float:
+    """Mean of a contact's normal force while it presses, N."""
+    pressing = force[force > 0.0]
+    return float(np.mean(pressing)) if pressing.size else 0.0
+
+
+def _scale(model: Model, contact: Any, found: list[Touch], load: float) -> Scale:
     own = [x for x in found if x.contact == contact.name and x.approach_speed > 0.0 and x.impulse > 0.0]
     masses = [x.impulse / (x.approach_speed + x.separation_speed) for x in own]
     bodies = {marker.body for marker in contact.markers()}
     carried = [getattr(b, "mass", None) for b in model.bodies if b.name in bodies]
     lightest = min((m for m in carried if isinstance(m, float)), default=1.0)
-    return Scale(max(masses, default=lightest), max((x.approach_speed for x in own), default=1.0))
-
-
-def _away(t: np.ndarray, events: Sequence[Event], runs: Sequence[ExudynResult], margin: float) -> np.ndarray:
-    """Where no event is near: there exudyn's contact takes its time, comes early or late; the constraint takes none."""
-    if not events:
-        return np.ones(len(t), dtype=bool)
-    apart = np.full(len(t), np.inf)
-    for event in events:
-        apart = np.minimum(apart, np.abs(t - event.t) / (margin + _shift(event, runs)))
-    kept = apart > 1.0
-    return kept if kept.any() else apart >= apart.max()
-
-
-def _shift(event: Event, runs: Sequence[ExudynResult]) -> float:
-    """How far from our event exudyn's contact begins or ends, s; 0 for what its gap does not show."""
-    gap = f"{event.contact}.gap"
-    if event.kind not in ("impact", "close", "open") or gap not in runs[0].channels:
-        return 0.0
-    found = []
-    for run in runs:
-        changes = run.t[np.flatnonzero(np.diff(run[gap] < 0.0))]
-        near = np.abs(changes - event.t)
-        found.append(float(near.min(initial=FARTHEST * run.t[-1])))
-    return min(max(found), FARTHEST * float(runs[0].t[-1]))
+    return Scale(max(masses, default=lightest), max((x.approach_speed for x in own), default=1.0), load)
 
 
 def _channel_rows(
