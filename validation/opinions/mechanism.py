@@ -145,8 +145,10 @@ class _Run:
         return found
 
 
-def run(mechanism: Mechanism, q: Sequence[float], v: Sequence[float], t_end: float) -> Course:
-    """Integrate from (q, v) at t = 0 to `t_end` (s), or to the MOST_TOUCHES-th blow."""
+def run(
+    mechanism: Mechanism, q: Sequence[float], v: Sequence[float], t_end: float, blows: int = MOST_TOUCHES
+) -> Course:
+    """Integrate from (q, v) at t = 0 to `t_end` (s), or to the end of so many blows."""
     work = _Run(mechanism, q, t_end)
     n, k = work.n, work.k
     course = Course(size=n)
@@ -155,7 +157,7 @@ def run(mechanism: Mechanism, q: Sequence[float], v: Sequence[float], t_end: flo
         rate = float(mechanism.gradients(y[:n])[contact] @ y[n : 2 * n])
         if rate <= 0.0 and mechanism.laws[contact].force is not None:
             work.pushing[int(contact)] = (0.0, -rate)
-    while t < t_end and len(course.blows) < MOST_TOUCHES:
+    while t < t_end and len(course.blows) < blows:
         part = solve_ivp(
             work.rates, (t, t_end), y, "DOP853", events=[work.event(c) for c in range(k)], rtol=RTOL, atol=ATOL,
             dense_output=True, max_step=LONGEST_STEP * t_end,
