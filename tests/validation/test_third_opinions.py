@@ -1,4 +1,4 @@
-"""Third opinions: against closed forms, and against the solver on whole runs; every comparable scenario has one or not."""
+"""Third opinions: against closed forms, and the solver against them on whole runs."""
 
 import math
 from dataclasses import replace
