@@ -31,6 +31,7 @@ from .common import (
     touches,
     unit_of,
 )
+from .toggled import toggled_rows
 
 STIFFNESSES = (1e6, 1e7, 1e8)
 EXPONENT = 1.5
@@ -82,6 +83,7 @@ def compare_constraints(task: Task) -> Comparison:
         )
     else:
         rows += _flight_rows(task, found, ours, runs)
+        rows += toggled_rows(task, found[0], first_run)
     notes = (
         f"the constraint is compared with the limit of Gonthier's law with exact restitution, K = {STIFFNESSES} "
         "N/m^1.5, extrapolated in K^(-0.4); the uncertainty is the difference of the quadratic and the linear "
