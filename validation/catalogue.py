@@ -85,7 +85,7 @@ def run_case(
     least = TWO_MODELS if other is not None else FLEXIBLE if flexible else 0.0
     return crosscheck(
         scenario, report_dir, progress, t_end=t_end, step=step, exudyn_model=other, name=case.name, why=case.why,
-        least_tolerance=least,
+        least_tolerance=least, whole=case.whole and not coarse,
     )  # fmt: skip
 
 

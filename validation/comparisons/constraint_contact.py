@@ -31,6 +31,7 @@ from .common import (
     touches,
     unit_of,
 )
+from .toggled import toggled_rows
 
 STIFFNESSES = (1e6, 1e7, 1e8)
 EXPONENT = 1.5
@@ -70,7 +71,7 @@ def compare_constraints(task: Task) -> Comparison:
     ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
     runs = []
     for stiffness in STIFFNESSES:
-        step = min(task.step or np.inf, _step(task, found[0], stiffness))
+        step = min(task.step or np.inf, nice_step(contact_step(found[0], stiffness)))
         task.progress(f"exudyn, K = {stiffness:.0e} N/m^1.5, step {step:.1e} s")
         result = run_exudyn(with_stiffness(task.exudyn_model, stiffness), t_end, step, settings_for(task.exudyn_model))
         runs.append(PenaltyRun(stiffness, result, _contacts(task, result)))
@@ -82,6 +83,7 @@ def compare_constraints(task: Task) -> Comparison:
         )
     else:
         rows += _flight_rows(task, found, ours, runs)
+        rows += toggled_rows(task, found[0], first_run)
     notes = (
         f"the constraint is compared with the limit of Gonthier's law with exact restitution, K = {STIFFNESSES} "
         "N/m^1.5, extrapolated in K^(-0.4); the uncertainty is the difference of the quadratic and the linear "
@@ -131,11 +133,11 @@ def _end(found: list[Touch], t_end: float) -> float:
     return min(t_end, found[1].start + 0.9 * (found[2].start - found[1].start)) if len(found) > 2 else t_end
 
 
-def _step(task: Task, first: Touch, stiffness: float) -> float:
-    """A step that resolves the contact, from Hertz' duration with the effective mass of our impact."""
-    mass = first.impulse / (first.approach_speed + first.separation_speed)
-    depth = ((EXPONENT + 1.0) * mass * first.approach_speed**2 / (2.0 * stiffness)) ** (1.0 / (EXPONENT + 1.0))
-    return nice_step(2.94 * depth / first.approach_speed / STEPS_IN_CONTACT)
+def contact_step(touch: Touch, stiffness: float) -> float:
+    """A step (s) that resolves a contact, from Hertz' duration with the effective mass of our impact."""
+    mass = touch.impulse / (touch.approach_speed + touch.separation_speed)
+    depth = ((EXPONENT + 1.0) * mass * touch.approach_speed**2 / (2.0 * stiffness)) ** (1.0 / (EXPONENT + 1.0))
+    return 2.94 * depth / touch.approach_speed / STEPS_IN_CONTACT
 
 
 def _contacts(task: Task, result: ExudynResult) -> list[tuple[str, ContactInterval]]:
@@ -203,7 +205,10 @@ def _flight_rows(task: Task, found: list[Touch], ours: Result, runs: list[Penalt
         worst = int(np.argmax(np.abs(mine - limit)))
         for k, name in ((len(flight) - 1, ending), (worst, "where it differs most in flight")):
             title = f"{channel} {name} (t = {flight[k]:.5f} s)"
-            rows.append(Row(title, unit, float(mine[k]), float(limit[k]), STATE, "relative", float(moved[k]), scale))
+            rows.append(
+                Row(title, unit, float(mine[k]), float(limit[k]), STATE, "relative", float(moved[k]), scale,
+                    channel=channel, at=float(flight[k]))
+            )  # fmt: skip
     return rows
 
 
