@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -60,7 +61,9 @@ class Course:
         multipliers = samples[:, layout.multipliers]
         impulses = [channel(f"{name}.impulse") for name in contacts]
         starts = [event for event in sim.events if event.kind in STARTS]
-        residuals = tuple(float(channel(f"residual.{level}").max()) for level in ("position", "velocity", "acceleration"))
+        residuals = tuple(
+            float(channel(f"residual.{level}").max()) for level in ("position", "velocity", "acceleration")
+        )
         return cls(
             samples[:, 0].copy(), samples[:, layout.q], samples[:, layout.v], samples[:, layout.a],
             multipliers[:, : multipliers.shape[1] - len(contacts)],
@@ -129,7 +132,7 @@ class Course:
         """The samples between two jumps of the velocities."""
         jumps = np.flatnonzero(np.diff(self.t) == 0.0) + 1
         edges = [0, *(int(k) for k in jumps), len(self.t)]
-        return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b - a > 1]
+        return [slice(a, b) for a, b in pairwise(edges) if b - a > 1]
 
 
 def course_difference(run: Course, spline: BPoly, scale: Array) -> Array:

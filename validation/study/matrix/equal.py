@@ -38,9 +38,9 @@ def cost_at(pair: Pair, level: float) -> Cost:
         return Cost({name: float(value or 0.0) for name, value in values.items()})
     if good and all((run.error or 0.0) <= level for run in good):
         return Cost({name: float(getattr(good[0], name)) for name in COSTS}, at_most=True)
-    failure = pair.failure
-    if failure is not None:
-        return Cost(None, reason=failure.failure, kind=failure.kind)
+    last = pair.runs[-1]
+    if not last.ok:
+        return Cost(None, reason=last.failure, kind=last.kind)
     best = min((run.error or math.inf for run in good), default=math.inf)
     return Cost(None, reason=f"no run comes to it: best error {best:.1e}", kind="short")
 

@@ -60,9 +60,7 @@ class Measured:
             reached = run.error is not None and run.error < NEAR * min(sweep.levels)
             if run.kind in ("limit", "refused") or (reached and len(runs) >= sweep.least_runs):
                 break
-        return Pair(
-            scenario=self.scenario.name, method=setting.method, options=dict(setting.options), runs=tuple(runs)
-        )
+        return Pair(scenario=self.scenario.name, method=setting.method, options=dict(setting.options), runs=tuple(runs))
 
     def run(
         self, setting: Setting, tolerance: float, limit: float, stopped: Callable[[], bool] = lambda: False

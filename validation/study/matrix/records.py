@@ -6,9 +6,6 @@ from pydantic import BaseModel, ConfigDict
 
 from ..cases import Setting
 
-FAILED = {"refused": "refused", "failed": "failed", "limit": "limit", "broken": "broken"}
-"""Kinds of failure: the method does not take the problem; the run stopped; it was stopped; an error of another kind."""
-
 
 class _Record(BaseModel):
     # figures that do not exist are None; infinite ones (a solution that blows up) stay so in JSON
@@ -23,6 +20,7 @@ class MatrixRun(_Record):
     failure: str = ""
     """Why there are no figures, in one sentence; empty if there are."""
     kind: Literal["", "refused", "failed", "limit", "broken"] = ""
+    """Of failure: the method does not take the problem; the run failed; it cost too much; an error of another kind."""
     steps: int = 0
     rejected: int = 0
     outer_iterations: int = 0

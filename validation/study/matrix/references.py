@@ -94,5 +94,3 @@ def _first_look(scenario: Scenario, t_end: float) -> Course:
 
 def _none(scenario: Scenario, why: str, asked: float) -> Reference:
     return Reference(ReferenceFigures(scenario=scenario.name, failure=why, asked=asked), None)
-
-
