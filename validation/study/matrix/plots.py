@@ -17,8 +17,9 @@ MOST = 300.0
 SYMBOLS = {"refused": "R", "failed": "×", "limit": "L", "broken": "B", "short": "–"}
 """What stands in a cell without a figure: a sign, not only a colour."""
 LEGEND = (
-    "number: CPU time over the least of the column (≤: even its loosest run has that error);  "
-    "× the run fails,  R refused,  L above the CPU limit of a run,  – tightest run misses the error,  B broken"
+    "number: CPU time over the least of the column (≤: even its loosest run has that error)\n"
+    "×: the run fails    R: refused    L: above the CPU limit of a run    –: its tightest run misses the error    "
+    "B: broken"
 )
 NO_FIGURE = "#e4e4e4"
 FAILED = "#f6d5d0"
@@ -33,7 +34,7 @@ def plot_matrix(matrix: MethodMatrix, path: Path, quantity: str = "cpu_time") ->
     levels, labels, scenarios = matrix.sweep.levels, matrix.labels, matrix.scenarios
     what = "CPU time" if quantity == "cpu_time" else quantity.replace("_", " ")
     with context({**STYLE, "axes.grid": False}):
-        width = 0.47 * len(scenarios) + 3.2
+        width = max(8.5, 0.47 * len(scenarios) + 3.2)
         height = (0.28 * len(labels) + 0.9) * len(levels) + 2.3
         figure = figure_class(figsize=(width, height), layout="constrained", dpi=RESOLUTION)
         grid = figure.subplots(len(levels), 1, squeeze=False)
