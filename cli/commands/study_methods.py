@@ -111,10 +111,11 @@ def _print(matrix: Any) -> None:
         title = f"Error {level:.0e} of the motion, {len(matrix.scenarios)} scenarios: medians, costs over the least"
         print_table(title, columns, rows)
     print_table(
-        "Largest residuals of all runs",
-        ("method", "position", "velocity", "acceleration"),
-        [(row["label"], *(_two(x) for x in row["residuals"].values())) for row in summary],
-    )
+        "Largest residuals of all runs, and runs that failed with any tolerance",
+        ("method", "position", "velocity", "acceleration", "failed", "runs"),
+        [(row["label"], *(_two(x) for x in row["residuals"].values()), row["failed runs"], row["runs"])
+         for row in summary],
+    )  # fmt: skip
     _print_budgets(matrix)
     why = reasons(matrix, first)
     if why:

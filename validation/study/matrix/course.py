@@ -17,8 +17,8 @@ STARTS = ("impact", "close")
 """Events whose times are compared: a contact begins."""
 ATOL_SHARE = 0.01
 """atol over the tolerance, in units of the scenario's motion."""
-LEAST_RTOL, LEAST_ATOL = 1e-11, 1e-13
-"""What rounding allows; atol in units of the largest coordinate or rate of its kind."""
+LEAST_RTOL = 1e-13
+"""What rounding allows."""
 LEAST_SCALES = (1e-9, 1e-6)
 """m and rad: what moves less does not move."""
 
@@ -91,8 +91,8 @@ class Course:
         """The scale of each coordinate (n,)."""
         return np.where(self.angle, scales[1], scales[0])
 
-    def tolerances(self, tolerance: float) -> tuple[float, dict[str, float]]:
-        """rtol and atol that stand for `tolerance` in parts of how far this run moves.
+    def tolerances(self, tolerance: float, least: float = LEAST_RTOL) -> tuple[float, dict[str, float]]:
+        """rtol (at least `least`) and atol that stand for `tolerance` in parts of how far this run moves.
 
         atol is a hundredth of it in units of the motion; rtol is less than it where coordinates are larger than what
         they move (a rod of 1 m that is struck moves by micrometres).
@@ -101,13 +101,12 @@ class Course:
         largest = self._by_kind(np.abs(self.q).max(axis=0), LEAST_SCALES)
         speed, angular = self._by_kind(np.abs(self.v).max(axis=0), LEAST_SCALES)
         share = min(1.0, length / largest[0], angle / largest[1])
-        small = ATOL_SHARE * tolerance
+        rtol = max(least, share * tolerance)
         kinds = {
             "length": (length, largest[0]), "angle": (angle, largest[1]),
             "speed": (speed, speed), "angular_speed": (angular, angular),
         }  # fmt: skip
-        atol = {kind: max(LEAST_ATOL * most, small * scale) for kind, (scale, most) in kinds.items()}
-        return max(LEAST_RTOL, share * tolerance), atol
+        return rtol, {kind: ATOL_SHARE * max(tolerance * scale, least * most) for kind, (scale, most) in kinds.items()}
 
     def _by_kind(self, values: Array, least: tuple[float, float]) -> tuple[float, float]:
         return (

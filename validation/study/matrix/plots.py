@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ....core import METHODS
 from ...plots import STYLE, _matplotlib
 from .equal import Cost
 from .runner import MethodMatrix
@@ -18,6 +19,7 @@ SYMBOLS = {"refused": "R", "failed": "×", "limit": "L", "broken": "B", "short":
 """What stands in a cell without a figure: a sign, not only a colour."""
 LEGEND = (
     "number: CPU time over the least of the column (≤: even its loosest run has that error)\n"
+    "above the line TLISMNI, below it what it is compared with    "
     "×: the run fails    R: refused    L: above the CPU limit of a run    –: its tightest run misses the error    "
     "B: broken"
 )
@@ -78,6 +80,10 @@ def _panel(axes: Any, matrix: MethodMatrix, level: float, quantity: str) -> Any:
     axes.set_yticks(np.arange(-0.5, len(labels)), minor=True)
     axes.grid(which="minor", color="white", linewidth=1.0)
     axes.tick_params(which="both", length=0)
+    comparison = [METHODS[label.split()[0]].family != "TLISMNI" for label in labels]
+    if any(comparison) and not all(comparison):
+        # above: TLISMNI; below: what it is compared with
+        axes.axhline(comparison.index(True) - 0.5, color="black", linewidth=1.6)
     for spine in axes.spines.values():
         spine.set_visible(False)
     return image

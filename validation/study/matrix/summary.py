@@ -38,7 +38,8 @@ def summary_rows(matrix: MethodMatrix) -> list[dict[str, Any]]:
 
     `reached`: scenarios with a figure; `failed`, `refused`, `limit`, `short`, `broken`: those without, by kind;
     medians of each cost over the least of the scenario, and of the outer iterations over those of `BASE`; medians of
-    `QUALITIES` at that error of the coordinates; `residuals`: the largest of all runs at the three levels.
+    `QUALITIES` at that error of the coordinates; `residuals`: the largest of all runs at the three levels; `runs` and
+    `failed runs`: with any tolerance.
     """
     rows = []
     for label in matrix.labels:
@@ -49,7 +50,9 @@ def summary_rows(matrix: MethodMatrix) -> list[dict[str, Any]]:
             row["levels"][f"{level:.0e}"] = _at_level(matrix, label, table) | {
                 name: _median(_quality(pair, level, name) for pair in pairs) for name in QUALITIES
             }
-        runs = [run for pair in pairs for run in pair.runs if run.residuals is not None]
+        everything = [run for pair in pairs for run in pair.runs]
+        row["runs"], row["failed runs"] = len(everything), sum(run.kind in ("failed", "broken") for run in everything)
+        runs = [run for run in everything if run.residuals is not None]
         row["residuals"] = {
             name: max((run.residuals[k] for run in runs if run.residuals), default=None)
             for k, name in enumerate(LEVELS_OF_CONSTRAINTS)
