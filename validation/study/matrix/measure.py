@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import BPoly
 
-from ....core import ConsistencyError, ModelError, Simulation, SimulationError
+from ....core import ConsistencyError, ModelError, SimulationError
 from ....models import Scenario
 from ..cases import Setting
 from ..runs import COUNTS
 from .course import Course, course_difference, event_errors, mean_difference
-from .limited import LimitReached, Stopped, run_limited
+from .limited import LimitedSimulation, LimitReached, Stopped, run_limited
 from .records import MatrixRun, Pair
 
 KEPT_OPTIONS = ("max_step", "first_step", "redundant")
@@ -85,11 +85,11 @@ class Measured:
             text = f"broken: {type(error).__name__}: {first_sentence(error)}"
             return MatrixRun(tolerance=tolerance, kind="broken", failure=text)
 
-    def simulation(self, setting: Setting, tolerance: float) -> Simulation:
+    def simulation(self, setting: Setting, tolerance: float) -> LimitedSimulation:
         """The run, ready to go."""
         return start(self.scenario, setting, *self.course.tolerances(tolerance))
 
-    def _figures(self, sim: Simulation) -> dict[str, Any]:
+    def _figures(self, sim: LimitedSimulation) -> dict[str, Any]:
         course, reference = Course.of(sim), self.course
         error = float(np.max(course_difference(course, self.spline, self.scale)))
         first, largest = event_errors(course, reference)
@@ -107,10 +107,10 @@ class Measured:
         }
 
 
-def start(scenario: Scenario, setting: Setting, rtol: float, atol: Mapping[str, float]) -> Simulation:
+def start(scenario: Scenario, setting: Setting, rtol: float, atol: Mapping[str, float]) -> LimitedSimulation:
     """A simulation that records every step."""
     kept = {name: value for name, value in scenario.options.items() if name in KEPT_OPTIONS}
-    return Simulation(scenario.model, setting.method, rtol, atol, record=True, **kept, **setting.options)
+    return LimitedSimulation(scenario.model, setting.method, rtol, atol, record=True, **kept, **setting.options)
 
 
 def first_sentence(error: Exception) -> str:
@@ -119,5 +119,5 @@ def first_sentence(error: Exception) -> str:
     return text.partition(". ")[0].rstrip(".") or type(error).__name__
 
 
-def _counts(sim: Simulation) -> dict[str, Any]:
+def _counts(sim: LimitedSimulation) -> dict[str, Any]:
     return {name: int(sim.stats[key]) for name, key in COUNTS.items()}
