@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -40,12 +40,12 @@ class MethodMatrix:
     references: tuple[ReferenceFigures, ...]
     pairs: tuple[Pair, ...]
 
-    @property
+    @cached_property
     def scenarios(self) -> tuple[str, ...]:
         """Those with a reference, in the order of the catalogue."""
         return tuple(reference.scenario for reference in self.references if reference.ok)
 
-    @property
+    @cached_property
     def labels(self) -> tuple[str, ...]:
         """Of the settings, in the order of the contenders."""
         found = {pair.setting.label for pair in self.pairs}
@@ -55,7 +55,7 @@ class MethodMatrix:
         """One pair. Raises KeyError if there is none."""
         return self._by_key[scenario, label]
 
-    @property
+    @cached_property
     def _by_key(self) -> dict[Key, Pair]:
         return {(pair.scenario, pair.setting.label): pair for pair in self.pairs}
 

@@ -37,7 +37,8 @@ def summary_rows(matrix: MethodMatrix) -> list[dict[str, Any]]:
     """One row a method: over all scenarios, at each level of error.
 
     `reached`: scenarios with a figure; `failed`, `refused`, `limit`, `short`, `broken`: those without, by kind;
-    medians of each cost over the least of the scenario, and of the outer iterations over those of `BASE`; medians of
+    medians of each cost over the least of the scenario, and of the outer iterations over those of `BASE`,
+    with the number of scenarios in which they are fewer, of those that can be compared; medians of
     `QUALITIES` at that error of the coordinates; `residuals`: the largest of all runs at the three levels; `runs` and
     `failed runs`: with any tolerance.
     """
@@ -74,7 +75,7 @@ def _at_level(matrix: MethodMatrix, label: str, table: dict[tuple[str, str], Cos
             if cost.values is not None and 0.0 < least < math.inf:
                 ratios.append(cost.values[quantity] / least)
         found[quantity] = median(ratios) if ratios else None
-    found[f"outer iterations over {BASE}"] = _median(
+    shares = [
         cost.values["outer_iterations"] / base.values["outer_iterations"]
         for name, cost in here.items()
         if (base := table.get((BASE, name), UNTRUSTED)).values
@@ -82,7 +83,9 @@ def _at_level(matrix: MethodMatrix, label: str, table: dict[tuple[str, str], Cos
         and not cost.at_most
         and not base.at_most
         and base.values["outer_iterations"] > 0.0
-    )
+    ]
+    found[f"outer iterations over {BASE}"] = _median(shares)
+    found[f"fewer than {BASE}"] = (sum(share < 1.0 for share in shares), len(shares))
     return found
 
 
