@@ -99,7 +99,7 @@ def _median(values: Any) -> float | None:
     return median(found) if found else None
 
 
-def reasons(matrix: MethodMatrix, level: float) -> list[tuple[str, ...]]:
+def reasons(matrix: MethodMatrix, level: float) -> list[tuple[str, str, str]]:
     """Scenario, method, reason of each pair without a figure at `level`; methods with the same reason together."""
     grouped: dict[tuple[str, str], list[str]] = {}
     for (label, scenario), cost in cost_table(matrix, level).items():
