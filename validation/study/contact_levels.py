@@ -81,7 +81,8 @@ def sixth_claim(rows: Sequence[ContactRow], levels: ContactLevels) -> Claim:
             f"independent coordinates: {levels.free[0]} while open, {levels.free[1]} while closed",
             f"without the velocity increment the pendulum's restitution, {asked:g} by its law, is "
             f"{round(min(known), 3) + 0.0:.3f} ... {max(known):.4f}, and {len(right)} of "
-            f"{sum(not row.jump for row in rows)} runs of all problems are reasonable; with it {len(with_law)} of {len(all_with_law)} of TLISMNI",
+            f"{sum(not row.jump for row in rows)} runs of all problems are reasonable; with it {len(with_law)} of "
+            f"{len(all_with_law)} of TLISMNI",
         ),
         {"residuals": levels.residuals, "independent": levels.free, "restitutions": found, "jump": levels.jump},
     )
