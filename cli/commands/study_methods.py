@@ -15,6 +15,9 @@ METHODS_EXAMPLES = (
     "  tlismni study methods -s pendulum_stop -s chain -m hht -m ebdf --json\n\n"
     "  tlismni study methods --quick --plot methods.png"
 )
+LEGEND = """\
+f/r/l/s: scenarios without a figure, because the run failed, was refused, took too long, or missed the error at its
+tightest tolerance. energy: drift over the largest kinetic energy; joints, impulses: errors of forces, at that error"""
 SUFFIXES = (".png", ".pdf", ".svg")
 
 
@@ -106,8 +109,8 @@ def _print(matrix: Any) -> None:
             figures = (at[name] for name in ("cpu_time", "evaluations", f"outer iterations over {BASE}", "energy_drift",
                                              "joint_force_error", "impulse_error"))  # fmt: skip
             rows.append((row["label"], at["reached"], without, *(_two(x) for x in figures)))
-        columns = ("method", "reach it", "failed/refused/limit/short", "CPU", "evaluations", f"iterations/{BASE}",
-                   "energy drift", "joint forces", "impulses")  # fmt: skip
+        columns = ("method", "reach it", "f/r/l/s", "CPU", "evaluations", f"iter./{BASE}", "energy", "joints",
+                   "impulses")  # fmt: skip
         title = f"Error {level:.0e} of the motion, {len(matrix.scenarios)} scenarios: medians, costs over the least"
         print_table(title, columns, rows)
     print_table(
@@ -116,6 +119,7 @@ def _print(matrix: Any) -> None:
         [(row["label"], *(_two(x) for x in row["residuals"].values()), row["failed runs"], row["runs"])
          for row in summary],
     )  # fmt: skip
+    stdout().print(LEGEND, markup=False)
     _print_budgets(matrix)
     why = reasons(matrix, first)
     if why:
@@ -125,9 +129,9 @@ def _print(matrix: Any) -> None:
 
 def _print_budgets(matrix: Any) -> None:
     """At equal cost: the error that each method has reached by then."""
-    rows = []
+    rows, found = [], [row for row in matrix.rows() if row["error at the budget"] is not None]
     for name in matrix.scenarios:
-        here = [row for row in matrix.rows() if row["scenario"] == name and row["error at the budget"] is not None]
+        here = [row for row in found if row["scenario"] == name]
         if not here:
             continue
         here.sort(key=lambda row: row["error at the budget"])
