@@ -82,7 +82,8 @@ def _environment() -> Any:
         loader=PackageLoader(__package__ or "tlismni.validation"), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters |= {
-        "number": number, "small": small, "script": _script, "agreeing": _agreeing, "largest": _largest,
+        "number": number, "small": small, "figure": figure, "script": _script, "agreeing": _agreeing,
+        "largest": _largest,
     }  # fmt: skip
     return environment
 
@@ -112,3 +113,8 @@ def number(value: float) -> str:
 def small(value: float) -> str:
     """A difference or tolerance: two digits."""
     return "0" if value == 0.0 else f"{value:.1e}"
+
+
+def figure(value: Any) -> str:
+    """Two digits of a number; nothing of what does not exist."""
+    return f"{value:.2g}" if isinstance(value, int | float) else str(value or "")
