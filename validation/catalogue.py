@@ -2,6 +2,7 @@
 
 import logging
 import time
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -89,6 +90,18 @@ class CatalogueCheck:
     def cpu_seconds(self) -> float:
         """Of the processor, of all cases."""
         return sum(outcome.cpu_seconds for outcome in self.outcomes)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, without the outcomes."""
+        return {
+            "coarse": self.coarse,
+            "planned": self.planned,
+            "done": len(self.outcomes),
+            "verdicts": dict(Counter(outcome.verdict for outcome in self.outcomes)),
+            "seconds": round(self.seconds, 1),
+            "cpu_seconds": round(self.cpu_seconds, 1),
+            "workers": self.workers,
+        }
 
 
 def run_case(
@@ -202,8 +215,10 @@ def _outcome(order: _Order, tell: Tell) -> Outcome:
 
 
 def _light(found: CrossCheck) -> CrossCheck:
-    """Without trajectories: they are in the report, and would fill the memory."""
-    return replace(found, model=None, comparison=replace(found.comparison, panels=(), events=(), result=None))
+    """Without trajectories (they are in the report, and would fill the memory), fit to be sent between processes."""
+    comparison = replace(found.comparison, panels=(), events=(), result=None)
+    plain = {"parameters": dict(found.parameters), "settings": dict(found.settings)}
+    return replace(found, model=None, comparison=comparison, **plain)  # type: ignore[arg-type]
 
 
 def _died(order: _Order, code: int | None, seconds: float) -> Outcome:

@@ -1,6 +1,7 @@
 """Cases in processes of their own: several at once, and exudyn's end is not the end of the others."""
 
 import multiprocessing
+import os
 import signal
 import time
 from collections import deque
@@ -97,6 +98,8 @@ def _received(worker: _Worker) -> tuple[str, Any]:
 def _serve(pipe: Connection, job: Job) -> None:
     # an interruption is the parent's to handle: it ends its processes itself
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # what compiled code prints would come between the lines of the progress
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     while True:
         try:
             item = pipe.recv()

@@ -65,15 +65,19 @@ class Row:
         return abs(self.ours - self.exudyn)
 
     @property
+    def size(self) -> float:
+        """What relative values refer to."""
+        return abs(self.exudyn) if self.scale is None else self.scale
+
+    @property
     def relative(self) -> float:
-        scale = abs(self.exudyn) if self.scale is None else self.scale
-        return self.difference / scale if scale > 0.0 else math.inf if self.difference > 0.0 else 0.0
+        size = self.size
+        return self.difference / size if size > 0.0 else math.inf if self.difference > 0.0 else 0.0
 
     @property
     def allowed(self) -> float:
         """The tolerance in the row's unit."""
-        size = 1.0 if self.tolerance_kind == "absolute" else abs(self.exudyn) if self.scale is None else self.scale
-        return self.tolerance * size
+        return self.tolerance * (1.0 if self.tolerance_kind == "absolute" else self.size)
 
     @property
     def within_bars(self) -> bool:
