@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..core.elements import FlexibleBody
+from ..core.elements import AxialRod, FlexibleBody
 from ..core.errors import TlismniError
 from ..models import load
 from .cases import Case, cases
@@ -115,7 +115,7 @@ def run_case(
     step, t_end = changes.pop("step", case.step), changes.pop("t_end", case.t_end)
     scenario = load(case.scenario, **{**case.parameters, **changes})
     other = as_cables(scenario.model) if has_floating_beams(scenario.model) else None
-    flexible = any(isinstance(b, FlexibleBody) for b in scenario.model.bodies)
+    flexible = any(isinstance(b, FlexibleBody) and not isinstance(b, AxialRod) for b in scenario.model.bodies)
     least = TWO_MODELS if other is not None else FLEXIBLE if flexible else 0.0
     return crosscheck(
         scenario, report_dir, progress, t_end=t_end, step=step, exudyn_model=other, name=case.name, why=case.why,

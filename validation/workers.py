@@ -47,7 +47,7 @@ class Workers(Generic[Item, Result]):
     """
 
     def __init__(
-        self, job: Job, count: int, died: Callable[[Item, int | None, float], Result], limit: float = 900.0
+        self, job: Job, count: int, died: Callable[[Item, int | None, float], Result], limit: float = 1800.0
     ) -> None:
         self.job, self.count, self.died, self.limit = job, count, died, limit
 

@@ -82,7 +82,7 @@ class Row:
     @property
     def within_bars(self) -> bool:
         """Whether the difference is within the error bars of both sides together."""
-        return self.difference <= self.uncertainty + self.ours_uncertainty
+        return bool(self.difference <= self.uncertainty + self.ours_uncertainty)
 
     @property
     def verdict(self) -> Verdict:

@@ -8,7 +8,7 @@ from ..exudyn_run import run_exudyn, settings_for
 from .common import Comparison, Row, Task, energy_panel, our_looser_run, our_run, residual_panel, touches
 from .force_panels import force_panels
 from .force_rows import Levels, Sides, force_rows
-from .force_steps import MOST_STEPS, aligned, end_of, entry_error, first_step, jumps, moved_by, sample_times
+from .force_steps import MOST_STEPS, aligned, end_of, entry_error, first_step, jumps, most_steps, moved_by, sample_times
 
 MOST_HALVINGS = 3
 """Of exudyn's step, beyond the first three runs."""
@@ -48,7 +48,7 @@ def compare_forces(task: Task) -> Comparison:
             continue
         rows = force_rows(Sides(task, found, ours, loose, Levels(tuple(runs), regular)))
         # the next run has twice the steps
-        if all(_decided(row) for row in rows) or 2.0 * t_end / h > MOST_STEPS:
+        if all(_decided(row) for row in rows) or 2.0 * t_end / h > most_steps(scenario.model):
             break
     fine = runs[-1]
     entry = 0.0 if regular else max((entry_error(scenario.model, x) for x in found[:1]), default=0.0) * fine.step

@@ -12,6 +12,8 @@ APPROACH_SPEED = 5e-5
 ENTRY = 2e-4
 """Largest relative error of speed that a force which jumps at first touch may make (see `entry_error`)."""
 MANY_STEPS, MOST_STEPS = 300_000, 1_000_000
+MOST_IN_PYTHON = 100_000
+"""Steps with friction: exudyn then calls a function of ours in every one of them, often."""
 SAMPLES, SAMPLES_IN_CONTACT = 2001, 1201
 BEFORE_TOUCH = 1e-4
 """Of the finest step: how long before the touch an aligned step begins (see `aligned`)."""
@@ -76,6 +78,11 @@ def entry_error(model: Model, touch: Touch) -> float:
     if not isinstance(law, KelvinVoigt):
         return 0.0
     return law.damping * (touch.approach_speed + touch.separation_speed) / touch.impulse
+
+
+def most_steps(model: Model) -> int:
+    """To which exudyn's step is halved at most."""
+    return MOST_IN_PYTHON if any(c.friction is not None for c in model.contacts) else MOST_STEPS
 
 
 def jumps(model: Model, found: list[Touch]) -> bool:
