@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..core.elements import AxialRod, FlexibleBody
 from ..core.errors import TlismniError
 from ..models import load
 from .cases import Case, cases
@@ -18,10 +17,6 @@ from .exchange import as_cables, has_floating_beams
 from .exudyn_import import import_exudyn
 from .workers import Tell, Workers
 
-FLEXIBLE = 2e-3
-"""Relative tolerance with flexible bodies, whose waves both sides damp by their steps."""
-TWO_MODELS = 3e-2
-"""The same where our model and exudyn's are two of one thing."""
 log = logging.getLogger(__name__)
 
 
@@ -114,12 +109,10 @@ def run_case(
     changes = dict(case.coarse) if coarse else {}
     step, t_end = changes.pop("step", case.step), changes.pop("t_end", case.t_end)
     scenario = load(case.scenario, **{**case.parameters, **changes})
-    other = as_cables(scenario.model) if has_floating_beams(scenario.model) else None
-    flexible = any(isinstance(b, FlexibleBody) and not isinstance(b, AxialRod) for b in scenario.model.bodies)
-    least = TWO_MODELS if other is not None else FLEXIBLE if flexible else 0.0
+    other = as_cables(scenario.model, case.cables) if has_floating_beams(scenario.model) else None
     return crosscheck(
         scenario, report_dir, progress, t_end=t_end, step=step, exudyn_model=other, name=case.name, why=case.why,
-        least_tolerance=least,
+        least_tolerance=case.tolerance,
     )  # fmt: skip
 
 
