@@ -20,6 +20,7 @@ _MEANINGS = {
     "controller": "step sizes of one-step methods: elementary, pi or h211b",
     "first_step": "first step under error control, s",
     "max_step": "largest step under error control, s",
+    "max_steps": "most steps between two times that are asked for; no limit without it",
     "newton_tolerance": (
         "where the outer loop stops: with --step absolute and relative (1e-10), else in error weights (0.01; irk 0.001)"
     ),

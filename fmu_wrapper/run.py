@@ -17,6 +17,10 @@ from .variables import EVENTS, Variable, VariableTable
 
 SimulationFactory = Callable[..., Any]
 
+MAX_STEPS = 1_000_000
+"""Steps of the solver within one communication step, if the settings say nothing: a master is not kept for hours by an
+input that is out of proportion, which it could not tell from a hang."""
+
 
 def real_simulation(*args: Any, **kwargs: Any) -> Any:
     """`tlismni.core.Simulation`, imported when the first slave needs it."""
@@ -34,7 +38,7 @@ def build_simulation(factory: SimulationFactory | None, model: Model, settings: 
         atol=settings.atol,
         step=settings.step or None,
         t0=t0,
-        **settings.options,
+        **{"max_steps": MAX_STEPS, **settings.options},
     )
 
 

@@ -46,6 +46,7 @@ from .records import (
     VIOLATED,
 )
 from .repair import repair
+from .step_budget import step_count, steps_left
 from .watch import crossed, friction_margin
 
 if TYPE_CHECKING:
@@ -77,6 +78,7 @@ _REPAIRABLE = (REANALYZE, SINGULAR, INNER_DIVERGED, OUTER_SLOW, OUTER_DIVERGED)
 
 def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> None:
     """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending."""
+    first = step_count(sim)
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     repaired_at = math.nan
     chunk = max(1, CHUNK_STEPS * 100 // max(100, sim.assembly.n))
@@ -100,7 +102,8 @@ def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> 
             return
         # while a contact slides, each step is looked at
         sliding = sliding_contacts(sim)
-        code = run(ws, ms, lc, 1 if sliding else chunk)
+        left = steps_left(sim, first, t)
+        code = run(ws, ms, lc, 1 if sliding else min(chunk, left))
         sim.flush()
         if sliding and code == CHUNK and sim.t_internal > now:
             refuse_passed_jam(sim, sliding)

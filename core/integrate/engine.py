@@ -70,6 +70,7 @@ class Engine(ContactSide):
         step: float | None = None,
         max_step: float | None = None,
         first_step: float | None = None,
+        max_steps: int | None = None,
         t0: float = 0.0,
         outer: str = "newton",
         acceleration: str = "none",
@@ -87,7 +88,7 @@ class Engine(ContactSide):
             method=method, rtol=rtol, atol=atol, step=step, max_step=max_step, first_step=first_step, t0=t0,
             outer=outer, acceleration=acceleration, depth=depth, fallback=fallback, controller=controller,
             newton_tolerance=newton_tolerance, start_tolerance=start_tolerance, redundant=redundant,
-            method_options=dict(method_options),
+            max_steps=max_steps, method_options=dict(method_options),
         )  # fmt: skip
         self.formula: Formula = get_formula(method, method_options)
         if not isinstance(system, Model | EquationSystem):

@@ -61,6 +61,7 @@ class Settings:
     newton_tolerance: float | None
     start_tolerance: float
     redundant: str = "drop"
+    max_steps: int | None = None
     method_options: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -97,6 +98,10 @@ class Settings:
             raise ModelError(
                 f"depth = {self.depth!r} of Anderson's acceleration must be a whole number 1 to {MOST_DEPTH}"
             )
+        if self.max_steps is not None and (
+            isinstance(self.max_steps, bool) or not isinstance(self.max_steps, int) or self.max_steps < 1
+        ):
+            raise ModelError(f"max_steps must be a whole number of at least 1, or None, not {self.max_steps!r}")
         if not isinstance(self.fallback, bool):
             raise ModelError(f"fallback must be True or False, not {self.fallback!r}")
 

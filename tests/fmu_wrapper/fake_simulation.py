@@ -57,6 +57,7 @@ class FakeSimulation:
         light: bool = False,
         fail_at: float = 1e9,
         nan_at: float = 1e9,
+        max_steps: int | None = None,
         **unknown: Any,
     ) -> None:
         if method not in ("ebdf", "bdf") or unknown:

@@ -2,9 +2,11 @@
 values. Whatever came before, an illegal call answers Error with a line in the log, no value is handed out that is not
 finite, and after a reset the instance is as new.
 
-TLISMNI_SEQUENCES=100000 sets how many (the default is for a quick look).
+TLISMNI_SEQUENCES=100000 sets how many (the default is a quick look); `-o log_cli=true --log-level=INFO` shows how far
+a long run has come.
 """
 
+import logging
 import math
 import os
 
@@ -19,7 +21,12 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, rule, run_state_machine_as_test
 from tlismni.fmu_wrapper import export_fmu
 
+logger = logging.getLogger(__name__)
 SEQUENCES = int(os.environ.get("TLISMNI_SEQUENCES", "40"))
+BATCH = 1000
+"""Sequences between two fresh starts of hypothesis, which remembers all that it has tried."""
+MAX_STEPS = 2000
+"""Of a communication step: a force of 1e16 N would keep the solver for years."""
 ERROR = 3
 NUMBERS = st.sampled_from((0.0, 0.25, 1.0, -1.0, 1e-300, 1e12, 1e300, math.nan, math.inf, -math.inf)) | st.floats()
 STEPS = st.sampled_from((1e-3, 0.05, 0.3)) | NUMBERS
@@ -29,7 +36,7 @@ class Host:
     """An FMU, opened once, and an instance whose callbacks do nothing."""
 
     def __init__(self, folder):
-        path = export_fmu(ball_model(), folder / "x.fmu", "3.0", t_end=1.0)
+        path = export_fmu(ball_model(), folder / "x.fmu", "3.0", t_end=1.0, max_steps=MAX_STEPS)
         unzipped = fmpy.extract(str(path), unzipdir=str(folder / "unzipped"))
         description = fmpy.read_model_description(unzipped)
         self.messages = Messages()
@@ -65,6 +72,7 @@ class Calls(RuleBasedStateMachine):
     """Any call at any time."""
 
     host: Host
+    calls = refused = 0
 
     def __init__(self):
         super().__init__()
@@ -74,9 +82,11 @@ class Calls(RuleBasedStateMachine):
     def call(self, function):
         """Make a call; refused ones must say why."""
         self.host.messages.clear()
+        Calls.calls += 1
         try:
             return function()
         except FMICallException as error:
+            Calls.refused += 1
             assert error.status == ERROR
             assert len(self.host.messages.errors) == 1 and ":" in self.host.messages.errors[0]
             return None
@@ -159,11 +169,13 @@ class Calls(RuleBasedStateMachine):
 @pytest.mark.filterwarnings("ignore:overflow")
 def test_any_sequence_of_calls(tmp_path):
     Calls.host = Host(tmp_path)
-    run_state_machine_as_test(
-        Calls,
-        settings=settings(
-            max_examples=SEQUENCES, stateful_step_count=15, deadline=None, database=None,
-            suppress_health_check=list(HealthCheck),
-        ),
-    )  # fmt: skip
+    for done in range(0, SEQUENCES, BATCH):
+        run_state_machine_as_test(
+            Calls,
+            settings=settings(
+                max_examples=min(BATCH, SEQUENCES - done), stateful_step_count=15, deadline=None, database=None,
+                suppress_health_check=list(HealthCheck),
+            ),
+        )  # fmt: skip
+        logger.info("%d sequences, %d calls, %d of them refused", done + BATCH, Calls.calls, Calls.refused)
     Calls.host.fmu.freeInstance()
