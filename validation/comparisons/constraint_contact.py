@@ -95,7 +95,7 @@ def compare_constraints(task: Task) -> Comparison:
     t_end = _end(found, scenario.t_end)
     ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
     loose = our_looser_run(task, ours.t)
-    step = min(task.step or np.inf, _step(found[0], STIFFNESSES[0]))
+    step = min(task.step or np.inf, nice_step(contact_step(found[0], STIFFNESSES[0])))
     for _ in range(1 + MOST_HALVINGS):
         *runs, doubled = (_penalty_run(task, k, t_end, h) for k, h in _plan(step))
         rows = _rows(Sides(task, found, ours, loose, runs, doubled))
@@ -160,11 +160,11 @@ def _end(found: list[Touch], t_end: float) -> float:
     return min(t_end, found[1].start + 0.9 * (found[2].start - found[1].start)) if len(found) > 2 else t_end
 
 
-def _step(first: Touch, stiffness: float) -> float:
-    """A step that resolves the contact, from Hertz' duration with the effective mass of our impact."""
+def contact_step(first: Touch, stiffness: float) -> float:
+    """A step (s) that resolves a contact, from Hertz' duration with the effective mass of our impact."""
     mass = first.impulse / (first.approach_speed + first.separation_speed)
     depth = ((EXPONENT + 1.0) * mass * first.approach_speed**2 / (2.0 * stiffness)) ** (1.0 / (EXPONENT + 1.0))
-    return nice_step(2.94 * depth / first.approach_speed / STEPS_IN_CONTACT)
+    return 2.94 * depth / first.approach_speed / STEPS_IN_CONTACT
 
 
 def _plan(step: float) -> list[tuple[float, float]]:

@@ -48,7 +48,8 @@ def first_step(model: Model, found: list[Touch], run: Result, t_end: float) -> f
         limits.append((touch.end - touch.start) / STEPS_IN_CONTACT)
         k = int(np.searchsorted(run.t, touch.start)) - 1
         rate = run[f"{touch.contact}.gap_rate"]
-        if k > 0 and run.t[k] > run.t[k - 1]:
+        # without approach (a contact that starts closed) there is no speed to get wrong
+        if k > 0 and run.t[k] > run.t[k - 1] and touch.approach_speed > 0.0:
             acceleration = abs(rate[k] - rate[k - 1]) / (run.t[k] - run.t[k - 1])
             limits.append(APPROACH_SPEED * touch.approach_speed / max(acceleration, 1e-12))
         if not jumps(model, found):
