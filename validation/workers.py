@@ -27,10 +27,10 @@ class _Worker:
         self.process.start()
         theirs.close()
         self.item: Any = None
-        self.since = 0.0
+        self.since, self.begun = 0.0, False
 
     def give(self, item: Any) -> None:
-        self.item, self.since = item, time.perf_counter()
+        self.item, self.since, self.begun = item, time.perf_counter(), False
         self.pipe.send(item)
 
     def stop(self) -> None:
@@ -43,13 +43,19 @@ class Workers(Generic[Item, Result]):
     """`count` processes that do `job` with items.
 
     died : makes the result of an item whose process ended (its exit code, and the seconds it took), or took
-        longer than `limit` seconds (exit code None).
+        longer than `limit` seconds (exit code None), or `start_limit` to begin.
     """
 
     def __init__(
-        self, job: Job, count: int, died: Callable[[Item, int | None, float], Result], limit: float = 1800.0
+        self,
+        job: Job,
+        count: int,
+        died: Callable[[Item, int | None, float], Result],
+        limit: float = 1800.0,
+        start_limit: float = 300.0,
     ) -> None:
-        self.job, self.count, self.died, self.limit = job, count, died, limit
+        self.job, self.count, self.died = job, count, died
+        self.limit, self.start_limit = limit, start_limit
 
     def run(self, items: Sequence[Item], tell: Callable[[Item, str], None]) -> Iterator[tuple[Item, Result]]:
         """Items with their results as they come; `tell` gets what the processes tell in between."""
@@ -61,10 +67,14 @@ class Workers(Generic[Item, Result]):
             while workers:
                 ready = wait([w.pipe for w in workers], timeout=1.0)
                 for worker in list(workers):
-                    over = time.perf_counter() - worker.since > self.limit
+                    longest = self.limit if worker.begun else self.start_limit
+                    over = time.perf_counter() - worker.since > longest
                     if worker.pipe not in ready and not over:
                         continue
                     kind, value = ("late", None) if over else _received(worker)
+                    if kind == "begun":  # a process needs seconds to start, which are not the item's
+                        worker.since, worker.begun = time.perf_counter(), True
+                        continue
                     if kind == "tell":
                         tell(worker.item, value)
                         continue
@@ -105,4 +115,5 @@ def _serve(pipe: Connection, job: Job) -> None:
             item = pipe.recv()
         except EOFError:
             return
+        pipe.send(("begun", None))
         pipe.send(("done", job(item, lambda text: pipe.send(("tell", text)))))
