@@ -106,7 +106,9 @@ def _received(worker: _Worker) -> tuple[str, Any]:
 
 
 def _serve(pipe: Connection, job: Job) -> None:
-    # an interruption is the parent's to handle: it ends its processes itself
+    # an interruption is the parent's to handle, which ends its processes itself: none comes from its terminal
+    if hasattr(os, "setsid"):
+        os.setsid()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # what compiled code prints would come between the lines of the progress
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
