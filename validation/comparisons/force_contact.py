@@ -8,7 +8,18 @@ from ..exudyn_run import run_exudyn, settings_for
 from .common import Comparison, Row, Task, energy_panel, our_looser_run, our_run, residual_panel, touches
 from .force_panels import force_panels
 from .force_rows import Levels, Sides, force_rows
-from .force_steps import MOST_STEPS, aligned, end_of, entry_error, first_step, jumps, most_steps, moved_by, sample_times
+from .force_steps import (
+    MOST_STEPS,
+    aligned,
+    end_of,
+    entry_bar,
+    entry_error,
+    first_step,
+    jumping_touches,
+    jumps,
+    most_steps,
+    sample_times,
+)
 
 MOST_HALVINGS = 3
 """Of exudyn's step, beyond the first three runs."""
@@ -51,14 +62,16 @@ def compare_forces(task: Task) -> Comparison:
         if all(_decided(row) for row in rows) or 2.0 * t_end / h > most_steps(scenario.model):
             break
     fine = runs[-1]
-    entry = 0.0 if regular else max((entry_error(scenario.model, x) for x in found[:1]), default=0.0) * fine.step
-    if entry > 0.0:
-        rows = [replace(r, uncertainty=r.uncertainty + entry * moved_by(r, ours, found[0])) for r in rows]
+    jumping = jumping_touches(scenario.model, found[1:] if regular else found)
+    if jumping:
+        rows = [replace(r, uncertainty=r.uncertainty + entry_bar(r, scenario.model, jumping, ours, fine.step))
+                for r in rows]  # fmt: skip
         notes.append(
-            "the force jumps at first touch, but exudyn has it for the whole step of the touch or not at all: "
-            f"{entry:.1e} of the speed at most, which is added to its uncertainty"
+            "the force jumps at the touch, but exudyn has it for the whole step of the touch or not at all: "
+            f"{max(entry_error(scenario.model, x) for x in jumping) * fine.step:.1e} of the speed at most, which is "
+            "added to its error bar"
         )
-    elif regular:
+    if regular:
         notes.append(
             "the force jumps at first touch: exudyn's steps are chosen to begin there, so that what a step misses of "
             "the jump is regular, and its values are extrapolated to step zero"

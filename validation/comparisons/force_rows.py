@@ -156,8 +156,8 @@ def _state_rows(sides: Sides) -> list[Row]:
         number = sum(x.contact == second.contact for x in found[:1])
         pulls = _pulls(task.scenario.model, second.contact)
         theirs = [_measure(r.t, r.channels, second.contact, pulls, number) for r in runs]
-        # one common instant, before either of them touches
-        until = min([second.start, until, *(q.start for q in theirs if q is not None)])
+        # one common instant, before either of them touches: the step of the touch bends
+        until = min([second.start, until, *(q.start for q in theirs if q is not None)]) - runs[0].step
         name = "before the second impact"
     apart = np.ones(len(ours.t), dtype=bool)
     for touch in found[:1]:

@@ -81,6 +81,18 @@ def entry_error(model: Model, touch: Touch) -> float:
     return law.damping * (touch.approach_speed + touch.separation_speed) / touch.impulse
 
 
+def jumping_touches(model: Model, found: list[Touch]) -> list[Touch]:
+    """The first touch of every contact, where its force jumps."""
+    first = {x.contact: x for x in reversed(found)}.values()
+    return [x for x in first if x.approach_speed > 0.0 and entry_error(model, x) > 0.0]
+
+
+def entry_bar(row: Row, model: Model, jumping: list[Touch], ours: Result, step: float) -> float:
+    """What the jumps before a row's time add to its error bar, with exudyn's `step` (s)."""
+    before = [x for x in jumping if row.at is None or row.at >= x.start]
+    return max((entry_error(model, x) * step * moved_by(row, ours, x) for x in before), default=0.0)
+
+
 def most_steps(model: Model) -> int:
     """To which exudyn's step is halved at most."""
     return MOST_IN_PYTHON if any(c.friction is not None for c in model.contacts) else MOST_STEPS
