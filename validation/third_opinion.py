@@ -16,7 +16,7 @@ from .comparisons.common import Comparison, Row
 
 @dataclass(frozen=True)
 class Opinion:
-    """Values by text in a row's quantity (the longest that fits), and functions of time by channel.
+    """Values by text in a row's quantity (the first that fits), and functions of time by channel.
 
     A NaN says nothing: so does an integration after its end.
     """
@@ -59,7 +59,7 @@ def with_third_opinion(scenario: Scenario, comparison: Comparison) -> Comparison
 def _with(found: Opinion, row: Row) -> Row:
     fitting = [text for text in found.values if text in row.quantity]
     if fitting:
-        value = found.values[max(fitting, key=len)]
+        value = found.values[fitting[0]]
     elif row.channel in found.channels and row.at is not None:
         value = found.channels[row.channel](row.at)
     else:

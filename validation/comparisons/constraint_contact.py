@@ -36,6 +36,7 @@ from .common import (
     touches,
     unit_of,
 )
+from .toggled import toggled_rows
 
 STIFFNESSES = (1e6, 1e7, 1e8)
 EXPONENT = 1.5
@@ -102,6 +103,7 @@ def compare_constraints(task: Task) -> Comparison:
         if all(row.uncertainty <= row.allowed for row in rows):
             break
         step *= 0.5
+    rows += toggled_rows(task, found[0], first_run)
     notes = (
         "the constraint is compared with the limit of Gonthier's law with exact restitution, "
         f"K = {', '.join(f'{k:.0e}' for k in STIFFNESSES)} N/m^1.5, extrapolated in K^(-0.4); exudyn's error bar is "

@@ -172,7 +172,9 @@ def _load(force: np.ndarray) -> float:
 
 
 def _scale(model: Model, contact: Any, found: list[Touch], load: float) -> Scale:
-    own = [x for x in found if x.contact == contact.name and x.approach_speed > 0.0 and x.impulse > 0.0]
+    struck = [x for x in found if x.approach_speed > 0.0 and x.impulse > 0.0]
+    # a contact that is never struck is scaled by the others
+    own = [x for x in struck if x.contact == contact.name] or struck
     masses = [x.impulse / (x.approach_speed + x.separation_speed) for x in own]
     bodies = {marker.body for marker in contact.markers()}
     carried = [getattr(b, "mass", None) for b in model.bodies if b.name in bodies]
