@@ -108,11 +108,12 @@ def run_case(
     """
     changes = dict(case.coarse) if coarse else {}
     step, t_end = changes.pop("step", case.step), changes.pop("t_end", case.t_end)
+    tolerance = changes.pop("tolerance", case.tolerance)
     scenario = load(case.scenario, **{**case.parameters, **changes})
     other = as_cables(scenario.model, case.cables) if has_floating_beams(scenario.model) else None
     return crosscheck(
         scenario, report_dir, progress, t_end=t_end, step=step, exudyn_model=other, name=case.name, why=case.why,
-        least_tolerance=case.tolerance, whole=case.whole and not coarse,
+        least_tolerance=tolerance, whole=case.whole and not coarse,
     )  # fmt: skip
 
 
