@@ -38,6 +38,7 @@ from .common import (
     unit_of,
 )
 from .events import away_from
+from .reversal import first_reversal
 
 TIMES = (1.0, 0.5, 0.25)
 """The times T, in parts of the longest one."""
@@ -104,10 +105,16 @@ def compare_persistent(task: Task) -> Comparison:
     events = [e for e in first_run.events if e.kind != "graze"]
     away = away_from(ours.t, events, runs, 3.0 * DURATION * longest if flexible else DURATION * longest)
     rows: list[Row] = []
+    turned = first_reversal(scenario.model, first_run)
+    until = scenario.t_end if turned is None else turned.t
+    reason = "" if turned is None else turned.text()
     channels = [c for c in scenario.compare if not is_contact_channel(task, c) and c in runs[0].channels]
     error = our_error(task, ours, [*channels, *(f"{c.name}.impulse" for c in scenario.model.contacts)])
     for channel in channels:
-        rows += _channel_rows(channel, ours, away, times, runs, coarse, error.get(channel))
+        rows += _channel_rows(channel, ours, away & (ours.t < until), times, runs, coarse, error.get(channel), "")
+        if reason:
+            later = away & (ours.t > until)
+            rows += _channel_rows(channel, ours, later, times, runs, coarse, error.get(channel), reason)
     for contact in scenario.model.contacts:
         channel = f"{contact.name}.impulse"
         values = [np.array([r[channel][-1]]) for r in runs]
@@ -116,7 +123,8 @@ def compare_persistent(task: Task) -> Comparison:
         own = error.get(channel)
         rows.append(
             Row(f"{contact.name}: impulse of the whole run", unit_of(ours, channel), float(ours[channel][-1]),
-                float(limit[0]), STATE, "relative", float(moved[0]), ours_uncertainty=0.0 if own is None else own[-1])
+                float(limit[0]), STATE, "relative", float(moved[0]), required=not reason, reason=reason,
+                ours_uncertainty=0.0 if own is None else own[-1])
         )  # fmt: skip
     notes = (
         "the constraint is compared with the limit of a damper with a weak spring that does not pull (restitution "
@@ -190,8 +198,11 @@ def _channel_rows(
     runs: list[ExudynResult],
     coarse: ExudynResult,
     error: np.ndarray | None,
+    reason: str,
 ) -> list[Row]:
     t = ours.t[away]
+    if not t.size:
+        return []
     values = [at_times(r.t, r.channels, channel, t) for r in runs]
     limit, moved = power_limit(np.array(times), np.array(values))
     moved = moved + np.abs(at_times(coarse.t, coarse.channels, channel, t) - values[-1])
@@ -199,11 +210,13 @@ def _channel_rows(
     found = trajectory_difference(t, mine, limit)
     worst = int(np.argmin(np.abs(t - found.at)))
     unit, rows = unit_of(ours, channel), []
-    for k, name in ((len(t) - 1, "at the end"), (worst, "where it differs most")):
+    last = "at the end" if t[-1] > 0.99 * ours.t[-1] else "before its last impact that can be compared"
+    for k, name in ((len(t) - 1, last), (worst, "where it differs most")):
         title = f"{channel} {name} (t = {t[k]:.5g} s)"
         rows.append(
             Row(title, unit, float(mine[k]), float(limit[k]), STATE, "relative", float(moved[k]),
-                found.scale or None, ours_uncertainty=float(own[k]), channel=channel, at=float(t[k]))
+                found.scale or None, ours_uncertainty=float(own[k]), channel=channel, at=float(t[k]),
+                reason=reason, required=not reason)
         )  # fmt: skip
     return rows
 
