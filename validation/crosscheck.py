@@ -15,7 +15,9 @@ from .comparisons.constraint_contact import compare_constraints
 from .comparisons.force_contact import compare_forces
 from .comparisons.persistent_contact import compare_persistent, persists
 from .comparisons.rod_impact import compare_rods, strikes_rods
+from .comparisons.rod_limit import compare_damped_rods, damped
 from .comparisons.smooth_motion import compare_motion
+from .comparisons.whole_run import with_whole_run
 from .exudyn_import import import_exudyn
 from .provenance import provenance
 from .third_opinion import with_third_opinion
@@ -93,6 +95,7 @@ def crosscheck(
     name: str | None = None,
     why: str = "",
     least_tolerance: float = 0.0,
+    whole: bool = False,
     **parameters: Any,
 ) -> CrossCheck:
     """Run a scenario here and in exudyn, and compare.
@@ -106,6 +109,7 @@ def crosscheck(
     step : exudyn's step in s; left out: from the duration of the contacts, or of the run.
     exudyn_model : the model that exudyn gets, if not the same one (to see that a fault is found, or `as_cables`).
     least_tolerance : relative; of every quantity, where the two sides are different models of one thing.
+    whole : compare the whole run too, through all its impacts, up to some Lyapunov times (see `predictability`).
     name, why : what its files are called (the scenario), and what its report says about the choice of parameters.
 
     Returns
@@ -130,13 +134,15 @@ def crosscheck(
     if not chosen.model.contacts:
         comparison = compare_motion(task)
     elif strikes_rods(chosen.model):
-        comparison = compare_rods(task)
+        comparison = compare_damped_rods(task) if damped(chosen) else compare_rods(task)
     elif persists(chosen.model):
         comparison = compare_persistent(task)
     elif any(isinstance(c.law, ImpactLaw) for c in chosen.model.contacts):
         comparison = compare_constraints(task)
     else:
         comparison = compare_forces(task)
+    if whole:
+        comparison = with_whole_run(task, comparison)
     if least_tolerance:
         comparison = replace(comparison, rows=tuple(_widened(row, least_tolerance) for row in comparison.rows))
     comparison = with_third_opinion(chosen, comparison)

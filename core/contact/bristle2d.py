@@ -2,7 +2,8 @@
 
 z is the velocity of an internal coordinate of the contact, the last of its local ones: 1 a_zeta = z'(z, v, F_n). So
 every method integrates it like any velocity, with its exact tangent; the coordinate itself means nothing.
-The bristles hold s0 z^2/2; what else the friction takes, is lost. A contact that is not active leaves z as it is.
+The bristles hold s0 z^2/2; what else the friction takes, is lost. A contact that is not active, or whose damper pulls,
+leaves z as it is.
 """
 
 from typing import Any
@@ -17,8 +18,8 @@ from .normal2d import act, evaluate_law
 from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
 
 LEAST_DEFLECTION = 1e-8
-"""m; normal forces under which bristles would slip at less count as that which bends them so far: their equation has no
-limit at normal force zero, where a contact ends."""
+"""m; under normal forces at which bristles would slip at less, they slip and rub in proportion to the normal force: their
+equation has no limit at normal force zero, where a contact ends."""
 
 
 @internal
@@ -50,18 +51,24 @@ def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: An
     normal, normal_d, normal_dd, _, _ = evaluate_law(b, e, extra[0], g, along(g_gradient, v, coord))
     z, rate = v[coord[w]], along(gradient, v, coord)
     s0, last = par[FRICTION], b.npar - 1
+    if job == ENERGY:
+        vec(b.energy, 3)[2] += 0.5 * s0 * z * z
+    if not normal > 0.0:
+        # a damper that pulls: nothing is pressed, nothing rubs, and the bristles stay as they are
+        return 0.0, 0.0, 0.0
     least = LEAST_DEFLECTION * s0 / par[FRICTION + 3]
     zd, zd_z, zd_v, zd_n, force, f_z, f_v, f_n = lugre_formula(
         z, rate, max(normal, least), s0, par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
         par[last],
     )  # fmt: skip
     if normal < least:
-        zd_n, f_n = 0.0, 0.0
-    if job == ENERGY:
-        vec(b.energy, 3)[2] += 0.5 * s0 * z * z
-    elif job == POWER:
+        # error control would find no end of a jump at zero
+        part = normal / least
+        zd_n, f_n = zd / least, force / least
+        zd, zd_z, zd_v, force, f_z, f_v = part * zd, part * zd_z, part * zd_v, part * force, part * f_z, part * f_v
+    if job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * rate + s0 * z * zd
-    else:
+    elif job != ENERGY:
         add_friction(b, job, e, g_gradient, g_hessian, gradient, hessian, force, f_v, f_n, normal_d, normal_dd)
     if job == RESIDUAL:
         vec(b.r, b.n_extended)[coord[w]] -= zd

@@ -1,0 +1,103 @@
+"""The whole run through all its impacts, up to some Lyapunov times; what comes after is not comparable."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core import Result
+from ...core.contact.laws import ImpactLaw
+from ..exudyn_run import ExudynResult, run_exudyn, settings_for
+from ..metrics import power_limit, trajectory_difference
+from ..predictability import predictability
+from .common import Comparison, Row, Task, at_times, is_contact_channel, nice_step, our_error, our_run, touches, unit_of
+from .constraint_contact import EXPONENT, contact_step, with_stiffness
+from .events import away_from
+
+STIFFNESSES = (1e6, 1e7, 1e8)
+STATE = 1e-3
+SAMPLES = 2001
+MARGIN = 3.0
+"""Durations of contacts around an event that do not count."""
+STEPS = 4000
+"""exudyn's steps in the run, at least."""
+
+
+@dataclass(frozen=True)
+class _Limit:
+    """exudyn's runs and what they tend to."""
+
+    runs: list[ExudynResult]
+    x: np.ndarray | None
+    """What the stiffnesses are extrapolated in; None where the finer of two steps counts."""
+    margin: float
+
+    def values(self, channel: str, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(limit, uncertainty)."""
+        found = np.array([at_times(r.t, r.channels, channel, np.minimum(t, r.t[-1])) for r in self.runs])
+        if self.x is not None:
+            return power_limit(self.x, found)
+        return found[-1], np.abs(found[-1] - found[0])
+
+
+def with_whole_run(task: Task, comparison: Comparison) -> Comparison:
+    """The comparison with rows over the whole run: channels and impulses up to the limit, and channels after it."""
+    scenario = task.scenario
+    task.progress("Lyapunov exponent over the run")
+    known = predictability(scenario)
+    end = min(known.limit, scenario.t_end)
+    task.progress("our run")
+    ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
+    limit = _limit(task, ours)
+    away = away_from(ours.t, [e for e in ours.events if e.kind != "graze"], limit.runs, limit.margin)
+    channels = [c for c in scenario.compare if c in limit.runs[0].channels and not is_contact_channel(task, c)]
+    error = our_error(task, ours, channels)
+    until = (
+        f"up to {end:.4g} s" if end == scenario.t_end else f"up to {end / known.time:.2g} Lyapunov times ({end:.4g} s)"
+    )
+    rows = []
+    for channel in channels:
+        rows.append(_row(channel, until, ours, limit, away & (ours.t <= end), error, ""))
+        if end < scenario.t_end:
+            after = away & (ours.t > end)
+            reason = f"chaotic: {known.text()}; compared up to {end / known.time:.2g} of them"
+            rows.append(_row(channel, "after that", ours, limit, after, error, reason))
+    notes = [f"whole run: {known.text()}; the run is {scenario.t_end / known.time:.2g} of them long"]
+    return Comparison(
+        **{**comparison.__dict__, "rows": (*comparison.rows, *rows), "notes": (*comparison.notes, *notes)}
+    )
+
+
+def _row(
+    channel: str, name: str, ours: Result, limit: _Limit, kept: np.ndarray, error: dict[str, np.ndarray], reason: str
+) -> Row:
+    t, mine = ours.t[kept], ours[channel][kept]
+    theirs, moved = limit.values(channel, t)
+    found = trajectory_difference(t, mine, theirs)
+    k = int(np.argmin(np.abs(t - found.at)))
+    own = error[channel][kept][k] if channel in error else 0.0
+    return Row(
+        f"{channel} {name}, where it differs most (t = {t[k]:.5g} s)", unit_of(ours, channel), float(mine[k]),
+        float(theirs[k]), STATE, "relative", float(moved[k]), found.scale or None, not reason, float(own), reason,
+        channel, float(t[k]),
+    )  # fmt: skip
+
+
+def _limit(task: Task, ours: Result) -> _Limit:
+    model, found, t_end = task.exudyn_model, touches(ours.events), task.scenario.t_end
+    settings, runs = settings_for(model), []
+    if any(isinstance(c.law, ImpactLaw) for c in model.contacts):
+        longest = 0.0
+        for stiffness in STIFFNESSES:
+            contact = min((contact_step(touch, stiffness) for touch in found if touch.impulse > 0.0), default=t_end)
+            longest = max(longest, 200.0 * contact)
+            step = min(task.step or np.inf, nice_step(contact), nice_step(t_end / STEPS))
+            task.progress(f"exudyn, whole run, K = {stiffness:.0e} N/m^1.5, step {step:.1e} s")
+            runs.append(run_exudyn(with_stiffness(model, stiffness), t_end, step, settings))
+        x = np.array(STIFFNESSES) ** (-1.0 / (EXPONENT + 1.0))
+        return _Limit(runs, x, MARGIN * longest)
+    durations = [touch.end - touch.start for touch in found if touch.end > touch.start]
+    fine = task.step or nice_step(min(0.005 * min(durations, default=t_end), t_end / STEPS))
+    for step in (2.0 * fine, fine):
+        task.progress(f"exudyn, whole run, step {step:.1e} s")
+        runs.append(run_exudyn(model, t_end, step, settings))
+    return _Limit(runs, None, MARGIN * max(durations, default=0.0))
