@@ -15,6 +15,7 @@ from .comparisons.constraint_contact import compare_constraints
 from .comparisons.force_contact import compare_forces
 from .comparisons.persistent_contact import compare_persistent, persists
 from .comparisons.rod_impact import compare_rods, strikes_rods
+from .comparisons.rod_limit import compare_damped_rods, damped
 from .comparisons.smooth_motion import compare_motion
 from .comparisons.whole_run import with_whole_run
 from .exudyn_import import import_exudyn
@@ -133,7 +134,7 @@ def crosscheck(
     if not chosen.model.contacts:
         comparison = compare_motion(task)
     elif strikes_rods(chosen.model):
-        comparison = compare_rods(task)
+        comparison = compare_damped_rods(task) if damped(chosen) else compare_rods(task)
     elif persists(chosen.model):
         comparison = compare_persistent(task)
     elif any(isinstance(c.law, ImpactLaw) for c in chosen.model.contacts):

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from ..core import Result
-from ..core.contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.contact.contact2d import DiskOnHalfPlane2D
 from ..core.description import Model
 from ..core.elements import AxialRod, Cable2D, FlexibleBody, LinearSystem, MaterialPoint2D
 from ..core.model.markers import GROUND, Marker2D
+from .rod_drawing import rod_lines
 
 MOST_FRAMES = 240
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 25)
@@ -25,10 +26,10 @@ def drawing(model: Model, result: Result) -> dict[str, Any] | None:
     lines: list[tuple[str, np.ndarray]] = []
     for body in model.bodies:
         lines += _body(body, model, result, keep)
+    rods, factor = rod_lines(model, result, keep)
+    lines += rods
     for contact in model.contacts:
-        if isinstance(contact, DiskOnHalfPlane2D | DiskOnDisk2D):
-            shapes = [contact.disk] if isinstance(contact, DiskOnHalfPlane2D) else [contact.a, contact.b]
-            lines += [("disk", _circle(s.marker, s.radius, result, keep)) for s in shapes if s.radius > 0.0]
+        lines += [("disk", _circle(d.marker, d.radius, result, keep)) for d in contact.disks() if d.radius > 0.0]
     moving = [line for kind, line in lines]
     if not moving:
         return None
@@ -42,6 +43,7 @@ def drawing(model: Model, result: Result) -> dict[str, Any] | None:
             lines.append(("wall", _half_plane(contact.plane.marker, size, result, keep)))
     return {
         "t": [round(float(t), 7) for t in result.t[keep]],
+        "note": f"Displacements along the rods are drawn {factor:g} times as large." if factor > 1.0 else "",
         "box": [*low.tolist(), *high.tolist()],
         "lines": [
             {"kind": kind, "x": _rounded(line[..., 0], size), "y": _rounded(line[..., 1], size)} for kind, line in lines
@@ -64,14 +66,7 @@ def _body(body: Any, model: Model, result: Result, keep: np.ndarray) -> list[tup
     if isinstance(body, Cable2D):
         nodes = range(body.elements + 1)
         return [("flexible", np.stack([np.stack([track(f"x{k}"), track(f"y{k}")], -1) for k in nodes], 1))]
-    if isinstance(body, AxialRod):
-        x = np.stack([track(f"x{k}") for k in range(body.elements + 1)], 1)
-        height = 0.02 * body.length
-        outline = np.concatenate([x, x[:, ::-1], x[:, :1]], 1)
-        y = np.full(outline.shape, height)
-        y[:, x.shape[1] : -1] = -height
-        return [("flexible", np.stack([outline, y], -1))]
-    if isinstance(body, LinearSystem | MaterialPoint2D):
+    if isinstance(body, LinearSystem | MaterialPoint2D | AxialRod):
         return []
     if isinstance(body, FlexibleBody):
         return _points_of(body, model, result, keep)

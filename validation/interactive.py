@@ -47,10 +47,10 @@ def _figure(panel: Panel) -> dict[str, Any]:
                 "marker": {"color": colour, "size": 3},
             }
         )
-    axis: dict[str, Any] = {"title": {"text": "time (s)"}}
-    heights: dict[str, Any] = {"title": {"text": panel.unit}, "type": "linear"}
+    axis: dict[str, Any] = {"title": {"text": "time (s)"}, "exponentformat": "power"}
+    heights: dict[str, Any] = {"title": {"text": panel.unit}, "type": "linear", "exponentformat": "power"}
     if panel.logarithmic:
-        heights |= {"type": "log", "exponentformat": "power"}
+        heights |= {"type": "log"}
     if panel.window:
         axis["range"] = list(panel.window)
         if not panel.logarithmic:

@@ -16,8 +16,9 @@ def provenance() -> dict[str, Any]:
         "system": platform.platform(),
         "processor": platform.machine(),
         "cores": os.cpu_count(),
+        "load": round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None,
         "time": datetime.now(UTC).isoformat(timespec="seconds"),
-        "seeds": "none: nothing is random",
+        "seeds": "none, nothing is random",
     }
 
 

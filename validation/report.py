@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import TlismniError
+from ..models import catalogue
+from .comparisons.common import Row
 from .drawing import drawing
 from .interactive import figures, plotly_library
 from .provenance import provenance
@@ -39,6 +41,9 @@ def render(found: "CrossCheck") -> str:
         .render(
             found=found,
             c=found.comparison,
+            decisive=[row for row in found.rows if row.required],
+            informing=[row for row in found.rows if not row.required],
+            units=_units(found),
             images=images,
             plots=figures(found.comparison.panels) if library else [],
             library=_script(library or ""),
@@ -58,16 +63,24 @@ def write_overview(found: "CatalogueCheck", folder: Path) -> Path:
         _environment()
         .get_template(OVERVIEW)
         .render(
-            outcomes=found.outcomes,
+            found=found,
+            outcomes=sorted(found.outcomes, key=lambda o: (SEVERITY.index(o.verdict), o.case.name)),
             scenarios=len({outcome.case.scenario for outcome in found.outcomes}),
             counts=dict(Counter(outcome.verdict for outcome in found.outcomes)),
             machine=provenance(),
         )
     )
-    page.write_text(text, encoding="utf-8")
-    numbers = {"machine": provenance(), "cases": [outcome.to_dict() for outcome in found.outcomes]}
-    (folder / "overview.json").write_text(json.dumps(numbers, indent=2), encoding="utf-8")
+    _write(page, text)
+    numbers = {"machine": provenance(), **found.to_dict(), "cases": [outcome.to_dict() for outcome in found.outcomes]}
+    _write(folder / "overview.json", json.dumps(numbers, indent=2))
     return page
+
+
+def _write(path: Path, text: str) -> None:
+    """As a whole or not at all: an interruption must not leave half a file where a whole one was."""
+    part = path.with_name(f".{path.name}.part")
+    part.write_text(text, encoding="utf-8")
+    part.replace(path)
 
 
 def _environment() -> Any:
@@ -82,7 +95,8 @@ def _environment() -> Any:
         loader=PackageLoader(__package__ or "tlismni.validation"), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters |= {
-        "number": number, "small": small, "script": _script, "agreeing": _agreeing, "largest": _largest,
+        "shown": shown, "part": part, "small": small, "seconds": seconds, "setting": setting, "verdict": verdict,
+        "figure": figure, "script": _script, "agreeing": _agreeing, "worst": _worst, "sentence": _sentence,
     }  # fmt: skip
     return environment
 
@@ -99,16 +113,75 @@ def _agreeing(outcome: "Outcome") -> str:
     return f"{sum(row.verdict == 'agree' for row in rows)} of {len(rows)}"
 
 
-def _largest(outcome: "Outcome") -> str:
+def _worst(outcome: "Outcome") -> str:
+    """Of its rows the one that comes nearest to its tolerance, or is farthest beyond."""
     rows = () if outcome.found is None else outcome.found.rows
-    return small(max((row.relative for row in rows if row.required), default=0.0))
+    parts = [row.difference / row.allowed for row in rows if row.required and row.allowed > 0.0]
+    return f"{max(parts):.2g}" if parts else ""
 
 
-def number(value: float) -> str:
-    """Nine significant digits: enough to see a relative difference of 1e-8."""
-    return f"{value:.9g}" if math.isfinite(value) else str(value)
+def _sentence(text: str) -> str:
+    """With a capital and a full stop."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".") if text else ""
+
+
+def _units(found: "CrossCheck") -> dict[str, tuple[str, str]]:
+    """Unit and meaning of the parameters of a scenario in the catalogue."""
+    entry = next((e for e in catalogue() if e.name == found.scenario), None)
+    return {} if entry is None else {p.name: (p.unit, p.description) for p in entry.parameters}
+
+
+def shown(row: Row, value: float) -> str:
+    """A value with the digits in which the two sides differ (four to eight); noise around zero as 0."""
+    if not math.isfinite(value):
+        return str(value)
+    size = max(row.size, abs(row.ours), abs(row.exudyn))
+    if size == 0.0:
+        return "0"
+    apart = row.difference / size
+    digits = 8 if apart < 1e-7 else min(max(math.ceil(-math.log10(apart)) + 1, 4), 8)
+    text = f"{round(value, digits - 1 - math.floor(math.log10(size))) + 0.0:.{digits}g}"
+    mantissa, _, exponent = text.partition("e")
+    return f"{mantissa}e{int(exponent)}" if exponent else mantissa
+
+
+def part(row: Row, value: float) -> str:
+    """A difference, error bar or tolerance in parts of the row's size; in its unit for rows with an absolute one."""
+    if row.tolerance_kind == "absolute" or row.size == 0.0:
+        return f"{small(value)} {row.unit}"
+    return small(value / row.size)
 
 
 def small(value: float) -> str:
     """A difference or tolerance: two digits."""
-    return "0" if value == 0.0 else f"{value:.1e}"
+    if value == 0.0:
+        return "0"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def figure(value: Any) -> str:
+    """Two digits of a number; nothing of what does not exist."""
+    return f"{value:.2g}" if isinstance(value, int | float) else str(value or "")
+
+
+def seconds(value: float) -> str:
+    """A time of minutes or less."""
+    return f"{value:.0f} s" if value < 100.0 else f"{value / 60.0:.1f} min"
+
+
+SIGNS = {"agree": "✓", "undecided": "≈", "differ": "✗", "failed": "✗", "not comparable": "–"}
+"""Beside the verdict's word, so that colour is not all that carries it."""
+SEVERITY = ("failed", "differ", "undecided", "agree", "not comparable")
+
+
+def verdict(text: str) -> str:
+    """The word with its sign."""
+    return f"{SIGNS[text]} {text}"
+
+
+def setting(value: Any) -> str:
+    """A parameter's value: a number with six digits, none where it is left out."""
+    if isinstance(value, bool) or not isinstance(value, float):
+        return "–" if value is None else str(value)
+    return f"{value:.6g}"

@@ -1,5 +1,6 @@
 """`tlismni crosscheck`: the same scenario in exudyn, quantity by quantity."""
 
+import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -37,6 +38,9 @@ def crosscheck(
     source: SourceOrNone = None,
     everything: Annotated[bool, typer.Option("--all", help="Every scenario, with an overview.")] = False,
     coarse: Annotated[bool, typer.Option("--coarse", help="With --all: the short form that the tests take.")] = False,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="With --all: cases at once; left out: as many as there are cores.")
+    ] = None,
     report: ReportFolder = None,
     exudyn_step: ExudynStep = None,
     sets: Set = None,
@@ -53,7 +57,7 @@ def crosscheck(
     if everything:
         if source is not None:
             raise typer.BadParameter("--all takes no scenario: give one or the other")
-        return _everything(report, coarse, json)
+        return _everything(report, coarse, json, workers or os.cpu_count() or 1)
     if source is None:
         raise typer.BadParameter("name a scenario or a model file, or say --all")
 
@@ -76,11 +80,11 @@ def crosscheck(
         raise Failure(f"{len(differing)} of {len(found.rows)} quantities differ: {', '.join(differing)}")
 
 
-def _everything(report: Path | None, coarse: bool, json: bool) -> None:
+def _everything(report: Path | None, coarse: bool, json: bool, workers: int) -> None:
     from ...validation import crosscheck_all
 
     with compile_notice(), status_line("cross-checking the catalogue") as tell:
-        found = crosscheck_all(report, tell, coarse=coarse)
+        found = crosscheck_all(report, tell, coarse=coarse, workers=workers)
     if json:
         print_json([outcome.to_dict() for outcome in found.outcomes])
     else:
@@ -90,6 +94,7 @@ def _everything(report: Path | None, coarse: bool, json: bool) -> None:
             for o in found.outcomes
         ]  # fmt: skip
         print_table("", ("scenario", "with", "verdict", "s", "why"), rows, left=2)
+        say(f"{found.seconds:.0f} s, {found.cpu_seconds:.0f} s of the processor, {found.workers} at once")
         if found.report is not None:
             say(f"wrote {found.report}")
     if not found.ok:

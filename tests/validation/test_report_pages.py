@@ -66,7 +66,8 @@ def test_a_page_is_whole_and_needs_nothing_else(tmp_path: Path, monkeypatch: pyt
     "name, t_end, kinds",
     [
         ("pendulum_stop", 0.1, {"body", "wall"}), ("newtons_cradle", 0.05, {"mass", "disk"}),
-        ("cable_pendulum", 0.02, {"flexible"}), ("rod_wall", 2e-4, {"flexible"}),
+        ("cable_pendulum", 0.02, {"flexible"}), ("rod_wall", 2e-4, {"flexible", "wall"}),
+        ("mass_on_rod", 2e-4, {"flexible", "mass"}),
     ],
 )  # fmt: skip
 def test_a_drawing_follows_the_result(name: str, t_end: float, kinds: set[str]) -> None:
@@ -83,6 +84,19 @@ def test_a_drawing_follows_the_result(name: str, t_end: float, kinds: set[str]) 
             ends = np.array([[x[0], x[-1]] for x in line["x"]]), np.array([[y[0], y[-1]] for y in line["y"]])
             lengths = np.hypot(*(np.diff(e, axis=1)[:, 0] for e in ends))
             assert np.ptp(lengths) < 1e-4
+
+
+def test_rods_touch_in_the_picture_when_they_touch() -> None:
+    scenario = load("rod_rod", elements=10)
+    result = simulate(scenario.model, scenario.t_end, scenario.method, **dict(scenario.options))
+    found = drawing(scenario.model, result)
+    assert found is not None and "times as large" in found["note"]
+    left, right = (np.array(line["x"]) for line in found["lines"])
+    apart = right.min(axis=1) - left.max(axis=1)
+    close = next(e.t for e in result.events if e.kind in ("impact", "close"))
+    before = np.array(found["t"]) < close - 1e-6
+    assert np.all(apart > -1e-3) and apart[0] > 0.02 and np.all(np.diff(apart[before]) < 1e-9)
+    assert np.abs(apart[~before][:20]).max() < 2e-3
 
 
 def test_without_exudyn_all_else_works(monkeypatch: pytest.MonkeyPatch) -> None:

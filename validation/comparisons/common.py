@@ -17,6 +17,10 @@ RTOL, ATOL = 1e-9, 1e-11
 """Our tolerances in a cross-check: our error must not matter beside exudyn's."""
 FLEXIBLE_RTOL, FLEXIBLE_ATOL = 1e-7, 1e-10
 """The same for cables and beams, whose fast waves would cost the most."""
+LOOSER = 10.0
+"""Our error bar is what this factor on our tolerances changes: an error in proportion to them is a ninth of it."""
+ROUNDING = 1e-14
+"""Relative: what no run can be better than."""
 RATES = {"x": "vx", "y": "vy", "angle": "angular_velocity", "gap": "gap_rate"}
 RATES |= {"vx": "ax", "vy": "ay", "angular_velocity": "angular_acceleration"}
 
@@ -61,9 +65,24 @@ class Row:
         return abs(self.ours - self.exudyn)
 
     @property
+    def size(self) -> float:
+        """What relative values refer to."""
+        return abs(self.exudyn) if self.scale is None else self.scale
+
+    @property
     def relative(self) -> float:
-        scale = abs(self.exudyn) if self.scale is None else self.scale
-        return self.difference / scale if scale > 0.0 else math.inf if self.difference > 0.0 else 0.0
+        size = self.size
+        return self.difference / size if size > 0.0 else math.inf if self.difference > 0.0 else 0.0
+
+    @property
+    def allowed(self) -> float:
+        """The tolerance in the row's unit."""
+        return self.tolerance * (1.0 if self.tolerance_kind == "absolute" else self.size)
+
+    @property
+    def within_bars(self) -> bool:
+        """Whether the difference is within the error bars of both sides together."""
+        return bool(self.difference <= self.uncertainty + self.ours_uncertainty)
 
     @property
     def verdict(self) -> Verdict:
@@ -73,12 +92,12 @@ class Row:
             return "agree"
         if self.reason:
             return "not comparable"
-        return "undecided" if self.difference <= self.uncertainty + self.ours_uncertainty else "differ"
+        return "undecided" if self.within_bars else "differ"
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, verdict and differences included."""
         derived = {"difference": self.difference, "relative": self.relative, "verdict": self.verdict}
-        return {**asdict(self), **derived}
+        return {**asdict(self), **derived, "allowed": self.allowed, "within_bars": self.within_bars}
 
 
 @dataclass(frozen=True)
@@ -137,7 +156,7 @@ class Task:
 
 
 def our_run(scenario: Scenario, times: Sequence[float] | np.ndarray | None = None, looser: float = 1.0) -> Result:
-    """Our run with tight tolerances (times `looser`); at every step, or at `times` (s).
+    """Our run with tight tolerances (times `looser`, or with twice a fixed step); at every step, or at `times` (s).
 
     A scenario with fixed steps of a low-order method is run with error control instead, unless it is one of rods,
     whose wave fronts error control would follow with tiny steps.
@@ -147,18 +166,31 @@ def our_run(scenario: Scenario, times: Sequence[float] | np.ndarray | None = Non
     rtol, atol = looser * min(least[0], scenario.rtol), looser * min(least[1], scenario.atol)
     grid = None if times is None else np.unique(np.clip(np.asarray(times), 0.0, scenario.t_end))
     method, options = scenario.method, dict(scenario.options)
-    if "step" in options and not any(isinstance(b, AxialRod) for b in scenario.model.bodies):
-        method, options = "irk", {}
+    if "step" in options:
+        if any(isinstance(b, AxialRod) for b in scenario.model.bodies):
+            options["step"] = options["step"] if looser == 1.0 else 2.0 * options["step"]
+        else:
+            method, options = "irk", {}
     return simulate(scenario.model, scenario.t_end, method, rtol, atol, t_eval=grid, **options)
 
 
+def our_looser_run(task: "Task", times: np.ndarray) -> Result:
+    """Our run with LOOSER times the tolerance, at `times` (s): its difference to our run is our error bar."""
+    task.progress(f"our run with {LOOSER:g} times the tolerance")
+    return our_run(task.scenario, times, looser=LOOSER)
+
+
+def own_bar(tight: Any, loose: Any) -> Any:
+    """Our error bar: how far a value moves with the looser tolerances, and no less than rounding."""
+    return np.maximum(np.abs(np.subtract(tight, loose)), ROUNDING * np.abs(tight))
+
+
 def our_error(task: "Task", ours: Result, channels: Sequence[str]) -> dict[str, np.ndarray]:
-    """How far each of our channels moves with a hundred times the tolerance, over the times of `ours`."""
-    task.progress("our run with a hundred times the tolerance")
-    other = our_run(task.scenario, ours.t, looser=100.0)
+    """How far each of our channels moves with LOOSER times the tolerance, over the times of `ours`."""
+    other = our_looser_run(task, ours.t)
     if len(other.t) != len(ours.t):
         return {}
-    return {c: np.abs(other[c] - ours[c]) for c in channels if c in ours.channels}
+    return {c: own_bar(ours[c], other[c]) for c in channels if c in ours.channels}
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,12 @@
-"""Elastic rods that strike: our constraint and exudyn's penalty, both on two meshes and extrapolated to the rod itself.
+"""Elastic rods that strike: our constraint and exudyn's penalty, on three meshes and extrapolated to the rod itself.
 
 Neither has the force history of the rod: ours loses a node's energy at the touch and the force rings; a penalty must
 not be stiffer than an element (EA/l), else the end node chatters. What both must give in the limit of fine meshes is
 the mean force on the plateau, the time in contact and the impulse (exudyn's penalty, 0.5 EA/l, goes with its mesh).
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,11 @@ from .common import Comparison, Curve, Panel, Row, Task, energy_panel, residual_
 SOFT, STIFF = 0.5, 10.0
 """Stiffness of exudyn's contact in parts of an element's: below the bound, and above it to show what happens there."""
 COURANT = 0.2
-FORCE, TIME, IMPULSE = 1e-2, 1e-2, 2e-3
+RELATIVE = 1e-3
+LEAST_RATIO, LARGEST_RATIO = 1.2, 16.0
+"""Of two successive changes, for which they show an order."""
+MESHES = (1, 2, 4)
+"""Numbers of elements, in parts of the scenario's."""
 ENDS, MIDDLE = (0.05, 0.95), (0.25, 0.75)
 """Shares of the impulse that have been handed over where the contact counts as begun and ended, and between which the
 plateau is averaged."""
@@ -53,7 +58,7 @@ def strikes_rods(model: Model) -> bool:
 
 
 def compare_rods(task: Task) -> Comparison:
-    """Plateau, time in contact and impulse, each extrapolated from the mesh and one twice as fine.
+    """Plateau, time in contact and impulse, each extrapolated from the mesh and two finer ones.
 
     Raises
     ------
@@ -62,36 +67,43 @@ def compare_rods(task: Task) -> Comparison:
     coarse = task.scenario
     if "elements" not in coarse.parameters or len(coarse.model.contacts) != 1:
         raise NotTranslatable(
-            f"'{coarse.name}' has rods that strike; they are compared on two meshes, for which a scenario with a "
+            f"'{coarse.name}' has rods that strike; they are compared on three meshes, for which a scenario with a "
             "parameter `elements` and one contact is needed: register yours with @scenario, or compare it by force "
             "(law Hertz with exponent 1 and a stiffness of at most EA/l)"
         )
     given = {k: v for k, v in coarse.parameters.items() if v is not None and k != "step"}
     name = coarse.model.contacts[0].name
-    fine = load(coarse.name, **{**given, "elements": 2 * int(coarse.parameters["elements"])})
+    number = int(coarse.parameters["elements"])
+    meshes = [
+        replace(load(coarse.name, **{**given, "elements": factor * number}), t_end=coarse.t_end) for factor in MESHES
+    ]
     ours: list[Result] = []
     runs: list[ExudynResult] = []
-    for scenario in (coarse, fine):
+    for scenario in meshes:
         task.progress(f"our run, {scenario.parameters['elements']} elements")
         ours.append(_our_run(scenario))
     # a fault that a test seeds into exudyn's model goes into both of its meshes
     fault = _fault(task)
-    for scenario in (coarse, fine):
+    for scenario in meshes:
         task.progress(f"exudyn, {scenario.parameters['elements']} elements")
-        runs.append(_run(fault(scenario.model), scenario.t_end, SOFT))
+        runs.append(run_penalty(fault(scenario.model), scenario.t_end, SOFT))
     task.progress("exudyn, with a contact that is too stiff")
-    stiff = _run(fault(coarse.model), coarse.t_end, STIFF)
+    stiff = run_penalty(fault(coarse.model), coarse.t_end, STIFF)
     task.progress("our run without mass at the contact's node")
-    calm = _our_run(load(coarse.name, **{**given, "massless_contact": True, "mass_matrix": "lumped"}))
-    mine = [_ours(r, name) for r in ours]
-    theirs = [_exudyn(r, name) for r in runs]
+    massless = load(coarse.name, **{**given, "massless_contact": True, "mass_matrix": "lumped"})
+    calm = _our_run(replace(massless, t_end=coarse.t_end))
+    mine = [blow_of_ours(r, name) for r in ours]
+    theirs = [blow_of_exudyn(r, name) for r in runs]
     rows = [
         *_rows(name, mine, theirs),
-        *_ripples(name, mine[0], _ours(calm, name), theirs[0], _exudyn(stiff, name)),
+        *_ripples(name, mine[0], blow_of_ours(calm, name), theirs[0], blow_of_exudyn(stiff, name)),
     ]
     notes = (
-        f"both sides on {coarse.parameters['elements']} and {fine.parameters['elements']} elements, extrapolated to "
-        "none in the first order of their length; the error bars are what the extrapolation adds to the finer mesh",
+        f"both sides on {', '.join(str(factor * number) for factor in MESHES)} elements, extrapolated with the order "
+        "that they show; the error bars are what the extrapolation adds to the finest mesh, or where the meshes show "
+        "no order the larger of the last two changes",
+        "without damping the fronts are sharp: no mesh resolves them, and time in contact and impulse converge with "
+        "an order below one. The case with damping has no such fronts, and is compared on one mesh",
         f"exudyn's contact is a spring of {SOFT:g} of an element's stiffness, and {STIFF:g} of it where that is said",
         *runs[-1].notes,
     )
@@ -129,10 +141,11 @@ def _fault(task: Task) -> Any:
     return change
 
 
-def _run(model: Model, t_end: float, share: float) -> ExudynResult:
+def run_penalty(model: Model, t_end: float, share: float, courant: float = COURANT) -> ExudynResult:
+    """exudyn with a spring of `share` of an element's stiffness as contact, and steps of `courant` of an element."""
     rods = [b for b in model.bodies if isinstance(b, AxialRod)]
     stiffness = share * min(r.axial_stiffness * r.elements / r.length for r in rods)
-    step = min(COURANT * r.length / r.elements / r.wave_speed for r in rods)
+    step = min(courant * r.length / r.elements / r.wave_speed for r in rods)
     (contact,) = model.contacts
     law = Hertz(stiffness=stiffness, exponent=1.0)
     changed = model.model_copy(update={"contacts": (contact.model_copy(update={"law": law}),), "parameters": ()})
@@ -140,20 +153,21 @@ def _run(model: Model, t_end: float, share: float) -> ExudynResult:
     return run_exudyn(changed, t_end, step, settings)
 
 
-def _ours(run: Result, contact: str) -> Blow:
+def blow_of_ours(run: Result, contact: str) -> Blow:
+    """Of our run; the blow that closes the contact counts in its impulse."""
     opened = sum(e.kind == "open" and e.contact == contact for e in run.events)
-    return _blow(run.t, run[f"{contact}.normal_force"], float(run[f"{contact}.impulse"][-1]), opened)
+    return _blow(run.t, run[f"{contact}.normal_force"], run[f"{contact}.impulse"], opened)
 
 
-def _exudyn(run: ExudynResult, contact: str) -> Blow:
+def blow_of_exudyn(run: ExudynResult, contact: str) -> Blow:
+    """Of a run of exudyn."""
     inside = run[f"{contact}.gap"] < 0.0
     opened = int(np.sum(inside[:-1] & ~inside[1:]))
-    return _blow(run.t, run[f"{contact}.normal_force"], float(run[f"{contact}.impulse"][-1]), opened)
+    return _blow(run.t, run[f"{contact}.normal_force"], run[f"{contact}.impulse"], opened)
 
 
-def _blow(t: np.ndarray, force: np.ndarray, impulse: float, openings: int) -> Blow:
-    """By shares of the impulse, not by the first and last touch: before it ends the force may graze zero."""
-    handed = np.concatenate(([0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(t))))
+def _blow(t: np.ndarray, force: np.ndarray, handed: np.ndarray, openings: int) -> Blow:
+    """By shares of the impulse `handed` over, not by first and last touch: near its end the force may graze zero."""
     first, low, high, last = (
         float(np.interp(share * handed[-1], handed, t)) for share in (*ENDS[:1], *MIDDLE, ENDS[1])
     )
@@ -161,22 +175,39 @@ def _blow(t: np.ndarray, force: np.ndarray, impulse: float, openings: int) -> Bl
     span = t[middle][-1] - t[middle][0]
     mean = (MIDDLE[1] - MIDDLE[0]) * float(handed[-1]) / (high - low)
     ripple = float(np.sqrt(np.trapezoid((force[middle] - mean) ** 2, t[middle]) / span))
-    return Blow(last - first, mean, ripple, impulse, openings)
+    return Blow(last - first, mean, ripple, float(handed[-1]), openings)
+
+
+BLOW = {
+    "mean": ("mean force between a quarter and three quarters of the impulse", "N"),
+    "duration": ("time from 5 % to 95 % of the impulse", "s"),
+    "impulse": ("impulse", "N s"),
+}
+"""What is compared of a blow: words and unit."""
 
 
 def _rows(name: str, mine: list[Blow], theirs: list[Blow]) -> list[Row]:
     rows = []
-    for title, field, unit, tolerance in (
-        ("mean force between a quarter and three quarters of the impulse", "mean", "N", FORCE),
-        ("time from 5 % to 95 % of the impulse", "duration", "s", TIME),
-        ("impulse", "impulse", "N s", IMPULSE),
-    ):
-        (a, b), (c, d) = ([getattr(blow, field) for blow in side] for side in (mine, theirs))
+    for field, (title, unit) in BLOW.items():
+        (a, own), (b, bar) = (mesh_limit([getattr(blow, field) for blow in side]) for side in (mine, theirs))
         rows.append(
-            Row(f"{name}: {title}, in the limit of fine meshes", unit, 2.0 * b - a, 2.0 * d - c, tolerance, "relative",
-                abs(d - c), ours_uncertainty=abs(b - a))
+            Row(f"{name}: {title}, in the limit of fine meshes", unit, a, b, RELATIVE, "relative", bar,
+                ours_uncertainty=own)
         )  # fmt: skip
     return rows
+
+
+def mesh_limit(values: list[float]) -> tuple[float, float]:
+    """(limit, error bar) from three meshes, each twice as fine as the one before, by the order that they show.
+
+    Where they show none, because the changes fluctuate, the finest value with the larger of its last two changes.
+    """
+    a, b, c = values
+    before, last = b - a, c - b
+    ratio = before / last if last else math.inf
+    if not LEAST_RATIO <= ratio <= LARGEST_RATIO:
+        return c, max(abs(before), abs(last))
+    return c + last / (ratio - 1.0), abs(last) / (ratio - 1.0)
 
 
 def _ripples(name: str, ours: Blow, calm: Blow, soft: Blow, stiff: Blow) -> list[Row]:

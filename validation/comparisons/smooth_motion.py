@@ -15,6 +15,7 @@ from .common import (
     at_times,
     energy_panel,
     nice_step,
+    our_error,
     our_run,
     residual_panel,
     unit_of,
@@ -38,6 +39,7 @@ def compare_motion(task: Task) -> Comparison:
     task.progress("our run")
     ours = our_run(scenario, grid)
     channels = [c for c in scenario.compare if c in ours.channels and not _rings(scenario, c)]
+    own = our_error(task, ours, channels)
     # index 2: its error has even powers of the step only, which is what the extrapolation wants
     settings = settings_for(
         scenario.model, integrator="trapezoidal", relative_tolerance=TIGHT,
@@ -49,8 +51,8 @@ def compare_motion(task: Task) -> Comparison:
     while True:
         task.progress(f"exudyn, step {step:.1e} s")
         runs.append(run_exudyn(task.exudyn_model, scenario.t_end, step, settings))
-        if len(runs) > 1:
-            rows = [_row(channel, unit_of(ours, channel), ours[channel], grid, runs) for channel in channels]
+        if len(runs) > 2:
+            rows = [_row(c, unit_of(ours, c), ours[c], own.get(c, np.zeros(SAMPLES)), grid, runs) for c in channels]
             decided = all(r.uncertainty <= 0.3 * TOLERANCE * (r.scale or 1.0) for r in rows)
             if decided or scenario.t_end / step > 0.5 * MOST_STEPS:
                 break
@@ -91,16 +93,14 @@ def _rings(scenario: Scenario, channel: str) -> bool:
 
 
 def _limit(channel: str, grid: np.ndarray, runs: list[ExudynResult]) -> tuple[np.ndarray, np.ndarray]:
-    """(extrapolated values, uncertainty) from the two or three finest runs."""
+    """(extrapolated values, uncertainty) from the three finest runs."""
     values = [at_times(r.t, r.channels, channel, grid) for r in runs[-3:]]
-    limit, error = richardson(values[-2], values[-1])
-    if len(values) < 3:
-        return limit, error
+    limit, _ = richardson(values[-2], values[-1])
     before, _ = richardson(values[-3], values[-2])
     return limit, np.abs(limit - before)
 
 
-def _row(channel: str, unit: str, ours: np.ndarray, grid: np.ndarray, runs: list[ExudynResult]) -> Row:
+def _row(channel: str, unit: str, ours: np.ndarray, own: np.ndarray, grid: np.ndarray, runs: list[ExudynResult]) -> Row:
     limit, uncertainty = _limit(channel, grid, runs)
     found = trajectory_difference(grid, ours, limit)
     k = int(np.argmin(np.abs(grid - found.at)))
@@ -113,6 +113,7 @@ def _row(channel: str, unit: str, ours: np.ndarray, grid: np.ndarray, runs: list
         "relative",
         float(uncertainty[k]),
         max(found.scale, LEAST_SCALE),
+        ours_uncertainty=float(own[k]),
         channel=channel,
         at=float(grid[k]),
     )

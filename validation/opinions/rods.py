@@ -30,6 +30,8 @@ def rod_rod(scenario: Scenario) -> Opinion | None:
 
 def _plateau(scenario: Scenario, share: float) -> Opinion | None:
     rod = next(b for b in scenario.model.bodies if isinstance(b, AxialRod))
+    if rod.damping_time:
+        return None
     force = share * rod.axial_stiffness * abs(rod.velocity) / rod.wave_speed
     duration = 2.0 * rod.length / rod.wave_speed
     values = {"mean force": force, "time from 5 % to 95 %": 0.9 * duration, "impulse, in the limit": force * duration}

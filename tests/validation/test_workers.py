@@ -1,0 +1,97 @@
+"""Cases in processes of their own: a crash ends its own case only; and the error bars of the comparisons."""
+
+import json
+import math
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tlismni.validation import Case, crosscheck_all
+from tlismni.validation.catalogue import Outcome, _died, _Order
+from tlismni.validation.comparisons.common import Touch, own_bar
+from tlismni.validation.comparisons.force_rows import Levels
+from tlismni.validation.comparisons.force_steps import aligned
+from tlismni.validation.comparisons.rod_impact import mesh_limit
+from tlismni.validation.exudyn_import import exudyn_available
+from tlismni.validation.workers import Workers
+
+
+def job(item: str, tell: Callable[[str], None]) -> str:
+    """What the processes of these tests do."""
+    tell(f"begun {item}")
+    if item == "crash":
+        os._exit(3)
+    if item == "hang":
+        time.sleep(60.0)
+    return item.upper()
+
+
+def test_a_process_that_ends_or_hangs_takes_its_own_item_only() -> None:
+    told: list[tuple[str, str]] = []
+    pool: Workers[str, str] = Workers(job, 2, lambda item, code, seconds: f"{item}: {code}", limit=5.0)
+    found = dict(pool.run(["a", "crash", "hang", "b", "c"], lambda item, text: told.append((item, text))))
+    assert found == {"a": "A", "b": "B", "c": "C", "crash": "crash: 3", "hang": "hang: None"}
+    assert {item for item, text in told if text == f"begun {item}"} == set(found)
+
+
+def test_a_crash_is_a_failed_outcome_that_says_what_to_do() -> None:
+    outcome = _died(_Order(Case("pendulum"), None, True), -11, 2.0)
+    assert isinstance(outcome, Outcome) and outcome.verdict == "failed"
+    assert "exit code -11" in outcome.reason and "tlismni crosscheck pendulum" in outcome.reason
+
+
+@pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot be imported")
+def test_what_is_done_is_written_before_the_next_is_begun(tmp_path: Path) -> None:
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    seen: list[int] = []
+
+    def interrupt(text: str) -> None:
+        page = tmp_path / "overview.json"
+        if page.exists():
+            seen.append(json.loads(page.read_text(encoding="utf-8"))["done"])
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        crosscheck_all(tmp_path, interrupt, scenarios=["split_wall", "pendulum"], coarse=True)
+    assert seen == [1]
+    numbers = json.loads((tmp_path / "overview.json").read_text(encoding="utf-8"))
+    assert numbers["planned"] == 2 and len(numbers["cases"]) == 1
+    with pytest.raises(ValueError, match="workers = 0"):
+        crosscheck_all(workers=0)
+
+
+def test_bars_hold_the_error_of_a_method_of_first_order_and_the_limit_removes_it() -> None:
+    exact, steps = 2.0, np.array([4.0, 2.0, 1.0]) * 1e-2
+    regular = [np.asarray(exact + 0.3 * h + 0.05 * h**2) for h in steps]
+    plain, extrapolated = Levels(()), Levels((), extrapolated=True)
+    assert abs(plain.value(regular) - exact) <= 1.01 * plain.bar(regular)
+    assert abs(extrapolated.value(regular) - exact) <= extrapolated.bar(regular) < 1e-4
+    # a value that stands still by chance does not count as exact
+    assert plain.bar([np.asarray(2.4), np.asarray(2.1), np.asarray(2.1)]) == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize("order", [0.5, 2.0 / 3.0, 1.0, 2.0])
+def test_the_limit_of_meshes_finds_the_order_that_they_show(order: float) -> None:
+    values = [3.0 + 0.2 * (100.0 * 2.0**k) ** -order for k in range(3)]
+    limit, bar = mesh_limit(values)
+    assert limit == pytest.approx(3.0, abs=1e-12) and abs(values[-1] - 3.0) <= bar * (1.0 + 1e-9)
+    # without an order: the finest, with the larger of the last two changes
+    assert mesh_limit([1.0, 1.2, 1.1]) == (1.1, pytest.approx(0.2))
+    assert mesh_limit([1.0, 1.1, 1.1]) == (1.1, pytest.approx(0.1))
+
+
+def test_aligned_steps_begin_just_before_the_touch_on_every_grid() -> None:
+    touch = Touch("c", 0.4517, 0.46, 1.0, 0.5, 1.0)
+    for halvings in range(4):
+        step = aligned(1e-3, touch, 1e-4) / 2**halvings
+        since = touch.start - step * math.floor(touch.start / step)
+        assert 0.0 < since < 1e-7
+    assert aligned(1.0, touch, 1e-4) == 1.0
+
+
+def test_our_error_bar_is_never_below_rounding() -> None:
+    assert own_bar(2.0, 2.0) == pytest.approx(2e-14) and own_bar(2.0, 2.1) == pytest.approx(0.1)
