@@ -33,7 +33,7 @@ def toggled_rows(task: Task, first: Touch, ours: Result) -> list[Row]:
     impulse = plastic_impulse(struck, contact)
     if impulse is None:
         return []
-    name = f"{first.contact}: impulse, exudyn's constraint switched on (index 2), times 1 + e"
+    name = f"{first.contact}: momentum that exudyn's constraint takes when switched on (index 2), times 1 + e"
     theirs = (1.0 + contact.law.restitution) * impulse
     return [Row(name, "N s", first.impulse, theirs, TOLERANCE, "relative")]
 

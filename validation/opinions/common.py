@@ -37,7 +37,7 @@ def opinion_on(
 def _first(name: str, blow: Blow) -> dict[str, float]:
     found = {
         "start": blow.start, "approach speed": blow.approach_speed, "impulse": blow.impulse,
-        "separation speed": blow.separation_speed,
+        "separation speed": blow.separation_speed, "momentum": blow.impulse,
     }  # fmt: skip
     if blow.end > blow.start:
         found |= {"duration": blow.end - blow.start, "peak force": blow.peak_force}

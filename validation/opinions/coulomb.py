@@ -6,7 +6,7 @@ Newton's G v+ >= -e G v-, and after every event for the accelerations.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
@@ -40,7 +40,7 @@ class Rubbing:
 class RubbingCourse(Course):
     """A course with the impulse of each contact over the whole run, N s."""
 
-    impulses: Array | None = None
+    impulses: Array = field(default_factory=lambda: np.zeros(0))
 
 
 def run(system: Rubbing, q: Sequence[float], v: Sequence[float], t_end: float) -> RubbingCourse:
@@ -74,7 +74,7 @@ def _struck(system: Rubbing, inverse: Array, y: Array) -> Array:
     """The state after the impact of the contacts that touch, if any of them approaches."""
     n = len(inverse)
     q, v = y[:n], y[n : 2 * n]
-    touching = np.flatnonzero(system.offsets + system.gradients @ q < TOUCHES)
+    touching: list[int] = np.flatnonzero(system.offsets + system.gradients @ q < TOUCHES).tolist()
     before = system.gradients @ v
     if not any(before[c] < -RESTS for c in touching):
         return y
@@ -121,7 +121,7 @@ def _solved(
 ) -> tuple[dict[int, str], Array, Array]:
     """(modes, pushes (k,), motion (n,)): contacts that hold reach `goal` along G, those with known slip keep it."""
     contacts, k = sorted(goal), len(system.offsets)
-    choices = [(STICK, AHEAD, BACK, OPEN) if slips[c] is None else (AHEAD if slips[c] > 0.0 else BACK, OPEN)
+    choices = [(STICK, AHEAD, BACK, OPEN) if slips[c] is None else (AHEAD if (slips[c] or 0.0) > 0.0 else BACK, OPEN)
                for c in contacts]  # fmt: skip
     for tried in product(*choices):
         modes = dict(zip(contacts, tried, strict=True))
@@ -190,24 +190,36 @@ def _watches(
     ways: list[tuple[int, str] | None] = []
     watches: list[Callable[[float, Array], float]] = []
 
-    def add(way: tuple[int, str] | None, function: Callable[[Array], float]) -> None:
+    def add(way: tuple[int, str] | None, function: Callable[[Array, int], float], contact: int) -> None:
         def watch(t: float, y: Array) -> float:
             # what starts at zero has to leave it first
-            return function(y) if t > start else 1.0
+            return function(y, contact) if t > start else 1.0
 
         watch.terminal, watch.direction = True, -1.0  # type: ignore[attr-defined]
         ways.append(way)
         watches.append(watch)
 
+    def gap(y: Array, c: int) -> float:
+        return float(system.offsets[c] + system.gradients[c] @ y[:n])
+
+    def push(y: Array, c: int) -> float:
+        return float(_forces(system, inverse, y, modes)[0][c])
+
+    def margin(y: Array, c: int) -> float:
+        return _margin(system, inverse, y, modes, c)
+
+    def sliding(y: Array, c: int) -> float:
+        return SIGN[modes[c]] * float(system.slides[c] @ y[n : 2 * n])
+
     for c, mode in modes.items():
         if mode == OPEN:
-            add(None, lambda y, c=c: float(system.offsets[c] + system.gradients[c] @ y[:n]))
+            add(None, gap, c)
             continue
-        add((c, OPEN), lambda y, c=c: float(_forces(system, inverse, y, modes)[0][c]))
+        add((c, OPEN), push, c)
         if mode == STICK:
-            add((c, STICK), lambda y, c=c: _margin(system, inverse, y, modes, c))
+            add((c, STICK), margin, c)
         else:
-            add(None, lambda y, c=c, s=SIGN[mode]: s * float(system.slides[c] @ y[n : 2 * n]))
+            add(None, sliding, c)
     return ways, watches
 
 

@@ -153,10 +153,10 @@ def run(
     n, k = work.n, work.k
     course = Course(size=n)
     t, y = 0.0, np.concatenate([np.asarray(q, dtype=float), np.asarray(v, dtype=float), np.zeros(k)])
-    for contact in np.flatnonzero(np.abs(mechanism.gaps(y[:n])) < CLOSED):
+    for contact in np.flatnonzero(np.abs(mechanism.gaps(y[:n])) < CLOSED).tolist():
         rate = float(mechanism.gradients(y[:n])[contact] @ y[n : 2 * n])
         if rate <= 0.0 and mechanism.laws[contact].force is not None:
-            work.pushing[int(contact)] = (0.0, -rate)
+            work.pushing[contact] = (0.0, -rate)
     while t < t_end and len(course.blows) < blows:
         part = solve_ivp(
             work.rates, (t, t_end), y, "DOP853", events=[work.event(c) for c in range(k)], rtol=RTOL, atol=ATOL,

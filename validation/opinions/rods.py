@@ -81,7 +81,13 @@ def struck_rod(start: float, rate: float, there_and_back: float) -> tuple[Array,
         last = int(past[0]) if ends else SAMPLES
         times.append(t[:last] + there_and_back * (len(waves) - 1))
         forces.append(force[:last])
-        waves.append(lambda t, own=part.sol, before=before: float(own(t)[0]) + before(t))
+
+        def wave(
+            t: float, own: Callable[[float], Array] = part.sol, before: Callable[[float], float] = before
+        ) -> float:
+            return float(own(t)[0]) + before(t)
+
+        waves.append(wave)
         u = float(part.y[0, -1])
     return np.concatenate(times), np.concatenate(forces)
 
