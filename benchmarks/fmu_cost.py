@@ -175,8 +175,12 @@ def main() -> None:
             for version in ("2.0", "3.0")
         } | peers(folder)
         for what, amplitude in (("input changes at every step", CHANGING), ("input holds", 0.0)):
-            bare = Stepper()
-            steppers: dict[str, StepCall] = {"solver": lambda u, t, h, s=bare: s.step(u, t + h), "slave": slave_step()}
+            bare, once = Stepper(), Stepper()
+            steppers: dict[str, StepCall] = {
+                "solver": lambda u, t, h, s=bare: s.step(u, t + h),
+                "in one call": lambda u, t, h, s=once: s.exchange(u, t + h),
+                "slave": slave_step(),
+            }
             starts = {}
             for label, fmu in fmus.items():
                 steppers[label], starts[label] = fmu.stepper()

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import log as logs
 from .errors import FmuError, FmuValueError, SnapshotError, Status
+from .shared_calls import SharedCalls
 from .slave import Slave
 from .snapshot import Snapshot
 
@@ -40,7 +41,7 @@ def fmi_call(on_error: Any = THE_STATUS) -> Callable[[Function], Function]:
     return decorate
 
 
-class Calls:
+class Calls(SharedCalls):
     """The FMI calls of one instance. Buffers come by the buffer protocol and live only for the call."""
 
     token_name = "guid"
@@ -110,16 +111,6 @@ class Calls:
         if len(buffer) < len(data):
             raise SnapshotError(f"the buffer holds {len(buffer)} bytes, the stored state needs {len(data)}")
         numbers_in(buffer, np.uint8)[: len(data)] = np.frombuffer(data, dtype=np.uint8)
-
-    def tell_clock(self, clock: Any) -> None:
-        """Write the slave's time and its horizon into the buffer `clock` (two doubles), if there is one."""
-        if clock is not None:
-            put(clock, "d", self.slave.time)
-            put(clock, "d", self.slave.horizon, 1)
-
-    def catch_up(self, t: float) -> None:
-        """The shim has stepped to `t`, s, on its own, within the horizon."""
-        self.slave.catch_up(t)
 
     def free(self) -> None:
         """Drop what the instance holds."""

@@ -48,6 +48,7 @@ class Fmi3Calls(Calls):
     """FMI 3.0 calls of one instance. Each answers with a status unless its text says otherwise."""
 
     token_name = "instantiation token"
+    get_name, step_name = "fmi3GetFloat64", "fmi3DoStep"
 
     def refuse(self, function: str) -> int:
         """Answer a function that this FMU has not."""
@@ -87,8 +88,8 @@ class Fmi3Calls(Calls):
     def fmi3DoStep(
         self, t: float, h: float, event_due: Any, terminate: Any, early: Any, last_time: Any, clock: Any = None
     ) -> None:
-        """One communication step; an event in it may end it, as the instance was made. `clock` is what `tell_clock`
-        writes to."""
+        """One communication step; an event in it may end it, as the instance was made. `clock` comes from shims of
+        former versions."""
         for flag in (event_due, terminate, early):
             put(flag, "?", False)
         put(last_time, "d", self.slave.time)
@@ -96,7 +97,6 @@ class Fmi3Calls(Calls):
         put(event_due, "?", end.event_due)
         put(early, "?", end.early)
         put(last_time, "d", end.time)
-        self.tell_clock(clock)
 
     @fmi_call()
     def fmi3EnterEventMode(self) -> None:

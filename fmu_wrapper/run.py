@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -68,8 +68,7 @@ def as_slice(positions: list[int]) -> slice | npt.NDArray[np.intp]:
     return slice(first, last) if positions == list(range(first, last)) else np.array(positions, dtype=np.intp)
 
 
-@dataclass(frozen=True)
-class StepEnd:
+class StepEnd(NamedTuple):
     """How a step ended: where (s), whether with an event that has not happened yet, whether before its time."""
 
     time: float
@@ -97,6 +96,7 @@ class Run:
         changed_model, changed_settings = effective(model, settings, values)
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
         self._set_columns(values.table)
+        self._exchange = getattr(self._simulation, "exchange", None)
 
     @staticmethod
     def key_of(values: Values, t0: float) -> tuple[Any, ...]:
@@ -161,6 +161,22 @@ class Run:
             self._simulation.set_inputs(told)
         self._applied = wanted
 
+    @property
+    def quick(self) -> bool:
+        """Whether there is `drive`."""
+        return self._exchange is not None
+
+    def drive(self, values: Values, t: float, read: bool) -> bool:
+        """Tell the simulation the inputs, which have no derivatives, integrate to `t`, s, events included, and read if
+        that is wanted. False if it was not, or the values have to be asked for."""
+        inputs = values.vectors["real"].take(values.inputs).tolist()
+        found = self._exchange(inputs, t, read)  # type: ignore[misc]
+        self._applied = [inputs]
+        if found is None:
+            return False
+        self._put(found, values)
+        return True
+
     def follow(self, values: Values) -> None:
         """The inputs have gone on by their derivatives, as the simulation knows."""
         self._applied = values.courses
@@ -220,9 +236,13 @@ class Run:
                 f"at t = {self._simulation.t!r} s these values are not finite: {', '.join(bad)}; "
                 "the model runs away or a parameter is wrong: check parameters and inputs, use smaller steps"
             )
+        self._put(found, values)
+
+    def _put(self, found: npt.NDArray[np.float64], values: Values) -> None:
+        """Put finite channels and the number of events into `values`."""
         for kind, positions, columns in self._columns:
             values.vectors[kind][positions] = found.take(columns) if kind == "real" else np.rint(found.take(columns))
-        values.vectors["integer"][self._events] = len(self.events)
+        values.vectors["integer"][self._events] = len(self._simulation.events)
 
     def state(self) -> Any:
         """The solver's state."""

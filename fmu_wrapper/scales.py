@@ -30,7 +30,7 @@ class Scales:
         times = [0.1 * t_end] if t_end else []
         if gravity or speed:
             times = [*([math.sqrt(length / gravity)] if gravity else []), *([length / speed] if speed else [])]
-        mass = sum(_mass(body) for body in places.bodies.values())
+        mass = sum(body.typical_mass() for body in places.bodies.values())
         return cls(length, mass or 1.0, min(times, default=1.0))
 
     def nominal(self, unit: str | None) -> float | None:
@@ -56,15 +56,6 @@ def _speeds(places: Places, name: str) -> tuple[float, ...]:
     body = places.bodies[name]
     rates = body.start_in(places.bodies)[1]
     return tuple(v for c, v in zip(body.coordinate_records(), rates, strict=True) if c.unit == "m")
-
-
-def _mass(body: Any) -> float:
-    """Mass of a body, kg; of a system of coordinates, the largest that one in m has."""
-    mass = getattr(body, "mass", 0.0)
-    if isinstance(mass, tuple):
-        units = [c.unit for c in body.coordinate_records()]
-        return max((row[i] for i, row in enumerate(mass) if units[i] == "m"), default=0.0)
-    return float(mass) or float(getattr(body, "mass_per_length", 0.0)) * float(getattr(body, "length", 0.0))
 
 
 def parameter_limits(model: Model, parameter: Parameter) -> tuple[float | None, float | None]:

@@ -8,17 +8,17 @@ methods raise; `calls.py` turns what they raise into FMI statuses.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ..core.model.signals import MOST_DERIVATIVES
 from . import log as logs
 from .errors import CallOrderError, FmuValueError, Status
 from .grid import check_step
 from .intermediate import Updates
-from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, SOUND, Phase
+from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, Phase
 from .run import Run, StepEnd
 from .slave_derivatives import SlaveDerivatives
 from .values import check_values, item_value
@@ -140,7 +140,8 @@ class Slave(SlaveDerivatives):
         FmuValueError : for a wrong `t`, an `h` that is not positive, a step past the stop time. Nothing happened.
         SimulationError, FmuError : the solver failed; the slave is in phase `failed`.
         """
-        self._need("do step", Phase.STEP)
+        if self._phase is not Phase.STEP:
+            self._need("do step", Phase.STEP)
         target = check_step(self._time, t, h, self._stop_time)
         run = self._engine()
         if h > MOST_STEPS * run.step_size:
@@ -149,36 +150,50 @@ class Slave(SlaveDerivatives):
                 "a shorter one"
             )
         seen = len(run.events)
-        self._stale = True
+        asked, self._asked, self._stale = self._asked, False, True
         try:  # not `_failing`: a context manager at every step is dear
-            if self.updates is None:
+            if self.updates is not None:
+                end = self._advance_with_updates(run, target, self.updates)
+            elif run.quick and not (self.event_mode or self.early_return or self._values.sloped):
+                end = self._drive(run, target, asked)
+            else:
                 self._tell(run)
                 end = run.advance(target, self.event_mode, self.early_return)
                 self._arrive(run, end.time)
-            else:
-                end = self._advance_with_updates(run, target, self.updates)
         except BaseException:
             self._phase = Phase.FAILED
             raise
         if end.event_due:
             self._phase = Phase.EVENT_DUE
-        self._log_events(run, seen)
+        if len(run.events) != seen:
+            self._log_events(run, seen)
+        if asked and self._stale:
+            self._foresee(run)
         return end
 
-    @property
-    def horizon(self) -> float:
-        """Time, s, up to which steps with the present inputs only move the clock; minus infinity for none."""
-        if self._phase != Phase.STEP or self._run is None or self._untold or self._values.sloped or self.updates:
-            return -math.inf
-        return min(self._run.horizon, math.inf if self._stop_time is None else self._stop_time)
+    def _drive(self, run: Run, t: float, read: bool) -> StepEnd:
+        """Take the simulation to `t`, s, with the present inputs, and read the outputs if wanted and easily had."""
+        self._stale = not run.drive(self._values, t, read)
+        self._untold = False
+        self._set_time(t)
+        return StepEnd(t)
 
-    def catch_up(self, t: float) -> None:
-        """Move the clock to `t`, s, within the horizon, after steps that nobody told of."""
+    def _foresee(self, run: Run) -> None:
+        """After a step, make the outputs those of its end. If they cannot be computed, who asks will hear why."""
+        with suppress(Exception):
+            run.read(self._values)
+            self._stale = False
+
+    def catch_up(self, t: float, read: bool = False) -> None:
+        """Move the clock to `t`, s, within the horizon, after steps that nobody told of; `read`: outputs come next."""
         run = self._engine()
         self._stale = True
         with self._failing():
-            run.advance(t, self.event_mode, self.early_return)
-            self._arrive(run, t)
+            if read and run.quick and not (self.event_mode or self.early_return):
+                self._drive(run, t, read)
+            else:
+                run.advance(t, self.event_mode, self.early_return)
+                self._arrive(run, t)
 
     def _arrive(self, run: Run, t: float) -> None:
         """The simulation is at `t`, s, and so are the inputs that go on with derivatives."""
@@ -224,9 +239,8 @@ class Slave(SlaveDerivatives):
         """
         self._need("get values", *RUNNING)
         plan = self.variables.plan(kind, references)
-        if self._stale and "output" in plan.roles:
-            self._need("get outputs that were not asked for before", *SOUND)
-            self._refresh()
+        if "output" in plan.roles:
+            self.look()
         return self._values.vectors[kind].take(plan.positions)
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
@@ -252,37 +266,6 @@ class Slave(SlaveDerivatives):
         if "parameter" in plan.roles:
             self._rtol_given |= any(v.name == "solver.rtol" for v in plan.variables)
             self._run = None
-
-    def set_input_derivatives(
-        self, references: npt.NDArray[np.uint32], orders: Sequence[int], values: Sequence[float]
-    ) -> None:
-        """Let the inputs behind `references` go on, from the present time, with these time derivatives of the given
-        orders, 1 or 2: all of them or, on an error, none.
-
-        The value of such an input moves along. Its derivatives hold until, at a later time, it is set without new
-        ones or is given others.
-
-        Raises
-        ------
-        CallOrderError, FmuValueError
-        """
-        plan = self.variables.plan("real", references)
-        self._need("set input derivatives", *SETTABLE)
-        given = [float(value) for value in values]
-        rows = []
-        for variable, order, value in zip(plan.variables, orders, given, strict=True):
-            if variable.role != "input":
-                raise FmuValueError(f"'{variable.name}' is of role {variable.role}: only inputs take derivatives")
-            if not 1 <= order <= MOST_DERIVATIVES:
-                raise FmuValueError(
-                    f"a derivative of order {order} of input '{variable.name}' was given: orders 1 to "
-                    f"{MOST_DERIVATIVES} are taken"
-                )
-            if not math.isfinite(value):
-                raise FmuValueError(f"a derivative of input '{variable.name}' is {value!r}: a finite number is needed")
-            rows.append(self._input_rows[variable.reference])
-        self._values.set_slopes(rows, orders, given, self._time)
-        self._stale = self._untold = True
 
     def _refuse(self, variables: Sequence[Variable]) -> None:
         for v in variables:

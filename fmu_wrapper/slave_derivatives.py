@@ -1,13 +1,16 @@
-"""What a slave tells of derivatives: of outputs by inputs, and of outputs in time."""
+"""What a slave tells and is told of derivatives: of outputs by inputs, and of outputs and inputs in time."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
+from ..core.model.signals import MOST_DERIVATIVES
 from .derivatives import check_knowns, check_unknowns
+from .errors import FmuValueError
 from .output_derivatives import check_known, check_orders
-from .phases import EVENT_PHASES, Phase
+from .phases import EVENT_PHASES, SETTABLE, Phase
 from .slave_state import SlaveState
 
 
@@ -59,3 +62,34 @@ class SlaveDerivatives(SlaveState):
         if self._stale:
             self._refresh()
         return check_known(outputs, self._engine().rates(outputs))
+
+    def set_input_derivatives(
+        self, references: npt.NDArray[np.uint32], orders: Sequence[int], values: Sequence[float]
+    ) -> None:
+        """Let the inputs behind `references` go on, from the present time, with these time derivatives of the given
+        orders, 1 or 2: all of them or, on an error, none.
+
+        The value of such an input moves along. Its derivatives hold until, at a later time, it is set without new
+        ones or is given others.
+
+        Raises
+        ------
+        CallOrderError, FmuValueError
+        """
+        plan = self.variables.plan("real", references)
+        self._need("set input derivatives", *SETTABLE)
+        given = [float(value) for value in values]
+        rows = []
+        for variable, order, value in zip(plan.variables, orders, given, strict=True):
+            if variable.role != "input":
+                raise FmuValueError(f"'{variable.name}' is of role {variable.role}: only inputs take derivatives")
+            if not 1 <= order <= MOST_DERIVATIVES:
+                raise FmuValueError(
+                    f"a derivative of order {order} of input '{variable.name}' was given: orders 1 to "
+                    f"{MOST_DERIVATIVES} are taken"
+                )
+            if not math.isfinite(value):
+                raise FmuValueError(f"a derivative of input '{variable.name}' is {value!r}: a finite number is needed")
+            rows.append(self._input_rows[variable.reference])
+        self._values.set_slopes(rows, orders, given, self._time)
+        self._stale = self._untold = True

@@ -1,15 +1,19 @@
 """What a slave holds: the values of its variables, its simulation, its phase; all of it can be stored and restored."""
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
 from .intermediate import Updates
 from .log import Log, LogCallback
-from .phases import EVENT_PHASES, WAYS, Phase
-from .run import Run, SimulationFactory, build_simulation
+from .phases import EVENT_PHASES, RUNNING, SOUND, WAYS, Phase
+from .run import Run, SimulationFactory, as_slice, build_simulation
 from .settings import Settings
 from .snapshot import Snapshot, identity
 from .values import Values
@@ -44,6 +48,7 @@ class SlaveState:
             variables = build_table(self.model, self.settings, channels)
         self.variables = variables
         self._input_rows = {v.reference: i for i, v in enumerate(variables.block("input"))}
+        self._inputs = as_slice([variables.position[v.reference] for v in variables.block("input")])
         self._time_position = variables.position[TIME]
         self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
@@ -59,6 +64,51 @@ class SlaveState:
     def time(self) -> float:
         """The slave's own time, s."""
         return self._time
+
+    # what the shim sets and gets by itself (`shared_calls.py`)
+
+    @property
+    def reals(self) -> npt.NDArray[np.float64]:
+        """Values of all real variables."""
+        return self._values.vectors["real"]
+
+    def expect_questions(self, asked: bool) -> None:
+        """Whether somebody has looked at outputs after the last step, and so will after the next one."""
+        self._asked = asked
+
+    @property
+    def fresh(self) -> bool:
+        """Whether the outputs are those of the present time and inputs."""
+        return not self._stale
+
+    @property
+    def steady(self) -> bool:
+        """Whether inputs are numbers that can be set between steps, and nothing else has to be thought of."""
+        return self._phase is Phase.STEP and not self._values.sloped and self.updates is None
+
+    @property
+    def horizon(self) -> float:
+        """Time, s, up to which steps with the present inputs only move the clock; minus infinity for none."""
+        if not self.steady or self._run is None or self._untold:
+            return -math.inf
+        return self._run.horizon if self._stop_time is None else min(self._run.horizon, self._stop_time)
+
+    def look(self) -> None:
+        """Make the outputs those of the present time and inputs. Raises what `get` raises."""
+        self._need("get values", *RUNNING)
+        self._asked = True
+        if self._stale:
+            self._need("get outputs that were not asked for before", *SOUND)
+            self._refresh()
+
+    def give_inputs(self, reals: npt.NDArray[np.float64]) -> None:
+        """Put the inputs into `reals`, in the order of `self.reals`."""
+        reals[self._inputs] = self._values.vectors["real"][self._inputs]
+
+    def take_inputs(self, reals: npt.NDArray[np.float64]) -> None:
+        """Set the inputs to those in `reals`, finite ones, while `steady`."""
+        self._values.vectors["real"][self._inputs] = reals[self._inputs]
+        self._stale = self._untold = True
 
     def reset(self) -> None:
         """Back to the state of a new slave: start values, no experiment, phase `instantiated`.
@@ -76,6 +126,7 @@ class SlaveState:
         self._rtol_given = False
         self._run = None
         self._stale = self._untold = True
+        self._asked = False
 
     # state
 
@@ -139,7 +190,8 @@ class SlaveState:
     # inside
 
     # `_stale`: the outputs are not those of the present time and inputs; `_untold`: the simulation does not know all
-    # inputs yet. Outputs are read when they are asked for, since a step does not cost much more than asking.
+    # inputs yet; `_asked`: outputs have been asked for since the last step. Outputs are read when they are asked for,
+    # since a step does not cost much more than asking; or with the step, if they were asked for after the one before.
 
     def _need(self, what: str, *phases: Phase) -> None:
         if self._phase not in phases:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..core import Result
-from ..core.contact.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.contact.contact2d import DiskOnHalfPlane2D
 from ..core.description import Model
 from ..core.elements import AxialRod, Cable2D, FlexibleBody, LinearSystem, MaterialPoint2D
 from ..core.model.markers import GROUND, Marker2D
@@ -29,9 +29,7 @@ def drawing(model: Model, result: Result) -> dict[str, Any] | None:
     rods, factor = rod_lines(model, result, keep)
     lines += rods
     for contact in model.contacts:
-        if isinstance(contact, DiskOnHalfPlane2D | DiskOnDisk2D):
-            shapes = [contact.disk] if isinstance(contact, DiskOnHalfPlane2D) else [contact.a, contact.b]
-            lines += [("disk", _circle(s.marker, s.radius, result, keep)) for s in shapes if s.radius > 0.0]
+        lines += [("disk", _circle(d.marker, d.radius, result, keep)) for d in contact.disks() if d.radius > 0.0]
     moving = [line for kind, line in lines]
     if not moving:
         return None

@@ -96,7 +96,7 @@ def _environment() -> Any:
     )
     environment.filters |= {
         "shown": shown, "part": part, "small": small, "seconds": seconds, "setting": setting, "verdict": verdict,
-        "script": _script, "agreeing": _agreeing, "worst": _worst, "sentence": _sentence,
+        "figure": figure, "script": _script, "agreeing": _agreeing, "worst": _worst, "sentence": _sentence,
     }  # fmt: skip
     return environment
 
@@ -158,6 +158,11 @@ def small(value: float) -> str:
         return "0"
     mantissa, exponent = f"{value:.1e}".split("e")
     return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def figure(value: Any) -> str:
+    """Two digits of a number; nothing of what does not exist."""
+    return f"{value:.2g}" if isinstance(value, int | float) else str(value or "")
 
 
 def seconds(value: float) -> str:

@@ -35,3 +35,8 @@ class Stepper:
         self.simulation.set_inputs({"torque": torque})
         self.simulation.advance(t)
         return self.simulation.values()[self.columns].tolist()
+
+    def exchange(self, torque: float, t: float) -> list[float]:
+        """The same in one call."""
+        values = self.simulation.exchange([torque], t)
+        return (self.simulation.values() if values is None else values)[self.columns].tolist()

@@ -8,9 +8,12 @@ import typer
 from ..errors import Failure, one_line_errors
 from ..options import Debug, Json, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
+from .study_claims import CLAIMS_EXAMPLES, claims
 from .study_contact import CONTACT_EXAMPLES, STIFFNESS_EXAMPLES, contact, stiffness
 from .study_coupling import COUPLING_EXAMPLES, coupling
 from .study_damping import DAMPING_EXAMPLES, damping
+from .study_methods import METHODS_EXAMPLES
+from .study_methods import methods as methods_command
 
 ORDERS_EXAMPLES = (
     "Examples:\n\n  tlismni study orders --plot orders.png\n\n"
@@ -32,6 +35,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+app.command("claims", epilog=CLAIMS_EXAMPLES)(claims)
+app.command("methods", epilog=METHODS_EXAMPLES)(methods_command)
 app.command("contact", epilog=CONTACT_EXAMPLES)(contact)
 app.command("stiffness", epilog=STIFFNESS_EXAMPLES)(stiffness)
 app.command("damping", epilog=DAMPING_EXAMPLES)(damping)

@@ -1,9 +1,35 @@
 """Records of addresses and sizes, and the arrays that they point to."""
 
 from collections.abc import Mapping
+from functools import cache
+from typing import Any
 
+import numba as nb
 import numpy as np
 from numpy.typing import NDArray
+
+
+@cache
+def _type_of(dtype: np.dtype) -> Any:
+    return nb.from_dtype(dtype)
+
+
+class Record:
+    """What compiled functions take for the one record in `table`, whose memory it shares.
+
+    Numba asks a numpy record for its type and its buffer, which describes itself field by field: 7 us at every call
+    with a record of 70 fields. Of this it asks the same questions by the same names, and has the answers at once.
+    """
+
+    __slots__ = ("_numba_type_", "_table", "data")
+
+    def __init__(self, table: NDArray[Any]) -> None:
+        self._table = table
+        self.data = table.view(np.uint8)
+        self._numba_type_ = _type_of(table.dtype)
+
+    def __getitem__(self, field: str) -> int:
+        return int(self._table[field][0])
 
 
 class ArrayRecord:
@@ -32,6 +58,8 @@ class ArrayRecord:
                 f"unknown {sorted(given - names)}"
             )
         self.table = table
+        self.record = Record(table)
+        """What to hand to a compiled function."""
         for name, array in arrays.items():
             self.set_array(name, array)
         for name, size in sizes.items():
@@ -45,11 +73,6 @@ class ArrayRecord:
             raise TypeError(f"array '{name}' must be C-contiguous")
         self.arrays[name] = array
         self.table[name] = array.ctypes.data
-
-    @property
-    def record(self) -> np.void:
-        """The record to hand to a compiled function (a view: valid while this object lives)."""
-        return self.table[0]
 
     @property
     def address(self) -> int:

@@ -95,6 +95,10 @@ class Contact2D(Element):
         last, own = self.friction.parameters()[-1], numbering.internal(self.name)
         return tuple(Row((*row.parameters, last), (*row.coordinates, *own), row.extra) for row in rows)
 
+    def disks(self) -> Sequence[Disk2D]:
+        """The disks that it brings in touch, for the drawing."""
+        return ()
+
     def extent(self) -> float:
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
         return math.inf
@@ -152,6 +156,9 @@ class DiskOnHalfPlane2D(Contact2D):
     plane: HalfPlane2D
     disk: Disk2D
 
+    def disks(self) -> Sequence[Disk2D]:
+        return (self.disk,)
+
     def row(self, numbering: Numbering) -> Row:
         angle = self.plane.marker.angle + 0.5 * math.pi
         return self._row(numbering, self.plane.marker, self.disk.marker, angle, self.disk.radius)
@@ -170,6 +177,9 @@ class DiskOnDisk2D(Contact2D):
 
     a: Disk2D
     b: Disk2D
+
+    def disks(self) -> Sequence[Disk2D]:
+        return (self.a, self.b)
 
     def extent(self) -> float:
         return self.a.radius + self.b.radius or math.inf

@@ -207,6 +207,12 @@ class AxialRod(FlexibleBody):
         shape = np.array([[1.0 - xi, xi], [0.0, 0.0]])
         return PointShape(None, (f"x{e}", f"x{e + 1}"), (0.0, 0.0), (1.0, 0.0), shape, np.zeros((2, 2)))
 
+    def drawn_points(self) -> Sequence[tuple[float, float]]:
+        return ((0.0, 0.0), (self.length, 0.0))
+
+    def typical_mass(self) -> float:
+        return self.mass_per_length * self.length
+
     def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:
         """Strain and axial force of the elements at `points`; at a node those of the element to its right."""
         length = self.length / self.elements

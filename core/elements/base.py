@@ -243,3 +243,7 @@ class BodyElement(Element):
     def extent(self) -> Sequence[tuple[float, float]]:
         """Points where it starts that tell the size of the mechanism, m."""
         return ()
+
+    def typical_mass(self) -> float:
+        """Its mass, kg; of generalised coordinates, the largest of those in m. 0 without a mass."""
+        return 0.0

@@ -13,7 +13,7 @@ from ..model.base import NonNegative, Positive, Vector2
 from .base import Coordinate, Numbering, Row
 from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
 from .cable_shape import POINTS, gauss_places, weights
-from .flexible_body import FlexibleBody, PointShape, Section
+from .flexible_body import FlexibleBody, PointShape, Section, along_axis
 
 SLOPE_SCALE = 0.5
 """Less than the 1 of angles, so that of a point's frame and a slope it is the frame that counts as dependent: its rows
@@ -178,6 +178,13 @@ class Cable2D(FlexibleBody):
         names = tuple(f"{what}{k}" for k in (e, e + 1) for what in ("x", "y", "slope_x", "slope_y"))
         shape, slope = (np.asarray(np.kron(weights(x, length, d), np.eye(2)), dtype=np.float64) for d in (0, 1))
         return PointShape(None, names, (0.0, 0.0), (0.0, 0.0), shape, slope)
+
+    def drawn_points(self) -> Sequence[tuple[float, float]]:
+        # its nodes; a cubic between two of them may be bent
+        return along_axis(self.length, self.elements) if self.elements > 1 else along_axis(self.length)
+
+    def typical_mass(self) -> float:
+        return self.mass_per_length * self.length
 
     def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:
         """Strains and forces at `points`; of two elements that meet there the one behind counts."""

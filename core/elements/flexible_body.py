@@ -1,7 +1,8 @@
 """What a flexible body is to the others: named coordinates, and material points that move with them.
 
 A new flexible body derives from `FlexibleBody` and says in `material_point` how a point of it moves. That is all that
-`MaterialPoint2D`, and with it every joint, force, contact and output, needs to know of it.
+`MaterialPoint2D`, and with it every joint, force, contact and output, needs to know of it. `drawn_points` tells which of
+its points show it.
 """
 
 from collections.abc import Sequence
@@ -12,6 +13,9 @@ from numpy.typing import NDArray
 
 from ..errors import ModelError
 from .base import BodyElement
+
+CURVE = 40
+"""Straight pieces that look like a curve."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,10 @@ class FlexibleBody(BodyElement):
         the body."""
         raise NotImplementedError(f"{type(self).__name__} must say how its material points move")
 
+    def drawn_points(self) -> Sequence[tuple[float, float]]:
+        """Material points whose line shows its shape (in the undeformed body, m)."""
+        raise NotImplementedError(f"{type(self).__name__} must say by which of its points it is drawn")
+
     def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:
         """Strains and internal forces at `points` (s along the undeformed axis, m), from the history of its coordinates
         and their rates, each (N, n) in the order of `coordinate_records`.
@@ -94,6 +102,11 @@ class FlexibleBody(BodyElement):
         ModelError : for a point outside the body, or if it does not tell them.
         """
         raise ModelError(f"'{self.name}' is a {type(self).__name__}, which does not tell its internal forces")
+
+
+def along_axis(length: float, pieces: int = CURVE) -> list[tuple[float, float]]:
+    """Material points (s, 0), m, that divide an axis into equal pieces; as many as look like a curve if not told."""
+    return [(float(s), 0.0) for s in np.linspace(0.0, length, pieces + 1)]
 
 
 def _rotation(angle: float) -> NDArray[np.float64]:

@@ -1,5 +1,6 @@
 """A straight Euler-Bernoulli beam in a floating frame of reference, reduced by modes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Literal
@@ -10,7 +11,7 @@ from pydantic import Field, model_validator
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Record, Vector2
 from .beam_modes import GAUSS_POINTS, Array, BoundaryConditions, Grid, bending, make_grid, stretching
-from .flexible_body import PointShape, Section
+from .flexible_body import PointShape, Section, along_axis
 from .floating_body2d import FloatingBody2D, Invariants
 
 ELEMENTS_PER_MODE = 4
@@ -108,6 +109,9 @@ class FloatingBeam2D(FloatingBody2D):
         return self.point_shape(
             np.array([s - modes.origin, y]), np.array([ux - y * slope, wy]), np.array([strain, slope]), second
         )
+
+    def drawn_points(self) -> Sequence[tuple[float, float]]:
+        return along_axis(self.length)
 
     def section(self, points: Array, q: Array, v: Array) -> Section:
         """Strains and internal forces; the axial force is NaN where the beam has no axial modes to tell it.

@@ -157,6 +157,10 @@ class LinearSystem(BodyElement):
             for name, unit, scale in zip(self.coordinates, units, self.scales or (1.0,) * n, strict=True)
         )
 
+    def typical_mass(self) -> float:
+        units = [c.unit for c in self.coordinate_records()]
+        return max((row[i] for i, row in enumerate(self.mass) if units[i] == "m"), default=0.0)
+
     def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0)."""
         zero = (0.0,) * len(self.coordinates)

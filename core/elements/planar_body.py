@@ -67,6 +67,9 @@ class PlanarBody(PlanarFrame):
     def extent(self) -> Sequence[tuple[float, float]]:
         return (self.position,)
 
+    def typical_mass(self) -> float:
+        return self.mass
+
     def _row(self, numbering: Numbering, inertia: float) -> Row:
         gx, gy = numbering.gravity
         return Row((self.mass, inertia, self.mass * gx, self.mass * gy, 0.0), numbering.coordinates(self.name))

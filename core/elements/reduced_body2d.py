@@ -163,6 +163,9 @@ class ReducedBody2D(FloatingBody2D):
             f"'{self.name}' has no point {tuple(point)}; `points` gives {[given.point for given in self.points]}"
         )
 
+    def drawn_points(self) -> Sequence[tuple[float, float]]:
+        return [given.point for given in self.points]
+
 
 def _or_zero(value: Sequence[Any] | None, shape: tuple[int, ...]) -> Array:
     return np.zeros(shape) if value is None else np.array(value, dtype=float)

@@ -76,61 +76,72 @@ _REPAIRABLE = (REANALYZE, SINGULAR, INNER_DIVERGED, OUTER_SLOW, OUTER_DIVERGED)
 """Failures that a new partition and new orderings may cure."""
 
 
-def advance_to(sim: "Simulation", t: float, stop: float, hold: bool = False) -> None:
-    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending."""
-    first = step_count(sim)
+def steps_at_once(n: int) -> int:
+    """Steps between two reports of progress, of a system with n coordinates."""
+    return max(1, CHUNK_STEPS * 100 // max(100, n))
+
+
+def advance_to(
+    sim: "Simulation", t: float, stop: float, hold: bool = False, came: tuple[int, int] | None = None
+) -> None:
+    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending.
+    `came`: the step count at the beginning, and what `run`, aimed at `t`, has returned a moment ago."""
+    first, code = (step_count(sim), None) if came is None else came
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     repaired_at = math.nan
-    chunk = max(1, CHUNK_STEPS * 100 // max(100, sim.assembly.n))
+    chunk = steps_at_once(sim.assembly.n)
+    sliding: list[int] = []
     while True:
         now = sim.t_internal
-        if sim.pending:
-            if now > t or hold:
+        if code is None:
+            if sim.pending:
+                if now > t or hold:
+                    return
+                sim._handle_pending()
+                continue
+            if now >= t:
                 return
-            sim._handle_pending()
-            continue
-        if now >= t:
-            return
-        if (due := due_break(sim)) is not None:
-            # only now: until the run goes on from here, samples before this time need the history
-            restart_at(sim, due)
-            continue
-        if t - now <= NO_STEP * abs(t):
-            return
-        aim(sim, t, stop)
-        if sim.clock[STOP_TIME] - now <= NO_STEP * abs(now):
-            return
-        # while a contact slides, each step is looked at
-        sliding = sliding_contacts(sim)
-        left = steps_left(sim, first, t)
-        code = run(ws, ms, lc, 1 if sliding else min(chunk, left))
+            if (due := due_break(sim)) is not None:
+                # only now: until the run goes on from here, samples before this time need the history
+                restart_at(sim, due)
+                continue
+            if t - now <= NO_STEP * abs(t):
+                return
+            aim(sim, t, stop)
+            if sim.clock[STOP_TIME] - now <= NO_STEP * abs(now):
+                return
+            # while a contact slides, each step is looked at
+            sliding = sliding_contacts(sim)
+            left = steps_left(sim, first, t)
+            code = run(ws, ms, lc, 1 if sliding else min(chunk, left))
+        returned, code = code, None
         sim.flush()
-        if sliding and code == CHUNK and sim.t_internal > now:
+        if sliding and returned == CHUNK and sim.t_internal > now:
             refuse_passed_jam(sim, sliding)
-        if code in (CHUNK, FULL):
+        if returned in (CHUNK, FULL):
             sim.report_progress(sim.t_internal)
-        elif code == REACHED:
+        elif returned == REACHED:
             continue
-        elif code == EVENT:
+        elif returned == EVENT:
             _locate(sim)
-        elif code == REPARTITION:
+        elif returned == REPARTITION:
             repair(sim)
-        elif code in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":
-            _fall_back(sim, code)
-        elif code == NEAR_SINGULAR:
+        elif returned in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":
+            _fall_back(sim, returned)
+        elif returned == NEAR_SINGULAR:
             _pass_singular(sim)
-        elif code == VIOLATED:
+        elif returned == VIOLATED:
             h = float(sim.clock[TRIAL_STEP])
             if not repair(sim) and not _pass_singular(sim):
                 _violated(sim, h)
-        elif code in _REPAIRABLE and repaired_at != sim.t_internal:
+        elif returned in _REPAIRABLE and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
             repair(sim)
-        elif code in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
-            if code == REANALYZE:  # the matrix of the shorter step has other pivots
+        elif returned in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
+            if returned == REANALYZE:  # the matrix of the shorter step has other pivots
                 repaired_at = math.nan
         else:
-            _fail(sim, code)
+            _fail(sim, returned)
 
 
 def _next_break(sim: "Simulation") -> float:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..contact.laws import ForceLaw
 from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, RATE_ROUNDING, SLIDE, SLIDE_START, STICKS
+from ..contact.settling import comes_back
 from ..contact.touching import Touching
 from ..errors import ConsistencyError, SimulationError
 from ..events import Event
@@ -52,7 +53,8 @@ class ContactSide:
     @property
     def t_internal(self) -> float:
         """Time of the newest accepted step, which may be beyond `t`."""
-        return float(self.method_arrays["times"][self.method_arrays["ring"][0]])
+        arrays = self.method_arrays
+        return float(arrays["times"].item(arrays["ring"].item(0)))  # `item` takes half the time of an index
 
     def gap(self, k: int) -> float:
         """Gap of contact k at the workspace's point, m."""
@@ -93,6 +95,34 @@ class ContactSide:
         finally:
             self.memory[k] = before
             self.use_modes()
+
+    def unsettled_since(self, was: NDArray[np.float64]) -> list[int]:
+        """Contacts whose mode does not fit their force. `was`: the modes before this instant was settled.
+
+        Left out are those that have just closed because they would open by less than can be told from zero: they pull
+        by what the errors of the steps have left in the waves of an elastic body, and would open and close for ever.
+        """
+        found = self.unsettled()
+        new = [k for k in found if was[k] != CLOSED and k not in self.assembly.massless_contacts]
+        settled = {k for k in new if self.returns_at_once(k)}
+        return [k for k in found if k not in settled]
+
+    def returns_at_once(self, k: int) -> bool:
+        """True if contact k, closed, pulls by no more than lets its gap open by what could not be told from zero before
+        it closes again (`comes_back`). The next step then goes beyond that."""
+        before = self.memory[k].copy()
+        others = np.flatnonzero(self.memory[: len(self.assembly.contacts), MODE] == CLOSED)
+        try:
+            touching = Touching(self, [k], frozenset(int(j) for j in others if j != k))
+            motion, jerks = touching.free_accelerations()[0], touching.free_jerks()
+        finally:
+            self.memory[k] = before
+            self.use_modes()
+        if not comes_back(self, jerks, motion)[0]:  # type: ignore[arg-type]
+            return False
+        # b + j t, the acceleration of the open gap, has turned well before this
+        self.clock[STEP_SIZE] = max(self.clock[STEP_SIZE], 4.0 * float(motion[0]) / -float(jerks[0]))
+        return True
 
     def start_small(self, speed: float) -> None:
         """Begin a contact with a step in which it closes by FIRST_TOUCH of the mechanism's size, so that the error

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of
 from ..contact import machine
 from ..contact.laws import ForceLaw
-from ..contact.modes import RATE_ROUNDING
+from ..contact.modes import MODE, RATE_ROUNDING
 from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
@@ -204,8 +204,7 @@ class Engine(ContactSide):
             return
         pending, self.pending = self.pending, []
         t = self.t_internal if self.method_arrays["ring"][1] else self.settings.t0
-        last, count = self._times_handled
-        count = count + 1 if t == last else 1
+        count = self._times_handled[1] + 1 if t == self._times_handled[0] else 1
         self._times_handled = (t, count)
         if count > machine.MOST_EVENTS_AT_ONCE:
             names = [self.assembly.contacts[k].name for k in pending]
@@ -219,9 +218,10 @@ class Engine(ContactSide):
             # samples may have been asked for since the step that ended here
             recall(self.workspace.record, self._method.record, 0)
         self._new_history()
+        was = self.memory[:, MODE].copy()
         self.handle_contacts(pending)
         self._new_history()
-        self.pending = self.unsettled()
+        self.pending = self.unsettled_since(was)
         self._sample_now()
 
     def handle_contacts(self, pending: list[int]) -> None:
@@ -235,7 +235,7 @@ class Engine(ContactSide):
 
     def _sample_now(self) -> None:
         """Record the workspace's point."""
-        if self._loop.table["capacity"][0] == 0:
+        if not self._loop.table["capacity"][0]:
             return
         row = np.zeros(self.buffer.shape[1])
         evaluate_residuals(self.workspace.record)

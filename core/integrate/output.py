@@ -97,7 +97,7 @@ class ChannelTable:
             self._formulas.append((Channel(f"residual.{level}", unit, text), column))
         self.channels = tuple(channel for channel, _ in self._formulas)
         self.index = {channel.name: k for k, channel in enumerate(self.channels)}
-        self._balance = self.index["energy.balance"]
+        self.balance = self.index["energy.balance"]
         self._prepare_values()
 
     def _prepare_values(self) -> None:
@@ -120,6 +120,15 @@ class ChannelTable:
         number = {k: i for i, (k, _) in enumerate(sums)}
         self._terms = _pairs([(number[k], column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
+
+    def index_arrays(self) -> dict[str, NDArray[np.int64] | NDArray[np.float64]]:
+        """The formulas of all channels but those of markers, by the names that `exchange` has for them."""
+        (number, column), (flags, flag_columns) = self._terms, self._flags
+        found = {
+            "places": self._places, "summed": self._summed, "number": number, "column": column, "flags": flags,
+            "flag_columns": flag_columns,
+        }  # fmt: skip
+        return {**{name: x.astype(np.int64) for name, x in found.items()}, "signs": self._signs.astype(np.float64)}
 
     def _add_contact(self, k: int, name: str, friction: bool) -> None:
         layout = self.layout
@@ -182,7 +191,7 @@ class ChannelTable:
         if isinstance(formula, OfMarker):
             return self._markers(samples)[:, formula.number]
         found = formula(samples)
-        return found - self.initial_energy if k == self._balance else found
+        return found - self.initial_energy if k == self.balance else found
 
     def values(self, sample: NDArray[np.float64]) -> NDArray[np.float64]:
         """All channels (channels,) of one sample, the same bits as `column` gives."""
@@ -190,14 +199,18 @@ class ChannelTable:
         # bincount adds the terms of each channel in their order
         number, column = self._terms
         out[self._summed] = np.bincount(number, self._signs * sample.take(column), len(self._summed))
-        out[self._balance] -= self.initial_energy
+        out[self.balance] -= self.initial_energy
         channel, column = self._flags
         if len(channel):
             mode = sample.take(column)
             out[channel] = (mode == CLOSED) | (mode == ACTIVE)
-        if len(self._of_markers):
-            out[self._of_markers] = self._markers(sample[None, :])[0]
+        self.put_markers(sample, out)
         return out
+
+    def put_markers(self, sample: NDArray[np.float64], values: NDArray[np.float64]) -> None:
+        """Put the channels of markers among those of one sample."""
+        if len(self._of_markers):
+            values[self._of_markers] = self._markers(sample[None, :])[0]
 
     def rates(self, sample: NDArray[np.float64], rates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Rates of all channels (channels,) from those of the columns of a sample; NaN: not known."""

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..compiled.records import Record
 from .errors import SingularMatrixError
 from .ordering import choose_pivots, singular_place
 from .record import GROWTH, LU, OK
@@ -62,6 +63,8 @@ class Factorization:
         self.dense = self.n <= DENSE_LIMIT if dense is None else bool(dense)
         self._check()
         self._table = np.zeros(1, LU)
+        self.record = Record(self._table)
+        """What to hand to a compiled function."""
         self.arrays: dict[str, NDArray] = {}
         self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
         self._set(
@@ -78,11 +81,6 @@ class Factorization:
                 values=np.zeros(self.n * (self.n + 1)),
                 pivots=np.arange(self.n),
             )
-
-    @property
-    def record(self) -> np.void:
-        """The record to hand to a compiled function (a view: valid while this object lives)."""
-        return self._table[0]
 
     @property
     def address(self) -> int:
@@ -102,7 +100,7 @@ class Factorization:
     @property
     def fill(self) -> int:
         """Number of stored entries of L and U, diagonal included."""
-        return self.n * self.n if self.dense else int(self.record["nl"] + self.record["nu"]) + self.n
+        return self.n * self.n if self.dense else self.record["nl"] + self.record["nu"] + self.n
 
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense."""
@@ -130,7 +128,7 @@ class Factorization:
             raise SingularMatrixError(f"the {self.n} x {self.n} matrix is singular: {place}")
         if not self.dense:
             largest = np.ones(self.n)
-            nl = int(self.record["nl"])
+            nl = self.record["nl"]
             np.maximum.at(largest, self.arrays["l_col"], np.abs(self.lu_values[:nl]))
             self._growth_limits()[:] = GROWTH * largest
 

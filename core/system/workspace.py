@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
-from ..compiled.records import ArrayRecord
+from ..compiled.records import ArrayRecord, Record
 from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
 from ..model.motion import input_rows
@@ -117,9 +117,14 @@ class Workspace:
             assembly.bind(self)
 
     @property
-    def record(self) -> np.void:
+    def record(self) -> Record:
         """The workspace record."""
         return self._record.record
+
+    @property
+    def address(self) -> int:
+        """Address of the record."""
+        return self._record.address
 
     def use_stage(self, address: int) -> None:
         """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE)."""

@@ -112,8 +112,8 @@ def _block(
 
 def _disk_radius(places: Places, body: str) -> float:
     """Largest disk about a body's own origin."""
-    disks = (getattr(c, name, None) for c in places.model.contacts for name in ("disk", "a", "b"))
-    radii = [d.radius for d in disks if d is not None and d.marker.body == body and d.marker.point == (0.0, 0.0)]
+    disks = (disk for contact in places.model.contacts for disk in contact.disks())
+    radii = [d.radius for d in disks if d.marker.body == body and d.marker.point == (0.0, 0.0)]
     return max(radii, default=0.0)
 
 

@@ -3,15 +3,10 @@
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from ...core.description import Model
-from ...core.elements import AxialRod, BodyElement, Cable2D, FlexibleBody, PlanarFrame, PointMass2D
-from ...core.errors import ModelError
+from ...core.elements import BodyElement, FlexibleBody, PlanarFrame, PointMass2D
 from ...core.model.markers import GROUND, Marker2D
 from .shapes import Point, bounds, turned
-
-AXIS_POINTS = 41
 
 
 class Places:
@@ -52,30 +47,12 @@ class Places:
         return list(dict.fromkeys(found))
 
     def axis(self, body: FlexibleBody) -> list[Point]:
-        """Points along the axis of a flexible body, or those that it has."""
-        if isinstance(body, Cable2D):
-            nodes = body.start_shape()
-            if body.elements == 1:  # a cubic between two nodes may be bent
-                return self._material(body, body.length)
-            return [(float(x), float(y)) for x, y in nodes[:, :2]]
-        if isinstance(body, AxialRod):
-            return [(body.position, 0.0), (body.position + body.length, 0.0)]
-        if length := getattr(body, "length", None):
-            return self._material(body, float(length))
-        points = getattr(body, "points", ())
-        return [p for point in points if (p := self._point(body, point.point)) is not None]
+        """Where the points start that a flexible body is drawn by."""
+        return [self._point(body, point) for point in body.drawn_points()]
 
-    def _material(self, body: FlexibleBody, length: float) -> list[Point]:
-        places = (self._point(body, (float(s), 0.0)) for s in np.linspace(0.0, length, AXIS_POINTS))
-        return [p for p in places if p is not None]
-
-    def _point(self, body: FlexibleBody, point: Point) -> Point | None:
-        """Where a material point starts, or None if the body has no such point."""
-        try:
-            shape = body.material_point(point)
-        except ModelError:
-            return None
-        q = self.start(body.name)
+    def _point(self, body: FlexibleBody, point: Point) -> Point:
+        """Where a material point starts."""
+        shape, q = body.material_point(point), self.start(body.name)
         place = shape.place([q[name] for name in shape.frame or ()] or [0.0] * 3, [q[name] for name in shape.local])
         return place[0], place[1]
 
@@ -96,8 +73,6 @@ class Places:
             for marker in element.markers():
                 yield self.at(marker)
         for contact in self.model.contacts:
-            for name in ("disk", "a", "b"):
-                disk = getattr(contact, name, None)
-                if disk is not None:
-                    (x, y), r = self.at(disk.marker), disk.radius
-                    yield from ((x - r, y - r), (x + r, y + r))
+            for disk in contact.disks():
+                (x, y), r = self.at(disk.marker), disk.radius
+                yield from ((x - r, y - r), (x + r, y + r))

@@ -114,7 +114,7 @@ EXPORT fmi2Status fmi2Reset(fmi2Component c) {
 /* values */
 
 EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
-    FORWARD(c, "fmi2GetReal", "(NN)", IN(vr, n), OUT(value, n));
+    return forward_get_reals(c, "fmi2GetReal", vr, n, value, n);
 }
 
 EXPORT fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Integer value[]) {
@@ -126,7 +126,7 @@ EXPORT fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[],
 }
 
 EXPORT fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
-    FORWARD(c, "fmi2SetReal", "(NN)", IN(vr, n), IN(value, n));
+    return forward_set_reals(c, "fmi2SetReal", vr, n, value, n);
 }
 
 EXPORT fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n,
@@ -178,10 +178,11 @@ EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[
 
 EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state) {
     (void)no_set_state; /* a stored state lives until it is freed */
-    if (instance_glide(c, time, step, NULL)) {
-        return STATUS_OK;
+    int how;
+    if (forward_step(c, "fmi2DoStep", time, step, &how)) {
+        return how;
     }
-    FORWARD(c, "fmi2DoStep", "(ddN)", time, step, instance_clock(c));
+    FORWARD(c, "fmi2DoStep", "(dd)", time, step);
 }
 
 EXPORT fmi2Status fmi2CancelStep(fmi2Component c) {

@@ -121,11 +121,19 @@ EXPORT fmi3Status fmi3Reset(fmi3Instance c) {
         FORWARD(c, "fmi3Set" #name, "(NN)", IN(vr, n), IN(value, values));                                        \
     }
 
-GET(Float64, fmi3Float64)
+EXPORT fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 value[],
+                                 size_t values) {
+    return forward_get_reals(c, "fmi3GetFloat64", vr, n, value, values);
+}
+
+EXPORT fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const fmi3Float64 value[],
+                                 size_t values) {
+    return forward_set_reals(c, "fmi3SetFloat64", vr, n, value, values);
+}
+
 GET(Int32, fmi3Int32)
 GET(Int64, fmi3Int64) /* enumerations */
 GET(Boolean, fmi3Boolean)
-SET(Float64, fmi3Float64)
 SET(Int32, fmi3Int32)
 SET(Int64, fmi3Int64)
 SET(Boolean, fmi3Boolean)
@@ -201,12 +209,18 @@ EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step,
                              fmi3Boolean *event_handling_needed, fmi3Boolean *terminate, fmi3Boolean *early_return,
                              fmi3Float64 *last_successful_time) {
     (void)no_set_state; /* a stored state lives until it is freed */
-    if (event_handling_needed && terminate && early_return && instance_glide(c, time, step, last_successful_time)) {
-        *event_handling_needed = *terminate = *early_return = false;
-        return STATUS_OK;
+    int how;
+    bool complete = event_handling_needed && terminate && early_return && last_successful_time; /* else it is refused */
+    const Shared *end = complete ? forward_step(c, "fmi3DoStep", time, step, &how) : NULL;
+    if (end) {
+        *event_handling_needed = end->event_due != 0;
+        *early_return = end->early != 0;
+        *terminate = false;
+        *last_successful_time = end->reached;
+        return how;
     }
-    FORWARD(c, "fmi3DoStep", "(ddNNNNN)", time, step, OUT(event_handling_needed, 1), OUT(terminate, 1),
-            OUT(early_return, 1), OUT(last_successful_time, 1), instance_clock(c));
+    FORWARD(c, "fmi3DoStep", "(ddNNNN)", time, step, OUT(event_handling_needed, 1), OUT(terminate, 1),
+            OUT(early_return, 1), OUT(last_successful_time, 1));
 }
 
 EXPORT fmi3Status fmi3EnterEventMode(fmi3Instance c) {

@@ -21,6 +21,15 @@
 /* A stored state is a number to the host, not an address. */
 #define HANDLE(state) ((unsigned long long)(uintptr_t)(state))
 
+/* Reals, most of the time without Python; `values` is their number, that of the references for FMI 2.0. */
+int forward_get_reals(Instance *c, const char *method, const unsigned vr[], size_t n, double value[], size_t values);
+int forward_set_reals(Instance *c, const char *method, const unsigned vr[], size_t n, const double value[],
+                      size_t values);
+
+/* A step from `time`, if the Python side shares what that takes: its status, and the answer says how it ended. NULL:
+ * nothing has been done. */
+const Shared *forward_step(Instance *c, const char *method, double time, double step, int *status);
+
 /* Strings into `value`; they stay valid until the next call of this function, the instance keeps their bytes. */
 int forward_get_strings(Instance *c, const char *method, const unsigned vr[], size_t n, const char *value[]);
 

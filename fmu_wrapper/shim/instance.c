@@ -1,22 +1,12 @@
 #include "instance.h"
+#include "resources.h"
 
-#include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MAGIC 0x71150001u
 #define MESSAGE 4096
 #define CAPSULE "tlismni.instance"
-
-static char *copy_of(const char *text) {
-    size_t size = strlen(text) + 1;
-    char *copy = malloc(size);
-    if (copy) {
-        memcpy(copy, text, size);
-    }
-    return copy;
-}
 
 void instance_report(const Instance *self, const char *format, ...) {
     char message[MESSAGE];
@@ -69,65 +59,6 @@ static PyMethodDef update_method = {"update", update_from_python, METH_VARARGS, 
 
 static PyMethodDef log_method = {"log", log_from_python, METH_VARARGS, "Hand a message to the host's logger."};
 
-static int hex_digit(char c) {
-    if (c >= '0' && c <= '9') {
-        return c - '0';
-    }
-    c |= 0x20;
-    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
-/* The path in a file URI, or the text itself if it is none (FMI 3.0 passes paths). */
-static char *path_of(const char *location) {
-    char *path = copy_of(location);
-    if (!path || strncmp(location, "file:", 5) != 0) {
-        return path;
-    }
-    const char *from = location + 5;
-    if (from[0] == '/' && from[1] == '/') {
-        from += 2;
-        from += strcspn(from, "/"); /* the host, empty or localhost */
-    }
-#ifdef _WIN32
-    if (from[0] == '/' && from[1] && from[2] == ':') {
-        from++;
-    }
-#endif
-    char *to = path;
-    for (; *from; from++) {
-        int high = *from == '%' ? hex_digit(from[1]) : -1;
-        int low = high >= 0 ? hex_digit(from[2]) : -1;
-        *to++ = low >= 0 ? (char)(16 * high + low) : *from;
-        from += low >= 0 ? 2 : 0;
-    }
-    while (to > path + 1 && to[-1] == '/') {
-        to--;
-    }
-    *to = '\0';
-    return path;
-}
-
-static char *read_file(const char *path) {
-    FILE *file = platform_open(path);
-    char *text = NULL;
-    if (file && fseek(file, 0, SEEK_END) == 0) {
-        long size = ftell(file);
-        rewind(file);
-        text = size >= 0 ? malloc((size_t)size + 1) : NULL;
-        if (text && fread(text, 1, (size_t)size, file) != (size_t)size) {
-            free(text);
-            text = NULL;
-        }
-        if (text) {
-            text[size] = '\0';
-        }
-    }
-    if (file) {
-        fclose(file);
-    }
-    return text;
-}
-
 /* Run resources/boot.py in a namespace of its own and call its `create`. */
 static PyObject *boot(Instance *self, const char *function, const char *source, const char *path,
                       PyObject *arguments) {
@@ -152,13 +83,28 @@ static PyObject *boot(Instance *self, const char *function, const char *source, 
     return result;
 }
 
+/* Take what the Python side shares. An FMU may meet a package of another version: then it goes without. */
+static void share(Instance *self) {
+    PyObject *method = py.PyObject_GetAttrString(self->calls, "share");
+    long long address = instance_number(method ? py.PyObject_CallNoArgs(method) : NULL, 0);
+    if (address) {
+        self->step = py.PyObject_GetAttrString(self->calls, "step");
+        self->look = py.PyObject_GetAttrString(self->calls, "look");
+    }
+    if (self->step && self->look) {
+        self->shared = (Shared *)(uintptr_t)address;
+    }
+    py.Py_DecRef(method);
+    py.PyErr_Clear();
+}
+
 /* Make the Python side of `self`. */
 static bool populate(Instance *self, const Asked *asked, const char *function, const char *token,
                      const char *resources) {
     char message[MESSAGE], path[MESSAGE];
     int gil;
     snprintf(path, sizeof path, "%s/boot.py", resources);
-    char *source = read_file(path);
+    char *source = resources_read(path);
     if (!source) {
         instance_report(self, "%s: cannot read '%s': the FMU's resources are missing; unzip the FMU completely and "
                         "pass the URI of its resources folder", function, path);
@@ -177,6 +123,9 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
             (int)asked->event_mode, (int)asked->early_return, (int)python_is_own(), update,
             view_of(asked->intermediate, asked->intermediates * sizeof *asked->intermediate)) : NULL;
         self->calls = boot(self, function, source, path, arguments);
+        if (self->calls) {
+            share(self);
+        }
         py.Py_DecRef(arguments);
         py.Py_DecRef(capsule);
         python_leave(gil);
@@ -193,11 +142,11 @@ Instance *instance_new(const Instance *model, const Asked *asked, const char *fu
     }
     *self = *model;
     self->magic = MAGIC;
-    self->calls = self->strings = NULL;
-    self->horizon = -HUGE_VAL;
-    self->behind = false;
-    self->name = copy_of(name && *name ? name : "instance");
-    char *resources = resource_location ? path_of(resource_location) : NULL;
+    self->calls = self->strings = self->step = self->look = NULL;
+    self->shared = NULL;
+    self->gets.count = self->sets.count = 0;
+    self->name = text_copy(name && *name ? name : "instance");
+    char *resources = resource_location ? resources_path(resource_location) : NULL;
     bool made = false;
     if (!resources) {
         instance_report(self, "%s: the resource location is NULL: the URI of the FMU's resources folder is needed",
@@ -221,72 +170,63 @@ void instance_free(Instance *self) {
     if (self->calls && instance_enter(self, &gil)) {
         py.Py_DecRef(instance_call(self, "free", "()"));
         py.Py_DecRef(self->strings);
+        py.Py_DecRef(self->step);
+        py.Py_DecRef(self->look);
         py.Py_DecRef(self->calls);
         python_leave(gil);
     }
+    lists_free(&self->gets);
+    lists_free(&self->sets);
     self->magic = 0;
     free(self->name);
     free(self);
 }
 
+bool instance_alive(const Instance *self) {
+    return self && self->magic == MAGIC;
+}
+
 bool instance_enter(Instance *self, int *gil) {
-    return self && self->magic == MAGIC && python_enter(gil);
+    return instance_alive(self) && python_enter(gil);
 }
 
-PyObject *instance_clock(Instance *self) {
-    return writable_view_of(&self->time, 2 * sizeof self->time);
-}
-
-bool instance_glide(Instance *self, double time, double step, double *reached) {
-    if (!self || self->magic != MAGIC) {
-        return false;
-    }
-    double end = time + step, size = fabs(time) > step ? fabs(time) : step;
-    double rounding = 4.0 * DBL_EPSILON * size; /* of a master's clock */
-    if (!(step > 0.0 && fabs(time - self->time) <= rounding && end > self->time && end <= self->horizon)) {
-        return false;
-    }
-    self->time = end;
-    self->behind = true;
-    if (reached) {
-        *reached = end;
-    }
-    return true;
-}
-
-static PyObject *call_method(Instance *self, const char *method, PyObject *arguments) {
+PyObject *instance_ask(Instance *self, const char *method, PyObject *arguments) {
     PyObject *function = arguments ? py.PyObject_GetAttrString(self->calls, method) : NULL;
     PyObject *answer = function ? py.PyObject_CallObject(function, arguments) : NULL;
     py.Py_DecRef(function);
+    py.Py_DecRef(arguments);
     return answer;
 }
 
-/* What comes next may need the present time, and may change what the horizon rests on. */
-static void catch_up(Instance *self) {
-    if (self->behind) {
-        PyObject *arguments = py.Py_BuildValue("(d)", self->time);
-        PyObject *answer = call_method(self, "catch_up", arguments);
-        py.Py_DecRef(arguments);
+/* What comes next may need the present time and inputs, and may change what was promised. */
+static void settle(Instance *self, bool changes) {
+    if (shared_unsettled(self->shared)) {
+        PyObject *answer = instance_ask(self, "settle", py.Py_BuildValue("()"));
         if (!answer) {
-            report_exception(self, "catch_up");
+            report_exception(self, "settle");
         }
         py.Py_DecRef(answer);
-        self->behind = false;
+    }
+    if (changes) {
+        shared_forget(self->shared);
     }
 }
 
 static PyObject *call(Instance *self, const char *method, const char *format, va_list values) {
-    catch_up(self);
-    if (strncmp(method + strlen("fmi_"), "Get", 3) != 0) {
-        self->horizon = -HUGE_VAL;
-    }
-    PyObject *arguments = py.Py_VaBuildValue(format, values);
-    PyObject *answer = call_method(self, method, arguments);
-    py.Py_DecRef(arguments);
+    settle(self, strncmp(method + strlen("fmi_"), "Get", 3) != 0);
+    PyObject *answer = instance_ask(self, method, py.Py_VaBuildValue(format, values));
     if (!answer) {
         report_exception(self, method);
     }
     return answer;
+}
+
+static int status_of(Instance *self, PyObject *answer) {
+    int status = (int)instance_number(answer, STATUS_ERROR);
+    if (status != STATUS_OK) {
+        shared_forget(self->shared);
+    }
+    return status;
 }
 
 PyObject *instance_call(Instance *self, const char *method, const char *format, ...) {
@@ -302,11 +242,15 @@ int instance_status(Instance *self, const char *method, const char *format, ...)
     va_start(values, format);
     PyObject *answer = call(self, method, format, values);
     va_end(values);
-    int status = (int)instance_number(answer, STATUS_ERROR);
-    if (status != STATUS_OK) {
-        self->horizon = -HUGE_VAL;
+    return status_of(self, answer);
+}
+
+int instance_invoke(Instance *self, PyObject *method, const char *name) {
+    PyObject *answer = py.PyObject_CallNoArgs(method);
+    if (!answer) {
+        report_exception(self, name);
     }
-    return status;
+    return status_of(self, answer);
 }
 
 long long instance_number(PyObject *answer, long long otherwise) {

@@ -3,6 +3,7 @@
 #define TLISMNI_INSTANCE_H
 
 #include "python_api.h"
+#include "shared.h"
 
 /* Status numbers of FMI 2.0 and 3.0. */
 typedef enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR, STATUS_FATAL } Status;
@@ -25,18 +26,10 @@ struct Instance {
     void (*updater)(void); /* the host's callback, of the type that `update` knows */
     void *environment;
     char *name;
-    /* Steps within what the solver has computed need no Python: `horizon` is the time up to which they are that, as of
-     * the last step, and `behind` says that the Python side has not been told of the latest of them, up to `time`. */
-    double time, horizon;
-    bool behind;
+    Shared *shared; /* NULL: the Python side is of a version that shares nothing */
+    PyObject *step, *look; /* methods of `calls` that need no arguments */
+    Lists gets, sets;
 };
-
-/* Make a step without Python, if it is within the horizon and starts at the instance's own time; `reached` (NULL:
- * not wanted) is where it ends. */
-bool instance_glide(Instance *self, double time, double step, double *reached);
-
-/* A memory view on `time` and `horizon`, for the time of a call. */
-PyObject *instance_clock(Instance *self);
 
 /* What the host asks of a new instance; the event mode and all behind it are FMI 3.0's. */
 typedef struct {
@@ -54,17 +47,26 @@ Instance *instance_new(const Instance *model, const Asked *asked, const char *fu
 /* Free an instance; NULL is allowed. */
 void instance_free(Instance *self);
 
+/* Whether `self` is an instance. */
+bool instance_alive(const Instance *self);
+
 /* Take Python's lock for a call on `self`. False, with nothing taken, if `self` is no instance or Python is gone. */
 bool instance_enter(Instance *self, int *gil);
 
 /* Log an error of the shim itself. Without Python's lock. */
 void instance_report(const Instance *self, const char *format, ...) PRINTF_LIKE(2, 3);
 
+/* Call a method with a tuple of arguments, which is taken over, and nothing else. NULL with a pending exception. */
+PyObject *instance_ask(Instance *self, const char *method, PyObject *arguments);
+
 /* Call a method; `format` builds its arguments as in Py_BuildValue. NULL after an exception, which was logged. */
 PyObject *instance_call(Instance *self, const char *method, const char *format, ...);
 
 /* The same for a method that answers with a status. */
 int instance_status(Instance *self, const char *method, const char *format, ...);
+
+/* The status that `method` of the name `name` answers with. It takes no arguments and looks at what is shared itself. */
+int instance_invoke(Instance *self, PyObject *method, const char *name);
 
 /* A number that a method answered with; `otherwise` if it is none. Takes over the reference. */
 long long instance_number(PyObject *answer, long long otherwise);

@@ -50,10 +50,12 @@ enum { PyGILState_LOCKED = 0, PyGILState_UNLOCKED = 1 };
     X(int, PyDict_SetItemString, (PyObject *, const char *, PyObject *))         \
     X(PyObject *, PyObject_GetAttrString, (PyObject *, const char *))            \
     X(PyObject *, PyObject_CallObject, (PyObject *, PyObject *))                 \
+    X(PyObject *, PyObject_CallNoArgs, (PyObject *))                             \
     X(PyObject *, PyObject_Str, (PyObject *))                                    \
     X(PyObject *, PyUnicode_AsUTF8String, (PyObject *))                          \
     X(PyObject *, PyBytes_FromString, (const char *))                            \
     X(char *, PyBytes_AsString, (PyObject *))                                    \
+    X(Py_ssize_t, PyBytes_Size, (PyObject *))                                    \
     X(PyObject *, PyList_New, (Py_ssize_t))                                      \
     X(int, PyList_SetItem, (PyObject *, Py_ssize_t, PyObject *))                 \
     X(PyObject *, PyList_GetItem, (PyObject *, Py_ssize_t))                      \

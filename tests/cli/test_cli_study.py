@@ -170,3 +170,37 @@ def test_coupling_as_table_json_and_figure(tlismni: Command, tmp_path: Path, mon
     assert (tmp_path / "c.png").read_bytes().startswith(PNG)
     shown = tlismni("study", "coupling", "--quick").out
     assert all(text in shown for text in ("A blow", "A contact that stays", JACOBI.label, "observed orders"))
+
+
+def test_methods_as_json_and_report(tlismni: Command, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    arguments = ("study", "methods", "--quick", "-s", "pendulum_stop", "-m", "hht", "-m", "irk", "--processes", "1")
+    done = tlismni(*arguments, "--json", "--report", tmp_path)
+    assert done.code == 0
+    labels = {row["label"] for row in done.json["rows"]}
+    assert labels == {"hht", *(f"irk tableau={name}" for name in ("sdirk4", "gauss2", "radau3", "gauss3"))}
+    for row in done.json["rows"]:
+        assert row["best run: error"] < 1e-3 and row["cpu_time at 1e-03"] > 0.0 and not row["failure"]
+    names = {Path(path).name for path in done.json["files"]}
+    assert {"methods.html", "methods.json", "methods.csv", "methods_cpu_time.png"} <= names
+    page = (tmp_path / "methods.html").read_text()
+    assert "pendulum_stop" in page and "data:image/png;base64," in page
+    again = tlismni(*arguments, "--report", tmp_path)  # from the records: nothing is run but the reference
+    assert again.code == 0 and "Error 1e-03 of the motion, 1 scenarios" in again.out
+
+
+def test_methods_in_two_processes(tlismni: Command, tmp_path: Path) -> None:
+    done = tlismni("study", "methods", "--quick", "-s", "pendulum_stop", "-m", "hht", "--json",
+                   "--records", tmp_path / "r.jsonl", "--processes", "2")  # fmt: skip
+    assert done.code == 0 and len(done.json["pairs"]) == 1
+    assert len((tmp_path / "r.jsonl").read_text().splitlines()) == 3  # header, reference, pair
+
+
+def test_claims(tlismni: Command) -> None:
+    done = tlismni("study", "claims", "C1", "--quick", "--json")
+    assert done.code == 0
+    (row,) = done.json["claims"]
+    assert (row["name"], row["verdict"], row["command"]) == ("C1", "reproduced", "tlismni study claims C1")
+    assert row["figures"]["highest"] == pytest.approx(2.0, abs=0.2)
+    assert tlismni("study", "claims", "C8").code == 1

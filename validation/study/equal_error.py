@@ -2,14 +2,25 @@
 
 import math
 from collections.abc import Sequence
-
-from .runs import Run
+from typing import Any, Protocol
 
 LEVELS = tuple(10.0**-k for k in range(1, 10))
 """Errors at which methods are compared."""
 
 
-def at_error(runs: Sequence[Run], level: float, quantity: str = "outer_iterations") -> float | None:
+class Finished(Protocol):
+    """A run with a cost, an error (None or NaN: it has none), and whether it came to its end."""
+
+    @property
+    def ok(self) -> bool:
+        """True if it came to its end."""
+
+    @property
+    def error(self) -> Any:
+        """What it achieved."""
+
+
+def at_error(runs: Sequence[Finished], level: float, quantity: str = "outer_iterations") -> float | None:
     """What `quantity` a method needs to come to the error `level`, from its runs from loose to tight tolerance.
 
     Between the last run that misses the level and the next; None if no run misses it, or none comes to it: nothing is

@@ -1,0 +1,308 @@
+"""Inputs in, time on, channels out, in one crossing into compiled code: what a slave does at every step.
+
+Whoever calls `set_inputs`, `advance` and `values` crosses a dozen times, with Python between that takes as long as the
+solver. Here stands the way that almost every step goes: no contact is closed, nothing happens at events. Where a run
+leaves it, Python goes on from there; where it cannot go it, nothing has happened.
+"""
+
+import math
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numba as nb
+import numpy as np
+from numba import types
+from numpy.typing import NDArray
+
+from ..compiled.jit import address_of, caller, compiled, internal, record_view
+from ..compiled.records import ArrayRecord
+from ..compiled.views import ivec, mat, vec
+from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
+from ..description import Model
+from ..errors import ModelError
+from ..methods.history import history_time, recall, restart
+from ..methods.multistep import rows_available
+from ..methods.records import METHOD_TYPE
+from ..model.signals import INPUT_SIZE
+from ..stage.accelerations import solve_accelerations
+from ..system.evaluate import evaluate_power, evaluate_residuals
+from ..system.records import (
+    COUNTERS_SIZE,
+    FACTOR_AGE,
+    LEAST_CONDITION,
+    OK,
+    RATE_SIZE,
+    STEPS,
+    WORKSPACE_TYPE,
+    WORST_CONDITION,
+)
+from . import advance
+from .dense_output import query
+from .inputs import PUNCTUAL
+from .loop import run
+from .near_singular import STRAINED
+from .records import BREAK_TIME, CHUNK, CLOCK_SIZE, LOOP, NO_STEP, REACHED, STOP_TIME, TARGET_TIME
+from .sample import write_sample
+from .watch import remember
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+EXCHANGE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "workspace", "method", "loop",                         # addresses of the records
+            "query", "accelerations", "run",                       # addresses of functions
+            "times",                                               # (TIMES_SIZE,) float64
+            "inputs", "before", "n_inputs",                        # wanted; (n_inputs, INPUT_SIZE): what they were
+            "breakpoints", "n_breakpoints", "chunk", "read",
+            "sample", "sample_length", "channels", "n_channels",   # one row, and what it gives
+            "places", "summed", "n_sums", "number", "column", "signs", "n_terms", "flags", "flag_columns", "n_flags",
+            "balance",
+        )
+    ]
+)  # fmt: skip
+
+# columns of `times`
+NOW = 0
+GOAL = 1
+LAST_CHANGE, INTERVAL = 2, 3  # of inputs
+INITIAL_ENERGY = 4  # J
+FIRST_STEP = 5  # steps made before
+TIMES_SIZE = 6
+
+# what `exchange` returns, besides what `run` does
+DECLINED = 200
+"""Nothing has happened."""
+ARRIVED = 201
+"""At the goal; the channels have not been asked for, or are not to be had in this way."""
+READ = 202
+
+LOOP_TYPE = nb.from_dtype(LOOP)
+QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
+ACCELERATIONS_SIGNATURE = types.int64(WORKSPACE_TYPE)
+RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)
+call_query, call_accelerations, call_run = map(caller, (QUERY_SIGNATURE, ACCELERATIONS_SIGNATURE, RUN_SIGNATURE))
+workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
+
+
+@internal
+def _input_changes(ex: Any, ws: Any) -> int:
+    """How many inputs are to change; -1 if one is not a number that stays."""
+    wanted, rows = vec(ex.inputs, ex.n_inputs), mat(ws.inputs, ex.n_inputs, INPUT_SIZE)
+    count = 0
+    for k in range(ex.n_inputs):
+        if not np.isfinite(wanted[k]) or rows[k, 1] != 0.0 or rows[k, 2] != 0.0:
+            return -1
+        if wanted[k] != rows[k, 0]:
+            count += 1
+    return count
+
+
+@internal
+def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any) -> bool:
+    """Let the inputs take the values that are wanted, and start anew from now, as `restart_here` does; False, with the
+    inputs as they were, if that takes more."""
+    times = vec(ex.times, TIMES_SIZE)
+    wanted, n = vec(ex.inputs, ex.n_inputs), ex.n_inputs
+    rows, before = mat(ws.inputs, n, INPUT_SIZE), mat(ex.before, n, INPUT_SIZE)
+    t, newest = times[NOW], history_time(ms, 0)
+    for k in range(n):
+        for j in range(INPUT_SIZE):
+            before[k, j] = rows[k, j]
+        if wanted[k] != rows[k, 0]:
+            rows[k, 0], rows[k, INPUT_SIZE - 1] = wanted[k], t
+    if t == newest:
+        recall(ws, ms, 0)
+        status = OK
+    else:
+        status = call_query(ex.query, ws, ms, t)
+        vec(ws.t, 1)[0] = t
+    if status == OK:
+        status = call_accelerations(ex.accelerations, ws)
+    if status != OK:
+        for k in range(n):
+            for j in range(INPUT_SIZE):
+                rows[k, j] = before[k, j]
+        return False
+    evaluate_power(ws)
+    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
+    for i in range(ws.n_ext):
+        aux[i] = a[i]
+    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    evaluate_residuals(ws)
+    restart(ws, ms)
+    remember(ws, lc)
+    if t > times[LAST_CHANGE]:
+        times[LAST_CHANGE], times[INTERVAL] = t, t - times[LAST_CHANGE]
+    return True
+
+
+@internal
+def _stop(times: Any) -> float:
+    """`next_stop` of the inputs."""
+    expected = times[LAST_CHANGE] + times[INTERVAL]
+    if not times[NOW] < expected < np.inf:
+        return np.inf
+    return times[GOAL] if expected <= times[GOAL] + PUNCTUAL * times[INTERVAL] else expected
+
+
+@internal
+def _advance(ex: Any, ws: Any, ms: Any, lc: Any) -> int:
+    """`advance_to` as long as nothing happens: REACHED, what else `run` returned, CHUNK where a breakpoint is due."""
+    times, clock = vec(ex.times, TIMES_SIZE), vec(lc.clock, CLOCK_SIZE)
+    breakpoints = vec(ex.breakpoints, ex.n_breakpoints)
+    times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS]
+    goal, stop = times[GOAL], _stop(times)
+    while True:
+        now = history_time(ms, 0)
+        if now >= goal:
+            return REACHED
+        ahead = np.inf
+        for i in range(ex.n_breakpoints):
+            if now < breakpoints[i] < ahead:
+                ahead = breakpoints[i]
+        last = np.nextafter(ahead, -np.inf)
+        if last - now <= NO_STEP * abs(now):
+            return CHUNK
+        if goal - now <= NO_STEP * abs(goal):
+            return REACHED
+        clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(stop, last), goal
+        if clock[STOP_TIME] - now <= NO_STEP * abs(now):
+            return REACHED
+        code = call_run(ex.run, ws, ms, lc, ex.chunk)
+        if code != REACHED:
+            return code
+
+
+@internal
+def _near_singular(ws: Any, ms: Any, t: float) -> bool:
+    """`strained` at time t."""
+    rate = vec(ws.rate, RATE_SIZE)
+    strained = rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    return strained and rows_available(ms) > 1 and history_time(ms, 1) < t < history_time(ms, 0)
+
+
+@internal
+def _read(ex: Any, ws: Any, ms: Any) -> bool:
+    """The channels at the goal, but those of markers; False if they are not to be had, or one is not finite."""
+    t = vec(ex.times, TIMES_SIZE)[GOAL]
+    if _near_singular(ws, ms, t) or call_query(ex.query, ws, ms, t) != OK:
+        return False
+    sample, out = vec(ex.sample, ex.sample_length), vec(ex.channels, ex.n_channels)
+    write_sample(ws, sample)
+    places = ivec(ex.places, ex.n_channels)
+    for k in range(ex.n_channels):
+        out[k] = sample[places[k]]
+    summed = ivec(ex.summed, ex.n_sums)
+    for k in range(ex.n_sums):
+        out[summed[k]] = 0.0
+    number, column, signs = ivec(ex.number, ex.n_terms), ivec(ex.column, ex.n_terms), vec(ex.signs, ex.n_terms)
+    for i in range(ex.n_terms):
+        out[summed[number[i]]] += signs[i] * sample[column[i]]
+    out[ex.balance] -= vec(ex.times, TIMES_SIZE)[INITIAL_ENERGY]
+    flags, columns = ivec(ex.flags, ex.n_flags), ivec(ex.flag_columns, ex.n_flags)
+    for k in range(ex.n_flags):
+        mode = sample[columns[k]]
+        out[flags[k]] = 1.0 if mode == CLOSED or mode == ACTIVE else 0.0
+    for k in range(ex.n_channels):
+        if not np.isfinite(out[k]):
+            return False
+    return True
+
+
+@compiled
+def exchange(ex: Any) -> int:
+    """Set the inputs, go to the goal, read the channels."""
+    ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    for k in range(ws.n_contacts):
+        if memory[k, MODE] == CLOSED:
+            return DECLINED
+    changes = _input_changes(ex, ws)
+    if changes < 0 or (changes > 0 and not _change_inputs(ex, ws, ms, lc)):
+        return DECLINED
+    code = _advance(ex, ws, ms, lc)
+    if code != REACHED:
+        return code
+    return READ if ex.read != 0 and _read(ex, ws, ms) else ARRIVED
+
+
+class Exchange:
+    """What `exchange` of one simulation works with."""
+
+    def __init__(self, sim: "Simulation") -> None:
+        assembly, table, loop = sim.assembly, sim.table, sim._loop
+        inputs, channels, length = len(assembly.input_names), len(table.channels), int(loop.table["sample_length"][0])
+        chunk = min(advance.steps_at_once(assembly.n), sim.settings.max_steps or sys.maxsize)
+        self.wanted, self.times = np.zeros(inputs), np.zeros(TIMES_SIZE)
+        self.channels, self.sample = np.zeros(channels), np.zeros(length)
+        formulas = table.index_arrays()
+        self._record = ArrayRecord(
+            EXCHANGE,
+            {
+                "times": self.times, "inputs": self.wanted, "before": np.zeros((inputs, INPUT_SIZE)),
+                "breakpoints": np.array(assembly.breakpoints, dtype=np.float64),
+                "sample": self.sample, "channels": self.channels, **formulas,
+            },
+            {
+                "workspace": sim.workspace.address, "method": sim._method.address, "loop": loop.address,
+                "query": address_of(query, QUERY_SIGNATURE), "run": address_of(run, RUN_SIGNATURE),
+                "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
+                "n_inputs": inputs, "n_breakpoints": len(assembly.breakpoints), "chunk": chunk, "read": 0,
+                "sample_length": length, "n_channels": channels, "n_sums": len(formulas["summed"]),
+                "n_terms": len(formulas["number"]), "n_flags": len(formulas["flags"]), "balance": table.balance,
+            },
+        )  # fmt: skip
+        self.record = self._record.record
+        # whose elements are written in half the time of those of the array
+        self.clock: Any = self.times.data
+        self.reads = False
+
+    def set_reads(self, wanted: bool) -> None:
+        """Say whether the channels are to be read."""
+        self._record.table["read"] = self.reads = wanted
+
+
+def possible(sim: "Simulation") -> bool:
+    """Whether steps of this run can be made in one crossing at all."""
+    recorded = sim._loop.table["capacity"][0] or sim._loop.table["log_capacity"][0]
+    return isinstance(sim.system, Model) and not (sim.assembly.motions or recorded)
+
+
+def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: bool) -> NDArray[np.float64] | None:
+    """See `Simulation.exchange`."""
+    ex, now, times = sim.crossing, sim.t, sim.input_times
+    if ex is None or sim.pending or sim.progress or not now <= t < math.inf or len(inputs) != len(ex.wanted):
+        _at_length(sim, inputs, t)
+        return None
+    clock = ex.clock
+    ex.wanted[:] = inputs
+    clock[NOW], clock[GOAL], clock[INITIAL_ENERGY] = now, t, sim.table.initial_energy
+    clock[LAST_CHANGE], clock[INTERVAL] = times
+    if read != ex.reads:
+        ex.set_reads(read)
+    code = exchange(ex.record)
+    if code == DECLINED:
+        _at_length(sim, inputs, t)
+        return None
+    if clock[LAST_CHANGE] != times[0]:
+        sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
+    if code < DECLINED:
+        sim.go_on(t, int(clock[FIRST_STEP]), code)
+    sim.t = float(t)
+    if code != READ:
+        return None
+    values = ex.channels.copy()
+    sim.table.put_markers(ex.sample, values)
+    return values
+
+
+def _at_length(sim: "Simulation", inputs: Sequence[float], t: float) -> None:
+    names = sim.assembly.input_names
+    if len(inputs) != len(names):
+        raise ModelError(f"{len(inputs)} inputs were given: there are {len(names)}, in the order {names}")
+    sim.set_inputs(dict(zip(names, inputs, strict=True)))
+    sim.advance(t)

@@ -1,0 +1,181 @@
+"""What the binary answers by itself, from values that it shares with the slave, is what the slave answers."""
+
+import ctypes
+import math
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Slave
+from fmu_helpers import Messages, ball_model
+from tlismni.fmu_wrapper import export_fmu
+from tlismni.fmu_wrapper.in_process import InProcess
+from tlismni.fmu_wrapper.in_process3 import InProcess3
+
+MOVES = 400
+STEPS = (0.02, 0.02, 0.02, 1e-4, 1e-5, 0.3)
+PUSHES = (0.0, -0.0, 1.0, 1.0, 1.0, 30.0, 1e-300, math.nan, math.inf)
+
+
+class Pair:
+    """The binary of an FMU and the same slave without one."""
+
+    def __init__(self, folder, version):
+        path = export_fmu(ball_model(), folder / "ball.fmu", version, t_end=50.0, rtol=1e-6)
+        unzipped = fmpy.extract(str(path), unzipdir=str(folder / "unzipped"))
+        self.unzipped, self.version = unzipped, version
+        self.description = fmpy.read_model_description(unzipped)
+        self.vr = {v.name: v.valueReference for v in self.description.modelVariables}
+        self.logs = Messages(), Messages()
+        direct = (InProcess if version == "2.0" else InProcess3).of(unzipped, on_log=self.logs[1])
+        self.both = self.start(self.binary(self.logs[0])), self.start(direct)
+
+    def binary(self, messages):
+        kind = FMU2Slave if self.version == "2.0" else FMU3Slave
+        fmu = kind(
+            guid=self.description.guid, unzipDirectory=self.unzipped,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+        )  # fmt: skip
+        if self.version == "2.0":
+            callbacks = fmi2CallbackFunctions()
+            callbacks.logger = fmi2CallbackLoggerTYPE(lambda e, n, s, c, m: messages(s, c.decode(), m.decode()))
+            fmu.instantiate(callbacks=callbacks)
+        else:
+            fmu.instantiate(logMessage=lambda e, s, c, m: messages(s, c.decode(), m.decode()))
+        return fmu
+
+    def start(self, fmu):
+        if self.version == "2.0":
+            fmu.setupExperiment()
+            fmu.get_reals, fmu.set_reals = fmu.getReal, fmu.setReal
+        else:
+            fmu.get_reals, fmu.set_reals = fmu.getFloat64, fmu.setFloat64
+        fmu.get_mode = lambda: (fmu.getInteger if self.version == "2.0" else fmu.getInt64)([self.vr["floor.mode"]])
+        fmu.get_state, fmu.set_state = (
+            (fmu.getFMUstate, fmu.setFMUstate) if hasattr(fmu, "getFMUstate") else (fmu.getFMUState, fmu.setFMUState)
+        )
+        fmu.enterInitializationMode()
+        fmu.exitInitializationMode()
+        return fmu
+
+    def same(self, call):
+        """What both answer to the same call; an error of both is None."""
+        answers = []
+        for fmu in self.both:
+            try:
+                answers.append(np.asarray(call(fmu)).tolist())
+            except FMICallException as error:
+                answers.append(f"status {error.status}")
+        logs = [log[:] for log in self.logs]
+        assert repr(answers[0]) == repr(answers[1])
+        assert logs[0] == logs[1]
+        return answers[0]
+
+
+@pytest.fixture(params=["2.0", "3.0"])
+def pair(request, tmp_path):
+    return Pair(tmp_path, request.param)
+
+
+def test_any_moves_get_the_same_answers_and_log_lines(pair):
+    """Held, changed and refused inputs, fine and coarse steps, impacts, rollbacks, calls in all orders."""
+    rng, vr, t, kept = np.random.default_rng(5), pair.vr, 0.0, []
+    push, lists = [vr["push"]], [
+        [vr["ball.y"], vr["ball.vy"]], [vr["push"]], [vr["ball.ay"], vr["push"], vr["time"]], [vr["time"]],
+        [vr["energy.balance"]] * 2, [vr["restitution"]], [4711], [vr["ball.y"], 4711],
+    ]  # fmt: skip
+    done = {"step": 0, "refused": 0, "back": 0}
+    for _ in range(MOVES):
+        move = rng.choice(
+            ["set", "step", "get", "mode", "wrong", "store", "back"], p=[0.22, 0.34, 0.3, 0.04, 0.04, 0.03, 0.03]
+        )
+        if move == "set":
+            u = PUSHES[rng.integers(len(PUSHES))]
+            refused = pair.same(lambda fmu, u=u: fmu.set_reals(push, [u])) == "status 3"
+            assert refused == (not math.isfinite(u))
+            done["refused"] += refused
+        elif move == "step":
+            h = STEPS[rng.integers(len(STEPS))]
+            pair.same(lambda fmu, t=t, h=h: (fmu.doStep(t, h), None)[1])
+            t, done["step"] = t + h, done["step"] + 1
+        elif move == "get":
+            chosen = lists[rng.integers(len(lists))]
+            pair.same(lambda fmu, chosen=chosen: fmu.get_reals(chosen))
+        elif move == "mode":
+            pair.same(lambda fmu: fmu.get_mode())
+        elif move == "wrong":
+            pair.same(lambda fmu, t=t: (fmu.doStep(t + 1.0, 0.1), None)[1])
+            pair.same(lambda fmu: fmu.set_reals([vr["restitution"]], [0.5]))
+            pair.same(lambda fmu: fmu.set_reals([vr["ball.y"]], [0.5]))
+        elif move == "store":
+            kept.append((t, [fmu.get_state() for fmu in pair.both]))
+        elif kept:
+            t, states = kept[rng.integers(len(kept))]
+            for fmu, state in zip(pair.both, states, strict=True):
+                fmu.set_state(state)
+            done["back"] += 1
+    assert pair.same(lambda fmu: fmu.get_reals([vr["time"]])) == [t]
+    assert min(done["step"] / 100, done["refused"] / 10, done["back"]) >= 1
+
+
+def test_states_hold_inputs_that_no_step_has_taken_yet(pair):
+    push, y = [pair.vr["push"]], [pair.vr["ball.y"]]
+    fmu = pair.both[0]
+    for k in range(3):
+        fmu.set_reals(push, [float(k)])
+        fmu.doStep(0.01 * k, 0.01)
+        fmu.get_reals(y)
+    fmu.set_reals(push, [20.0])
+    state = fmu.get_state()
+    fmu.doStep(0.03, 0.01)
+    expected = fmu.get_reals(y)
+    fmu.set_reals(push, [0.0])
+    fmu.set_state(state)
+    assert fmu.get_reals(push) == [20.0]
+    fmu.doStep(0.03, 0.01)
+    assert fmu.get_reals(y) == expected
+
+
+def test_instances_share_nothing(pair):
+    one = pair.both[0]
+    two = pair.start(pair.binary(pair.logs[0]))
+    push, y = [pair.vr["push"]], [pair.vr["ball.y"], pair.vr["push"]]
+    for k in range(4):
+        for fmu, u in ((one, 1.0), (two, 50.0)):
+            fmu.set_reals(push, [u])
+            fmu.doStep(0.01 * k, 0.01)
+            fmu.get_reals(y)
+    assert one.get_reals(y)[1] == 1.0 and two.get_reals(y)[1] == 50.0
+    assert one.get_reals(y)[0] < two.get_reals(y)[0]
+    two.freeInstance()
+    one.doStep(0.04, 0.01)
+
+
+def test_more_lists_than_are_kept(pair):
+    """Each is answered, and what is not asked is not touched."""
+    outputs = [v.valueReference for v in pair.description.modelVariables if v.causality == "output" and v.type != "x"]
+    reals = [r for r in outputs if r >= 2_000_000][:4]
+    rng = np.random.default_rng(1)
+    fmu = pair.both[0]
+    for k in range(3):
+        fmu.doStep(0.01 * k, 0.01)
+        all_values = dict(zip(reals, fmu.get_reals(reals), strict=True))
+        for _ in range(150):
+            chosen = rng.choice(reals, size=rng.integers(1, 9)).tolist()
+            assert fmu.get_reals(chosen) == [all_values[r] for r in chosen]
+
+
+def test_room_that_does_not_fit_is_refused_for_known_lists_too(tmp_path):
+    pair = Pair(tmp_path, "3.0")
+    fmu, vr = pair.both[0], (ctypes.c_uint32 * 1)(pair.vr["ball.y"])
+    fmu.doStep(0.0, 0.01)
+    room = (ctypes.c_double * 2)(7.0, 8.0)
+    for _ in range(2):
+        assert fmu.dll.fmi3GetFloat64(fmu.component, vr, 1, room, 1) == 0
+    room[0] = 7.0
+    assert fmu.dll.fmi3GetFloat64(fmu.component, vr, 1, room, 2) == 3
+    assert fmu.dll.fmi3GetFloat64(fmu.component, vr, 1, room, 0) == 3
+    assert list(room) == [7.0, 8.0]
+    assert "room for 2 values was given for 1 scalar variables" in pair.logs[0].errors[-2]
