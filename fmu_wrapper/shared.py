@@ -30,7 +30,8 @@ class Shared:
         memory = np.zeros(NUMBERS + FLAGS + count)
         self.address = int(memory.ctypes.data)
         # elements of memory views are read and written in half the time of those of arrays
-        self.numbers: Any = memory[:NUMBERS].data
-        self.flags: Any = memory[NUMBERS : NUMBERS + FLAGS].view(np.int64).data
+        numbers: Any = memory[:NUMBERS].data
+        flags: Any = memory[NUMBERS : NUMBERS + FLAGS].view(np.int64).data
+        numbers[HORIZON], flags[TOLD] = -np.inf, 1
+        self.numbers, self.flags = numbers, flags
         self.values: npt.NDArray[np.float64] = memory[NUMBERS + FLAGS :]
-        self.numbers[HORIZON], self.flags[TOLD] = -np.inf, 1

@@ -7,7 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing.connection import Connection, wait
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, cast
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -59,7 +59,8 @@ class Workers(Generic[Item, Result]):
 
     def run(self, items: Sequence[Item], tell: Callable[[Item, str], None]) -> Iterator[tuple[Item, Result]]:
         """Items with their results as they come; `tell` gets what the processes tell in between."""
-        waiting, workers = deque(items), []
+        waiting: deque[Item] = deque(items)
+        workers: list[_Worker] = []
         try:
             while waiting and len(workers) < min(self.count, len(items)):
                 workers.append(_Worker(self.job))
@@ -76,12 +77,13 @@ class Workers(Generic[Item, Result]):
                         worker.since, worker.begun = time.perf_counter(), True
                         continue
                     if kind == "tell":
-                        tell(worker.item, value)
+                        tell(worker.item, str(value))
                         continue
                     item, seconds = worker.item, time.perf_counter() - worker.since
-                    if kind != "done":
-                        code = worker.process.exitcode if kind == "died" else None
-                        value = self.died(item, code, seconds)
+                    if kind == "done":
+                        result = cast(Result, value)
+                    else:
+                        result = self.died(item, worker.process.exitcode if kind == "died" else None, seconds)
                     if kind != "done" or not waiting:
                         worker.stop()
                         workers.remove(worker)
@@ -90,7 +92,7 @@ class Workers(Generic[Item, Result]):
                             workers.append(worker)
                     if waiting:
                         worker.give(waiting.popleft())
-                    yield item, value
+                    yield item, result
         finally:
             for worker in workers:
                 worker.stop()

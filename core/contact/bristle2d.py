@@ -18,8 +18,8 @@ from .normal2d import act, evaluate_law
 from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
 
 LEAST_DEFLECTION = 1e-8
-"""m; under normal forces at which bristles would slip at less, they slip and rub in proportion to the normal force: their
-equation has no limit at normal force zero, where a contact ends."""
+"""m; under normal forces at which bristles would slip at less, they slip and rub in proportion to the normal force:
+their equation has no limit at normal force zero, where a contact ends."""
 
 
 @internal

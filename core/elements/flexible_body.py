@@ -1,8 +1,8 @@
 """What a flexible body is to the others: named coordinates, and material points that move with them.
 
 A new flexible body derives from `FlexibleBody` and says in `material_point` how a point of it moves. That is all that
-`MaterialPoint2D`, and with it every joint, force, contact and output, needs to know of it. `drawn_points` tells which of
-its points show it.
+`MaterialPoint2D`, and with it every joint, force, contact and output, needs to know of it. `drawn_points` tells which
+of its points show it.
 """
 
 from collections.abc import Sequence
