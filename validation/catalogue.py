@@ -113,7 +113,7 @@ def run_case(
     other = as_cables(scenario.model, case.cables) if has_floating_beams(scenario.model) else None
     return crosscheck(
         scenario, report_dir, progress, t_end=t_end, step=step, exudyn_model=other, name=case.name, why=case.why,
-        least_tolerance=tolerance, whole=case.whole and not coarse,
+        least_tolerance=tolerance, whole=case.whole and not coarse, refine=not coarse,
     )  # fmt: skip
 
 

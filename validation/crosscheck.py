@@ -96,6 +96,7 @@ def crosscheck(
     why: str = "",
     least_tolerance: float = 0.0,
     whole: bool = False,
+    refine: bool = True,
     **parameters: Any,
 ) -> CrossCheck:
     """Run a scenario here and in exudyn, and compare.
@@ -110,6 +111,7 @@ def crosscheck(
     exudyn_model : the model that exudyn gets, if not the same one (to see that a fault is found, or `as_cables`).
     least_tolerance : relative; of every quantity, where the two sides are different models of one thing.
     whole : compare the whole run too, through all its impacts, up to some Lyapunov times (see `predictability`).
+    refine : halve exudyn's step until its error bars are below the tolerances.
     name, why : what its files are called (the scenario), and what its report says about the choice of parameters.
 
     Returns
@@ -130,7 +132,7 @@ def crosscheck(
     folder = None if report_dir is None else Path(report_dir)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-    task = Task(chosen, exudyn_model or chosen.model, step, progress or log.info)
+    task = Task(chosen, exudyn_model or chosen.model, step, progress or log.info, refine)
     if not chosen.model.contacts:
         comparison = compare_motion(task)
     elif strikes_rods(chosen.model):

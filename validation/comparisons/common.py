@@ -85,6 +85,11 @@ class Row:
         return bool(self.difference <= self.uncertainty + self.ours_uncertainty)
 
     @property
+    def evident(self) -> bool:
+        """Whether the difference is so far beyond tolerance and error bars that no smaller step will change it."""
+        return bool(self.difference > 10.0 * (self.allowed + self.uncertainty + self.ours_uncertainty))
+
+    @property
     def verdict(self) -> Verdict:
         measured = self.difference if self.tolerance_kind == "absolute" else self.relative
         # a NaN is never an agreement
@@ -153,6 +158,14 @@ class Task:
     exudyn_model: Model
     step: float | None = None
     progress: Progress = field(default=lambda text: None)
+    refine: bool = True
+    """Whether exudyn's step is halved until its error bars are below the tolerances."""
+
+    def settled(self, rows: Sequence[Row]) -> bool:
+        """Whether smaller steps are of no use: the error bars are small enough, or a difference is evident."""
+        if not self.refine:
+            return True
+        return all(row.uncertainty <= row.allowed for row in rows) or any(row.evident for row in rows)
 
 
 def our_run(scenario: Scenario, times: Sequence[float] | np.ndarray | None = None, looser: float = 1.0) -> Result:

@@ -100,7 +100,7 @@ def compare_constraints(task: Task) -> Comparison:
     for _ in range(1 + MOST_HALVINGS):
         *runs, doubled = (_penalty_run(task, k, t_end, h) for k, h in _plan(step))
         rows = _rows(Sides(task, found, ours, loose, runs, doubled))
-        if all(row.uncertainty <= row.allowed for row in rows):
+        if task.settled(rows):
             break
         step *= 0.5
     rows += toggled_rows(task, found[0], first_run)

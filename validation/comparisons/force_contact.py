@@ -5,7 +5,7 @@ are below the tolerance: 1e-4 of every quantity.
 from dataclasses import replace
 
 from ..exudyn_run import run_exudyn, settings_for
-from .common import Comparison, Row, Task, energy_panel, our_looser_run, our_run, residual_panel, touches
+from .common import Comparison, Task, energy_panel, our_looser_run, our_run, residual_panel, touches
 from .force_panels import force_panels
 from .force_rows import Levels, Sides, force_rows
 from .force_steps import (
@@ -59,7 +59,7 @@ def compare_forces(task: Task) -> Comparison:
             continue
         rows = force_rows(Sides(task, found, ours, loose, Levels(tuple(runs), regular)))
         # the next run has twice the steps
-        if all(_decided(row) for row in rows) or 2.0 * t_end / h > most_steps(scenario.model):
+        if task.settled(rows) or 2.0 * t_end / h > most_steps(scenario.model):
             break
     fine = runs[-1]
     jumping = jumping_touches(scenario.model, found[1:] if regular else found)
@@ -93,8 +93,3 @@ def compare_forces(task: Task) -> Comparison:
         tuple(first_run.events),
         ours,
     )
-
-
-def _decided(row: Row) -> bool:
-    """Whether exudyn's error bar is below the tolerance, or the difference beyond both and not to be refined away."""
-    return row.uncertainty <= row.allowed or row.difference > 10.0 * (row.allowed + row.uncertainty)

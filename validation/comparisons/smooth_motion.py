@@ -54,7 +54,7 @@ def compare_motion(task: Task) -> Comparison:
         if len(runs) > 2:
             rows = [_row(c, unit_of(ours, c), ours[c], own.get(c, np.zeros(SAMPLES)), grid, runs) for c in channels]
             decided = all(r.uncertainty <= 0.3 * TOLERANCE * (r.scale or 1.0) for r in rows)
-            if decided or scenario.t_end / step > 0.5 * MOST_STEPS:
+            if decided or any(r.evident for r in rows) or scenario.t_end / step > 0.5 * MOST_STEPS:
                 break
         step *= 0.5
     fine = runs[-1]
