@@ -47,6 +47,8 @@ class CrossCheck:
     model: Model | None = None
     figures: tuple[Path, ...] = ()
     report: Path | None = None
+    machine: Mapping[str, Any] = field(default_factory=provenance)
+    """What it was made with, and when."""
 
     @property
     def rows(self) -> tuple[Row, ...]:
@@ -76,7 +78,7 @@ class CrossCheck:
             "exudyn": {"version": c.version, "steps": list(c.steps), "seconds": c.exudyn_seconds},
             "seconds": c.our_seconds,
             "settings": dict(self.settings),
-            "machine": provenance(),
+            "machine": dict(self.machine),
             "name": self.name,
             "why": self.why,
             "figures": [str(path) for path in self.figures],

@@ -50,14 +50,14 @@ def render(found: "CrossCheck") -> str:
             drawing=json.dumps(motion) if motion else None,
             third=", ".join(sources),
             reasons=sorted({row.reason for row in found.rows if row.verdict == "not comparable"}),
-            machine=provenance(),
+            machine=found.machine,
         )
     )
 
 
 def write_overview(found: "CatalogueCheck", folder: Path) -> Path:
     """Write overview.html and overview.json; returns the page. Raises TlismniError if jinja2 cannot be imported."""
-    page = folder / "overview.html"
+    page, machine = folder / "overview.html", provenance()
     folder.mkdir(parents=True, exist_ok=True)
     text = (
         _environment()
@@ -67,11 +67,11 @@ def write_overview(found: "CatalogueCheck", folder: Path) -> Path:
             outcomes=sorted(found.outcomes, key=lambda o: (SEVERITY.index(o.verdict), o.case.name)),
             scenarios=len({outcome.case.scenario for outcome in found.outcomes}),
             counts=dict(Counter(outcome.verdict for outcome in found.outcomes)),
-            machine=provenance(),
+            machine=machine,
         )
     )
     _write(page, text)
-    numbers = {"machine": provenance(), **found.to_dict(), "cases": [outcome.to_dict() for outcome in found.outcomes]}
+    numbers = {"machine": machine, **found.to_dict(), "cases": [outcome.to_dict() for outcome in found.outcomes]}
     _write(folder / "overview.json", json.dumps(numbers, indent=2))
     return page
 
