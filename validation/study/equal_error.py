@@ -9,7 +9,7 @@ LEVELS = tuple(10.0**-k for k in range(1, 10))
 
 
 class Finished(Protocol):
-    """A run with a cost, an error (None or NaN: it has none), and whether it came to its end."""
+    """A run with a cost, an error (None or not finite: it has none), and whether it came to its end."""
 
     @property
     def ok(self) -> bool:
@@ -26,7 +26,7 @@ def at_error(runs: Sequence[Finished], level: float, quantity: str = "outer_iter
     Between the last run that misses the level and the next; None if no run misses it, or none comes to it: nothing is
     extrapolated.
     """
-    good = [run for run in runs if run.ok and run.error > 0.0]
+    good = [run for run in runs if run.ok and run.error is not None and 0.0 < run.error < math.inf]
     missed = [k for k, run in enumerate(good) if run.error > level]
     if not missed or missed[-1] == len(good) - 1:
         return None

@@ -1,5 +1,6 @@
 """The runs of `study iterations`: every contender on every problem, with both outer loops and several tolerances."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -98,9 +99,12 @@ def _run(
 ) -> Run:
     try:
         result = simulate(scenario.model, t_end, setting.method, rtol, ATOL_SHARE * rtol, outer=loop, **setting.options)
-    except (ModelError, SimulationError) as error:
+    except (ModelError, SimulationError) as stop:
         # a method with an iteration of its own refuses other outer loops; a run may fail: both are findings
-        return Run(problem, setting, loop, rtol, failure=str(error))
-    run = Run(problem, setting, loop, rtol, wall_time=float(result.stats["wall_time"]), error=reference.error(result))
+        return Run(problem, setting, loop, rtol, failure=str(stop))
+    error = reference.error(result)
+    run = Run(problem, setting, loop, rtol, wall_time=float(result.stats["wall_time"]), error=error)
+    if not math.isfinite(error):
+        run = replace(run, failure="blew up")
     counts: dict[str, Any] = {name: int(result.stats[key]) for name, key in COUNTS.items()}
     return replace(run, **counts)

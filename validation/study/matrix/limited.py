@@ -19,10 +19,6 @@ class LimitReached(Exception):
     """A run has cost too much."""
 
 
-class Stopped(Exception):
-    """Somebody asked all runs to stop."""
-
-
 class LimitedSimulation(Simulation):
     """A run that looks at its limit at every event too: events that follow each other at no distance make no steps."""
 
@@ -69,19 +65,16 @@ class CpuClock(event.Listener):
         return time.process_time() - self.start - self.compiled
 
 
-def run_limited(sim: LimitedSimulation, t_end: float, limit: float, stopped: Callable[[], bool]) -> float:
+def run_limited(sim: LimitedSimulation, t_end: float, limit: float) -> float:
     """Run `sim` to `t_end` (s); gives the CPU time, s.
 
     Raises
     ------
-    LimitReached : beyond `limit` (s), or if the record would not fit. Stopped : when `stopped` says so.
-    SimulationError : as the run.
+    LimitReached : beyond `limit` (s), or if the record would not fit. SimulationError : as the run.
     """
     clock = CpuClock()
 
     def look(t: float) -> None:
-        if stopped():
-            raise Stopped
         steps = sim.stats["steps"]
         where = f"at t = {t:.4g} of {t_end:.4g} s, after {steps} steps"
         if clock.seconds > limit:

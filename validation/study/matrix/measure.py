@@ -1,6 +1,6 @@
 """One run of a method on a scenario, and the sweep over tolerances of a pair."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from ....models import Scenario
 from ..cases import Setting
 from ..runs import COUNTS
 from .course import Course, course_difference, event_errors, mean_difference
-from .limited import LimitedSimulation, LimitReached, Stopped, run_limited
+from .limited import LimitedSimulation, LimitReached, run_limited
 from .records import MatrixRun, Pair
 
 KEPT_OPTIONS = ("max_step", "first_step", "redundant")
@@ -49,32 +49,28 @@ class Measured:
         self.scale = course.scale_of_coordinates(course.scales)
         self.spline: BPoly = course.spline()
 
-    def sweep(self, setting: Setting, sweep: Sweep, stopped: Callable[[], bool] = lambda: False) -> Pair:
+    def sweep(self, setting: Setting, sweep: Sweep) -> Pair:
         """Run the pair from loose to tight, until it has reached the finest level or what it may cost."""
         runs: list[MatrixRun] = []
         for tolerance in sweep.tolerances:
-            run = self.run(setting, tolerance, sweep.limit, stopped)
+            run = self.run(setting, tolerance, sweep.limit)
             if not runs and run.ok and run.cpu_time < REPEAT:
-                run = self.run(setting, tolerance, sweep.limit, stopped)
+                run = self.run(setting, tolerance, sweep.limit)
             runs.append(run)
             reached = run.error is not None and run.error < NEAR * min(sweep.levels)
             if run.kind in ("limit", "refused") or (reached and len(runs) >= sweep.least_runs):
                 break
         return Pair(scenario=self.scenario.name, method=setting.method, options=dict(setting.options), runs=tuple(runs))
 
-    def run(
-        self, setting: Setting, tolerance: float, limit: float, stopped: Callable[[], bool] = lambda: False
-    ) -> MatrixRun:
+    def run(self, setting: Setting, tolerance: float, limit: float) -> MatrixRun:
         """One run. Whatever it raises is a finding."""
         try:
             sim = self.simulation(setting, tolerance)
         except (ModelError, ConsistencyError) as error:
             return MatrixRun(tolerance=tolerance, kind="refused", failure=f"refused: {first_sentence(error)}")
         try:
-            seconds = run_limited(sim, self.t_end, limit, stopped)
+            seconds = run_limited(sim, self.t_end, limit)
             return MatrixRun(tolerance=tolerance, cpu_time=seconds, **self._figures(sim))
-        except Stopped:
-            raise
         except LimitReached as error:
             return MatrixRun(tolerance=tolerance, kind="limit", failure=f"limit: {error}", **_counts(sim))
         except SimulationError as error:
@@ -92,11 +88,13 @@ class Measured:
     def _figures(self, sim: LimitedSimulation) -> dict[str, Any]:
         course, reference = Course.of(sim), self.course
         error = float(np.max(course_difference(course, self.spline, self.scale)))
+        if not np.isfinite(error):
+            return {**_counts(sim), "error": error}
         first, largest = event_errors(course, reference)
         unique = not (course.redundant or reference.redundant)
         return {
             **_counts(sim),
-            "error": error if np.isfinite(error) else float("inf"),
+            "error": error,
             "residuals": course.residuals,
             "first_event_error": first,
             "event_error": largest,

@@ -1,19 +1,29 @@
 """The figures of the matrix as validated records: one JSON line each, so that a run that was stopped goes on."""
 
+import math
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from ..cases import Setting
 
 
 class _Record(BaseModel):
-    # figures that do not exist are None; infinite ones (a solution that blows up) stay so in JSON
+    # figures that do not exist are None; infinite ones stay so in JSON
     model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="constants")
 
 
+BLEW_UP = "blew up"
+"""Failure of a run that came to its end, but nowhere."""
+SPENT = ("tolerance", "steps", "rejected", "outer_iterations", "evaluations", "factorizations", "cpu_time")
+"""What such a run still tells."""
+
+
 class MatrixRun(_Record):
-    """One run of a method on a scenario with one tolerance. Figures that do not exist are None."""
+    """One run of a method on a scenario with one tolerance. Figures that do not exist are None.
+
+    A run whose error is not finite is a failed one, whoever makes or reads it.
+    """
 
     tolerance: float
     """Of the error control, in parts of how far the scenario moves (`Course.tolerances`)."""
@@ -46,9 +56,24 @@ class MatrixRun(_Record):
     energy_drift: float | None = None
     """Largest |energy.balance| over the largest kinetic energy."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _finite(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or data.get("error") is None:
+            return data
+        try:
+            finite = math.isfinite(float(data["error"]))
+        except (TypeError, ValueError, OverflowError):
+            return data  # no number: the field's own validation says so
+        if finite:
+            return data
+        # nothing else that was measured on such a course means anything
+        spent = {name: data[name] for name in SPENT if name in data}
+        return {**spent, "kind": data.get("kind") or "failed", "failure": data.get("failure") or BLEW_UP}
+
     @property
     def ok(self) -> bool:
-        """True if the run came to its end."""
+        """True if the run came to its end, with a finite error if it has one."""
         return not self.failure
 
 

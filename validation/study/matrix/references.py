@@ -1,6 +1,5 @@
 """The reference of a scenario: a tight run, checked against a tight run of another family."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,8 +35,8 @@ class Reference:
     course: Course | None
 
 
-def make_reference(problem: Problem, limit: float, stopped: Callable[[], bool] = lambda: False) -> Reference:
-    """Integrate tightly, twice. A scenario without reference says why in `figures.failure`; nothing is raised."""
+def make_reference(problem: Problem, limit: float) -> Reference:
+    """Integrate tightly, twice. If there is no reference, `figures.failure` says why; no TlismniError is raised."""
     scenario = problem.load()
     t_end = problem.t_end or scenario.t_end
     try:
@@ -50,7 +49,7 @@ def make_reference(problem: Problem, limit: float, stopped: Callable[[], bool] =
         for setting in family:
             try:
                 sim = start(scenario, setting, *first_look.tolerances(TOLERANCE, LEAST_RTOL))
-                seconds += run_limited(sim, t_end, limit, stopped)
+                seconds += run_limited(sim, t_end, limit)
             except (TlismniError, LimitReached) as error:
                 reasons.append(f"{setting.label}: {first_sentence(error)}")
                 continue

@@ -1,32 +1,26 @@
 """`method_matrix`: every method on every scenario, in two processes, each pair written down as it is done."""
 
 import json
-import multiprocessing
 import os
-import signal
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from ....core import ModelError
 from ....models import ScenarioError, names
 from ...provenance import provenance
+from ...workers import Workers
 from ..cases import Setting, contenders
-from . import course as courses
 from .equal import equal_rows
-from .measure import QUICK, Measured, Sweep
-from .problems import problem_of
+from .jobs import Done, Job, died, do, wall_limit
+from .measure import QUICK, Sweep
 from .records import Header, Pair, ReferenceFigures
-from .references import make_reference
 
 PROCESSES = 2
-REFERENCE_LIMIT = 60.0
-"""CPU time of a reference, s."""
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 Key = tuple[str, str]
 """Scenario and label of a setting."""
@@ -121,7 +115,7 @@ class _Book:
     """What is done, in memory and, if there is one, in a file."""
 
     def __init__(self, path: Path | None, sweep: Sweep) -> None:
-        self.path = path
+        self.path, self.torn = path, False
         self.references: dict[str, ReferenceFigures] = {}
         self.pairs: dict[Key, Pair] = {}
         versions = {name: str(x) for name, x in provenance()["versions"].items()}
@@ -135,10 +129,12 @@ class _Book:
         if not path.exists():
             self._write(header)
             return
-        lines = path.read_text(encoding="utf-8").splitlines()
+        # a study that was stopped may leave half a line, and half a character at its end
+        text = path.read_text(encoding="utf-8", errors="replace")
+        self.torn, lines = not text.endswith("\n"), text.split("\n")
         try:
             old = Header.model_validate_json(lines[0])
-        except (ValueError, IndexError) as error:
+        except ValueError as error:
             raise ModelError(f"'{path}' holds no records of a method study: name another file") from error
         if old != header:
             raise ModelError(
@@ -149,27 +145,34 @@ class _Book:
             try:
                 kind, _, text = line.partition(" ")
                 if kind == "reference":
-                    self.add_reference(ReferenceFigures.model_validate_json(text), new=False)
+                    self.add(ReferenceFigures.model_validate_json(text), new=False)
                 elif kind == "pair":
-                    self.add_pair(Pair.model_validate_json(text), new=False)
+                    self.add(Pair.model_validate_json(text), new=False)
             except ValueError:
                 # the line at which the study was stopped: it is made again
                 continue
 
-    def add_reference(self, figures: ReferenceFigures, new: bool = True) -> None:
-        self.references[figures.scenario] = figures
+    def add(self, found: Done, new: bool = True) -> None:
+        """Keep it, and write it down if it is new; a reference that is made again, for more pairs, is not."""
+        if isinstance(found, Pair):
+            self.pairs[found.scenario, found.setting.label] = found
+        else:
+            new = new and found.scenario not in self.references
+            self.references[found.scenario] = found
         if new:
-            self._write(figures, "reference ")
-
-    def add_pair(self, pair: Pair, new: bool = True) -> None:
-        self.pairs[pair.scenario, pair.setting.label] = pair
-        if new:
-            self._write(pair, "pair ")
+            self._write(found, "pair " if isinstance(found, Pair) else "reference ")
 
     def _write(self, record: Any, kind: str = "") -> None:
         if self.path is not None:
             with self.path.open("a", encoding="utf-8") as stream:
-                stream.write(f"{kind}{record.model_dump_json()}\n")
+                # what is appended to a torn line would be lost with it
+                stream.write("\n" * self.torn + f"{kind}{record.model_dump_json()}\n")
+            self.torn = False
+
+    def needs_reference(self, scenario: str, todo: Sequence[Setting]) -> bool:
+        """True if there is none yet, or its course is needed again; one that could not be made is not tried again."""
+        known = self.references.get(scenario)
+        return known is None or (known.ok and bool(todo))
 
     def missing(self, scenario: str, settings: Sequence[Setting]) -> list[Setting]:
         """Settings that have not been run on a scenario."""
@@ -183,11 +186,10 @@ def _work_here(
     total = len(chosen) * len(settings)
     for k, name in enumerate(chosen):
         todo = book.missing(name, settings)
-        if not todo and name in book.references:
-            continue
-        book.add_reference(_reference(name, folder), new=name not in book.references)
+        if book.needs_reference(name, todo):
+            book.add(do(Job(name, sweep, folder)))
         for j, setting in enumerate(todo if book.references[name].ok else ()):
-            book.add_pair(_pair(name, setting, sweep, folder))
+            book.add(do(Job(name, sweep, folder, setting)))
             tell(f"{name}, {setting.label}", (k * len(settings) + j + 1) / total)
 
 
@@ -195,65 +197,26 @@ def _work_apart(
     chosen: Sequence[str], settings: Sequence[Setting], sweep: Sweep, book: _Book, folder: str,
     tell: Callable[[str, float], None], workers: int,
 ) -> None:  # fmt: skip
+    """First all references, then all pairs. A process that dies takes its own job only."""
     todo = {name: book.missing(name, settings) for name in chosen}
     done, total = sum(len(settings) - len(x) for x in todo.values()), len(chosen) * len(settings)
-    context = multiprocessing.get_context("spawn")
-    stop = context.Event()
-    with _one_thread(), ProcessPoolExecutor(workers, context, _start_worker, (stop,)) as pool:
-        try:
-            needed = [name for name in chosen if todo[name] or name not in book.references]
-            made: list[Future[Any]] = [pool.submit(_reference, name, folder) for name in needed]
-            pairs: list[Future[Any]] = []
-            for future in as_completed(made):
-                figures = future.result()
-                book.add_reference(figures, new=figures.scenario not in book.references)
-                here = todo[figures.scenario]
-                if figures.ok:
-                    pairs += [pool.submit(_pair, figures.scenario, setting, sweep, folder) for setting in here]
-                else:
-                    done += len(here)
-                tell(f"{figures.scenario}: reference", done / total)
-            for future in as_completed(pairs):
-                pair = future.result()
-                book.add_pair(pair)
-                done += 1
-                tell(f"{pair.scenario}, {pair.setting.label}", done / total)
-        except BaseException:
-            # runs that go on look at this flag, so that the pool is soon closed
-            stop.set()
-            pool.shutdown(wait=True, cancel_futures=True)
-            raise
+    pool: Workers[Job, Done] = Workers(do, workers, died, wall_limit(sweep))
+    references = [Job(name, sweep, folder) for name in chosen if book.needs_reference(name, todo[name])]
+    for job, found in _results(pool, references):
+        book.add(found)
+        tell(f"{job.scenario}: reference", done / total)
+    done += sum(len(todo[name]) for name in chosen if not book.references[name].ok)
+    pairs = [Job(name, sweep, folder, x) for name in chosen if book.references[name].ok for x in todo[name]]
+    for job, found in _results(pool, pairs):
+        book.add(found)
+        done += 1
+        tell(f"{job.scenario}, {job.setting.label if job.setting else ''}", done / total)
 
 
-_stop: Any = None
-
-
-def _start_worker(stop: Any) -> None:
-    global _stop
-    _stop = stop
-    # the parent alone hears Ctrl-C, and tells the workers
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def _stopped() -> bool:
-    return bool(_stop is not None and _stop.is_set())
-
-
-def _reference(name: str, folder: str) -> ReferenceFigures:
-    found = make_reference(problem_of(name), REFERENCE_LIMIT, _stopped)
-    if found.course is not None:
-        courses.save(found.course, Path(folder) / f"{name}.npz")
-    return found.figures
-
-
-def _pair(name: str, setting: Setting, sweep: Sweep, folder: str) -> Pair:
-    return _measured(name, folder).sweep(setting, sweep, _stopped)
-
-
-@lru_cache(maxsize=2)
-def _measured(name: str, folder: str) -> Measured:
-    course = courses.load(Path(folder) / f"{name}.npz")
-    return Measured(problem_of(name).load(), course, float(course.t[-1]))
+def _results(pool: Workers[Job, Done], jobs: Sequence[Job]) -> Iterator[tuple[Job, Done]]:
+    # closed at once if the study is stopped: its processes end with it
+    with _one_thread(), closing(pool.run(jobs, lambda job, text: None)) as results:  # type: ignore[type-var]
+        yield from results
 
 
 @contextmanager

@@ -55,7 +55,7 @@ def summary_rows(matrix: MethodMatrix) -> list[dict[str, Any]]:
         row["runs"], row["failed runs"] = len(everything), sum(run.kind in ("failed", "broken") for run in everything)
         runs = [run for run in everything if run.residuals is not None]
         row["residuals"] = {
-            name: max((run.residuals[k] for run in runs if run.residuals), default=None)
+            name: max((run.residuals[k] for run in runs if run.residuals and _finite(run.residuals[k])), default=None)
             for k, name in enumerate(LEVELS_OF_CONSTRAINTS)
         }
         rows.append(row)
@@ -90,8 +90,12 @@ def _at_level(matrix: MethodMatrix, label: str, table: dict[tuple[str, str], Cos
 
 
 def _quality(pair: Pair, level: float, name: str) -> float | None:
-    runs = [run for run in pair.runs if run.ok and run.error and getattr(run, name) is not None]
+    runs = [run for run in pair.runs if run.ok and run.error and _finite(getattr(run, name))]
     return at_error(runs, level, name)
+
+
+def _finite(value: float | None) -> bool:
+    return value is not None and math.isfinite(value)
 
 
 def _median(values: Any) -> float | None:
