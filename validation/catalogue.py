@@ -40,8 +40,10 @@ class Outcome:
             return "failed" if self.failed else "not comparable"
         if not self.found.ok:
             return "differ"
-        decisive = [row for row in self.found.rows if row.required]
-        return "undecided" if any(row.verdict == "undecided" for row in decisive) else "agree"
+        decisive = {row.verdict for row in self.found.rows if row.required}
+        if "undecided" in decisive:
+            return "undecided"
+        return "agree" if "agree" in decisive else "not comparable"
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""

@@ -1,13 +1,18 @@
 """Cases in processes of their own: several at once, and exudyn's end is not the end of the others."""
 
+import logging
 import multiprocessing
 import os
 import signal
+import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar, cast
+
+logger = logging.getLogger(__name__)
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -69,10 +74,12 @@ class Workers(Generic[Item, Result]):
                 ready = wait([w.pipe for w in workers], timeout=1.0)
                 for worker in list(workers):
                     longest = self.limit if worker.begun else self.start_limit
-                    over = time.perf_counter() - worker.since > longest
-                    if worker.pipe not in ready and not over:
+                    if worker.pipe in ready:  # first: it may be done, and only have waited to be heard
+                        kind, value = _received(worker)
+                    elif time.perf_counter() - worker.since > longest:
+                        kind, value = "late", None
+                    else:
                         continue
-                    kind, value = ("late", None) if over else _received(worker)
                     if kind == "begun":  # a process needs seconds to start, which are not the item's
                         worker.since, worker.begun = time.perf_counter(), True
                         continue
@@ -91,7 +98,8 @@ class Workers(Generic[Item, Result]):
                             worker = _Worker(self.job)
                             workers.append(worker)
                     if waiting:
-                        worker.give(waiting.popleft())
+                        with suppress(ConnectionError):  # one that has ended meanwhile is found by its silence
+                            worker.give(waiting.popleft())
                     yield item, result
         finally:
             for worker in workers:
@@ -101,10 +109,19 @@ class Workers(Generic[Item, Result]):
 def _received(worker: _Worker) -> tuple[str, Any]:
     try:
         kind, value = worker.pipe.recv()
-    except (EOFError, ConnectionError):
+    except Exception:  # its end, or what cannot be read
+        logger.debug("no answer from a worker", exc_info=True)
         worker.process.join(5.0)
         return "died", None
     return str(kind), value
+
+
+def _end_with_parent() -> None:
+    """A parent that is killed stops nobody, and in a session of its own a process would go on."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(1)
 
 
 def _serve(pipe: Connection, job: Job) -> None:
@@ -112,6 +129,7 @@ def _serve(pipe: Connection, job: Job) -> None:
     if hasattr(os, "setsid"):
         os.setsid()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     # what compiled code prints would come between the lines of the progress
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     while True:

@@ -21,7 +21,7 @@ from ..system.projection import bring_to_rest
 from ..system.records import OK
 from ..system.redundancy import RedundantRow, choose_rows, describe
 from ..system.workspace import Workspace
-from .records import STEP_SIZE
+from .records import MAX_STEP, STEP_SIZE
 from .settings import Settings
 from .watch import FORCE_ROUNDING, GAP_ROUNDING
 
@@ -118,10 +118,12 @@ class ContactSide:
         finally:
             self.memory[k] = before
             self.use_modes()
-        if not comes_back(self, jerks, motion)[0]:  # type: ignore[arg-type]
+        # one that presses is unsettled by its friction, which is for the stick and slip to settle
+        if not motion[0] > 0.0 or not comes_back(self, jerks, motion)[0]:  # type: ignore[arg-type]
             return False
         # b + j t, the acceleration of the open gap, has turned well before this
-        self.clock[STEP_SIZE] = max(self.clock[STEP_SIZE], 4.0 * float(motion[0]) / -float(jerks[0]))
+        beyond = min(4.0 * float(motion[0]) / -float(jerks[0]), float(self.clock[MAX_STEP]))
+        self.clock[STEP_SIZE] = max(self.clock[STEP_SIZE], beyond)
         return True
 
     def start_small(self, speed: float) -> None:

@@ -2,7 +2,9 @@
 
 import json
 import math
+import multiprocessing
 import os
+import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -11,10 +13,11 @@ import numpy as np
 import pytest
 from tlismni.validation import Case, crosscheck_all
 from tlismni.validation.catalogue import Outcome, _died, _Order
-from tlismni.validation.comparisons.common import Touch, own_bar
+from tlismni.validation.comparisons.common import Comparison, Row, Touch, own_bar
 from tlismni.validation.comparisons.force_rows import Levels
 from tlismni.validation.comparisons.force_steps import aligned
 from tlismni.validation.comparisons.rod_impact import mesh_limit
+from tlismni.validation.crosscheck import CrossCheck
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.workers import Workers
 
@@ -95,3 +98,53 @@ def test_aligned_steps_begin_just_before_the_touch_on_every_grid() -> None:
 
 def test_our_error_bar_is_never_below_rounding() -> None:
     assert own_bar(2.0, 2.0) == pytest.approx(2e-14) and own_bar(2.0, 2.1) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    "rows, verdict",
+    [
+        ((), "not comparable"),
+        ((Row("x", "m", 1.0, 9.0, 1e-3, "relative", reason="chaos", required=False),), "not comparable"),
+        ((Row("x", "m", 1.0, 1.0, 1e-3, "relative", required=False),), "not comparable"),
+        ((Row("x", "m", 1.0, 1.0, 1e-3, "relative"),), "agree"),
+        ((Row("x", "m", 1.0, 1.0, 1e-3, "relative"), Row("y", "m", 1.0, 1.1, 1e-3, "relative", 0.2)), "undecided"),
+        ((Row("x", "m", 1.0, 1.0, 1e-3, "relative"), Row("y", "m", 1.0, 1.1, 1e-3, "relative")), "differ"),
+    ],
+)
+def test_a_case_in_which_nothing_decisive_agrees_does_not_agree(rows: tuple[Row, ...], verdict: str) -> None:
+    found = CrossCheck("pendulum", "", {}, Comparison("motion", rows, (), (), (), "1.13", 0.0, 0.0))
+    assert Outcome(Case("pendulum"), found, "", 0.0).verdict == verdict
+
+
+def _left_behind(item: str) -> int:
+    """Number of a worker whose parent was killed."""
+    parent = multiprocessing.get_context("spawn").Process(target=_parent, args=(item,))
+    parent.start()
+    while not Path(item).exists() or not Path(item).read_text():
+        time.sleep(0.05)
+    parent.kill()
+    parent.join()
+    return int(Path(item).read_text())
+
+
+def own_number(item: str, tell: Callable[[str], None]) -> None:
+    """Writes the number of its process, and hangs."""
+    Path(item).write_text(str(os.getpid()))
+    time.sleep(60.0)
+
+
+def _parent(item: str) -> None:
+    list(Workers(own_number, 1, lambda item, code, seconds: None).run([item], lambda item, text: None))
+
+
+@pytest.mark.skipif(not hasattr(os, "setsid"), reason="needs POSIX signals")
+def test_a_process_ends_with_a_parent_that_is_killed(tmp_path: Path) -> None:
+    number = _left_behind(str(tmp_path / "number"))
+    for _ in range(100):
+        try:
+            os.kill(number, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.1)
+    os.kill(number, signal.SIGKILL)
+    pytest.fail("the process outlived its parent by ten seconds")

@@ -19,6 +19,8 @@ FLEXIBLE_RTOL, FLEXIBLE_ATOL = 1e-7, 1e-10
 """The same for cables and beams, whose fast waves would cost the most."""
 LOOSER = 10.0
 """Our error bar is what this factor on our tolerances changes: an error in proportion to them is a ninth of it."""
+MOST_BARS = 3.0
+"""Times the tolerance: beside larger error bars a small difference says nothing, and the row is undecided."""
 ROUNDING = 1e-14
 """Relative: what no run can be better than."""
 RATES = {"x": "vx", "y": "vy", "angle": "angular_velocity", "gap": "gap_rate"}
@@ -33,8 +35,8 @@ class Row:
     """One compared quantity.
 
     verdict : "agree" within `tolerance`; "undecided" if the difference is larger, but not larger than the error bars
-    of both sides together (`uncertainty`, `ours_uncertainty`); "not comparable" if `reason` says why it cannot be
-    decided at all; "differ" otherwise.
+    of both sides together (`uncertainty`, `ours_uncertainty`), or smaller beside bars above MOST_BARS tolerances;
+    "not comparable" if `reason` says why it cannot be decided at all; "differ" otherwise.
     """
 
     quantity: str
@@ -92,9 +94,10 @@ class Row:
     @property
     def verdict(self) -> Verdict:
         measured = self.difference if self.tolerance_kind == "absolute" else self.relative
-        # a NaN is never an agreement
+        # a NaN is never an agreement; nor is a difference that is small by chance, beside bars that are far larger
         if measured <= self.tolerance:
-            return "agree"
+            told = self.uncertainty + self.ours_uncertainty <= MOST_BARS * self.allowed
+            return "agree" if told or self.difference == 0.0 or not self.required else "undecided"
         if self.reason:
             return "not comparable"
         return "undecided" if self.within_bars else "differ"

@@ -55,13 +55,18 @@ def with_whole_run(task: Task, comparison: Comparison) -> Comparison:
         f"up to {end:.4g} s" if end == scenario.t_end else f"up to {end / known.time:.2g} Lyapunov times ({end:.4g} s)"
     )
     rows = []
-    for channel in channels:
-        rows.append(_row(channel, until, ours, limit, away & (ours.t <= end), error, ""))
+    before, after = away & (ours.t <= end), away & (ours.t > end)
+    for channel in channels if before.any() else ():
+        rows.append(_row(channel, until, ours, limit, before, error, ""))
+    for channel in channels if after.any() else ():
         if end < scenario.t_end:
-            after = away & (ours.t > end)
             reason = f"chaotic: {known.text()}; compared up to {end / known.time:.2g} of them"
             rows.append(_row(channel, "after that", ours, limit, after, error, reason))
-    notes = [f"whole run: {known.text()}; the run is {scenario.t_end / known.time:.2g} of them long"]
+    share = np.count_nonzero(before) / max(1, np.count_nonzero(ours.t <= end))
+    notes = [
+        f"whole run: {known.text()}; the run is {scenario.t_end / known.time:.2g} of them long",
+        f"{share:.0%} of the times up to {end:.4g} s are compared; the others are too near to a contact",
+    ]
     return Comparison(
         **{**comparison.__dict__, "rows": (*comparison.rows, *rows), "notes": (*comparison.notes, *notes)}
     )
