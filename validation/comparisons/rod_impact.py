@@ -103,8 +103,8 @@ def compare_rods(task: Task) -> Comparison:
     ]
     notes = (
         f"both sides on {', '.join(str(factor * number) for factor in MESHES)} elements, extrapolated with the order "
-        f"that they show; the error bars are what an order of {LEAST_ORDER:g}, the least that a sharp front has, leaves "
-        "open after the last change, or where the meshes show no order after the largest",
+        f"that they show; the error bars are what an order of {LEAST_ORDER:g}, the least that a sharp front has, "
+        "leaves open after the last change, or where the meshes show no order after the largest",
         "without damping the fronts are sharp: no mesh resolves them, and time in contact and impulse converge with "
         "an order below one. The case with damping has no such fronts, and is compared on one mesh",
         f"exudyn's contact is a spring of {SOFT:g} of an element's stiffness, and {STIFF:g} of it where that is said",
