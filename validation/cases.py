@@ -166,7 +166,7 @@ CASES: Mapping[str, Sequence[Case]] = {
     "split_striker": (Case("split_striker", not_comparable=HALF),),
     "split_wall": (Case("split_wall", not_comparable=HALF),),
     "woodpecker": (
-        Case("woodpecker", t_end=0.1, step=1e-5, seconds=100.0, coarse={"t_end": 0.02},
+        Case("woodpecker", t_end=0.1, step=5e-6, seconds=200.0, coarse={"t_end": 0.02, "step": 1e-5},
              why="past the peck, up to which the two can be compared; the third opinion goes on through all pecks"),
     ),
 }  # fmt: skip

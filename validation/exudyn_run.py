@@ -95,7 +95,9 @@ def run_exudyn(model: Model, t_end: float, step: float, settings: ExudynSettings
     sensors = {c.sensor for c in build.columns} | {c.sensor for c in build.contacts}
     sensors |= {c.sensor for c in build.user_contacts}
     data = {sensor: build.mbs.GetSensorStoredData(sensor) for sensor in sensors}
-    t = data[build.columns[0].sensor][:, 0]
+    t = data[build.columns[0].sensor][:, 0].copy()
+    if abs(t[-1] - t_end) < 1e-3 * t_end / steps:
+        t[-1] = t_end  # exudyn adds its steps up: after 1e5 of them the rounding is 1e-12 of the run and more
     channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}
     channels |= {d.channel: d.function(channels) for d in build.derived}
     channels |= _contact_channels(build, channels, data, t)

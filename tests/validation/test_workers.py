@@ -11,12 +11,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tlismni.core import simulate
+from tlismni.models import load
 from tlismni.validation import Case, crosscheck_all
 from tlismni.validation.catalogue import Outcome, _died, _Order
 from tlismni.validation.comparisons.common import Comparison, Row, Touch, own_bar
 from tlismni.validation.comparisons.force_rows import Levels
 from tlismni.validation.comparisons.force_steps import aligned
-from tlismni.validation.comparisons.rod_impact import mesh_limit
+from tlismni.validation.comparisons.rod_impact import MESHES, blow_of_ours, mesh_limit
 from tlismni.validation.crosscheck import CrossCheck
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.workers import Workers
@@ -82,9 +84,25 @@ def test_the_limit_of_meshes_finds_the_order_that_they_show(order: float) -> Non
     values = [3.0 + 0.2 * (100.0 * 2.0**k) ** -order for k in range(3)]
     limit, bar = mesh_limit(values)
     assert limit == pytest.approx(3.0, abs=1e-12) and abs(values[-1] - 3.0) <= bar * (1.0 + 1e-9)
-    # without an order: the finest, with the larger of the last two changes
-    assert mesh_limit([1.0, 1.2, 1.1]) == (1.1, pytest.approx(0.2))
-    assert mesh_limit([1.0, 1.1, 1.1]) == (1.1, pytest.approx(0.1))
+    # without an order: the finest, and no bar below the largest of the changes
+    for changing in ([1.0, 1.2, 1.1], [1.0, 1.1, 1.1], [1.0, 1.2, 1.18, 1.16]):
+        limit, bar = mesh_limit(changing)
+        assert limit == changing[-1] and bar >= np.abs(np.diff(changing)).max()
+
+
+@pytest.mark.parametrize("coarsest", [10, 25])
+def test_the_bars_of_meshes_hold_the_waves_that_no_mesh_resolves(coarsest: int) -> None:
+    # the force EA v/c for 2 L/c (d'Alembert); three meshes whose changes pass zero by chance look converged
+    blows = []
+    for factor in MESHES:
+        scenario = load("rod_wall", elements=coarsest * factor)
+        run = simulate(scenario.model, scenario.t_end, scenario.method, **scenario.options)
+        blows.append(blow_of_ours(run, "wall"))
+    (rod,) = scenario.model.bodies
+    force, duration = rod.axial_stiffness * abs(rod.velocity) / rod.wave_speed, 2.0 * rod.length / rod.wave_speed
+    for field, exact in (("mean", force), ("duration", 0.9 * duration), ("impulse", force * duration)):
+        limit, bar = mesh_limit([getattr(blow, field) for blow in blows])
+        assert abs(limit - exact) <= bar < 0.03 * exact, field
 
 
 def test_aligned_steps_begin_just_before_the_touch_on_every_grid() -> None:
