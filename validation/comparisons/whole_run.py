@@ -62,7 +62,7 @@ def with_whole_run(task: Task, comparison: Comparison) -> Comparison:
         if end < scenario.t_end:
             reason = f"chaotic: {known.text()}; compared up to {end / known.time:.2g} of them"
             rows.append(_row(channel, "after that", ours, limit, after, error, reason))
-    share = np.count_nonzero(before) / max(1, np.count_nonzero(ours.t <= end))
+    share = float(np.sum(before)) / max(1, int(np.sum(ours.t <= end)))
     notes = [
         f"whole run: {known.text()}; the run is {scenario.t_end / known.time:.2g} of them long",
         f"{share:.0%} of the times up to {end:.4g} s are compared; the others are too near to a contact",
