@@ -36,7 +36,7 @@ def render(found: "CrossCheck") -> str:
     motion = None if result is None or found.model is None else drawing(found.model, result)
     sources = sorted({row.third_source for row in found.rows if row.third is not None})
     return str(
-        _environment()
+        environment()
         .get_template(TEMPLATE)
         .render(
             found=found,
@@ -60,7 +60,7 @@ def write_overview(found: "CatalogueCheck", folder: Path) -> Path:
     page, machine = folder / "overview.html", provenance()
     folder.mkdir(parents=True, exist_ok=True)
     text = (
-        _environment()
+        environment()
         .get_template(OVERVIEW)
         .render(
             found=found,
@@ -83,7 +83,8 @@ def _write(path: Path, text: str) -> None:
     part.replace(path)
 
 
-def _environment() -> Any:
+def environment() -> Any:
+    """The templates of the pages, and their filters. Raises TlismniError if jinja2 cannot be imported."""
     try:
         from jinja2 import Environment, PackageLoader
     except ImportError as error:
@@ -91,14 +92,14 @@ def _environment() -> Any:
             f"reports need jinja2, which cannot be imported ({error}). "
             "Install it with: pip install 'tlismni[validation]'"
         ) from error
-    environment = Environment(
+    found = Environment(
         loader=PackageLoader(__package__ or "tlismni.validation"), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters |= {
+    found.filters |= {
         "shown": shown, "part": part, "small": small, "seconds": seconds, "setting": setting, "verdict": verdict,
         "figure": figure, "script": _script, "agreeing": _agreeing, "worst": _worst, "sentence": _sentence,
     }  # fmt: skip
-    return environment
+    return found
 
 
 def _script(text: str) -> Any:

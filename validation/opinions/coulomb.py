@@ -10,9 +10,8 @@ from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
-from .mechanism import ATOL, LONGEST_STEP, RTOL, Array, Course
+from .mechanism import LONGEST_STEP, Array, Course
 
 TOUCHES, RESTS = 1e-11, 1e-9
 """m and m/s: below, a gap or a speed is zero, after the event that made it so."""
@@ -48,24 +47,20 @@ def run(system: Rubbing, q: Sequence[float], v: Sequence[float], t_end: float) -
     n, k = len(q), len(system.offsets)
     inverse = np.linalg.inv(system.mass)
     course = RubbingCourse(size=n)
-    t, y = 0.0, np.concatenate([np.asarray(q, dtype=float), np.asarray(v, dtype=float), np.zeros(k)])
+    y = np.concatenate([np.asarray(q, dtype=float), np.asarray(v, dtype=float), np.zeros(k)])
     ended: tuple[int, str] | None = None
     for _ in range(MOST_EVENTS):
         y = _struck(system, inverse, y)
         modes = _modes(system, inverse, y, ended)
-        ways, watches = _watches(system, inverse, modes, t)
-        part = solve_ivp(
-            lambda t, y, modes=modes: _rates(system, inverse, y, modes), (t, t_end), y, "DOP853",
-            events=watches, rtol=RTOL, atol=ATOL, dense_output=True,
-            max_step=LONGEST_STEP * t_end,
-        )  # fmt: skip
-        course.starts.append(t)
-        course.pieces.append(part.sol)
-        t, y = float(part.t[-1]), part.y[:, -1].copy()
-        course.end = t
-        if part.status != 1:
+        ways, watches = _watches(system, inverse, modes, course.end)
+
+        def rates(t: float, y: Array, modes: dict[int, str] = modes) -> Array:
+            return _rates(system, inverse, y, modes)
+
+        y, event = course.go_on(rates, y, t_end, watches, LONGEST_STEP * t_end)
+        if event is None:
             break
-        ended = ways[next(i for i, times in enumerate(part.t_events) if times.size)]
+        ended = ways[event]
     course.impulses = y[2 * n :]
     return course
 

@@ -9,6 +9,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -73,10 +74,32 @@ class Course:
     """What became of a mechanism: its state at any time until `end`, and its blows."""
 
     starts: list[float] = field(default_factory=list)
-    pieces: list[Callable[[float], Array]] = field(default_factory=list)
+    pieces: list[Callable[[Any], Array]] = field(default_factory=list)
     blows: list[Blow] = field(default_factory=list)
     end: float = 0.0
     size: int = 0
+
+    def go_on(
+        self,
+        rates: Callable[[float, Array], Any],
+        y: Array,
+        t_end: float,
+        events: Sequence[Callable[[float, Array], float]],
+        longest: float = math.inf,
+    ) -> tuple[Array, int | None]:
+        """Integrate y = (q, v, ...) on to `t_end` (s) or the first of the events, with steps of at most `longest` (s).
+
+        Returns y there and the event's number, None at `t_end`.
+        """
+        part = solve_ivp(
+            rates, (self.end, t_end), y, "DOP853", events=events, rtol=RTOL, atol=ATOL, dense_output=True,
+            max_step=longest,
+        )  # fmt: skip
+        self.starts.append(self.end)
+        self.pieces.append(part.sol)
+        self.end = float(part.t[-1])
+        happened = (number for number, times in enumerate(part.t_events) if times.size)
+        return part.y[:, -1].copy(), next(happened) if part.status == 1 else None
 
     def state(self, t: float) -> tuple[Array, Array]:
         """(q, v) at t; NaN after the end. At an impact: after it."""
@@ -152,24 +175,16 @@ def run(
     work = _Run(mechanism, q, t_end)
     n, k = work.n, work.k
     course = Course(size=n)
-    t, y = 0.0, np.concatenate([np.asarray(q, dtype=float), np.asarray(v, dtype=float), np.zeros(k)])
+    y = np.concatenate([np.asarray(q, dtype=float), np.asarray(v, dtype=float), np.zeros(k)])
     for contact in np.flatnonzero(np.abs(mechanism.gaps(y[:n])) < CLOSED).tolist():
         rate = float(mechanism.gradients(y[:n])[contact] @ y[n : 2 * n])
         if rate <= 0.0 and mechanism.laws[contact].force is not None:
             work.pushing[contact] = (0.0, -rate)
-    while t < t_end and len(course.blows) < blows:
-        part = solve_ivp(
-            work.rates, (t, t_end), y, "DOP853", events=[work.event(c) for c in range(k)], rtol=RTOL, atol=ATOL,
-            dense_output=True, max_step=LONGEST_STEP * t_end,
-        )  # fmt: skip
-        course.starts.append(t)
-        course.pieces.append(part.sol)
-        t, y = float(part.t[-1]), part.y[:, -1].copy()
-        course.end = t
-        if part.status != 1:
+    while course.end < t_end and len(course.blows) < blows:
+        y, touched = course.go_on(work.rates, y, t_end, [work.event(c) for c in range(k)], LONGEST_STEP * t_end)
+        if touched is None:
             break
-        contact = next(c for c in range(k) if part.t_events[c].size)
-        y = _switched(work, course, contact, t, y)
+        y = _switched(work, course, touched, course.end, y)
     return course
 
 

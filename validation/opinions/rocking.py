@@ -3,13 +3,12 @@
 import math
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from ...core.contact.laws import ImpactLaw
 from ...models import Scenario
 from ..third_opinion import Opinion, opinion
 from .common import law_of, opinion_on
-from .mechanism import ATOL, RTOL, Array, Course, Mechanism, run
+from .mechanism import Array, Course, Mechanism, run
 
 SAMPLES = 400
 
@@ -41,9 +40,9 @@ def _housner(scenario: Scenario) -> Opinion | None:
         return rate * (-0.5 * side * width * math.cos(angle) - 0.5 * height * math.sin(angle))
 
     course, impulses = Course(size=1), {1.0: 0.0, -1.0: 0.0}
-    side, t, y = 1.0, 0.0, [-float(p["tilt"]), 0.0]
+    side, y = 1.0, np.array([-float(p["tilt"]), 0.0])
     slip = kept_slip = 0.5 * height * (1.0 - kept) / (0.5 * width * (1.0 + kept))
-    while t < scenario.t_end:
+    while course.end < scenario.t_end:
 
         def bends(t: float, y: Array, side: float = side) -> list[float]:
             return [y[1], side * square * math.sin(alpha + side * y[0])]
@@ -52,17 +51,14 @@ def _housner(scenario: Scenario) -> Opinion | None:
             return float(y[0])
 
         level.terminal, level.direction = True, side  # type: ignore[attr-defined]
-        part = solve_ivp(bends, (t, scenario.t_end), y, "DOP853", events=level, rtol=RTOL, atol=ATOL,
-                         dense_output=True)  # fmt: skip
-        end, last = float(part.t[-1]), part.y[:, -1]
-        slip = max(slip, _ratio(part.sol(np.linspace(t, end, SAMPLES)), side, width, height, square, alpha, gravity))
-        impulses[side] += mass * (gravity * (end - t) + rises(side, *last) - rises(side, *y))
-        course.starts.append(t)
-        course.pieces.append(part.sol)
-        course.end = t = end
-        if part.status != 1:
+        start = course.end
+        last, level_at = course.go_on(bends, y, scenario.t_end, [level])
+        samples = course.pieces[-1](np.linspace(start, course.end, SAMPLES))
+        slip = max(slip, _ratio(samples, side, width, height, square, alpha, gravity))
+        impulses[side] += mass * (gravity * (course.end - start) + rises(side, *last) - rises(side, *y))
+        if level_at is None:
             break
-        y = [0.0, kept * float(last[1])]
+        y = np.array([0.0, kept * float(last[1])])
         impulses[-side] += mass * (rises(-side, *y) - rises(side, 0.0, float(last[1])))
         side = -side
     if max(slip, kept_slip) > holds:

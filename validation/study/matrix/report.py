@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from ...provenance import provenance
-from ...report import _environment
+from ...report import environment
 from .plots import plot_matrix
 from .runner import MethodMatrix
 from .summary import reasons, summary_rows
@@ -32,7 +32,7 @@ def render(matrix: MethodMatrix, figures: list[Path]) -> str:
     """The page as text, figures included."""
     level = matrix.sweep.levels[0]
     return str(
-        _environment()
+        environment()
         .get_template(TEMPLATE)
         .render(
             matrix=matrix,
