@@ -53,8 +53,8 @@ class Fmi2Calls(Calls):
         self.slave.reset()
 
     @fmi_call()
-    def fmi2DoStep(self, t: float, h: float, clock: Any = None) -> None:
-        """One communication step; `clock` comes from shims of former versions."""
+    def fmi2DoStep(self, t: float, h: float) -> None:
+        """One communication step."""
         self.slave.do_step(t, h)
 
     @fmi_call()

@@ -85,11 +85,8 @@ class Fmi3Calls(Calls):
     # steps and events
 
     @fmi_call()
-    def fmi3DoStep(
-        self, t: float, h: float, event_due: Any, terminate: Any, early: Any, last_time: Any, clock: Any = None
-    ) -> None:
-        """One communication step; an event in it may end it, as the instance was made. `clock` comes from shims of
-        former versions."""
+    def fmi3DoStep(self, t: float, h: float, event_due: Any, terminate: Any, early: Any, last_time: Any) -> None:
+        """One communication step; an event in it may end it, as the instance was made."""
         for flag in (event_due, terminate, early):
             put(flag, "?", False)
         put(last_time, "d", self.slave.time)

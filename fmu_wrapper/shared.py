@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+LAYOUT = 1
+"""Number of the layout below and of what it means; a new one with each change, here and in shared.h."""
 TIME, HORIZON, POINT, STEP, REACHED = range(5)
 """Numbers, s: the instance's time; up to where steps only move it; of a step that is asked, its start and size; where
 the last step has ended."""

@@ -12,6 +12,7 @@ from .shared import (
     EVENT_DUE,
     FRESH,
     HORIZON,
+    LAYOUT,
     POINT,
     REACHED,
     READING,
@@ -38,8 +39,10 @@ class SharedCalls:
         """Log `error` and give the status that it means."""
         raise NotImplementedError
 
-    def share(self) -> int:
-        """The address of what is shared from now on."""
+    def share(self, layout: int) -> int:
+        """The address of what is shared from now on; 0, and nothing is, if the binary's layout is another."""
+        if layout != LAYOUT:
+            return 0
         self._shared = Shared(len(self.slave.reals))
         return self._shared.address
 

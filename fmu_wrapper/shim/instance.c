@@ -83,10 +83,10 @@ static PyObject *boot(Instance *self, const char *function, const char *source, 
     return result;
 }
 
-/* Take what the Python side shares. An FMU may meet a package of another version: then it goes without. */
+/* Take what the Python side shares. An FMU may meet a package of another layout: then it goes without. */
 static void share(Instance *self) {
-    PyObject *method = py.PyObject_GetAttrString(self->calls, "share");
-    long long address = instance_number(method ? py.PyObject_CallNoArgs(method) : NULL, 0);
+    PyObject *answer = instance_ask(self, "share", py.Py_BuildValue("(i)", SHARED_LAYOUT));
+    long long address = instance_number(answer, 0);
     if (address) {
         self->step = py.PyObject_GetAttrString(self->calls, "step");
         self->look = py.PyObject_GetAttrString(self->calls, "look");
@@ -94,7 +94,6 @@ static void share(Instance *self) {
     if (self->step && self->look) {
         self->shared = (Shared *)(uintptr_t)address;
     }
-    py.Py_DecRef(method);
     py.PyErr_Clear();
 }
 

@@ -18,8 +18,22 @@ const List *lists_find(Lists *lists, const uint32_t references[], size_t count) 
     return NULL;
 }
 
+/* Where a new list goes; MOST_LISTS for nowhere. */
+static size_t room(const Lists *lists) {
+    size_t place = lists->count;
+    for (size_t k = 0; place == MOST_LISTS && k < MOST_LISTS; k++) {
+        place = lists->lists[k].values ? place : k; /* a host that sets many parameters one by one leaves many of these */
+    }
+    return place;
+}
+
 bool lists_full(const Lists *lists) {
-    return lists->count == MOST_LISTS;
+    return room(lists) == MOST_LISTS;
+}
+
+static void forget(List *list) {
+    free(list->references);
+    free(list->places);
 }
 
 static void *copy_of(const void *data, size_t bytes) {
@@ -31,23 +45,25 @@ static void *copy_of(const void *data, size_t bytes) {
 }
 
 void lists_add(Lists *lists, const uint32_t references[], size_t count, const char *places, size_t values) {
-    if (lists_full(lists)) {
+    size_t place = room(lists);
+    if (place == MOST_LISTS || (place < lists->count && !values)) {
         return;
     }
     List list = {copy_of(references, count * sizeof *references), count,
                  copy_of(places, values * sizeof *list.places), values};
-    if (list.references && list.places) {
+    if (!list.references || !list.places) {
+        forget(&list);
+    } else if (place == lists->count) {
         lists->lists[lists->count++] = list;
     } else {
-        free(list.references);
-        free(list.places);
+        forget(&lists->lists[place]);
+        lists->lists[place] = list;
     }
 }
 
 void lists_free(Lists *lists) {
     for (size_t k = 0; k < lists->count; k++) {
-        free(lists->lists[k].references);
-        free(lists->lists[k].places);
+        forget(&lists->lists[k]);
     }
     lists->count = 0;
 }

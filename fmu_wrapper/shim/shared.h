@@ -7,6 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Number of the layout below and of what it means; a new one with each change, here and in shared.py. */
+#ifndef SHARED_LAYOUT
+#define SHARED_LAYOUT 1
+#endif
+
 enum { READING = 1, GLIDE = 2 };
 
 /* In memory of the Python side (shared.py), which lives as long as the instance's calls. */
@@ -40,9 +45,11 @@ typedef struct {
 /* The list with these references, or NULL. */
 const List *lists_find(Lists *lists, const uint32_t references[], size_t count);
 
-/* Keep a list with the places of its values (as many as `values`); beyond MOST_LISTS it is not kept. */
+/* Keep a list with the places of its values (as many as `values`). Beyond MOST_LISTS it takes the place of one that is
+ * not to be answered here, else it is not kept. */
 void lists_add(Lists *lists, const uint32_t references[], size_t count, const char *places, size_t values);
 
+/* Whether no list is kept any more. */
 bool lists_full(const Lists *lists);
 
 void lists_free(Lists *lists);

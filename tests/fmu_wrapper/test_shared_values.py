@@ -2,6 +2,9 @@
 
 import ctypes
 import math
+import shutil
+import subprocess
+from pathlib import Path
 
 import fmpy
 import numpy as np
@@ -11,9 +14,16 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 from fmu_helpers import Messages, ball_model
 from tlismni.fmu_wrapper import export_fmu
+from tlismni.fmu_wrapper.fmi2_calls import Fmi2Calls
+from tlismni.fmu_wrapper.fmi3_calls import Fmi3Calls
 from tlismni.fmu_wrapper.in_process import InProcess
 from tlismni.fmu_wrapper.in_process3 import InProcess3
+from tlismni.fmu_wrapper.platforms import PLATFORMS, this_platform
+from tlismni.fmu_wrapper.shared import LAYOUT
+from tlismni.fmu_wrapper.shared_calls import SharedCalls
 
+SHIM = Path(__file__).parents[2] / "fmu_wrapper" / "shim"
+CC = shutil.which("cc")
 MOVES = 400
 STEPS = (0.02, 0.02, 0.02, 1e-4, 1e-5, 0.3)
 PUSHES = (0.0, -0.0, 1.0, 1.0, 1.0, 30.0, 1e-300, math.nan, math.inf)
@@ -165,6 +175,56 @@ def test_more_lists_than_are_kept(pair):
         for _ in range(150):
             chosen = rng.choice(reals, size=rng.integers(1, 9)).tolist()
             assert fmu.get_reals(chosen) == [all_values[r] for r in chosen]
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_many_single_lists_leave_room_for_those_of_each_step(tmp_path, monkeypatch, version):
+    """A host that sets a hundred parameters one by one still sets inputs and reads outputs without Python."""
+    pair = Pair(tmp_path, version)
+    calls = Fmi2Calls if version == "2.0" else Fmi3Calls
+    get, put = ("fmi2GetReal", "fmi2SetReal") if version == "2.0" else ("fmi3GetFloat64", "fmi3SetFloat64")
+    counts = {name: count_calls(monkeypatch, calls, name) for name in (get, put)}
+    fmu = pair.start(pair.binary(pair.logs[0]))
+    parameter, push, y = pair.vr["restitution"], [pair.vr["push"]], [pair.vr["ball.y"]]
+    for k in range(100):
+        fmu.get_reals([parameter] * (k + 1))
+    asked = len(counts[get])
+    assert asked >= 100
+    for k in range(20):
+        fmu.set_reals(push, [float(k)])
+        fmu.doStep(0.01 * k, 0.01)
+        fmu.get_reals(y)
+    assert len(counts[get]) - asked == 1
+    assert 1 <= len(counts[put]) <= 2
+
+
+def count_calls(monkeypatch, kind, name):
+    """A list that gets longer with each call of a method."""
+    method, calls = getattr(kind, name), []
+    monkeypatch.setattr(kind, name, lambda self, *arguments: (calls.append(name), method(self, *arguments))[1])
+    return calls
+
+
+@pytest.mark.skipif(CC is None, reason="needs a C compiler")
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_a_binary_of_another_layout_shares_nothing_and_answers_the_same(tmp_path, monkeypatch, version):
+    pair = Pair(tmp_path, version)
+    # in a folder of its own: the binary of the first one stays in the process
+    pair.unzipped = shutil.copytree(pair.unzipped, tmp_path / "other")
+    here = PLATFORMS[this_platform()]
+    binary = Path(
+        pair.unzipped, "binaries", here.folder(version), f"{pair.description.coSimulation.modelIdentifier}{here.suffix}"
+    )
+    flags = ["-std=c11", "-O2", "-shared", "-fPIC", f"-DSHARED_LAYOUT={LAYOUT + 1}", "-ldl", "-lpthread"]
+    sources = sorted(map(str, SHIM.glob("*.c")))
+    subprocess.run([CC, *sources, "-o", str(binary), *flags], check=True)
+    step = count_calls(monkeypatch, SharedCalls, "step")
+    pair.both = pair.start(pair.binary(pair.logs[0])), pair.both[1]
+    for k in range(100):
+        pair.same(lambda fmu, k=k: fmu.set_reals([pair.vr["push"]], [float(k // 7)]))
+        pair.same(lambda fmu, k=k: (fmu.doStep(0.01 * k, 0.01), None)[1])
+        pair.same(lambda fmu: fmu.get_reals([pair.vr["ball.y"], pair.vr["push"]]))
+    assert not step
 
 
 def test_room_that_does_not_fit_is_refused_for_known_lists_too(tmp_path):
