@@ -1,5 +1,7 @@
 """Run a model in exudyn and return its channels."""
 
+import contextlib
+import io
 import logging
 import time
 from collections.abc import Mapping
@@ -141,14 +143,18 @@ def solve(build: Build, t_end: float, step: float, settings: ExudynSettings) -> 
     kinds = exu.DynamicSolverType
     kind = kinds.GeneralizedAlpha if settings.integrator == "generalized_alpha" else kinds.TrapezoidalIndex2
     start = time.perf_counter()
-    silent, exu.config.suppressWarnings = exu.config.suppressWarnings, True  # they go to stdout
+    silent, exu.config.suppressWarnings = exu.config.suppressWarnings, True
+    said = io.StringIO()  # some warnings come all the same, and on stdout, which is ours to write on
     try:
-        success = mbs.SolveDynamic(s, solverType=kind, storeSolver=True)
+        with contextlib.redirect_stdout(said):
+            success = mbs.SolveDynamic(s, solverType=kind, storeSolver=True)
     except RuntimeError as error:
         # exudyn's own error types derive from RuntimeError or ValueError, and its text carries the cause
         raise ExudynFailed(_failure(build, t_end, step, str(error))) from error
     finally:
         exu.config.suppressWarnings = silent
+        if said.getvalue().strip():
+            log.debug("exudyn: %s: %s", build.model.name, said.getvalue().strip())
     wall_time = time.perf_counter() - start
     if success is False:
         raise ExudynFailed(_failure(build, t_end, step, "SolveDynamic reports failure"))
