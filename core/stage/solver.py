@@ -6,7 +6,7 @@ Given t, q*, v*, c_q, c_v find (q, v, a, lambda) with
 
 Outer loop `newton`: the increment (da, dlambda) solves [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] (da, dlambda) =
 -(r, Phi_q a - gamma), which to first order is the Newton step of the reduced system, since c_q da moves q along the
-constraints. The matrices are kept while the iteration converges fast enough, for some stages, and while c_v stays near.
+constraints. The matrices are kept while the iteration converges fast enough, but not for many stages.
 The other outer loops (`simple.py`, `jfnk.py`) and the stages of the comparison methods share what stands here.
 """
 
@@ -52,10 +52,9 @@ MOST_CHEAP_INNER = 12
 # A rate that was measured at an earlier stage is trusted less at each stage that does not measure it anew.
 LEAST_RATE = 0.02
 RATE_GROWTH = 1.5
-# Neither does a contraction show what old matrices do in single directions: increments that they make too small shrink
-# slowly there, behind others that shrink fast. So they are renewed after so many stages, and when c_v has changed so.
-OLDEST = 60.0
-STEP_CHANGE = 2.0
+# A contraction does not show what old matrices do in single directions: increments that they make too small shrink
+# slowly there, behind others that shrink fast. So they are renewed after so many stages.
+OLDEST = 30.0
 # A contraction above this costs more iterations than a factorisation.
 SLOW = 0.2
 
@@ -103,22 +102,16 @@ def begin_stage(ws: Any, t: float, c_q: float, c_v: float) -> None:
     evaluate_prediction(ws, c_q, c_v)
 
 
-@inlined
-def _near(c_v: float, of_factors: float) -> bool:
-    return of_factors < STEP_CHANGE * c_v and c_v < STEP_CHANGE * of_factors
-
-
 @internal
 def prepare_attempt(ws: Any, c_q: float, c_v: float, attempt: int, most_outer: int) -> int:
     """Matrices for attempt 0 or 1 at a stage: first the old ones, unless they have become slow (more than `most_outer`
-    iterations at the last stage), too old or of another step; then new ones at the predicted point. FACTOR_AGE is 1 if
-    they are new."""
+    iterations at the last stage) or too old; then new ones at the predicted point. FACTOR_AGE is 1 if they are new."""
     rate = vec(ws.rate, RATE_SIZE)
     if attempt > 0:
         evaluate_prediction(ws, c_q, c_v)
     most_inner = MOST_INNER if ws.part_first == 0 else MOST_CHEAP_INNER
     slow = rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > most_inner
-    if attempt > 0 or slow or not 0.0 <= rate[FACTOR_AGE] < OLDEST or not _near(c_v, rate[FACTOR_CV]):
+    if attempt > 0 or slow or not 0.0 <= rate[FACTOR_AGE] < OLDEST:
         status = refactor(ws, c_q, c_v)
         if status != OK:
             return status

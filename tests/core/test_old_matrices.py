@@ -8,7 +8,7 @@ from tlismni.core.methods.history import recall
 from tlismni.core.stage.accelerations import solve_accelerations
 from tlismni.models import load
 
-UNSOLVED = 0.3
+UNSOLVED = 0.5
 """What an outer loop with a tolerance of 0.01 error weights may leave in 99 of 100 steps, measured without its
 matrices."""
 

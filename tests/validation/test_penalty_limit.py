@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from tlismni.core import Disk2D, DiskOnHalfPlane2D, HalfPlane2D, Marker2D, Model, NewtonImpact, RigidBody2D
 from tlismni.models import load
 from tlismni.validation import crosscheck
 from tlismni.validation.comparisons.persistent_contact import TIMES, WEIGHTS, Limits
@@ -60,3 +61,19 @@ def test_exudyn_writes_nothing_on_stdout(capfd: pytest.CaptureFixture[str]) -> N
     model = load("stick_slip", law="kelvin_voigt_gap", stiffness=1e5, damping=600.0, transition_speed=1e-2).model
     run_exudyn(model, 1.6, 2e-4)
     assert capfd.readouterr().out == ""
+
+
+@needs_exudyn
+@pytest.mark.parametrize(("offset", "alone"), [(0.0, False), (0.05, True)])
+def test_a_blow_that_two_contacts_share_is_not_laid_on_one_constraint(offset: float, alone: bool) -> None:
+    """A bar lands on both ends at once, or on one that hangs lower."""
+
+    def end(name: str, x: float, y: float) -> DiskOnHalfPlane2D:
+        disk = Disk2D(marker=Marker2D(body="bar", point=(x, y)))
+        return DiskOnHalfPlane2D(name=name, plane=HalfPlane2D(), disk=disk, law=NewtonImpact(restitution=0.6))
+
+    bar = RigidBody2D(name="bar", mass=1.0, inertia=0.1, position=(0.0, 0.3))
+    contacts = (end("left", -0.4, 0.0), end("right", 0.4, offset))
+    found = crosscheck(Model(name="bar", gravity=(0.0, -9.81), bodies=(bar,), contacts=contacts), t_end=0.26)
+    assert found.ok
+    assert any("switched on" in row.quantity for row in found.rows) == alone

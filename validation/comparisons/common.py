@@ -21,6 +21,8 @@ LOOSER = 10.0
 """Our error bar is what this factor on our tolerances changes: an error in proportion to them is a ninth of it."""
 MOST_BARS = 3.0
 """Times the tolerance: beside larger error bars a small difference says nothing, and the row is undecided."""
+STILL = 1e-7
+"""Of the largest value in a unit: what moves less is at rest."""
 ROUNDING = 1e-14
 """Relative: what no run can be better than."""
 RATES = {"x": "vx", "y": "vy", "angle": "angular_velocity", "gap": "gap_rate"}
@@ -259,6 +261,15 @@ def at_times(t: np.ndarray, channels: Mapping[str, np.ndarray], channel: str, ti
 def unit_of(result: Result, channel: str) -> str:
     """Unit of one of our channels."""
     return next((c.unit for c in result.channel_records if c.name == channel), "")
+
+
+def course_scale(result: Result, channel: str, own: float) -> float | None:
+    """What relative differences of a course in `result`, ours, refer to: its `own` scale, but at least STILL of the
+    largest value in that unit, since what stays at rest differs by rounding. None if all are zero."""
+    unit = unit_of(result, channel)
+    courses = [result[c.name] for c in result.channel_records if c.unit == unit]
+    largest = max((float(np.max(np.abs(x))) for x in courses if x.size), default=0.0)
+    return max(own, STILL * largest) or None
 
 
 def residual_panel(result: Result) -> Panel:

@@ -26,6 +26,7 @@ from .common import (
     Task,
     Touch,
     at_times,
+    course_scale,
     energy_panel,
     is_contact_channel,
     nice_step,
@@ -246,7 +247,8 @@ def _flight_rows(sides: Sides) -> list[Row]:
         mine = ours[channel][inside]
         own = own_bar(mine, loose[channel][inside]) if len(loose.t) == len(ours.t) else np.zeros(len(mine))
         # in a short flight little moves: then a part of the motion of the whole run counts
-        scale = max(0.5 * float(np.ptp(limit)), 0.05 * float(np.ptp(ours[channel]))) or None
+        own_scale = max(0.5 * float(np.ptp(limit)), 0.05 * float(np.ptp(ours[channel])))
+        scale = course_scale(ours, channel, own_scale)
         worst = int(np.argmax(np.abs(mine - limit)))
         for k, name in ((len(flight) - 1, ending), (worst, "where it differs most in flight")):
             title = f"{channel} {name} (t = {flight[k]:.5f} s)"

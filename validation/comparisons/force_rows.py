@@ -9,7 +9,7 @@ from ...core import ForceLaw, Result
 from ...core.description import Model
 from ..exudyn_run import ExudynResult
 from ..metrics import contact_intervals, impulse, peak, released, speeds, trajectory_difference
-from .common import Row, Task, Touch, at_times, is_contact_channel, own_bar, touches, unit_of
+from .common import Row, Task, Touch, at_times, course_scale, is_contact_channel, own_bar, touches, unit_of
 
 RELATIVE = 1e-4
 Channels = Mapping[str, np.ndarray]
@@ -175,7 +175,7 @@ def _state_rows(sides: Sides) -> list[Row]:
         now, late, at_end = _values(sides, channel, np.array([until]))
         end = float(sides.levels.value(at_end)[0])
         # relative to the value, but not where that passes through zero
-        scale = max(abs(end), worst.scale) or None
+        scale = course_scale(sides.ours, channel, max(abs(end), worst.scale))
         title = f"{channel} {name} (t = {until:.5f} s)"
         rows.append(
             Row(title, unit, float(now[0]), end, RELATIVE, "relative", float(sides.levels.bar(at_end)[0]), scale,
@@ -185,8 +185,9 @@ def _state_rows(sides: Sides) -> list[Row]:
         k = int(np.argmin(np.abs(grid - worst.at)))
         title = f"{channel}, where it differs most (t = {worst.at:.5f} s)"
         rows.append(
-            Row(title, unit, float(mine[k]), float(value[k]), RELATIVE, "relative", float(bar[k]), worst.scale or None,
-                ours_uncertainty=float(own_bar(mine[k], other[k])), channel=channel, at=worst.at)
+            Row(title, unit, float(mine[k]), float(value[k]), RELATIVE, "relative", float(bar[k]),
+                course_scale(sides.ours, channel, worst.scale), ours_uncertainty=float(own_bar(mine[k], other[k])),
+                channel=channel, at=worst.at)
         )  # fmt: skip
     return rows
 

@@ -92,7 +92,7 @@ def jumping_touches(model: Model, found: list[Touch]) -> list[Touch]:
 def entry_bar(row: Row, model: Model, jumping: list[Touch], ours: Result, step: float) -> float:
     """What the jumps before a row's time add to its error bar, with exudyn's `step` (s)."""
     before = [x for x in jumping if row.at is None or row.at >= x.start]
-    return max((entry_error(model, x) * step * moved_by(row, ours, x) for x in before), default=0.0)
+    return sum(entry_error(model, x) * step * moved_by(row, ours, x) for x in before)
 
 
 def most_steps(model: Model) -> int:

@@ -29,6 +29,7 @@ from .common import (
     Task,
     Touch,
     at_times,
+    course_scale,
     energy_panel,
     is_contact_channel,
     our_error,
@@ -234,14 +235,14 @@ def _channel_rows(
     mine, own = ours[channel][away], np.zeros(len(t)) if error is None else error[away]
     found = trajectory_difference(t, mine, limit)
     worst = int(np.argmin(np.abs(t - found.at)))
-    unit, rows = unit_of(ours, channel), []
+    unit, scale, rows = unit_of(ours, channel), course_scale(ours, channel, found.scale), []
     last = "at the end" if t[-1] > 0.99 * ours.t[-1] else "before its last impact that can be compared"
     for k, name in ((len(t) - 1, last), (worst, "where it differs most")):
         title = f"{channel} {name} (t = {t[k]:.5g} s)"
         rows.append(
             Row(title, unit, float(mine[k]), float(limit[k]), STATE, "relative", float(moved[k]),
-                found.scale or None, ours_uncertainty=float(own[k]), channel=channel, at=float(t[k]),
-                reason=reason, required=not reason)
+                scale, ours_uncertainty=float(own[k]), channel=channel, at=float(t[k]), reason=reason,
+                required=not reason)
         )  # fmt: skip
     return rows
 

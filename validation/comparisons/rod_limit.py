@@ -22,6 +22,7 @@ from .common import (
     Row,
     Task,
     at_times,
+    course_scale,
     energy_panel,
     is_contact_channel,
     our_run,
@@ -69,7 +70,7 @@ def compare_damped_rods(task: Task) -> Comparison:
     *theirs, again = (blow_of_exudyn(r, name) for r in (*runs, doubled))
     rows = [_blow_row(name, field, mine, other, theirs, again) for field in BLOW]
     rows += [
-        _channel_row(channel, unit_of(ours, channel), grid, _on(grid, channel, ours, coarse_steps), runs, doubled)
+        _channel_row(channel, ours, grid, _on(grid, channel, ours, coarse_steps), runs, doubled)
         for channel in scenario.compare
         if channel in runs[0].channels and channel in ours.channels and not is_contact_channel(task, channel)
     ]
@@ -127,7 +128,7 @@ def _blow_row(name: str, field: str, mine: Blow, other: Blow, theirs: list[Blow]
 
 def _channel_row(
     channel: str,
-    unit: str,
+    ours: Result,
     grid: np.ndarray,
     mine: tuple[np.ndarray, ...],
     runs: list[ExudynResult],
@@ -138,7 +139,7 @@ def _channel_row(
     found = trajectory_difference(grid, mine[0], limit)
     k = int(np.argmin(np.abs(grid - found.at)))
     return Row(
-        f"{channel}, where it differs most (t = {found.at:.4g} s)", unit, float(mine[0][k]), float(limit[k]), RELATIVE,
-        "relative", float(bar[k]), found.scale or None, ours_uncertainty=float(own_bar(mine[0][k], mine[1][k])),
-        channel=channel, at=float(grid[k]),
+        f"{channel}, where it differs most (t = {found.at:.4g} s)", unit_of(ours, channel), float(mine[0][k]),
+        float(limit[k]), RELATIVE, "relative", float(bar[k]), course_scale(ours, channel, found.scale),
+        ours_uncertainty=float(own_bar(mine[0][k], mine[1][k])), channel=channel, at=float(grid[k]),
     )  # fmt: skip

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...core import Result
 from ...core.elements import FlexibleBody
 from ...models.scenario import Scenario
 from ..exudyn_run import ExudynResult, run_exudyn, settings_for
@@ -13,6 +14,7 @@ from .common import (
     Row,
     Task,
     at_times,
+    course_scale,
     energy_panel,
     nice_step,
     our_error,
@@ -26,8 +28,6 @@ TOLERANCE = 1e-5
 FIRST_STEPS = 2000
 MOST_STEPS = 64_000
 SAMPLES = 401
-LEAST_SCALE = 1e-9
-"""m, rad, ...: a channel that stays zero differs by rounding only."""
 TIGHT = 1e-10
 """Newton's tolerance in exudyn: its iteration error must not disturb the extrapolation."""
 
@@ -52,7 +52,7 @@ def compare_motion(task: Task) -> Comparison:
         task.progress(f"exudyn, step {step:.1e} s")
         runs.append(run_exudyn(task.exudyn_model, scenario.t_end, step, settings))
         if len(runs) > 2:
-            rows = [_row(c, unit_of(ours, c), ours[c], own.get(c, np.zeros(SAMPLES)), grid, runs) for c in channels]
+            rows = [_row(c, ours, own.get(c, np.zeros(SAMPLES)), grid, runs) for c in channels]
             decided = all(r.uncertainty <= 0.3 * TOLERANCE * (r.scale or 1.0) for r in rows)
             if decided or any(r.evident for r in rows) or scenario.t_end / step > 0.5 * MOST_STEPS:
                 break
@@ -100,19 +100,19 @@ def _limit(channel: str, grid: np.ndarray, runs: list[ExudynResult]) -> tuple[np
     return limit, np.abs(limit - before)
 
 
-def _row(channel: str, unit: str, ours: np.ndarray, own: np.ndarray, grid: np.ndarray, runs: list[ExudynResult]) -> Row:
+def _row(channel: str, ours: Result, own: np.ndarray, grid: np.ndarray, runs: list[ExudynResult]) -> Row:
     limit, uncertainty = _limit(channel, grid, runs)
-    found = trajectory_difference(grid, ours, limit)
+    found = trajectory_difference(grid, ours[channel], limit)
     k = int(np.argmin(np.abs(grid - found.at)))
     return Row(
         f"{channel}, where it differs most (t = {found.at:.4g} s)",
-        unit,
-        float(ours[k]),
+        unit_of(ours, channel),
+        float(ours[channel][k]),
         float(limit[k]),
         TOLERANCE,
         "relative",
         float(uncertainty[k]),
-        max(found.scale, LEAST_SCALE),
+        course_scale(ours, channel, found.scale),
         ours_uncertainty=float(own[k]),
         channel=channel,
         at=float(grid[k]),

@@ -20,10 +20,17 @@ from .common import Row, Task, Touch
 STEP = 1e-8
 """s: what forces and motion add in it does not count."""
 TOLERANCE = 1e-5
+TOUCHING = 1e-9
+"""m: gap of a contact that is closed."""
 
 
 def toggled_rows(task: Task, first: Touch, ours: Result) -> list[Row]:
-    """The row of the first impact's impulse; none where the contact joins more than two bodies or others than rigid."""
+    """The row of the first impact's impulse; none where the contact joins more than two bodies or others than rigid,
+    nor where another contact touches too and takes its share."""
+    instant = int(np.searchsorted(ours.t, first.start))
+    others = [c.name for c in task.exudyn_model.contacts if c.name != first.contact]
+    if any(ours[f"{name}.gap"][instant] <= TOUCHING for name in others):
+        return []
     contact = next(c for c in task.exudyn_model.contacts if c.name == first.contact)
     if not isinstance(contact.law, NewtonImpact) or first.start <= 0.0:
         return []

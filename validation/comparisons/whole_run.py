@@ -9,7 +9,19 @@ from ...core.contact.laws import ImpactLaw
 from ..exudyn_run import ExudynResult, run_exudyn, settings_for
 from ..metrics import power_limit, trajectory_difference
 from ..predictability import predictability
-from .common import Comparison, Row, Task, at_times, is_contact_channel, nice_step, our_error, our_run, touches, unit_of
+from .common import (
+    Comparison,
+    Row,
+    Task,
+    at_times,
+    course_scale,
+    is_contact_channel,
+    nice_step,
+    our_error,
+    our_run,
+    touches,
+    unit_of,
+)
 from .constraint_contact import EXPONENT, contact_step, with_stiffness
 from .events import away_from
 
@@ -82,8 +94,8 @@ def _row(
     own = error[channel][kept][k] if channel in error else 0.0
     return Row(
         f"{channel} {name}, where it differs most (t = {t[k]:.5g} s)", unit_of(ours, channel), float(mine[k]),
-        float(theirs[k]), STATE, "relative", float(moved[k]), found.scale or None, not reason, float(own), reason,
-        channel, float(t[k]),
+        float(theirs[k]), STATE, "relative", float(moved[k]), course_scale(ours, channel, found.scale), not reason,
+        float(own), reason, channel, float(t[k]),
     )  # fmt: skip
 
 
