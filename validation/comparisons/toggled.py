@@ -27,14 +27,14 @@ TOUCHING = 1e-9
 def toggled_rows(task: Task, first: Touch, ours: Result) -> list[Row]:
     """The row of the first impact's impulse; none where the contact joins more than two bodies or others than rigid,
     nor where another contact touches too and takes its share."""
-    instant = int(np.searchsorted(ours.t, first.start))
-    others = [c.name for c in task.exudyn_model.contacts if c.name != first.contact]
-    if any(ours[f"{name}.gap"][instant] <= TOUCHING for name in others):
-        return []
     contact = next(c for c in task.exudyn_model.contacts if c.name == first.contact)
     if not isinstance(contact.law, NewtonImpact) or first.start <= 0.0:
         return []
-    struck = _at(task.exudyn_model, ours, first.start)
+    before = int(np.searchsorted(ours.t, first.start))
+    others = [c.name for c in task.exudyn_model.contacts if c is not contact]
+    if any(ours[f"{name}.gap"][before] <= TOUCHING for name in others):
+        return []
+    struck = _at(task.exudyn_model, ours, before)
     if struck is None:
         return []
     impulse = plastic_impulse(struck, contact)
@@ -73,9 +73,8 @@ def _reference(build: Any, node: int) -> tuple[float, ...]:
     return next(items.reference for items in build.bodies.values() if node in items.all_nodes)
 
 
-def _at(model: Model, ours: Result, t: float) -> Model | None:
-    """The model without contacts, its bodies as they are just before `t`; None if there are others than rigid ones."""
-    k = int(np.searchsorted(ours.t, t))
+def _at(model: Model, ours: Result, k: int) -> Model | None:
+    """The model without contacts, its bodies as they are in record `k`; None if there are others than rigid ones."""
     bodies = []
     for body in model.bodies:
         if type(body) not in (RigidBody2D, PointMass2D):
