@@ -22,6 +22,10 @@ MOST_ROUNDS = 2000
 """Of impacts at one instant, each of the contacts that approach then."""
 
 
+UNSOLVED = 1e-8
+"""Of the fastest approach: rounds that leave less than this, and no less than those before, are at their end."""
+
+
 class EndlessImpact(ArithmeticError):
     """A sequence of blows that does not end."""
 
@@ -40,6 +44,8 @@ class Impact:
     """-g' before (of a contact that is struck later at the same instant: before that), m/s."""
     separation: Vector
     """g' after, m/s."""
+    left: float
+    """Approach that the last round has left because of rounding, m/s."""
     residual: float
     """Largest violation of the joints and of complementarity at velocity-increment level, m/s."""
 
@@ -65,9 +71,12 @@ def strike(touching: Touching, restitution: Vector, rounding: float) -> Impact:
     normal, tangential, loss = np.zeros(count), np.zeros(count), np.zeros(count)
     approach = np.maximum(-first, 0.0)
     sequential = any(isinstance(law, NewtonImpact) and law.propagation == "sequential" for law in laws)
+    left, noise = np.inf, UNSOLVED * float(np.max(np.abs(first)))
     for _ in range(MOST_ROUNDS):
         gap_rate, slide_rate = touching.rates()
-        if np.all(gap_rate >= -rounding):
+        before_round, left = left, max(-float(np.min(gap_rate)), 0.0)
+        # where contacts repeat each other nearly, no round gets below what rounding leaves in the forces
+        if left <= rounding or 0.5 * before_round <= left <= noise:
             break
         approach = np.where(approach > rounding, approach, -gap_rate)
         if sequential:
@@ -83,7 +92,7 @@ def strike(touching: Touching, restitution: Vector, rounding: float) -> Impact:
         raise EndlessImpact(f"{MOST_ROUNDS} impacts of the touching contacts at one instant do not end")
     # the joints keep their rates
     violation = max(violation, float(np.max(np.abs(arrays["phid"][joints] - before), initial=0.0)))
-    return Impact(normal, tangential, loss, approach, touching.rates()[0], violation)
+    return Impact(normal, tangential, loss, approach, touching.rates()[0], left, violation)
 
 
 def _at_once(

@@ -69,7 +69,7 @@ def settle(sim: "Engine", pending: list[int]) -> None:
     gap_rate, _ = touching.rates()
     approaching = (gap_rate < -rounding) & ((now.was == OPEN) | sim.formula.exact)
     if np.any(approaching):
-        _impact(sim, touching, now, rounding)
+        rounding = max(rounding, 2.0 * _impact(sim, touching, now, rounding))
         accelerations = 0.0
     chosen = Resting(sim, touching, now, rounding, accelerations).choose()
     _take(sim, now, chosen, slide_values)
@@ -79,8 +79,9 @@ def settle(sim: "Engine", pending: list[int]) -> None:
 # ---- velocity level -------------------------------------------------------------------------------------------------
 
 
-def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -> None:
-    """Strike; contacts that would bounce ever lower are struck without restitution, if they then stay."""
+def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -> float:
+    """Strike; contacts that would bounce ever lower are struck without restitution, if they then stay. Returns the
+    approach that rounding has left, m/s."""
     memory, contacts = sim.memory, now.contacts
     laws: list[ImpactLaw] = [sim.assembly.contacts[k].law for k in contacts]  # type: ignore[misc]
     restitution = np.array([law.restitution for law in laws])
@@ -132,6 +133,7 @@ def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -
                 max(float(impact.separation[i]), 0.0), impact.residual, float(impact.friction_impulse[i]),
             )
         )  # fmt: skip
+    return impact.left
 
 
 def _strike(sim: "Engine", touching: Touching, restitution: NDArray[np.float64], rounding: float) -> Impact:

@@ -28,12 +28,18 @@ NO_FORCE = 1e-12
 """A contact force below this part of the largest is none."""
 NO_ACCELERATION = 1e-11
 """A gap's acceleration below this part of what weights and forces make is none."""
+NO_SLIDING = 2e-13
+"""Acceleration along the tangent below this part of its terms is none."""
 NEARLY_SINGULAR = 1e-6
 """Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
 PERHAPS_REST = 1e-3
 """Of the largest speed (or of 1 m/s): gaps that open faster than this are not at rest."""
 SPARE = 1e-6
 """Part of its limit that a new distribution of sticking friction must leave to each contact."""
+
+AHEAD, FARTHEST_AHEAD = 1e-9, 1e-6
+"""How far the mechanism is moved, of its size, to see what holds a moment later: at the second event of an instant, and
+ten times farther at each of the following ones, but not beyond."""
 
 
 class Resting:
@@ -163,10 +169,19 @@ class Resting:
         flags[apart] = True
         return flags
 
+    def _ahead(self) -> float:
+        """How far ahead accelerations are looked at, s: where a geometry's curvature jumps (a corner is passed), the
+        present point may lie before the jump by rounding, and what holds behind it decides. 0 at first."""
+        again = self.sim.events_here - 1
+        speed = float(np.max(np.abs(self.sim.workspace.arrays["v"][: self.sim.assembly.n]) / self.sim.assembly.coordinate_scale))
+        if again < 1 or speed == 0.0:
+            return 0.0
+        return min(AHEAD * 10.0 ** (again - 1), FARTHEST_AHEAD) / speed
+
     def _prepare(self, accelerations: float) -> None:
         """Free accelerations of gaps and sliding distances, with zero for what is rounding."""
         touching = self.touching
-        b_n, b_t = touching.free_accelerations()
+        b_n, b_t = touching.free_accelerations(self._ahead())
         arrays, n = self.sim.workspace.arrays, self.sim.assembly.n
         level = max(float(np.max(np.abs(arrays["a"][:n]), initial=0.0)), accelerations, 1e-300)
         self.none = NO_ACCELERATION * level
@@ -234,10 +249,19 @@ class Resting:
         with the highest limits first."""
         limit = self.static * found.normal
         below = (np.abs(found.tangential) < limit * (1.0 - AT_LIMIT)) | (limit == 0.0)
+        if not self.slipping:
+            # blocks that ride on one another need just the limit
+            below |= self._stays(found)
         if found.sticks and not self.slipping:
             below[:] = True
         some = np.flatnonzero((self.static > 0.0) & (self.direction == 0.0) & below & ~self.full & self.at_rest)
         return some[np.argsort(-limit[some], kind="stable")]
+
+    def _stays(self, found: ContactSolution) -> Flags:
+        """Contacts without an acceleration along their tangent but for rounding."""
+        a = self.touching.a
+        terms = np.abs(self.b_t) + np.abs(a.nt.T) @ found.normal + np.abs(a.tt) @ np.abs(found.tangential)
+        return np.asarray(np.abs(found.tangential_motion) <= NO_SLIDING * terms)
 
     def _begins(self, found: ContactSolution) -> Flags:
         """Contacts at the limit of their friction that no others hold."""

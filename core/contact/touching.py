@@ -151,8 +151,17 @@ class Touching:
         evaluate_residuals(self.sim.workspace.record)
         return self._rows("phid")
 
-    def free_accelerations(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Their accelerations without contact forces, each (contacts,), m/s^2."""
+    def free_accelerations(self, ahead: float = 0.0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Their accelerations without contact forces, each (contacts,), m/s^2; `ahead`: as they are so many seconds later
+        if the velocities stay."""
+        if ahead > 0.0:
+            arrays, n = self.sim.workspace.arrays, self.sim.assembly.n
+            here = arrays["q"][:n].copy()
+            arrays["q"][:n] += ahead * arrays["v"][:n]
+            found = self.free_accelerations()
+            arrays["q"][:n] = here
+            self.free_accelerations()
+            return found
         status = solve_accelerations(self.sim.workspace.record)
         if status != OK:
             raise SimulationError(

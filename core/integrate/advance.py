@@ -14,6 +14,7 @@ from ..methods.history import recall
 from ..system.evaluate import evaluate_residuals
 from ..system.projection import bring_to_rest
 from ..system.records import (
+    FACTOR_AGE,
     FAILED_NORM,
     INNER_DIVERGED,
     LOOKED_CONDITION,
@@ -47,7 +48,7 @@ from .records import (
 )
 from .repair import repair
 from .step_budget import step_count, steps_left
-from .watch import crossed, friction_margin
+from .watch import GAP_ROUNDING, crossed, friction_margin
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -60,6 +61,8 @@ MOST_HALVINGS = 40
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
+PRESSING = 1e-9
+"""Of the largest acceleration: with more, the gap of shapes that touch begins to close."""
 VELOCITY_JUMP = 1e-9
 """m/s; a larger change of the velocity constraints' violation at a breakpoint is a jump in a driver's rate."""
 _REASONS = {
@@ -251,8 +254,24 @@ def _fail(sim: "Simulation", code: int) -> None:
     )
 
 
+class _NoTrial(Exception):
+    """A step that was tried while an event was located cannot be made: its `args` hold the status."""
+
+
 def _locate(sim: "Simulation") -> None:
-    """End the step at the first event in it, and make that event pending."""
+    """End the step at the first event in it, and make that event pending; where a trial fails that needs shorter steps
+    from the newest row, ask for those instead."""
+    try:
+        _locate_first(sim)
+    except _NoTrial as failure:
+        (status,) = failure.args
+        if sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim):
+            _fail(sim, status)
+        recall(sim.workspace.record, sim._method.record, 0)
+        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+
+
+def _locate_first(sim: "Simulation") -> None:
     ws, lc = sim.workspace.record, sim._loop.record
     h = float(sim.clock[TRIAL_STEP])
     contacts = range(len(sim.assembly.contacts))
@@ -293,7 +312,7 @@ def _trial(sim: "Simulation", step: float, full: float) -> None:
                 return
             if attempt == 0:
                 repair(sim)
-        _fail(sim, status)
+        raise _NoTrial(status)
     finally:
         table["starter"], table["rows"] = usual
 
@@ -335,17 +354,40 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     elif high >= 1.0 and safe_end:
         # the cubic dipped below zero, the quintic does not: no event
         return math.inf
+    overlap = GAP_ROUNDING * max(1.0, size)
     for _ in range(MOST_HALVINGS):
         # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
         if low_step == 0.0 or gap(low_step) > 0.0:
             break
         low_step, high_step = 0.5 * low_step, low_step
+    if down and abs(start[0]) <= overlap and gap(low_step) <= overlap:
+        return _closing_step(sim, contact.row, h, overlap, start[2])
     guess = 0.5 * (low_step + high_step)
     opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
     if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
         # the gap opens within this step, but the force has become tensile before
         return find_root(margin, 0.0, opened, 0.5 * opened, 0.0)
     return opened
+
+
+def _closing_step(sim: "Simulation", row: int, h: float, overlap: float, before: float) -> float:
+    """Step size at which shapes that touch without force begin to close: their gap, zero by rounding, says so late, its
+    acceleration (`before` at the newest row) says it at once, and where it jumps (a corner is passed) just behind that."""
+    arrays = sim.workspace.arrays
+
+    def gap(step: float) -> float:
+        _trial(sim, step, h)
+        return float(arrays["phi"][row]) + overlap
+
+    def acceleration(step: float) -> float:
+        _trial(sim, step, h)
+        return float(arrays["phidd"][row]) + none
+
+    closes = gap(h) <= 0.0
+    none = PRESSING * float(np.max(np.abs(arrays["a"][: sim.assembly.n]), initial=0.0))
+    if before > -none and float(arrays["phidd"][row]) < -none:
+        return find_root(acceleration, 0.0, h, 0.5 * h, 0.0)
+    return find_root(gap, 0.0, h, 0.5 * h, 0.0) if closes else h
 
 
 def _warn_of_jump(sim: "Simulation", t: float) -> None:

@@ -21,6 +21,9 @@ from ..stage.inner import rounding_level
 # A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
 FORCE_ROUNDING = 1e-12
 GAP_ROUNDING = 1e-12  # of the largest coordinate (or of 1 m)
+# Friction has passed its limit only if it is beyond by this part of it: blocks that ride on one another need exactly the
+# limit all along, and rounding must not let them slip.
+SLIP_EXCESS = 1e-9
 
 
 @compiled
@@ -100,7 +103,10 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
         if vec(ws.contact_sticking, ws.n_contacts)[k] == 0.0:
             return False
         sticks = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS
-        none = FORCE_ROUNDING * largest if sticks else RATE_ROUNDING * rounding_level(ws, ws.v)
+        limit = vec(ws.contact_sticking, ws.n_contacts)[k] * force
+        none = RATE_ROUNDING * rounding_level(ws, ws.v)
+        if sticks:
+            none = max(FORCE_ROUNDING * largest, SLIP_EXCESS * limit)
         return friction_margin(ws, k) < -none
     if mode == ACTIVE:
         return g > 0.0 or (release == 2 and force < 0.0)
