@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
-from ..integrate.records import NO_STEP
 from ..integrate.simulation import Simulation
+from ..rounding import NO_STEP
 from .variation import Variation
 
 Floats = NDArray[np.float64]

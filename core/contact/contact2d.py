@@ -99,6 +99,9 @@ class Contact2D(Element):
         """The disks that it brings in touch, for the drawing."""
         return ()
 
+    def lengths(self) -> Sequence[float]:
+        return tuple(disk.radius for disk in self.disks())
+
     def extent(self) -> float:
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
         return math.inf

@@ -21,6 +21,3 @@ SLIDE = 5  # STICKS, IDLE, +1 or -1
 SLIDE_START = 6  # sliding distance at which the contact began to stick, m
 RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slides
 MEMORY_SIZE = 8
-
-RATE_ROUNDING = 1e-12
-"""m/s; a gap rate below this is none."""

@@ -151,6 +151,10 @@ class Element(Record):
         """The markers it uses (their bodies must exist)."""
         return ()
 
+    def lengths(self) -> Sequence[float]:
+        """Its lengths that tell the size of a mechanism whose points do not, m."""
+        return ()
+
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:
         """(body, coordinate name) pairs that it acts on by name (they must exist)."""
         return ()

@@ -15,7 +15,7 @@ from ..contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
 from ..model.channels import Channel
 from ..system.assembly import GROUND_SLOTS, Assembly, Batch, ContactInfo
 from .constraints import ConstraintFunctions
-from .errors import EquationError
+from .errors import EquationError, NotDifferentiableError
 from .functions import EquationFunctions
 from .kernel import CALLBACK, equations_kernel
 from .user_function import UserFunction
@@ -89,7 +89,7 @@ class EquationSystem:
     ) -> None:
         self.q0 = _vector("q0", q0, None)
         n = len(self.q0)
-        self.v0 = _vector("v0", v0, n)
+        self.v0, self.t0 = _vector("v0", v0, n), t0
         self.scale = np.ones(n) if scale is None else _vector("scale", scale, n)
         if np.any(self.scale <= 0.0):
             raise EquationError(f"scale must be positive, it is {self.scale}")
@@ -156,6 +156,23 @@ class EquationSystem:
         parts += [c.name + repr(c.law) for c in self.contacts]
         return hashlib.sha256("|".join(parts).encode()).hexdigest()
 
+    def _row_scale(self) -> NDArray[np.float64]:
+        """How far constraints and gaps move when the coordinates move by their scales, curvature included, (rows,)."""
+        found = []
+        constraints = [] if self.functions.m == 0 else [self.functions.constraints]
+        for functions in (*constraints, *self.gaps):
+            for k in range(functions.m):
+                row = np.zeros(functions.m)
+                row[k] = 1.0
+                try:
+                    jacobian, curvature = functions.jacobian_and_curvature(self.t0, self.q0, row)
+                except NotDifferentiableError:
+                    jacobian, curvature = functions.jacobian(self.t0, self.q0), np.zeros((self.n, self.n))
+                by_gradient = np.abs(np.reshape(jacobian, (functions.m, self.n))[k]) * self.scale
+                by_curvature = np.abs(curvature) * np.outer(self.scale, self.scale)
+                found.append(max(np.max(by_gradient), np.max(by_curvature)))
+        return np.array(found, dtype=np.float64)
+
     def assemble(self) -> Assembly:
         """One batch whose kernel calls the functions."""
         n, m, contacts = self.n, self.m, len(self.contacts)
@@ -195,6 +212,8 @@ class EquationSystem:
             multiplier_channels=[Channel(f"lambda{k}", "1", f"multiplier of constraint {k}") for k in range(m)],
             body_columns=[],
             coordinate_scale=self.scale,
+            length=float(np.max(self.scale)),
+            row_scale=self._row_scale(),
             bind=binding.bind,
         )
         binding.errors = assembly.user_error

@@ -5,13 +5,16 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..contact.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
 from ..contact.painleve import refuse_passed_jam, sliding_contacts
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
+from ..rounding import CONTINUOUS, GAP_ROUNDING, NO_STEP, PRESSING, SHORTEST
 from ..system.evaluate import evaluate_residuals
+from ..system.levels import position_level, rate_level
 from ..system.projection import bring_to_rest
 from ..system.records import (
     FACTOR_AGE,
@@ -36,7 +39,6 @@ from .records import (
     FIXED_STEP,
     FULL,
     NEAR_SINGULAR,
-    NO_STEP,
     REACHED,
     REPARTITION,
     STEP_SIZE,
@@ -48,7 +50,7 @@ from .records import (
 )
 from .repair import repair
 from .step_budget import step_count, steps_left
-from .watch import GAP_ROUNDING, crossed, friction_margin
+from .watch import crossed, friction_margin
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -61,10 +63,6 @@ MOST_HALVINGS = 40
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
-PRESSING = 1e-9
-"""Of the largest acceleration: with more, the gap of shapes that touch begins to close."""
-VELOCITY_JUMP = 1e-9
-"""m/s; a larger change of the velocity constraints' violation at a breakpoint is a jump in a driver's rate."""
 _REASONS = {
     OUTER_DIVERGED: ("outer", "the outer loop diverged"),
     OUTER_SLOW: ("outer", "the outer loop did not converge"),
@@ -169,7 +167,7 @@ def _shrink(sim: "Simulation") -> bool:
     """A smaller step after a failure of a repaired system; False if it cannot be smaller."""
     h = 0.25 * sim.clock[TRIAL_STEP]
     sim.clock[STEP_SIZE] = h
-    return bool(h > 1e-13 * max(abs(sim.t_internal), 1e-6))
+    return bool(h > SHORTEST * max(abs(sim.t_internal), 1e-6 * sim.scales.time))
 
 
 def _fall_back(sim: "Simulation", code: int) -> None:
@@ -341,7 +339,7 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
         _trial(sim, step, h)
         return sign * float(arrays["phi"][contact.row])
 
-    size = float(np.max(np.abs(arrays["q"][: sim.assembly.n]), initial=1.0))
+    size = position_level(sim.workspace.record) * float(arrays["row_scale"][contact.row])
     low_step, high_step = low * h, high * h
     safe_end = sign * end[0] > 0.0
     if high < 1.0 and gap(high_step) > 0.0:
@@ -354,7 +352,7 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     elif high >= 1.0 and safe_end:
         # the cubic dipped below zero, the quintic does not: no event
         return math.inf
-    overlap = GAP_ROUNDING * max(1.0, size)
+    overlap = GAP_ROUNDING * size
     for _ in range(MOST_HALVINGS):
         # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
         if low_step == 0.0 or gap(low_step) > 0.0:
@@ -384,7 +382,8 @@ def _closing_step(sim: "Simulation", row: int, h: float, overlap: float, before:
         return float(arrays["phidd"][row]) + none
 
     closes = gap(h) <= 0.0
-    none = PRESSING * float(np.max(np.abs(arrays["a"][: sim.assembly.n]), initial=0.0))
+    largest = float(np.max(np.abs(arrays["a"][: sim.assembly.n]) / sim.assembly.coordinate_scale, initial=0.0))
+    none = PRESSING * largest * float(arrays["row_scale"][row])
     if before > -none and float(arrays["phidd"][row]) < -none:
         return find_root(acceleration, 0.0, h, 0.5 * h, 0.0)
     return find_root(gap, 0.0, h, 0.5 * h, 0.0) if closes else h
@@ -396,7 +395,7 @@ def _warn_of_jump(sim: "Simulation", t: float) -> None:
     jumps = {
         assembly.row_names[row]: -float(rates[row])
         for row in range(assembly.m_joints)
-        if abs(rates[row]) > VELOCITY_JUMP
+        if abs(rates[row]) > _no_jump(sim)[row]
     }
     logger.warning(
         "at t = %.9g s the velocity jumps (%s): an impact of the driver; its work is in energy.input_work. "
@@ -404,6 +403,12 @@ def _warn_of_jump(sim: "Simulation", t: float) -> None:
         t,
         ", ".join(f"driver '{name}' by {jump:.6g}" for name, jump in jumps.items()),
     )
+
+
+def _no_jump(sim: "Simulation") -> NDArray[np.float64]:
+    """Changes of the rates of rows of Phi at a breakpoint that are no jumps, (m,)."""
+    row_scale = sim.workspace.arrays["row_scale"][: sim.assembly.m]
+    return np.asarray(CONTINUOUS * rate_level(sim.workspace.record) * row_scale)
 
 
 def restart_at(sim: "Simulation", t: float) -> None:
@@ -420,7 +425,7 @@ def restart_at(sim: "Simulation", t: float) -> None:
     evaluate_residuals(ws)
     kinetic = sim.kinetic_energy()
     # what a method without velocity constraints has violated before is no jump
-    if np.max(np.abs(arrays["phid"][active] - before), initial=0.0) > VELOCITY_JUMP:
+    if np.any(np.abs(arrays["phid"][active] - before) > _no_jump(sim)[active]):
         _warn_of_jump(sim, t)
         bring_to_rest(sim.workspace, "phid", "v")
         sim.add_input_work(sim.kinetic_energy() - kinetic)

@@ -25,6 +25,7 @@ from ..methods.history import history_time, recall, restart
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
+from ..rounding import NO_STEP
 from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import (
@@ -42,7 +43,7 @@ from .dense_output import query
 from .inputs import PUNCTUAL
 from .loop import run
 from .near_singular import STRAINED
-from .records import BREAK_TIME, CHUNK, CLOCK_SIZE, LOOP, NO_STEP, REACHED, STOP_TIME, TARGET_TIME
+from .records import BREAK_TIME, CHUNK, CLOCK_SIZE, LOOP, REACHED, STOP_TIME, TARGET_TIME
 from .sample import write_sample
 from .watch import remember
 

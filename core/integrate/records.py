@@ -20,9 +20,6 @@ LOOP = np.dtype(
     ]
 )  # fmt: skip
 
-NO_STEP = 4e-16
-"""Of the time: what is left before a stop or a breakpoint is rounding, and `run` makes no step of it."""
-
 # columns of `clock`
 STEP_SIZE = 0  # proposed next step
 STOP_TIME = 1

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..stage import OUTER_LOOPS
 from ..stage.simple import MOST_DEPTH
+from ..rounding import CONSTRAINT_TOLERANCES
 from ..system.assembly import Assembly
 from ..system.records import (
     ACCELERATION,
@@ -31,8 +32,6 @@ from .controllers import CONTROLLERS
 ACCELERATIONS = ("none", "aitken", "anderson")
 REDUNDANT = ("drop", "refuse")
 """What is done with constraints that repeat others."""
-CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
-"""At position, velocity and acceleration level: absolute below 1, relative to the largest entry above."""
 KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
 FINEST = 1e-13
@@ -114,38 +113,49 @@ def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
 
 
 DEFAULT_ATOL = 1e-9
-"""Of kinds that a mapping leaves out."""
+"""Of kinds that a mapping leaves out; relative to the coordinates' scales where these are small."""
 
 
 def set_control(
-    settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]
+    settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]], rate: float
 ) -> None:
     """Fill the workspace's absolute tolerances and its control numbers, but for those of the outer loop
-    (`Engine.use_outer_loop`); `newton_tolerance` is the formula's own."""
+    (`Engine.use_outer_loop`) and the model's own scales; `newton_tolerance` is the formula's own, `rate` the inverse
+    of the model's time, 1/s."""
     control, n = arrays["control"], assembly.n
+    # a tolerance as large as what it is for would let all pass
+    size_q, size_v = assembly.coordinate_scale, assembly.coordinate_scale * rate
+    internal = assembly.is_internal
+    # the state is the velocity of such a coordinate, and a deflection: a length
+    size_v = np.where(internal, assembly.length, size_v)
     fixed = settings.step is not None
     if fixed:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
         tolerance = settings.newton_tolerance or 1e-10
         control[RTOL] = control[ATOL] = tolerance
         control[NEWTON_TOLERANCE] = 1.0
-        arrays["atol_q"][:] = arrays["atol_v"][:] = tolerance
+        arrays["atol_q"][:n] = tolerance * np.minimum(1.0, size_q)
+        arrays["atol_v"][:n] = tolerance * np.minimum(1.0, size_v)
     else:
         control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
             newton_tolerance, min(0.01, FINEST / settings.rtol)
         )
-        given = settings.atol if isinstance(settings.atol, Mapping) else dict.fromkeys(KINDS, settings.atol)
-        atol = {kind: float(given.get(kind, DEFAULT_ATOL)) for kind in KINDS}
-        control[ATOL] = min(atol.values())
-        angles = assembly.is_angle
-        arrays["atol_q"][:n] = np.where(angles, atol["angle"], atol["length"])
-        arrays["atol_v"][:n] = np.where(angles, atol["angular_speed"], atol["speed"])
-        # the state is the velocity of such a coordinate, and a deflection: a length
-        arrays["atol_v"][:n][assembly.is_internal] = atol["length"]
+        angles, most = assembly.is_angle, max(settings.rtol, DEFAULT_ATOL)
+
+        def tolerances(kind: str, size: NDArray[np.float64]) -> NDArray[np.float64]:
+            if isinstance(settings.atol, Mapping) and kind in settings.atol:
+                return np.full(n, float(settings.atol[kind]))
+            given = DEFAULT_ATOL if isinstance(settings.atol, Mapping) else float(settings.atol)
+            return np.minimum(given, most * size)
+
+        arrays["atol_q"][:n] = np.where(angles, tolerances("angle", size_q), tolerances("length", size_q))
+        arrays["atol_v"][:n] = np.where(angles, tolerances("angular_speed", size_v), tolerances("speed", size_v))
+        arrays["atol_v"][:n][internal] = tolerances("length", size_v)[internal]
+        control[ATOL] = min(1.0, float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0)))
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     # differences over several steps see what the constraints leave open: it has to be small against the tolerances
-    finest = (settings.newton_tolerance or 1.0) if fixed else float(min(arrays["atol_q"][:n], default=1.0))
+    finest = (settings.newton_tolerance or 1.0) if fixed else float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0))
     control[EXACTNESS] = min(1.0, max(1e-3, 0.02 * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     control[MAX_INNER] = 12.0

@@ -11,19 +11,12 @@ from ..contact.modes import (
     MEMORY_SIZE,
     MODE,
     OPEN,
-    RATE_ROUNDING,
     RELEASED,
     SLIDE,
     STICKS,
 )
-from ..stage.inner import rounding_level
-
-# A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
-FORCE_ROUNDING = 1e-12
-GAP_ROUNDING = 1e-12  # of the largest coordinate (or of 1 m)
-# Friction has passed its limit only if it is beyond by this part of it: blocks that ride on one another need exactly the
-# limit all along, and rounding must not let them slip.
-SLIP_EXCESS = 1e-9
+from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
+from ..system.levels import force_level, position_level, rate_level
 
 
 @compiled
@@ -82,31 +75,35 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
     force = vec(ws.monitor, ws.n_contacts)[k]
     release = ivec(ws.contact_release, ws.n_contacts)[k]
     watch = mat(lc.watch, ws.n_contacts, 3)
+    size = vec(ws.row_scale, ws.m_ext)[row]
     if mode == OPEN:
         if g < 0.0:
             # shapes that touch and neither part nor press drift by rounding only; those that a method without position
             # constraints has let overlap before they opened may come apart
-            overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
-            return rate < -RATE_ROUNDING or (g < -overlap and watch[k, 0] >= -overlap)
-        # shapes that touch without a force turn round by rounding only
-        if watch[k, 1] < -RATE_ROUNDING and rate > RATE_ROUNDING and watch[k, 0] > 0.0:
+            if rate < -RATE_ROUNDING * rate_level(ws) * size:
+                return True
+            overlap = GAP_ROUNDING * position_level(ws) * size
+            return g < -overlap and watch[k, 0] >= -overlap
+        if watch[k, 1] < 0.0 < rate and watch[k, 0] > 0.0:
+            # shapes that touch without a force turn round by rounding only
+            still = RATE_ROUNDING * rate_level(ws) * size
+            if watch[k, 1] >= -still or rate <= still:
+                return False
             lowest, _ = lowest_inside(watch[k, 0], watch[k, 1], g, rate, h)
             return lowest < 0.0
         return False
     if mode == CLOSED:
-        lam = vec(ws.lam, ws.m_ext)
-        largest = 1.0
-        for i in range(ws.m_ext - 1):
-            largest = max(largest, abs(lam[i]))
-        if force < -FORCE_ROUNDING * largest:
+        no_force = FORCE_ROUNDING * force_level(ws) / size
+        if force < -no_force:
             return True
         if vec(ws.contact_sticking, ws.n_contacts)[k] == 0.0:
             return False
         sticks = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS
-        limit = vec(ws.contact_sticking, ws.n_contacts)[k] * force
-        none = RATE_ROUNDING * rounding_level(ws, ws.v)
         if sticks:
-            none = max(FORCE_ROUNDING * largest, SLIP_EXCESS * limit)
+            limit = vec(ws.contact_sticking, ws.n_contacts)[k] * force
+            return friction_margin(ws, k) < -max(no_force, SLIP_EXCESS * limit)
+        along = vec(ws.row_scale, ws.m_ext)[ivec(ws.contact_slide_rows, ws.n_contacts)[k]]
+        none = RATE_ROUNDING * rate_level(ws) * along
         return friction_margin(ws, k) < -none
     if mode == ACTIVE:
         return g > 0.0 or (release == 2 and force < 0.0)

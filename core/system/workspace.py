@@ -84,6 +84,8 @@ class Workspace:
             "stage_rows": np.zeros(COUPLED_STAGES * row_length),
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),
+            "row_scale": np.ones(m_ext),
+            "work_scale": np.ones(n_ext),
             "scratch": np.zeros(64),
             "basis": np.zeros((1, n_ext)),
             "atol_q": np.zeros(n_ext),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from helpers import on
 from tlismni.core import Model, Revolute2D, RigidBody2D, simulate
-from tlismni.core.integrate.settings import CONSTRAINT_TOLERANCES
+from tlismni.core.rounding import CONSTRAINT_TOLERANCES
 from tlismni.models import load
 
 STEPS = 100_000
