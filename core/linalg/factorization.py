@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled.records import Record
 from .errors import SingularMatrixError
-from .ordering import choose_pivots, singular_place
+from .ordering import balancing_scales, choose_pivots, singular_place
 from .record import GROWTH, LU, OK
 from .solve import factor, functions_of, solve
 from .symbolic import Operations, count_operations, fill_pattern, operation_list
@@ -127,9 +127,12 @@ class Factorization:
             place = singular_place(self.n, self.rows, self.cols, entries)
             raise SingularMatrixError(f"the {self.n} x {self.n} matrix is singular: {place}")
         if not self.dense:
+            nl, column, row = self.record["nl"], self.arrays["l_col"], self.arrays["l_row"]
+            # an entry of L that is 1 once the rows are balanced: units of the rows do not count as growth
+            balance = balancing_scales(self.n, self.rows, self.cols, entries)[0][self.arrays["row_at"]]
             largest = np.ones(self.n)
-            nl = self.record["nl"]
-            np.maximum.at(largest, self.arrays["l_col"], np.abs(self.lu_values[:nl]))
+            np.maximum.at(largest, column, balance[column] / balance[row])
+            np.maximum.at(largest, column, np.abs(self.lu_values[:nl]))
             self._growth_limits()[:] = GROWTH * largest
 
     def analyze_with(self, perm_r: ArrayLike, perm_c: ArrayLike) -> None:

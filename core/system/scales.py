@@ -75,15 +75,14 @@ def _row_scale(workspace: Workspace) -> NDArray[np.float64]:
     if assembly.row_scale is not None:
         sizes = assembly.row_scale.copy()
     else:
-        # Phi' = Phi_q v + Phi_t for motions of all coordinates at once, in signs and sizes of no simple order
+        # Phi' = Phi_q v + Phi_t for motions of all coordinates at once, with signs in no simple order
         index = np.arange(n)
         arrays["v"][:] = 0.0
         evaluate_residuals(workspace.record)
         still, sizes = arrays["phid"][:m].copy(), np.zeros(m)
         for k in range(PROBES):
             golden = np.modf(0.6180339887498949 * (index + 1.0) * (2 * k + 1))[0]
-            silver = np.modf(0.4142135623730950 * (index + 1.0) * (3 * k + 1))[0]
-            arrays["v"][:n] = assembly.coordinate_scale * (0.5 + golden) * np.where(silver < 0.5, 1.0, -1.0)
+            arrays["v"][:n] = np.where(golden < 0.5, 1.0, -1.0) * assembly.coordinate_scale
             evaluate_residuals(workspace.record)
             np.maximum(sizes, np.abs(arrays["phid"][:m] - still), out=sizes)
     sizes[~np.isfinite(sizes)] = 0.0
