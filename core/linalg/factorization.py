@@ -67,12 +67,14 @@ class Factorization:
         """What to hand to a compiled function."""
         self.arrays: dict[str, NDArray] = {}
         self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
+        self.col_unit = np.ones(self.n)
         self._set(
             n=self.n,
             nnz=len(self.rows),
             **self._functions("unready"),
             entry_from=self.slots.astype(np.uint32),
             work=np.zeros(self.n),
+            row_unit=np.ones(self.n),
         )
         if self.dense:
             self._set(
@@ -102,6 +104,11 @@ class Factorization:
         """Number of stored entries of L and U, diagonal included."""
         return self.n * self.n if self.dense else self.record["nl"] + self.record["nu"] + self.n
 
+    def use_units(self, rows: Floats, columns: Floats) -> None:
+        """Choose pivots as if the rows were multiplied by `rows` (n,) and the columns by `columns` (n,)."""
+        self.arrays["row_unit"][:] = rows
+        self.col_unit = columns
+
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense."""
         return self._permutations
@@ -122,6 +129,8 @@ class Factorization:
                 f"entry ({self.rows[e]}, {self.cols[e]}) of the {self.n} x {self.n} matrix is {entries[e]}"
             )
         if not self.dense:
+            row_unit = self.arrays["row_unit"]
+            entries = entries * row_unit[self.rows] * self.col_unit[self.cols]
             self.analyze_with(*choose_pivots(self.n, self.rows, self.cols, entries))
         if factor(self.record, values.ctypes.data) != OK:
             place = singular_place(self.n, self.rows, self.cols, entries)
@@ -129,8 +138,9 @@ class Factorization:
         if not self.dense:
             nl, column, row = self.record["nl"], self.arrays["l_col"], self.arrays["l_row"]
             # an entry of L that is 1 once the rows are balanced: units of the rows do not count as growth
-            balance = balancing_scales(self.n, self.rows, self.cols, entries)[0][self.arrays["row_at"]]
-            largest = np.ones(self.n)
+            balance = row_unit * balancing_scales(self.n, self.rows, self.cols, entries)[0]
+            balance = balance[self.arrays["row_at"]]
+            largest = np.zeros(self.n)
             np.maximum.at(largest, column, balance[column] / balance[row])
             np.maximum.at(largest, column, np.abs(self.lu_values[:nl]))
             self._growth_limits()[:] = GROWTH * largest

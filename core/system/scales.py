@@ -53,7 +53,7 @@ def measure_scales(workspace: Workspace) -> Scales:
     kept = {name: arrays[name].copy() for name in ("q", "v", "a", "lam", "t", "counters")}
     try:
         arrays["row_scale"][: assembly.m] = _row_scale(workspace)
-        rate, energy = _rate_and_energy(workspace)
+        rate, energy, inertia = _rate_and_energy(workspace)
     finally:
         for name, value in kept.items():
             arrays[name][:] = value
@@ -65,6 +65,9 @@ def measure_scales(workspace: Workspace) -> Scales:
     work[:] = energy
     for contact in assembly.contacts:
         work[contact.impulse_account] = energy / (rate * arrays["row_scale"][contact.row])
+    # M and Phi_q become numbers of about 1
+    root = np.sqrt(inertia)
+    workspace.use_units(np.concatenate([assembly.coordinate_scale / root, root / arrays["row_scale"]]))
     return Scales(assembly.length, rate, energy)
 
 
@@ -91,8 +94,8 @@ def _row_scale(workspace: Workspace) -> NDArray[np.float64]:
     return sizes
 
 
-def _rate_and_energy(workspace: Workspace) -> tuple[float, float]:
-    """Inverse of the model's time (1/s), and the energy of its masses (J)."""
+def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float]:
+    """Inverse of the model's time (1/s), the energy of its masses (J), and the largest of these (kg m^2)."""
     arrays, assembly = workspace.arrays, workspace.assembly
     n, m, scale = assembly.n, assembly.m, assembly.coordinate_scale
     q, v, t = arrays["q"].copy(), assembly.v0, float(arrays["t"][0])
@@ -134,7 +137,7 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float]:
         squares = [float(np.max(stiffness[here] / mass[here], initial=0.0))]
     rate = float(np.sqrt(max(squares))) or 1.0
     heaviest = float(np.max(mass * scale**2, initial=0.0)) or 1.0
-    return rate, heaviest * rate**2
+    return rate, heaviest * rate**2, heaviest
 
 
 def _later_times(workspace: Workspace, t: float) -> list[float]:

@@ -97,6 +97,8 @@ class Workspace:
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
         self._structures: dict[tuple[frozenset[int], ...], Structure] = {}
+        self.units = np.ones(a.n + m_ext)
+        """What brings coordinates (with forces) and rows of Phi (with multipliers) to one unit."""
         self.dropped: frozenset[int] = frozenset()
         self.arrays = arrays
         self._batches = [self._batch(k) for k in range(len(a.batches))]
@@ -168,11 +170,13 @@ class Workspace:
         """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
         a place in the matrix."""
         self.key = (closed, closed | engaged, sticking)
-        key = (*self.key, self.dropped)
+        a, key = self.assembly, (*self.key, self.dropped)
         structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
         while len(self._structures) >= MOST_STRUCTURES:
             del self._structures[next(iter(self._structures))]
         self._structures[key] = self.structure = structure
+        if structure.units is not self.units:
+            structure.use_units(self.units, a.n)
         values = np.zeros(structure.nnz + 1)
         self._set("values", values, n_values=len(values))
         self._set("active", structure.active, m_act=len(structure.active))
@@ -193,6 +197,11 @@ class Workspace:
         self.arrays["rate"][[*CONDITIONS]] = 0.0
         if structure.dependent is not None:
             self._use_partition()
+
+    def use_units(self, units: NDArray[np.float64]) -> None:
+        """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
+        self.units = units
+        self.engage(*self.key)
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""

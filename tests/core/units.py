@@ -75,6 +75,8 @@ class Units:
     def _scaled(self, key: str, value: Any, units: Mapping[str, Any], data: Any) -> Any:
         if key == "gravity":
             return self._times(value, (1, 0, -2))
+        if key == "inputs":
+            return [{**one, "start": one["start"] * self.of(one["unit"])} for one in value]
         if key in ("bodies", "joints", "forces", "contacts", "outputs"):
             return [self._element(element, units) for element in value]
         return value
