@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from ..elements.base import Element, Form, Numbering, Row
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker2D
+from ..rounding import LEAST_DEFLECTION
 from .bristle2d import bristle_disk_on_disk_kernel, bristle_disk_on_half_plane_kernel
 from .friction import CoulombFriction, Friction, LuGreFriction
 from .laws import ContactLaw, ForceLaw
@@ -92,8 +93,9 @@ class Contact2D(Element):
         rows = self.contact_rows(numbering)
         if not isinstance(self.friction, LuGreFriction):
             return rows
-        last, own = self.friction.parameters()[-1], numbering.internal(self.name)
-        return tuple(Row((*row.parameters, last), (*row.coordinates, *own), row.extra) for row in rows)
+        least, own = LEAST_DEFLECTION * numbering.length, numbering.internal(self.name)
+        more = (least, self.friction.parameters()[-1])
+        return tuple(Row((*row.parameters, *more), (*row.coordinates, *own), row.extra) for row in rows)
 
     def disks(self) -> Sequence[Disk2D]:
         """The disks that it brings in touch, for the drawing."""

@@ -20,6 +20,11 @@ class Numbering(Protocol):
     def gravity(self) -> tuple[float, float]: ...
 
     @property
+    def length(self) -> float:
+        """Size of the mechanism, m."""
+        ...
+
+    @property
     def bodies(self) -> "Mapping[str, BodyElement]":
         """The model's bodies by name."""
         ...

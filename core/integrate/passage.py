@@ -72,7 +72,8 @@ def pass_singular(sim: "Simulation") -> int:
         return REANALYZE
     near, steepness = found
     stages = STARTER_STAGES if sim.method_arrays["ring"][1] < sim.formula.rows else sim.formula.stages
-    rounding = EPSILON * max(1.0, float(np.max(np.abs(path(0.0)[0])))) / steepness**2 / sim.settings.rtol
+    level = max(1.0, float(np.max(np.abs(path(0.0)[0]) / sim.assembly.coordinate_scale)))
+    rounding = EPSILON * level / steepness**2 / sim.settings.rtol
 
     def price(distance: float, h: float) -> float:
         clearance = min(abs(c * h - distance) for c in stages)

@@ -113,7 +113,10 @@ def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
 
 
 DEFAULT_ATOL = 1e-9
-"""Of kinds that a mapping leaves out; relative to the coordinates' scales where these are small."""
+"""What `atol` is unless told otherwise, and of kinds that a mapping leaves out: a part of the coordinates' scales and of
+their rates, so that it means the same in all units."""
+DEFAULT_NEWTON_TOLERANCE = 1e-10
+"""Of runs with fixed steps, likewise."""
 
 
 def set_control(
@@ -131,11 +134,12 @@ def set_control(
     fixed = settings.step is not None
     if fixed:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
-        tolerance = settings.newton_tolerance or 1e-10
+        tolerance = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
+        largest = 1.0 if settings.newton_tolerance else np.inf
         control[RTOL] = control[ATOL] = tolerance
         control[NEWTON_TOLERANCE] = 1.0
-        arrays["atol_q"][:n] = tolerance * np.minimum(1.0, size_q)
-        arrays["atol_v"][:n] = tolerance * np.minimum(1.0, size_v)
+        arrays["atol_q"][:n] = tolerance * np.minimum(largest, size_q)
+        arrays["atol_v"][:n] = tolerance * np.minimum(largest, size_v)
     else:
         control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
@@ -146,8 +150,9 @@ def set_control(
         def tolerances(kind: str, size: NDArray[np.float64]) -> NDArray[np.float64]:
             if isinstance(settings.atol, Mapping) and kind in settings.atol:
                 return np.full(n, float(settings.atol[kind]))
-            given = DEFAULT_ATOL if isinstance(settings.atol, Mapping) else float(settings.atol)
-            return np.minimum(given, most * size)
+            if isinstance(settings.atol, Mapping) or settings.atol == DEFAULT_ATOL:
+                return DEFAULT_ATOL * size
+            return np.minimum(float(settings.atol), most * size)
 
         arrays["atol_q"][:n] = np.where(angles, tolerances("angle", size_q), tolerances("length", size_q))
         arrays["atol_v"][:n] = np.where(angles, tolerances("angular_speed", size_v), tolerances("speed", size_v))

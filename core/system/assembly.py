@@ -211,7 +211,6 @@ def assemble(model: Model) -> Assembly:
         *(body.start_in(numbering.bodies, numbering.input_start) for body in model.bodies),
         rest,
     ]
-    length = _length(model)
     columns, names = [], []
     for body in model.bodies:
         for coordinate, index in zip(body.coordinate_records(), numbering.index[body.name], strict=False):
@@ -249,8 +248,8 @@ def assemble(model: Model) -> Assembly:
         breakpoints=sorted({t for e in model.elements() for s in e.signals() for t in s.breakpoints()}),
         multiplier_channels=multipliers,
         body_columns=columns,
-        coordinate_scale=_coordinate_scale(length, columns, len(internal)),
-        length=length,
+        coordinate_scale=_coordinate_scale(numbering.length, columns, len(internal)),
+        length=numbering.length,
         replaced_rows=_replaced_rows(model, massless, batches),
         markers=tuple(MarkerPlace(o.name, o.marker, numbering.place(o.marker.body)) for o in model.outputs),
         motions=tuple(numbering.motions),
@@ -292,15 +291,6 @@ def _internal_batch(internal: NDArray[np.int64]) -> Batch:
     nothing, address = np.zeros((count, 0), dtype=np.int64), kernel_address(internal_coordinates_kernel)
     none = np.full(count, -1, dtype=np.int64)
     return Batch(address, np.zeros((count, 0)), internal[:, None].copy(), nothing, nothing, ((0, 0),), (), none)
-
-
-def _length(model: Model) -> float:
-    """Size of the mechanism, m: how far its points reach; of one whose points are all at the origin, its longest rod or
-    largest disk. 1 if it says none."""
-    points = [point for body in model.bodies for point in body.extent()]
-    points += [marker.point for e in model.elements() for marker in e.markers()]
-    size = max((max(abs(x), abs(y)) for x, y in points), default=0.0)
-    return size or max((x for e in model.elements() for x in e.lengths()), default=0.0) or 1.0
 
 
 def _coordinate_scale(
