@@ -17,6 +17,7 @@ from .modes import ACTIVE, MEMORY_SIZE, MODE
 from .normal2d import act, evaluate_law
 from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
 
+
 @internal
 def _add_row(
     values: Any, slot: Any, gradient: Any, hessian: Any, v: Any, coord: Any, by_value: float, by_rate: float

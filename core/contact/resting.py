@@ -290,7 +290,9 @@ class Resting:
         if np.any(idle):
             # or left open at this very instant, and every step closes them at once
             again = (self.b_n == 0.0) & (found.normal_motion == 0.0) & (self.sim.events_here > 2)
-            closed |= idle & (again | comes_back(self.sim, now.contacts, self.touching.free_jerks(), found.normal_motion))
+            closed |= idle & (
+                again | comes_back(self.sim, now.contacts, self.touching.free_jerks(), found.normal_motion)
+            )
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]

@@ -14,8 +14,8 @@ from ..contact.touching import Touching
 from ..errors import ConsistencyError, SimulationError
 from ..events import Event
 from ..methods.registry import Formula
-from ..stage.accelerations import solve_accelerations
 from ..rounding import COORDINATE_NOISE, FIRST_TOUCH, FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING
+from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..system.levels import force_level, position_level, rate_level

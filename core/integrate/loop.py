@@ -88,7 +88,9 @@ def set_weights(ws: Any, ms: Any) -> None:
     for i in range(ws.n):
         # a coordinate near zero has the rounding of the large ones that it is tied to by the constraints
         weight_q[i] = max(atol_q[i], COORDINATE_DIFFERENCES * level_q * scale[i]) + control[RTOL] * abs(row[i])
-        weight_v[i] = max(atol_v[i], COORDINATE_DIFFERENCES * level_v * scale[i]) + control[RTOL] * abs(row[ws.n_ext + i])
+        weight_v[i] = max(atol_v[i], COORDINATE_DIFFERENCES * level_v * scale[i]) + control[RTOL] * abs(
+            row[ws.n_ext + i]
+        )
     # work accounts: relative to what they hold, or to the model's own energy (impulse)
     work_scale = vec(ws.work_scale, ws.n_ext)
     for i in range(ws.n_ext - ws.n_work, ws.n_ext):

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError
+from ..rounding import CONSTRAINT_TOLERANCES
 from ..stage import OUTER_LOOPS
 from ..stage.simple import MOST_DEPTH
-from ..rounding import CONSTRAINT_TOLERANCES
 from ..system.assembly import Assembly
 from ..system.records import (
     ACCELERATION,
@@ -113,8 +113,8 @@ def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
 
 
 DEFAULT_ATOL = 1e-9
-"""What `atol` is unless told otherwise, and of kinds that a mapping leaves out: a part of the coordinates' scales and of
-their rates, so that it means the same in all units."""
+"""What `atol` is unless told otherwise, and of kinds that a mapping leaves out: a part of the coordinates' scales and
+of their rates, so that it means the same in all units."""
 DEFAULT_NEWTON_TOLERANCE = 1e-10
 """Of runs with fixed steps, likewise."""
 

@@ -13,7 +13,8 @@ REANALYSE = 2  # the pivots fit the values no longer (or `analyze` was never cal
 
 # A pivot that is this much smaller than a term of its own sum holds nothing but rounding.
 PIVOT_NOISE = 1e-14
-# An entry of L may grow by this factor over the largest of its column at analysis (at least over 1 once the rows are balanced).
+# An entry of L may grow by this factor over the largest of its column at analysis, at least over what is 1 once the
+# rows are balanced.
 GROWTH = 1e5
 
 LU = np.dtype(

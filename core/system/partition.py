@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError
 from ..linalg import RowPivots, SingularMatrixError, pivot_rows
 from ..rounding import CONTRADICTION
-from .assembly import Assembly
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level
 from .records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY

@@ -154,7 +154,8 @@ class Units:
             if element[key] is not None:
                 extra = 2 if key == "force" else 0
                 found[key] = [
-                    self._times(x, (extra + of[0] * a, of[1], of[2])) for x, a in zip(element[key], lengths, strict=True)
+                    self._times(x, (extra + of[0] * a, of[1], of[2]))
+                    for x, a in zip(element[key], lengths, strict=True)
                 ]
         return found
 
