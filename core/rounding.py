@@ -9,9 +9,12 @@ where these scales come from.
 
 # ---- constraints ----------------------------------------------------------------------------------------------------
 
-CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
-"""Of a row at position, velocity and acceleration level: ten thousand roundings, what a few terms with lever arms of a
-hundred times the mechanism's size still meet."""
+CONSTRAINT_TOLERANCES = (1e-13, 1e-13, 1e-13)
+"""Of a row at position, velocity and acceleration level: a thousand roundings, what some terms with lever arms of ten
+times the mechanism's size still meet."""
+ANGLES = 0.1
+"""What an angle counts in the level of the coordinates: most turn arms much shorter than the mechanism, and where they
+do not, there are translations that go as far. A tenth of CONSTRAINT_TOLERANCES is still above what rounding leaves."""
 MET = 1e-15
 """Of a row: a Newton correction at rare work stops here, a few roundings."""
 NEARLY_MET = 1e-11

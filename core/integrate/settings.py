@@ -161,7 +161,7 @@ def set_control(
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     # differences over several steps see what the constraints leave open: it has to be small against the tolerances
     finest = (settings.newton_tolerance or 1.0) if fixed else float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0))
-    control[EXACTNESS] = min(1.0, max(1e-3, 0.02 * finest / CONSTRAINT_TOLERANCES[0]))
+    control[EXACTNESS] = min(1.0, max(1e-2, 0.002 * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     control[MAX_INNER] = 12.0
     control[PATIENCE] = float(fixed)

@@ -55,7 +55,7 @@ from .solver import (
     weighted_norm,
 )
 
-CONSTRAINT_SLACK = 100.0
+CONSTRAINT_SLACK = 1000.0
 """The constraints that Newton solves hold to this many times the tolerances of TLISMNI's inner loop: to 1e-10."""
 _USED = 1.0  # age of a factorisation that has been used; there is no partition whose strain would call for a new one
 

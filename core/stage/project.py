@@ -42,10 +42,10 @@ def project(ws: Any) -> int:
         evaluate_tangent(ws, 0.0, 0.0)
         if factor(lu_at(ws.kkt_query), ws.values) != 0:
             return REANALYZE
-        status = _project_level(ws, ws.phi, ws.q, 0.1 * control[POSITION_TOLERANCE])
+        status = _project_level(ws, ws.phi, ws.q, control[POSITION_TOLERANCE])
         if status != OK:
             return status
-        status = _project_level(ws, ws.phid, ws.v, 0.1 * control[VELOCITY_TOLERANCE])
+        status = _project_level(ws, ws.phid, ws.v, control[VELOCITY_TOLERANCE])
         if status != OK:
             return status
     status = solve_accelerations(ws)

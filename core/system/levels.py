@@ -13,8 +13,8 @@ from .records import CONTROL_SIZE, ENERGY_SCALE, RATE_SCALE
 
 @internal
 def _level(ws: Any, address: int, least: float) -> float:
-    """Largest |x_i| / scale_i, at least `least`."""
-    x, scale = vec(address, ws.n), vec(ws.scale, ws.n)
+    """Largest |x_i| / scale_i, at least `least`; of angles less (`ANGLES`)."""
+    x, scale = vec(address, ws.n), vec(ws.level_scale, ws.n)
     largest = least
     for i in range(ws.n):
         y = abs(x[i]) / scale[i]

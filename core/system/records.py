@@ -24,8 +24,8 @@ WORKSPACE = np.dtype(
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "stage_rows", "rhs",
             "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
-            # sizes of rows of Phi and of work accounts: (m_ext,), (n_ext,)
-            "row_scale", "work_scale",
+            # sizes of rows of Phi, of work accounts, and of coordinates for levels: (m_ext,), (n_ext,), (n,)
+            "row_scale", "work_scale", "level_scale",
             # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
             "basis", "n_basis",
             # 1: the constraints are so much cheaper to evaluate than the residuals that it is done without these

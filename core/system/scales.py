@@ -16,6 +16,8 @@ from .workspace import Workspace
 
 PROBES = 4
 """Pseudo-random motions from which the sizes of rows are taken."""
+WORK = 0.1
+"""Of the model's energy: work accounts below this are held to what it is worth, others relatively."""
 MOST_TIMES = 40
 """Later times at which it is looked what forces and drivers do."""
 
@@ -62,9 +64,9 @@ def measure_scales(workspace: Workspace) -> Scales:
     control = arrays["control"]
     control[RATE_SCALE], control[ENERGY_SCALE] = rate, energy
     work = arrays["work_scale"]
-    work[:] = energy
+    work[:] = WORK * energy
     for contact in assembly.contacts:
-        work[contact.impulse_account] = energy / (rate * arrays["row_scale"][contact.row])
+        work[contact.impulse_account] = WORK * energy / (rate * arrays["row_scale"][contact.row])
     # M and Phi_q become numbers of about 1
     root = np.sqrt(inertia)
     workspace.use_units(np.concatenate([assembly.coordinate_scale / root, root / arrays["row_scale"]]))

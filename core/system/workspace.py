@@ -12,6 +12,7 @@ from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
 from ..model.motion import input_rows
 from ..model.signals import INPUT_SIZE
+from ..rounding import ANGLES
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .records import (
@@ -86,6 +87,7 @@ class Workspace:
             "scale": a.coordinate_scale.copy(),
             "row_scale": np.ones(m_ext),
             "work_scale": np.ones(n_ext),
+            "level_scale": np.where(a.is_angle, a.coordinate_scale / ANGLES, a.coordinate_scale),
             "scratch": np.zeros(64),
             "basis": np.zeros((1, n_ext)),
             "atol_q": np.zeros(n_ext),
