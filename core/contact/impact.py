@@ -22,8 +22,8 @@ MOST_ROUNDS = 2000
 """Of impacts at one instant, each of the contacts that approach then."""
 
 
-UNSOLVED = 1e-8
-"""Of the fastest approach: rounds that leave less than this, and no less than those before, are at their end."""
+UNSOLVED = 1e-7
+"""Of the fastest motion: rounds that leave less than this, and no less than those before, are at their end."""
 
 
 class EndlessImpact(ArithmeticError):
@@ -71,7 +71,7 @@ def strike(touching: Touching, restitution: Vector, rounding: float) -> Impact:
     normal, tangential, loss = np.zeros(count), np.zeros(count), np.zeros(count)
     approach = np.maximum(-first, 0.0)
     sequential = any(isinstance(law, NewtonImpact) and law.propagation == "sequential" for law in laws)
-    left, noise = np.inf, UNSOLVED * float(np.max(np.abs(first)))
+    left, noise = np.inf, UNSOLVED * max(float(np.max(np.abs(x))) for x in touching.rates())
     for _ in range(MOST_ROUNDS):
         gap_rate, slide_rate = touching.rates()
         before_round, left = left, max(-float(np.min(gap_rate)), 0.0)
