@@ -1,17 +1,19 @@
 /* A co-simulation master that knows no Python and makes its instances in threads, all at once:
  * host_threads <threads> <steps> <step> (<library> <resources URI> <guid> <vr>)...
  *
- * The threads take the FMUs in turn. Each steps its instance and writes its last value (hex) in a line of its own. */
+ * The threads take the FMUs in turn. Each makes an instance and, with <steps> above 0, steps it once all are ready. A line
+ * for each: number of the FMU, its last value (hex), wall-clock time of its steps, s. */
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "fmi2Functions.h"
 
 #define LOAD(name) name##TYPE *name = (name##TYPE *)find(part->library, #name)
-#define CHECK(call) do { if ((call) != fmi2OK) { fprintf(stderr, "failed: %s\n", #call); return NULL; } } while (0)
+#define CHECK(call) do { if ((call) != fmi2OK) { fprintf(stderr, "failed: %s\n", #call); exit(3); } } while (0)
 
 enum { MOST = 64 };
 
@@ -24,8 +26,7 @@ typedef struct {
     const char *resources, *guid;
     fmi2ValueReference vr;
     pthread_t thread;
-    double value;
-    int number;
+    double value, seconds;
 } Part;
 
 static void *find(void *library, const char *name) {
@@ -47,6 +48,12 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
     fputc('\n', stderr);
 }
 
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 static void *allocate(size_t count, size_t size) { return calloc(count, size); }
 
 static void *run(void *argument) {
@@ -63,17 +70,21 @@ static void *run(void *argument) {
     fmi2Component instance =
         fmi2Instantiate("thread", fmi2CoSimulation, part->guid, part->resources, &callbacks, fmi2False, fmi2False);
     if (!instance) {
-        return NULL;
+        return steps > 0 ? (exit(4), NULL) : NULL; /* the others wait for it */
     }
     if (steps > 0) {
         CHECK(fmi2SetupExperiment(instance, fmi2False, 0.0, 0.0, fmi2False, 0.0));
         CHECK(fmi2EnterInitializationMode(instance));
         CHECK(fmi2ExitInitializationMode(instance));
+        CHECK(fmi2DoStep(instance, 0.0, step, fmi2False)); /* compiled or loaded now */
+        pthread_barrier_wait(&all);
     }
-    for (int i = 0; i < steps; i++) {
+    double begin = now();
+    for (int i = 1; i < steps; i++) {
         CHECK(fmi2DoStep(instance, i * step, step, fmi2False));
         CHECK(fmi2GetReal(instance, &part->vr, 1, &part->value));
     }
+    part->seconds = now() - begin;
     fmi2FreeInstance(instance);
     return part;
 }
@@ -91,7 +102,7 @@ int main(int count, char **argument) {
     for (int i = 0; i < threads; i++) {
         char **fmu = argument + 4 + 4 * (i % fmus);
         parts[i] = (Part){dlopen(fmu[0], RTLD_NOW | RTLD_LOCAL), fmu[1], fmu[2], (fmi2ValueReference)atoi(fmu[3]),
-                          0, 0.0, i};
+                          0, 0.0, 0.0};
         if (!parts[i].library || pthread_create(&parts[i].thread, NULL, run, &parts[i]) != 0) {
             fprintf(stderr, "cannot start: %s\n", dlerror());
             return 1;
@@ -101,7 +112,7 @@ int main(int count, char **argument) {
         void *done = NULL;
         pthread_join(parts[i].thread, &done);
         good += done != NULL;
-        printf("%d %a\n", i % fmus, parts[i].value);
+        printf("%d %a %.6f\n", i % fmus, parts[i].value, parts[i].seconds);
     }
     return good == threads ? 0 : 4;
 }
