@@ -3,21 +3,30 @@
 Only the standard library may be imported here before `tlismni` is found. `sys.path` grows only in a process whose
 Python lacks packages that the FMU needs, once: by those of the Python that TLISMNI_PYTHON names, else by the folders
 recorded at export.
+
+Instances may be made by several threads at once, and by several FMUs: one lock for the whole process, which all of them
+find in `sys`, lets one import at a time. Otherwise one would import while `sys.path` grows for another, and could meet
+half of each environment.
 """
 
-import hashlib
-import importlib
-import importlib.machinery
-import importlib.metadata
-import importlib.util
-import json
-import os
-import re
-import shutil
-import site
+import _thread  # built in, as sys is: no path is searched before the lock is held
 import sys
-import tempfile
-import zipfile
+
+LOCK = vars(sys).setdefault("_tlismni_boot", _thread.RLock())
+
+with LOCK:
+    import hashlib
+    import importlib
+    import importlib.machinery
+    import importlib.metadata
+    import importlib.util
+    import json
+    import os
+    import re
+    import shutil
+    import site
+    import tempfile
+    import zipfile
 
 
 def create(interface, name, token, resources, logging_on, log, event_mode, early_return, own, *updates):  # type: ignore[no-untyped-def]
@@ -28,7 +37,8 @@ def create(interface, name, token, resources, logging_on, log, event_mode, early
     with open(os.path.join(resources, "python.json"), encoding="utf-8") as file:
         record = json.load(file)
     flags = {"logging_on": bool(logging_on), "event_mode": bool(event_mode), "early_return": bool(early_return)}
-    embedded = _bundled(record, resources, own) if record.get("bundle") else _installed(record, own)
+    with LOCK:
+        embedded = _bundled(record, resources, own) if record.get("bundle") else _installed(record, own)
     return embedded.create(interface, name, token, resources, log, *updates, **flags)
 
 
@@ -95,7 +105,8 @@ def _extend(record, own):  # type: ignore[no-untyped-def]
             (i for i, entry in enumerate(before) if "site-packages" in entry or "dist-packages" in entry), None
         )
         if added and first is not None:
-            sys.path[:] = [*before[:first], *added, *before[first:]]
+            # a new list: another thread may be searching the one that there was
+            sys.path = [*before[:first], *added, *before[first:]]
     importlib.invalidate_caches()
 
 

@@ -49,7 +49,7 @@ class SlaveState:
         self.variables = variables
         self._input_rows = {v.reference: i for i, v in enumerate(variables.block("input"))}
         self._inputs = as_slice([variables.position[v.reference] for v in variables.block("input")])
-        self._time_position = variables.position[TIME]
+        self._time_position = variables.position[variables.by_name[TIME].reference]
         self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
         self._run: Run | None = None

@@ -17,6 +17,15 @@ def compiled(function: Callable[..., Any]) -> Any:
     return _cached(njit(error_model="numpy")(function))
 
 
+def compiled_unlocked(function: Callable[..., Any]) -> Any:
+    """The same for what takes long: other threads of Python run on meanwhile, other instances of an FMU too.
+
+    Whoever calls back to Python from in there takes its lock first (ctypes' callbacks and numba's objmode do). Others
+    are not worth it: to give the lock away and to get it back takes longer than they do.
+    """
+    return _cached(njit(error_model="numpy", nogil=True)(function))
+
+
 def internal(function: Callable[..., Any]) -> Any:
     """Decorator of functions that only compiled code calls (kernels and steps too): no wrapper for Python, which
     saves a third of the compile time of a small function."""

@@ -7,7 +7,7 @@ It is a pure function of the history: asking does not change what comes after.
 
 from typing import Any
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import mat, vec
 from ..methods.history import history_row, history_time, recall
 from ..methods.multistep import rows_available
@@ -99,7 +99,7 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     vec(ws.t, 1)[0] = t
 
 
-@compiled
+@compiled_unlocked
 def query(ws: Any, ms: Any, t: float) -> int:
     """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point."""
     for back in range(min(rows_available(ms), 2)):

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, push
 from ..methods.multistep import rows_available
@@ -107,7 +107,7 @@ def all_finite(ws: Any) -> bool:
     return True
 
 
-@compiled
+@compiled_unlocked
 def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     """One step of size h from the newest row, not accepted yet; its end is the workspace's current point."""
     # a formula that looks ahead (extended BDF) must not see what lies behind a jump of a force
@@ -204,7 +204,7 @@ def violates_redundant(ws: Any, relaxed: float) -> bool:
     return False
 
 
-@compiled
+@compiled_unlocked
 def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
     """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
     clock = vec(lc.clock, CLOCK_SIZE)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled.jit import compiled, internal, interpreted
+from ..compiled.jit import compiled_unlocked, internal, interpreted
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -38,7 +38,7 @@ def _insert(pending: Any, count: int, row: int) -> int:
     return count + 1
 
 
-@compiled
+@compiled_unlocked
 def _eliminate(
     m: int,
     n: int,
