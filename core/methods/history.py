@@ -29,7 +29,11 @@ def history_time(ms: Any, back: int) -> float:
 
 @internal
 def push(ws: Any, ms: Any) -> None:
-    """The current point of the workspace becomes the newest row."""
+    """The current point of the workspace becomes the newest row.
+
+    Multipliers of rows that are not active (open contacts) become zero. No stage solves for them, so what they had at
+    the last release would be extrapolated from step to step, and grow with the formula's order until it overflows.
+    """
     ring = ivec(ms.ring, 2)
     ring[0] = (ring[0] + 1) % ms.capacity
     ring[1] = min(ring[1] + 1, ms.capacity)
@@ -43,7 +47,10 @@ def push(ws: Any, ms: Any) -> None:
         row[2 * n + i] = a[i]
         row[3 * n + i] = aux[i]
     for i in range(ws.m_ext):
-        row[4 * n + i] = lam[i]
+        row[4 * n + i] = 0.0
+    active = ivec(ws.active, ws.m_act)
+    for i in range(ws.m_act):
+        row[4 * n + active[i]] = lam[active[i]]
     vec(ms.times, ms.capacity)[ring[0]] = vec(ws.t, 1)[0]
 
 
