@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .errors import ModelError
 from .events import Event
 
-FORMAT = "tlismni-state-4"
+FORMAT = "tlismni-state-5"
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,7 @@ from ..system.records import (
     FACTOR_AGE,
     FAILED_NORM,
     INNER_DIVERGED,
+    LEAST_CONDITION,
     LOOKED_CONDITION,
     NOT_FINITE,
     OK,
@@ -28,7 +29,8 @@ from ..system.records import (
 )
 from .locate import find_root, first_crossing
 from .loop import accept, run, trial_step
-from .passage import near_singular, pass_singular
+from .near_singular import STRAINED
+from .passage import pass_singular
 from .records import (
     BREAK_TIME,
     CHUNK,
@@ -47,6 +49,7 @@ from .records import (
     VIOLATED,
 )
 from .repair import repair
+from .singular_position import near_singular
 from .step_budget import step_count, steps_left
 from .watch import GAP_ROUNDING, crossed, friction_margin
 
@@ -139,11 +142,15 @@ def advance_to(
                 _violated(sim, h)
         elif returned in _REPAIRABLE and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
-            repair(sim)
+            try:
+                repair(sim)
+            except SimulationError:
+                if not _pass_after_all(sim):
+                    raise
         elif returned in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
             if returned == REANALYZE:  # the matrix of the shorter step has other pivots
                 repaired_at = math.nan
-        else:
+        elif not _pass_after_all(sim):
             _fail(sim, returned)
 
 
@@ -206,13 +213,13 @@ def _violated(sim: "Simulation", h: float) -> None:
     )
 
 
-def _pass_singular(sim: "Simulation") -> bool:
+def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
     """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
     rate = sim.workspace.arrays["rate"]
     worst = float(rate[WORST_CONDITION])
     if sim.workspace.dropped:
         repair(sim)
-    code = pass_singular(sim)
+    code = pass_singular(sim, last_resort)
     if code == EVENT:
         _locate(sim)
     elif code != OK:
@@ -220,6 +227,13 @@ def _pass_singular(sim: "Simulation") -> bool:
         rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
         return False
     return True
+
+
+def _pass_after_all(sim: "Simulation") -> bool:
+    """Step over a singular position because steps towards it have failed; False if there is none."""
+    rate = sim.workspace.arrays["rate"]
+    near = sim.clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    return bool(near) and _pass_singular(sim, last_resort=True)
 
 
 def _fail(sim: "Simulation", code: int) -> None:

@@ -21,7 +21,7 @@ from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
 from ..description import Model
 from ..errors import ModelError
-from ..methods.history import history_time, recall, restart
+from ..methods.history import bridge_rows, history_time, recall, restart
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
@@ -182,7 +182,8 @@ def _near_singular(ws: Any, ms: Any, t: float) -> bool:
     """`strained` at time t."""
     rate = vec(ws.rate, RATE_SIZE)
     strained = rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
-    return strained and rows_available(ms) > 1 and history_time(ms, 1) < t < history_time(ms, 0)
+    inside = rows_available(ms) > 1 and history_time(ms, 1) < t < history_time(ms, 0)
+    return (strained and inside) or bridge_rows(ms) > 0
 
 
 @internal

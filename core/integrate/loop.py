@@ -4,7 +4,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import ivec, mat, vec
-from ..methods.history import history_row, history_time, push
+from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
 from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
 from ..stage.inner import STRAINED, rounding_level
@@ -94,6 +94,12 @@ def set_weights(ws: Any, ms: Any) -> None:
     # work accounts: relative to what they hold, or to 1 J (N s)
     for i in range(ws.n_ext - ws.n_work, ws.n_ext):
         weight_v[i] = control[ATOL] + control[RTOL] * max(1.0, abs(row[ws.n_ext + i]))
+
+
+@compiled
+def set_weights_at(ws: Any, ms: Any) -> None:
+    """`set_weights`, for Python."""
+    set_weights(ws, ms)
 
 
 @internal
@@ -211,6 +217,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
     counters = ivec(ws.counters, COUNTERS_SIZE)
     error = vec(ms.error, 2)
     control, rate = vec(ws.control, CONTROL_SIZE), vec(ws.rate, RATE_SIZE)
+    leave_bridge(ms)
     for _ in range(chunk):
         t = history_time(ms, 0)
         stop = clock[STOP_TIME]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.records import ArrayRecord
-from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, K, step_address
+from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula
 from ..system.assembly import Assembly
 from .controllers import CONTROLLERS
@@ -49,7 +49,7 @@ def build_method(formula: Formula, settings: Settings, row_length: int) -> Array
         {
             "history": np.zeros((HISTORY_ROWS, row_length)),
             "times": np.zeros(HISTORY_ROWS),
-            "ring": np.zeros(2, dtype=np.int64),
+            "ring": np.zeros(RING_SIZE, dtype=np.int64),
             "parameters": parameters,
             "weights": weights,
             "error": np.zeros(2),

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, mat, vec
+from .records import RING_SIZE
 
 
 @inlined
@@ -54,10 +55,26 @@ def push(ws: Any, ms: Any) -> None:
     vec(ms.times, ms.capacity)[ring[0]] = vec(ws.t, 1)[0]
 
 
+@inlined
+def bridge_rows(ms: Any) -> int:
+    """How many of the newest rows are the points of one long step over a singular position; 0: the newest step is an
+    ordinary one."""
+    return ivec(ms.ring, RING_SIZE)[2]
+
+
+@internal
+def leave_bridge(ms: Any) -> None:
+    """Go on from the end of a long step: its other points are too far apart to be the history of a formula."""
+    ring = ivec(ms.ring, RING_SIZE)
+    if ring[2] > 0:
+        ring[1], ring[2] = 1, 0
+
+
 @compiled
 def restart(ws: Any, ms: Any) -> None:
     """Forget the history; the current point of the workspace is its only row."""
-    ivec(ms.ring, 2)[1] = 0
+    ring = ivec(ms.ring, RING_SIZE)
+    ring[1], ring[2] = 0, 0
     push(ws, ms)
 
 
