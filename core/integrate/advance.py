@@ -25,9 +25,10 @@ from ..system.records import (
     SINGULAR,
     WORST_CONDITION,
 )
-from .locate import find_root, first_crossing
+from .locate import find_root
 from .loop import accept, run, trial_step
 from .passage import near_singular, pass_singular
+from .probe import HAPPENS
 from .records import (
     BREAK_TIME,
     CHUNK,
@@ -47,7 +48,7 @@ from .records import (
 )
 from .repair import repair
 from .step_budget import step_count, steps_left
-from .watch import crossed, friction_margin
+from .watch import find_events, friction_margin
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -253,29 +254,30 @@ def _fail(sim: "Simulation", code: int) -> None:
 
 def _locate(sim: "Simulation") -> None:
     """End the step at the first event in it, and make that event pending."""
-    ws, lc = sim.workspace.record, sim._loop.record
+    ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     h = float(sim.clock[TRIAL_STEP])
-    contacts = range(len(sim.assembly.contacts))
     found: dict[int, float] = {}
+    safe: dict[int, float] = {}
     step = h
-    while late := [k for k in contacts if k not in found and crossed(ws, lc, k, step)]:
+    while find_events(ws, ms, lc, step, True):
+        late = [int(k) for k in np.flatnonzero(sim.brackets[:, HAPPENS]) if k not in found and k not in safe]
+        if not late:
+            break
         # the shorter step may end where a gap is negative that the longer one has passed
-        ends = {k: (sim.gap(k), sim.gap_rate(k), _gap_acceleration(sim, k)) for k in late}
-        found |= {k: _event_step(sim, k, step, ends[k]) for k in late}
-        first = min(step, *found.values())
+        ends = {k: (sim.gap(k), *(step * sim.brackets[k, :HAPPENS])) for k in late}
+        for k in late:
+            size, happens = _event_step(sim, k, step, ends[k])
+            (found if happens else safe)[k] = size
+        first = min(step, *found.values(), *safe.values())
         if not sim.formula.exact and first <= AT_ONCE * h:
-            recall(ws, sim._method.record, 0)
+            recall(ws, ms, 0)
             sim.pending = [k for k in found if found[k] <= AT_ONCE * h]
             return
         step = first
         _trial(sim, step, h)
-    accept(ws, sim._method.record, lc)
+    accept(ws, ms, lc)
     sim.flush()
     sim.pending = [k for k in found if found[k] <= step * (1.0 + 1e-12)]
-
-
-def _gap_acceleration(sim: "Simulation", k: int) -> float:
-    return float(sim.workspace.arrays["phidd"][sim.assembly.contacts[k].row])
 
 
 def _trial(sim: "Simulation", step: float, full: float) -> None:
@@ -298,11 +300,16 @@ def _trial(sim: "Simulation", step: float, full: float) -> None:
         table["starter"], table["rows"] = usual
 
 
-def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, float]) -> float:
-    """Step size at which contact k has its event."""
+def _event_step(sim: "Simulation", k: int, h: float, found: tuple[float, ...]) -> tuple[float, bool]:
+    """Step size at which contact k has its event, and True; or False, and up to which size the motion has none.
+
+    found : the gap at the end of the step of size h, and times in it: before a root of the gap's dense output, beyond
+        it, and where that is deepest.
+    """
     mode = float(sim.memory[k, MODE])
+    end, low_step, high_step, deepest = found
     arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
-    by_force = mode == CLOSED or (mode == ACTIVE and end[0] <= 0.0) or (mode not in (OPEN, ACTIVE) and end[0] <= 0.0)
+    by_force = mode == CLOSED or (mode != OPEN and end <= 0.0 and high_step == h)
     force_sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
     slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
 
@@ -312,29 +319,24 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
         return min(force, friction_margin(sim.workspace.record, k)) if slides else force
 
     if by_force:
-        return find_root(margin, 0.0, h, 0.5 * h, 0.0)
-    down = mode == OPEN
-    sign = 1.0 if down else -1.0
-    start = tuple(float(x) for x in sim.watch[k])
-    low, high, extremum = first_crossing(h, (start[0], start[1], start[2]), end, down)
+        return find_root(margin, 0.0, h, 0.5 * h, 0.0), True
+    sign = 1.0 if mode == OPEN else -1.0
 
     def gap(step: float) -> float:
         _trial(sim, step, h)
         return sign * float(arrays["phi"][contact.row])
 
     size = float(np.max(np.abs(arrays["q"][: sim.assembly.n]), initial=1.0))
-    low_step, high_step = low * h, high * h
-    safe_end = sign * end[0] > 0.0
-    if high < 1.0 and gap(high_step) > 0.0:
-        # the motion is behind its interpolant: look where that goes deepest
-        low_step, high_step = high_step, extremum * h
-        if safe_end and gap(high_step) > 0.0:
-            return math.inf
-        if not safe_end and (high_step <= low_step or gap(high_step) > 0.0):
+    if high_step < h and gap(high_step) > 0.0:
+        # the motion is behind its dense output: look where that goes deepest
+        low_step = high_step
+        if low_step < deepest < h and gap(deepest) <= 0.0:
+            high_step = deepest
+        elif sign * end <= 0.0:
             high_step = h
-    elif high >= 1.0 and safe_end:
-        # the cubic dipped below zero, the quintic does not: no event
-        return math.inf
+        else:
+            # what the dense output has shown is its own error; the very start of the step is no place to stop at
+            return (max(low_step, deepest) if low_step > AT_ONCE * h else h), False
     for _ in range(MOST_HALVINGS):
         # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
         if low_step == 0.0 or gap(low_step) > 0.0:
@@ -344,8 +346,8 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
     opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
     if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
         # the gap opens within this step, but the force has become tensile before
-        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0)
-    return opened
+        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0), True
+    return opened, True
 
 
 def _warn_of_jump(sim: "Simulation", t: float) -> None:

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import numba as nb
 import numpy as np
 from numba import types
 from numpy.typing import NDArray
@@ -42,7 +41,7 @@ from .dense_output import query
 from .inputs import PUNCTUAL
 from .loop import run
 from .near_singular import STRAINED
-from .records import BREAK_TIME, CHUNK, CLOCK_SIZE, LOOP, NO_STEP, REACHED, STOP_TIME, TARGET_TIME
+from .records import BREAK_TIME, CHUNK, CLOCK_SIZE, LOOP_TYPE, NO_STEP, REACHED, STOP_TIME, TARGET_TIME
 from .sample import write_sample
 from .watch import remember
 
@@ -80,7 +79,6 @@ ARRIVED = 201
 """At the goal; the channels have not been asked for, or are not to be had in this way."""
 READ = 202
 
-LOOP_TYPE = nb.from_dtype(LOOP)
 QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
 ACCELERATIONS_SIGNATURE = types.int64(WORKSPACE_TYPE)
 RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)

@@ -22,7 +22,7 @@ from ..system.redundancy import least_singular_value
 from .loop import accept, trial_step, violates_redundant
 from .records import EVENT, HELD, STEP_SIZE, STOP_TIME, TRIAL_STEP
 from .repair import repair
-from .watch import crossed
+from .watch import find_events
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -193,7 +193,7 @@ def _try(sim: "Simulation", path: _Path, steps: tuple[list[float], ...], natural
                 if of_error > 1.0:
                     logger.debug("step at t = %.9g s with tolerances relaxed by %g", sim.t_internal, of_error)
                 sim.clock[[TRIAL_STEP, STEP_SIZE, HELD]] = h, natural, 0.0
-                if any(crossed(ws, lc, k, h) for k in range(len(sim.assembly.contacts))):
+                if find_events(ws, sim._method.record, lc, h, False):
                     return EVENT
                 _accept(sim, h)
                 return OK

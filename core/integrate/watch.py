@@ -17,6 +17,8 @@ from ..contact.modes import (
     STICKS,
 )
 from ..stage.inner import rounding_level
+from .certain import first_root, way_of_gap
+from .probe import BRACKET, HAPPENS, set_travel
 
 # A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
 FORCE_ROUNDING = 1e-12
@@ -34,28 +36,6 @@ def remember(ws: Any, lc: Any) -> None:
         watch[k, 2] = vec(ws.phidd, ws.m_ext)[rows[k]]
 
 
-@internal
-def lowest_inside(g0: float, d0: float, g1: float, d1: float, h: float) -> Any:
-    """Minimum of the cubic through (g, g') at both ends, and its place in (0, 1); g' must change from - to +."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        s = 0.5 * (low + high)
-        slope = (6.0 * s * s - 6.0 * s) * (g0 - g1) + h * (
-            (3.0 * s * s - 4.0 * s + 1.0) * d0 + (3.0 * s * s - 2.0 * s) * d1
-        )
-        if slope < 0.0:
-            low = s
-        else:
-            high = s
-    s = 0.5 * (low + high)
-    value = (
-        (2.0 * s**3 - 3.0 * s * s + 1.0) * g0
-        + (3.0 * s * s - 2.0 * s**3) * g1
-        + h * ((s**3 - 2.0 * s * s + s) * d0 + (s**3 - s * s) * d1)
-    )
-    return value, s
-
-
 @compiled
 def friction_margin(ws: Any, k: int) -> float:
     """How far closed contact k with Coulomb friction is from its next change, negative beyond it: mu_s F_N - |F_T|
@@ -70,26 +50,21 @@ def friction_margin(ws: Any, k: int) -> float:
     return memory[SLIDE] * vec(ws.phid, ws.m_ext)[row]
 
 
-@compiled
-def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
-    """True if contact k has an event within the step of size h that ends at the current point."""
+@internal
+def _ends_beyond(ws: Any, lc: Any, k: int) -> bool:
+    """True if the point at the end of a step shows that contact k has had an event."""
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     row = ivec(ws.contact_rows, ws.n_contacts)[k]
     g, rate = vec(ws.phi, ws.m_ext)[row], vec(ws.phid, ws.m_ext)[row]
     force = vec(ws.monitor, ws.n_contacts)[k]
     release = ivec(ws.contact_release, ws.n_contacts)[k]
-    watch = mat(lc.watch, ws.n_contacts, 3)
     if mode == OPEN:
-        if g < 0.0:
-            # shapes that touch and neither part nor press drift by rounding only; those that a method without position
-            # constraints has let overlap before they opened may come apart
-            overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
-            return rate < -RATE_ROUNDING or (g < -overlap and watch[k, 0] >= -overlap)
-        # shapes that touch without a force turn round by rounding only
-        if watch[k, 1] < -RATE_ROUNDING and rate > RATE_ROUNDING and watch[k, 0] > 0.0:
-            lowest, _ = lowest_inside(watch[k, 0], watch[k, 1], g, rate, h)
-            return lowest < 0.0
-        return False
+        if g >= 0.0:
+            return False
+        # shapes that touch and neither part nor press drift by rounding only; those that a method without position
+        # constraints has let overlap before they opened may come apart
+        overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
+        return rate < -RATE_ROUNDING or (g < -overlap and mat(lc.watch, ws.n_contacts, 3)[k, 0] >= -overlap)
     if mode == CLOSED:
         lam = vec(ws.lam, ws.m_ext)
         largest = 1.0
@@ -110,9 +85,43 @@ def crossed(ws: Any, lc: Any, k: int, h: float) -> bool:
 
 
 @internal
-def any_crossed(ws: Any, lc: Any, h: float) -> bool:
-    """True if any contact has an event within the step."""
+def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float) -> bool:
+    """True if contact k has an event within the step of size h that ends at the current point; then its line of
+    `brackets` says where (`certain.first_root`)."""
+    ended = _ends_beyond(ws, lc, k)
+    bracket, start = mat(lc.brackets, ws.n_contacts, BRACKET)[k], mat(lc.watch, ws.n_contacts, 3)[k]
+    bracket[0], bracket[1], bracket[2] = 0.0, 1.0, 1.0
+    mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
+    g = vec(ws.phi, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
+    if mode != OPEN and mode != ACTIVE:
+        return ended
+    sign = 1.0 if mode == OPEN else -1.0
+    # what is there already when the step begins, and what ends by its force, has its event at the end
+    if ended and sign * g >= 0.0:
+        return True
+    if not ended and (sign * g < 0.0 or sign * (start[0] + g) > way_of_gap(ws, lc, k, 0)):
+        return False
+    overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
+    if sign * start[0] < -overlap:
+        return ended
+    slack = overlap if sign * start[0] <= overlap else 0.0
+    return first_root(ws, ms, lc, k, h, sign, start, ended, slack, bracket)
+
+
+@compiled
+def find_events(ws: Any, ms: Any, lc: Any, h: float, everyone: bool) -> bool:
+    """True if any contact has an event within the step of size h that ends at the current point.
+
+    everyone : look on after the first, so that the lines of `brackets` say which contacts have one, and where.
+    """
+    if ws.n_contacts == 0:
+        return False
+    set_travel(ws, ms, lc, h)
+    brackets, found = mat(lc.brackets, ws.n_contacts, BRACKET), False
     for k in range(ws.n_contacts):
-        if crossed(ws, lc, k, h):
+        inside = _event_inside(ws, ms, lc, k, h)
+        if inside and not everyone:
             return True
-    return False
+        brackets[k, HAPPENS] = 1.0 if inside else 0.0
+        found = found or inside
+    return found
