@@ -319,7 +319,13 @@ def _event_step(sim: "Simulation", k: int, h: float, found: tuple[float, ...]) -
         return min(force, friction_margin(sim.workspace.record, k)) if slides else force
 
     if by_force:
-        return find_root(margin, 0.0, h, 0.5 * h, 0.0), True
+        if high_step < h and margin(high_step) > 0.0:
+            return (high_step if high_step > AT_ONCE * h else h), False
+        for _ in range(MOST_HALVINGS):
+            if low_step == 0.0 or margin(low_step) > 0.0:
+                break
+            low_step, high_step = 0.5 * low_step, low_step
+        return find_root(margin, low_step, high_step, 0.5 * (low_step + high_step), 0.0), True
     sign = 1.0 if mode == OPEN else -1.0
 
     def gap(step: float) -> float:

@@ -67,7 +67,7 @@ def probe_of(lc: Any, k: int) -> Any:
 
 
 @internal
-def _between(q0: float, v0: float, a0: float, q1: float, v1: float, a1: float, h: float, s: float) -> Any:
+def between(q0: float, v0: float, a0: float, q1: float, v1: float, a1: float, h: float, s: float) -> Any:
     """(q, v, a) at s h of the polynomial through those at 0 and h."""
     d, v0, v1, a0, a1 = q1 - q0, h * v0, h * v1, h * h * a0, h * h * a1
     c3 = 10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1
@@ -91,7 +91,7 @@ def _look_at_system(ws: Any, ms: Any, lc: Any, row: int, h: float, s: float, vie
     kept[0], kept[1], kept[2], kept[3] = q, v, a, r
     levels[0], levels[1], levels[2] = phi, phid, phidd
     for i in range(ws.n):
-        q[i], v[i], a[i] = _between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
+        q[i], v[i], a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
     t[0] = history_time(ms, 0) + s * h
     evaluate_residuals(ws)
     view[0], view[1], view[2] = phi[row], phid[row], phidd[row]
@@ -119,7 +119,7 @@ def look(ws: Any, ms: Any, lc: Any, k: int, row: int, h: float, s: float, view: 
     q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
     to_q, to_v, to_a = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n)
     for i in coord:
-        to_q[i], to_v[i], to_a[i] = _between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
+        to_q[i], to_v[i], to_a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
     call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, history_time(ms, 0) + s * h, batch)
     view[0], view[1], view[2] = (
         vec(lc.probe_phi, ws.m_ext)[row],
@@ -137,7 +137,7 @@ def state_of_pair(ws: Any, ms: Any, lc: Any, k: int, h: float, s: float, state: 
     for j in range(6):
         i = coord[j]
         at = j if j < 3 else j + 6
-        state[at], state[at + 3], state[at + 6] = _between(
+        state[at], state[at + 3], state[at + 6] = between(
             start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s
         )
 

@@ -9,11 +9,13 @@ from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
 from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, K, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula
+from ..stage.accelerations import solve_accelerations
 from ..system.workspace import Workspace
 from .controllers import CONTROLLERS
 from .probe import build_probes
 from .records import (
     A2,
+    ACCELERATIONS_SIGNATURE,
     B1,
     B2,
     BREAK_TIME,
@@ -27,6 +29,7 @@ from .records import (
     LOOP,
     MAX_STEP,
     STOP_TIME,
+    WATCH,
 )
 from .sample import empty_buffer, sample_length
 from .settings import Settings
@@ -91,7 +94,7 @@ def build_loop(
         LOOP,
         {
             "clock": _clock(formula, settings, assembly.longest_step),
-            "watch": np.zeros((max(len(assembly.contacts), 1), 3)),
+            "watch": np.zeros((max(len(assembly.contacts), 1), WATCH)),
             "leap": assembly.leap,
             **build_probes(workspace),
             "samples": empty_buffer(max(capacity, 1), length),
@@ -101,6 +104,7 @@ def build_loop(
         },
         {
             "find_events": address_of(find_events, FIND_EVENTS_SIGNATURE),
+            "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
             "select": 0 if formula.select is None else step_address(formula.select),
             "log_capacity": log_capacity,
             "step": step_address(formula.step),

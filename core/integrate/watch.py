@@ -18,7 +18,9 @@ from ..contact.modes import (
 )
 from ..stage.inner import rounding_level
 from .certain import first_root, way_of_gap
+from .force_watch import forces_may_vanish, forces_vanish, sliding_turns
 from .probe import BRACKET, HAPPENS, set_travel
+from .records import WATCH
 
 # A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
 FORCE_ROUNDING = 1e-12
@@ -27,10 +29,14 @@ GAP_ROUNDING = 1e-12  # of the largest coordinate (or of 1 m)
 
 @compiled
 def remember(ws: Any, lc: Any) -> None:
-    """Store gap, rate and acceleration of the current point as those of the newest row."""
-    watch = mat(lc.watch, max(ws.n_contacts, 1), 3)
-    rows = ivec(ws.contact_rows, ws.n_contacts)
+    """Store gap, rate and acceleration of the current point as those of the newest row; with friction those of the
+    sliding distance too."""
+    watch = mat(lc.watch, max(ws.n_contacts, 1), WATCH)
+    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
     for k in range(ws.n_contacts):
+        if slides[k] >= 0:
+            watch[k, 3] = vec(ws.phid, ws.m_ext)[slides[k]]
+            watch[k, 4] = vec(ws.phidd, ws.m_ext)[slides[k]]
         watch[k, 0] = vec(ws.phi, ws.m_ext)[rows[k]]
         watch[k, 1] = vec(ws.phid, ws.m_ext)[rows[k]]
         watch[k, 2] = vec(ws.phidd, ws.m_ext)[rows[k]]
@@ -51,8 +57,17 @@ def friction_margin(ws: Any, k: int) -> float:
 
 
 @internal
-def _ends_beyond(ws: Any, lc: Any, k: int) -> bool:
-    """True if the point at the end of a step shows that contact k has had an event."""
+def _no_force(ws: Any) -> float:
+    """Rounding of the multipliers, N."""
+    lam, largest = vec(ws.lam, ws.m_ext), 1.0
+    for i in range(ws.m_ext - 1):
+        largest = max(largest, abs(lam[i]))
+    return FORCE_ROUNDING * largest
+
+
+@internal
+def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
+    """True if the point at the end of a step shows that contact k has had an event; a force below `none` is none."""
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     row = ivec(ws.contact_rows, ws.n_contacts)[k]
     g, rate = vec(ws.phi, ws.m_ext)[row], vec(ws.phid, ws.m_ext)[row]
@@ -64,19 +79,14 @@ def _ends_beyond(ws: Any, lc: Any, k: int) -> bool:
         # shapes that touch and neither part nor press drift by rounding only; those that a method without position
         # constraints has let overlap before they opened may come apart
         overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
-        return rate < -RATE_ROUNDING or (g < -overlap and mat(lc.watch, ws.n_contacts, 3)[k, 0] >= -overlap)
+        return rate < -RATE_ROUNDING or (g < -overlap and mat(lc.watch, ws.n_contacts, WATCH)[k, 0] >= -overlap)
     if mode == CLOSED:
-        lam = vec(ws.lam, ws.m_ext)
-        largest = 1.0
-        for i in range(ws.m_ext - 1):
-            largest = max(largest, abs(lam[i]))
-        if force < -FORCE_ROUNDING * largest:
+        if force < -none:
             return True
         if vec(ws.contact_sticking, ws.n_contacts)[k] == 0.0:
             return False
         sticks = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS
-        none = FORCE_ROUNDING * largest if sticks else RATE_ROUNDING * rounding_level(ws, ws.v)
-        return friction_margin(ws, k) < -none
+        return friction_margin(ws, k) < -(none if sticks else RATE_ROUNDING * rounding_level(ws, ws.v))
     if mode == ACTIVE:
         return g > 0.0 or (release == 2 and force < 0.0)
     if mode == RELEASED:
@@ -85,14 +95,16 @@ def _ends_beyond(ws: Any, lc: Any, k: int) -> bool:
 
 
 @internal
-def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float) -> bool:
+def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> bool:
     """True if contact k has an event within the step of size h that ends at the current point; then its line of
     `brackets` says where (`certain.first_root`)."""
-    ended = _ends_beyond(ws, lc, k)
-    bracket, start = mat(lc.brackets, ws.n_contacts, BRACKET)[k], mat(lc.watch, ws.n_contacts, 3)[k]
+    ended = _ends_beyond(ws, lc, k, none)
+    bracket, start = mat(lc.brackets, ws.n_contacts, BRACKET)[k], mat(lc.watch, ws.n_contacts, WATCH)[k]
     bracket[0], bracket[1], bracket[2] = 0.0, 1.0, 1.0
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     g = vec(ws.phi, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
+    if mode == CLOSED and not ended and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0:
+        return sliding_turns(ws, ms, lc, k, h, RATE_ROUNDING * rounding_level(ws, ws.v))
     if mode != OPEN and mode != ACTIVE:
         return ended
     sign = 1.0 if mode == OPEN else -1.0
@@ -105,6 +117,10 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float) -> bool:
     if sign * start[0] < -overlap:
         return ended
     slack = overlap if sign * start[0] <= overlap else 0.0
+    if slack > 0.0 and ms.exact == 0 and not ended:
+        # forces of methods that do not meet the constraints at all levels are not those that the next row begins with:
+        # what has opened by them may first press a little
+        return False
     return first_root(ws, ms, lc, k, h, sign, start, ended, slack, bracket)
 
 
@@ -117,11 +133,14 @@ def find_events(ws: Any, ms: Any, lc: Any, h: float, everyone: bool) -> bool:
     if ws.n_contacts == 0:
         return False
     set_travel(ws, ms, lc, h)
-    brackets, found = mat(lc.brackets, ws.n_contacts, BRACKET), False
+    brackets, found, none = mat(lc.brackets, ws.n_contacts, BRACKET), False, _no_force(ws)
     for k in range(ws.n_contacts):
-        inside = _event_inside(ws, ms, lc, k, h)
+        inside = _event_inside(ws, ms, lc, k, h, none)
         if inside and not everyone:
             return True
         brackets[k, HAPPENS] = 1.0 if inside else 0.0
         found = found or inside
+    # where all multipliers are those of the motion: of other methods, only those of the rows are known
+    if (everyone or not found) and ms.exact != 0 and forces_may_vanish(ws, ms, lc, h):
+        found = forces_vanish(ws, ms, lc, h, none) or found
     return found
