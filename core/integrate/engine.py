@@ -110,8 +110,9 @@ class Engine(ContactSide):
         self.use_outer_loop(outer)
         self._method = build_method(self.formula, self.settings, self.workspace.row_length)
         self.method_arrays: dict[str, NDArray[Any]] = self._method.arrays
-        self._loop = build_loop(self.assembly, self.formula, self.settings, record, step_records)
+        self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
         self.clock, self.watch = self._loop.arrays["clock"], self._loop.arrays["watch"]
+        self.brackets = self._loop.arrays["brackets"]
         self.buffer, self.cursor = self._loop.arrays["samples"], self._loop.arrays["cursor"]
         self.log_buffer, self.log_cursor = self._loop.arrays["log"], self._loop.arrays["log_cursor"]
         self.fine_starter = step_address(FINE_STARTER)

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import numba as nb
 import numpy as np
 from numba import types
 from numpy.typing import NDArray
@@ -42,7 +41,18 @@ from .dense_output import query
 from .inputs import PUNCTUAL
 from .loop import run
 from .near_singular import STRAINED
-from .records import BREAK_TIME, CHUNK, CLOCK_SIZE, LOOP, NO_STEP, REACHED, STOP_TIME, TARGET_TIME
+from .records import (
+    ACCELERATIONS_SIGNATURE,
+    BREAK_TIME,
+    CHUNK,
+    CLOCK_SIZE,
+    LOOP_TYPE,
+    NO_STEP,
+    REACHED,
+    STOP_TIME,
+    TARGET_TIME,
+    call_accelerations,
+)
 from .sample import write_sample
 from .watch import remember
 
@@ -80,11 +90,9 @@ ARRIVED = 201
 """At the goal; the channels have not been asked for, or are not to be had in this way."""
 READ = 202
 
-LOOP_TYPE = nb.from_dtype(LOOP)
 QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
-ACCELERATIONS_SIGNATURE = types.int64(WORKSPACE_TYPE)
 RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)
-call_query, call_accelerations, call_run = map(caller, (QUERY_SIGNATURE, ACCELERATIONS_SIGNATURE, RUN_SIGNATURE))
+call_query, call_run = map(caller, (QUERY_SIGNATURE, RUN_SIGNATURE))
 workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
 
 

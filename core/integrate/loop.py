@@ -60,10 +60,11 @@ from .records import (
     TARGET_TIME,
     TRIAL_STEP,
     VIOLATED,
+    call_find_events,
 )
 from .sample import write_sample
 from .step_size import next_step, step_factor
-from .watch import any_crossed, remember
+from .watch import remember
 
 LOG_SIZE = len(LOG_COLUMNS)
 # Rounding of a coordinate, relative to the largest, that differences over several steps make of 2e-16.
@@ -268,7 +269,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 continue
         if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
             return VIOLATED
-        if ws.n_contacts > 0 and any_crossed(ws, lc, h):
+        if ws.n_contacts > 0 and call_find_events(lc.find_events, ws, ms, lc, h, False):
             return EVENT
         if h == remaining:
             # the stop time itself, not t + h with its rounding

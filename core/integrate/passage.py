@@ -24,7 +24,7 @@ from .collocation import Collocation, Points, gauss
 from .loop import accept, set_weights_at, violates_redundant
 from .records import EVENT, HELD, PREVIOUS_NORM, STEP_SIZE, STOP_TIME, TRIAL_STEP
 from .singular_position import find_singular, natural_step
-from .watch import crossed
+from .watch import find_events
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -238,7 +238,7 @@ def _accept(sim: "Simulation", points: Points, natural: float) -> int:
         arrays["aux"][:] = arrays["a"]
         evaluate_residuals(ws)
         evaluate_power(ws)
-        if violates_redundant(ws, 1.0) or any(crossed(ws, lc, c, gap) for c in range(len(sim.assembly.contacts))):
+        if violates_redundant(ws, 1.0) or find_events(ws, ms, lc, gap, False):
             break
         accept(ws, ms, lc)
         count += 1

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..compiled.kernels import kernel_address
 from ..contact.friction import CoulombFriction, Friction
+from ..contact.geometry_kinds import EQUATIONS, kind_of
 from ..contact.laws import ForceLaw, ImpactLaw
 from ..description import Model
 from ..elements.base import Coordinate, Element, Form, Row
@@ -51,6 +52,8 @@ class ContactInfo:
     friction: Friction | None = None
     bristle: int = -1
     """Index of its friction's internal coordinate, whose velocity is the deflection of the bristles; -1: none."""
+    kind: int = EQUATIONS
+    """What is known of its geometry."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -234,6 +237,7 @@ def assemble(model: Model) -> Assembly:
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 c.friction,
                 next(iter(numbering.internal(c.name)), -1),
+                kind_of(c.form().kernel),
             )
             for c in model.contacts
         ],

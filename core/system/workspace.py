@@ -162,6 +162,10 @@ class Workspace:
             },
         )  # fmt: skip
 
+    def batch_table(self, k: int) -> NDArray[Any]:
+        """The record of batch k, as a structured array (1,)."""
+        return self._batches[k].table
+
     def engage(self, closed: frozenset[int], engaged: frozenset[int], sticking: frozenset[int] = frozenset()) -> None:
         """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
         a place in the matrix."""
