@@ -25,5 +25,5 @@ MEMORY_SIZE = 8
 RATE_ROUNDING = 1e-12
 """m/s; a gap rate below this is none."""
 SLIP_EXCESS = 1e-9
-"""Friction has passed its limit only if it is beyond by this part of it: blocks that ride on one another need exactly the
-limit all along, and rounding must not let them slip."""
+"""Friction has passed its limit only if it is beyond by this part of it: blocks that ride on one another need exactly
+the limit all along, and rounding must not let them slip."""
