@@ -26,6 +26,8 @@ AT_REST = 1e-9
 """Of the largest motion: contacts that move less than this stay together."""
 RANK = 1e-13
 """Singular values below this part of the largest are zero."""
+PSEUDO = 1e-10
+"""The same of the block of friction that sticks."""
 
 
 @internal
@@ -122,14 +124,33 @@ class _Problem:
         across = np.where(self.mu > 0.0, (friction - wanted) * self.c, 0.0)
         return float(max(np.max(np.abs(along)), np.max(np.abs(across))))
 
-    def spread(self, normal: Vector, friction: Vector, size: float) -> tuple[Vector, Vector]:
-        """Of the forces that make the same motion the least ones: all contacts that stay together share them."""
+    def basic(self, normal: Vector, friction: Vector, size: float) -> tuple[Vector, Vector] | None:
+        """Of the forces that make the same motion those that stand on no more contacts than it takes, with the least
+        friction; None if these are beyond its limits."""
+        # importing scipy costs more than most runs: only who needs it pays
+        from scipy.optimize import nnls
+
         w_n, w_t = self.motion(normal, friction)
         presses = np.abs(w_n) <= AT_REST * size
         free = (self.mu > 0.0) & (self.direction == 0.0) & presses
         sticks = free & (np.abs(w_t) <= AT_REST * size)
-        slope = np.where(free, -np.sign(w_t), -self.direction) * np.where(sticks, 0.0, self.mu)
-        return self._solved(presses, sticks, slope, self.base, np.where(sticks, 0.0, slope * self.base))
+        ratio = np.where(free, -np.sign(w_t), -self.direction) * np.where(sticks, 0.0, self.mu)
+        some, stuck = np.flatnonzero(presses), np.flatnonzero(sticks)
+        friction = ratio * self.base
+        w_n, w_t = self.motion(self.base, friction)
+        inverse = np.linalg.pinv(self.tt[np.ix_(stuck, stuck)], rcond=PSEUDO, hermitian=True)
+        across = self.nt[np.ix_(some, stuck)] @ inverse
+        coupled = (self.nt.T[stuck] + self.tt[stuck] * ratio)[:, some]
+        matrix = (self.nn[some] + self.nt[some] * ratio)[:, some] - across @ coupled
+        try:
+            more, _ = nnls(matrix, across @ w_t[stuck] - w_n[some])
+        except RuntimeError:
+            return None
+        normal = self.base.copy()
+        normal[some] += more
+        friction = ratio * normal
+        friction[stuck] = -inverse @ (w_t[stuck] + coupled @ more)
+        return normal, friction
 
     def direct(self, normal: Vector, friction: Vector) -> tuple[Vector, Vector]:
         """Forces that solve the equations of what each contact does now, nearest to the given ones."""
@@ -183,5 +204,5 @@ def solve_by_sweeps(
             break
     if not least <= GOOD * size:
         return None
-    shared = problem.spread(*best, size)
-    return shared if problem.left(*shared) <= max(least, 10.0 * SOLVED * size) else best
+    basic = problem.basic(*best, size)
+    return basic if basic is not None and problem.left(*basic) <= max(least, 10.0 * SOLVED * size) else best
