@@ -121,9 +121,9 @@ def sweep(name):
         else:
             raise AssertionError(f"{what} was taken")
     other.restore(State.from_bytes(state.to_bytes()))
-    ends = [simulation.t + 0.2]
+    end = simulation.t + 0.2
     for sim in (simulation, other):
-        sim.advance(ends[0])
+        sim.advance(end)
     if simulation.state() != other.state():
         raise AssertionError("the state itself does not lead on")
     return refused
