@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.errors import ModelError
 from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
 from .intermediate import Updates
@@ -174,6 +175,8 @@ class SlaveState:
                 run = self._build(values, snapshot.start_time)
             try:
                 run.restore(snapshot.simulation, snapshot.applied)
+            except ModelError as error:  # a state that the simulation refuses leaves it as it was
+                raise SnapshotError(f"the stored state is refused: {error}") from error
             except BaseException:  # what is left may be half of each
                 self._phase = Phase.FAILED
                 raise

@@ -170,11 +170,7 @@ class Workspace:
         """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
         a place in the matrix."""
         self.key = (closed, closed | engaged, sticking)
-        key = (*self.key, self.dropped)
-        structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
-        while len(self._structures) >= MOST_STRUCTURES:
-            del self._structures[next(iter(self._structures))]
-        self._structures[key] = self.structure = structure
+        self.structure = structure = self.structure_of(*self.key, self.dropped)
         values = np.zeros(structure.nnz + 1)
         self._set("values", values, n_values=len(values))
         self._set("active", structure.active, m_act=len(structure.active))
@@ -195,6 +191,14 @@ class Workspace:
         self.arrays["rate"][[*CONDITIONS]] = 0.0
         if structure.dependent is not None:
             self._use_partition()
+
+    def structure_of(self, *key: frozenset[int]) -> Structure:
+        """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
+        structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
+        while len(self._structures) >= MOST_STRUCTURES:
+            del self._structures[next(iter(self._structures))]
+        self._structures[key] = structure
+        return structure
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
