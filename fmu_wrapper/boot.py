@@ -37,9 +37,14 @@ def create(interface, name, token, resources, logging_on, log, event_mode, early
     with open(os.path.join(resources, "python.json"), encoding="utf-8") as file:
         record = json.load(file)
     flags = {"logging_on": bool(logging_on), "event_mode": bool(event_mode), "early_return": bool(early_return)}
-    with LOCK:
-        embedded = _bundled(record, resources, own) if record.get("bundle") else _installed(record, own)
-    return embedded.create(interface, name, token, resources, log, *updates, **flags)
+    try:
+        with LOCK:
+            embedded = _bundled(record, resources, own) if record.get("bundle") else _installed(record, own)
+        return embedded.create(interface, name, token, resources, log, *updates, **flags)
+    except Exception as error:
+        # a package that is too old fails in ways of its own, on import or later
+        _refuse_missing(record, f" ({type(error).__name__}: {error})")
+        raise
 
 
 def _installed(record, own):  # type: ignore[no-untyped-def]
@@ -136,12 +141,12 @@ def _missing(record):  # type: ignore[no-untyped-def]
     return found
 
 
-def _refuse_missing(record):  # type: ignore[no-untyped-def]
+def _refuse_missing(record, because=""):  # type: ignore[no-untyped-def]
     missing = _missing(record)
-    if missing:
+    if missing and because.find("this FMU needs packages") < 0:  # not said yet
         listed = ", ".join(f"{name} ({state})" for name, state in missing)
         remedy = _remedy(" ".join(f"'{name}'" for name, _ in missing))
-        raise ImportError(f"this FMU needs packages that {_here()} lacks: {listed}: {remedy}")
+        raise ImportError(f"this FMU needs packages that {_here()} lacks: {listed}: {remedy}{because}")
 
 
 def _here():  # type: ignore[no-untyped-def]
@@ -172,7 +177,10 @@ def _unpack(archive, digest):  # type: ignore[no-untyped-def]
         raise ImportError(f"'{archive}' is damaged: its content is not what the export wrote; unzip the FMU anew")
     with zipfile.ZipFile(archive) as content:
         problems = []
-        for parent in (os.path.join(user_cache(), "tlismni", "packages"), os.path.dirname(archive)):
+        users = user_cache()
+        for parent in (users and os.path.join(users, "tlismni", "packages"), os.path.dirname(archive)):
+            if not parent:
+                continue
             folder = os.path.join(parent, f"tlismni_{digest}")
             try:
                 if not _complete(folder, content):
@@ -215,9 +223,13 @@ def _complete(folder, content):  # type: ignore[no-untyped-def]
 
 
 def user_cache():  # type: ignore[no-untyped-def]
-    """The user's cache folder by the custom of the platform."""
+    """The user's cache folder by the custom of the platform, as `core.compiled.cache` has it; None if there is none."""
+    home = os.path.expanduser("~")
     if sys.platform == "win32":
-        return os.environ.get("LOCALAPPDATA") or os.path.expanduser("~\\AppData\\Local")
-    if sys.platform == "darwin":
-        return os.path.expanduser("~/Library/Caches")
-    return os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+        found = os.environ.get("LOCALAPPDATA") or os.path.join(home, "AppData", "Local")
+    elif sys.platform == "darwin":
+        found = os.path.join(home, "Library", "Caches")
+    else:  # empty counts as not set, and a relative path is to be ignored (XDG Base Directory Specification)
+        found = os.environ.get("XDG_CACHE_HOME", "")
+        found = found if os.path.isabs(found) else os.path.join(home, ".cache")
+    return found if os.path.isabs(found) else None

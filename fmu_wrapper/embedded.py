@@ -48,6 +48,7 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
     if data["tlismni"] != package_version():
         text = f"exported with tlismni {data['tlismni']}, running with {package_version()}: results may differ"
         slave.log.write(Status.WARNING, logs.WARNING, text)
+    slave.prepare()
     return slave
 
 

@@ -97,6 +97,8 @@ class Run:
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
         self._set_columns(values.table)
         self._exchange = getattr(self._simulation, "exchange", None)
+        if self._exchange is not None:
+            self._simulation.prepare_exchange()
 
     @staticmethod
     def key_of(values: Values, t0: float) -> tuple[Any, ...]:

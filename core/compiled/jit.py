@@ -6,10 +6,10 @@ from types import FunctionType
 from typing import Any
 
 from numba import njit, types
-from numba.core import cgutils, config
+from numba.core import cgutils
 from numba.extending import intrinsic
 
-from .cache import cache_folder
+from .kept import KeptCode
 
 
 def compiled(function: Callable[..., Any]) -> Any:
@@ -33,13 +33,8 @@ def internal(function: Callable[..., Any]) -> Any:
 
 
 def _cached(dispatcher: Any) -> Any:
-    # numba reads the folder when caching is enabled; the setting is put back so that other packages keep theirs
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder())
-    try:
-        dispatcher.enable_caching()
-    finally:
-        config.CACHE_DIR = before
+    # what numba's enable_caching does, with a cache that bears damage, full disks and several processes (`kept.py`)
+    dispatcher._cache = KeptCode(dispatcher.py_func)
     return dispatcher
 
 

@@ -187,6 +187,10 @@ def solve_by_sweeps(
 ) -> tuple[Vector, Vector] | None:
     """Normal and tangential forces (n,) of n contacts, or None where none were found; arguments as in
     `complementarity.solve_contacts`, `base` (n,) being the least normal forces."""
+    # of one type, for which `sweep` is compiled before the run
+    nn, nt, tt, b_n, b_t, mu, direction, base = (
+        np.ascontiguousarray(x, dtype=np.float64) for x in (nn, nt, tt, b_n, b_t, mu, direction, base)
+    )
     problem = _Problem(nn, nt, tt, b_n, b_t, mu, direction, base)
     size = max(float(np.max(np.abs(b_n))), float(np.max(np.abs(b_t))))
     normal, friction = base.copy(), -direction * mu * base

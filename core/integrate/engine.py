@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
+from ..compiled.notices import compile_notices
 from ..contact import machine
 from ..contact.laws import ForceLaw
 from ..contact.modes import MODE, RATE_ROUNDING
@@ -33,6 +34,7 @@ from .contact_side import ContactSide
 from .dense_output import query
 from .near_singular import smooth_query, strained
 from .output import ChannelTable
+from .ready import make_ready
 from .records import MAX_STEP, STEP_SIZE
 from .sample import write_sample
 from .settings import Settings, set_control
@@ -60,6 +62,7 @@ def _own_error(assembly: Assembly) -> BaseException:
 class Engine(ContactSide):
     """Set-up of a run and the operations that event handling is made of. `Simulation` is the public face."""
 
+    @compile_notices("this model")
     def __init__(
         self,
         system: Any,
@@ -121,6 +124,7 @@ class Engine(ContactSide):
         self.samples: list[NDArray[np.float64]] = []
         with user_errors(self.assembly):
             self._start()
+        make_ready(self)
 
     # ---- set-up -------------------------------------------------------------------------------------------------
 

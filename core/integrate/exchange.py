@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numba as nb
 import numpy as np
 from numba import types
 from numpy.typing import NDArray
@@ -266,6 +267,7 @@ class Exchange:
             },
         )  # fmt: skip
         self.record = self._record.record
+        exchange.compile((nb.from_dtype(EXCHANGE),))  # not at the first step
         # whose elements are written in half the time of those of the array
         self.clock: Any = self.times.data
         self.reads = False

@@ -256,6 +256,10 @@ class Simulation(Engine):
         """
         inputs.set_inputs(self, values, derivatives or {})
 
+    def prepare_exchange(self) -> bool:
+        """Compile now what `exchange` calls, not at its first call; False if that will do nothing of its own."""
+        return self.crossing is not None
+
     @cached_property
     def crossing(self) -> exchange.Exchange | None:
         """What `exchange` works with; None where it does nothing of its own."""

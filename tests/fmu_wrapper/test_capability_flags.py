@@ -107,7 +107,7 @@ def asked2(exported):
         return works(other.enterInitializationMode) and works(other.exitInitializationMode)
 
     return {
-        "needsExecutionTool": False,
+        "needsExecutionTool": True,  # a Python
         "canHandleVariableCommunicationStepSize": irregular(new()),
         "canInterpolateInputs": works(fmu.setRealInputDerivatives, [exported.input], [1], [0.0]),
         "maxOutputDerivativeOrder": order_of_outputs(
@@ -168,7 +168,7 @@ def asked3(exported):
         return works(other.fmi3EvaluateDiscreteStates, other.component)
 
     return {
-        "needsExecutionTool": False,
+        "needsExecutionTool": True,  # a Python
         "canBeInstantiatedOnlyOncePerProcess": not irregular(new()),
         "canGetAndSetFMUState": stateful(new(), exported.output, False),
         "canSerializeFMUState": stateful(new(), exported.output, True),

@@ -1,8 +1,10 @@
 """What an exported FMU holds: its description, its resources, its checks (on the fake simulation)."""
 
+import getpass
 import json
 import re
 import zipfile
+from datetime import UTC, datetime
 from types import SimpleNamespace
 
 import fmpy
@@ -95,7 +97,7 @@ def test_default_experiment_and_capabilities(fake_fmu):
     assert given == [0.0, 2.5, 1e-7, 0.01]
     flags = description.coSimulation
     assert flags.canHandleVariableCommunicationStepSize and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
-    assert flags.canInterpolateInputs and flags.providesDirectionalDerivative and not flags.needsExecutionTool
+    assert flags.canInterpolateInputs and flags.providesDirectionalDerivative and flags.needsExecutionTool
 
 
 def test_a_scenario_gives_its_settings(fake_fmu, model):
@@ -122,7 +124,9 @@ def test_the_model_travels_as_data(fake_fmu, model):
         assert "driven_ball.so" in " ".join(archive.namelist()) or len(archive.namelist()) == 7
 
 
-def test_equal_models_give_equal_files_and_others_another_guid(fake_fmu, model):
+def test_equal_models_give_equal_files_and_others_another_guid(fake_fmu, model, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1763800000")
+
     def guid(path):
         return fmpy.read_model_description(path).guid
 
@@ -176,3 +180,26 @@ def test_a_file_that_cannot_be_written_is_named(tmp_path, monkeypatch):
     with pytest.raises(ExportError) as caught:
         export_module._write(tmp_path / "y.fmu", {})
     assert str(caught.value) == f"'{tmp_path / 'y.fmu'}' cannot be written: Permission denied"
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_author_version_and_date(fake_fmu, version, monkeypatch):
+    def read(**arguments):
+        with zipfile.ZipFile(fake_fmu(fmi_version=version, **arguments)) as archive:
+            root = etree.fromstring(archive.read("modelDescription.xml"))
+        return root, root.find("CoSimulation").get("needsExecutionTool")
+
+    earliest = datetime.now(UTC).replace(microsecond=0)
+    root, tool = read()
+    date = datetime.strptime(root.get("generationDateAndTime"), "%Y-%m-%dT%H:%M:%SZ").replace(tzinfo=UTC)
+    assert earliest <= date <= datetime.now(UTC) and tool == "true"  # it takes a Python
+    assert root.get("author") == getpass.getuser() and root.get("version")
+    other, _ = read(source=ball_model(height=1.5))
+    assert other.get("version") != root.get("version") == read()[0].get("version")
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    root, tool = read(author="A. Nother", version="2.1", needs_execution_tool=False)
+    assert (root.get("author"), root.get("version"), tool) == ("A. Nother", "2.1", "false")
+    assert root.get("generationDateAndTime") == "1970-01-02T00:00:00Z"
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    with pytest.raises(ExportError, match="SOURCE_DATE_EPOCH = 'yesterday'"):
+        fake_fmu(fmi_version=version)
