@@ -114,6 +114,7 @@ class Run:
                 "version of tlismni names them differently; export the FMU anew"
             )
         self._names = [channel.name for channel in self._simulation.channels]
+        self._units = {channel.name: channel.unit for channel in self._simulation.channels}
         self._columns = [
             (
                 kind,
@@ -216,6 +217,10 @@ class Run:
     def horizon(self) -> float:
         """Time up to which the solver has gone without an event, s."""
         return float(self._simulation.horizon)
+
+    def unit(self, channel: str) -> str:
+        """Unit of a channel."""
+        return self._units[channel]
 
     def handle_event(self) -> bool:
         """Let a contact event at the present time happen, if one is due. True if it entails another at once."""

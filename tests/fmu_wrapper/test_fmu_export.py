@@ -2,6 +2,7 @@
 
 import json
 import re
+import sys
 import zipfile
 from types import SimpleNamespace
 
@@ -176,3 +177,10 @@ def test_a_file_that_cannot_be_written_is_named(tmp_path, monkeypatch):
     with pytest.raises(ExportError) as caught:
         export_module._write(tmp_path / "y.fmu", {})
     assert str(caught.value) == f"'{tmp_path / 'y.fmu'}' cannot be written: Permission denied"
+
+
+def test_install_without_the_extra_is_told_what_is_missing(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "lxml", None)
+    with pytest.raises(ExportError, match=r"export_fmu needs lxml, which.*pip install 'tlismni\[fmu\]'"):
+        export_fmu(ball_model(), tmp_path / "x.fmu")
+    assert not list(tmp_path.iterdir())
