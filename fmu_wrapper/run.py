@@ -218,9 +218,9 @@ class Run:
         """Time up to which the solver has gone without an event, s."""
         return float(self._simulation.horizon)
 
-    def unit(self, channel: str) -> str:
-        """Unit of a channel."""
-        return self._units[channel]
+    def unit(self, channel: str, otherwise: str) -> str:
+        """Unit of a channel; `otherwise` if the simulation does not show it."""
+        return self._units.get(channel, otherwise)
 
     def handle_event(self) -> bool:
         """Let a contact event at the present time happen, if one is due. True if it entails another at once."""

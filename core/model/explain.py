@@ -11,9 +11,9 @@ LONGEST = 60
 ALONE = "must be a list: write a single one in brackets, [...]"
 NEEDED = {
     "missing": "it is missing: give it",
-    "greater_than": "must be above {gt}",
+    "greater_than": "must be greater than {gt}",
     "greater_than_equal": "must be at least {ge}",
-    "less_than": "must be below {lt}",
+    "less_than": "must be less than {lt}",
     "less_than_equal": "must be at most {le}",
     "finite_number": "must be a finite number",
     "float_type": "must be a number",

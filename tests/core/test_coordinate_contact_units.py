@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from helpers import GROUND, on
+from tlismni.cli.summary import event_units
 from tlismni.core import (
     CoordinateContact,
     CoordinateTerm,
@@ -18,6 +19,7 @@ from tlismni.core import (
 )
 from tlismni.core.integrate.simulation import Simulation
 from tlismni.core.model.units import conjugate, parse_unit, per_second, product, times_second
+from tlismni.fmu_wrapper import Slave
 
 LINEAR = {"gap": "m", "gap_rate": "m/s", "normal_force": "N", "impulse": "N.s", "dissipation": "J"}
 TURNING = {"gap": "rad", "gap_rate": "rad/s", "normal_force": "N.m", "impulse": "N.m.s", "dissipation": "J"}
@@ -61,6 +63,16 @@ def units(model):
 def test_units_of_channels_follow_from_the_terms(terms, expected):
     found = units(Model(bodies=BODIES, contacts=[contact(*terms)]))
     assert {name: found[f"c.{name}"] for name in expected} == expected
+
+
+def test_units_reach_the_fmu_and_the_table_of_events():
+    turning, plain = contact(term("a", "angle", -1.0)), contact(term("b", "x", -1.0))
+    model = Model(bodies=BODIES[:2], contacts=[turning, plain.model_copy(update={"name": "d"})])
+    variables = Slave(model).variables.by_name
+    assert {name: variables[f"c.{name}"].unit for name in TURNING} == TURNING
+    assert {name: variables[f"d.{name}"].unit for name in LINEAR} == LINEAR
+    result = simulate(Model(bodies=BODIES[:1], contacts=[turning]), 0.2)
+    assert event_units(result) == {"c": ("N.m.s", "rad/s")}
 
 
 def test_friction_has_the_unit_of_what_slides():

@@ -48,7 +48,8 @@ def model_data(**changed):
         (lambda: Line2D(nodes=on("a")), r"Line2D: nodes: must be a list.*\(given: a Marker2D\)"),
         (lambda: Line2D(nodes=[on("a")]), "Line2D: nodes: needs at least 2 entries, there are 1"),
         # numbers out of range
-        (lambda: PointMass2D(name="ball", mass=-1.0), r"PointMass2D 'ball': mass: must be above 0\.0 \(given: -1\.0\)"),
+        (lambda: PointMass2D(name="ball", mass=-1.0),
+         r"PointMass2D 'ball': mass: must be greater than 0\.0 \(given: -1\.0\)"),
         (lambda: PointMass2D(name="ball", mass=float("nan")), "PointMass2D 'ball': mass: must be a finite number"),
         (lambda: PointMass2D(name="ball", mass="1"), "PointMass2D 'ball': mass: a number is needed, not the text '1'"),
         (lambda: PointMass2D(name="ball", mass=None), r"PointMass2D 'ball': mass: must be a number \(given: None\)"),
@@ -65,7 +66,8 @@ def model_data(**changed):
          "Revolute2D 'pin': a: must be a Marker2D .*given: 'ground'"),
         (lambda: Disk2D(marker=on("a", 0.0), radius=-1.0), "Disk2D: radius: must be at least 0"),
         # inside of others
-        (lambda: Model(**model_data(mass=-2.0)), r"^RigidBody2D 'rod': mass: must be above 0\.0 \(given: -2\.0\)$"),
+        (lambda: Model(**model_data(mass=-2.0)),
+         r"^RigidBody2D 'rod': mass: must be greater than 0\.0 \(given: -2\.0\)$"),
         (lambda: Model(**model_data(position=(0.0, "x"))), "RigidBody2D 'rod': position.1: a number is needed"),
         (lambda: Model(**model_data(masse=1.0)),
          "RigidBody2D 'rod': masse: there is no such field; did you mean 'mass'"),
