@@ -8,9 +8,9 @@ from typing import Any
 
 from ..core.contact.laws import LAWS
 from ..core.methods.registry import METHODS
+from ..core.model.units import parse_unit
 from .log import CATEGORIES
 from .settings import Settings
-from .units import parse_unit
 from .variables import Variable, VariableTable
 
 ROLES: dict[str, tuple[str, str, str | None]] = {

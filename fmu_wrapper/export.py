@@ -22,6 +22,7 @@ from .documentation import documentation
 from .drawing import draw, to_png, to_svg
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
+from .extras import require
 from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
@@ -86,8 +87,8 @@ def export_fmu(
 
     Raises
     ------
-    ExportError : for an FMI version that is not written, a missing shim, a file that cannot be written, a setting
-        that is no JSON data.
+    ExportError : for an FMI version that is not written, a missing shim or package (lxml), a file that cannot be
+        written, a setting that is no JSON data.
     ModelError, FmuValueError : for a wrong model or setting.
     SourceError : for what is neither a Model nor a Scenario; an EquationSystem is code, not data.
     """
@@ -98,6 +99,7 @@ def export_fmu(
             f"arrays were asked of FMI {fmi_version}, which has none: export for FMI 3.0, or without them"
         )
     shim_path()  # before any work
+    require("export_fmu", "lxml", error=ExportError)
     if not path.parent.is_dir():
         raise ExportError(f"'{path}' cannot be written: there is no folder '{path.parent}'")
     given = {"t_end": t_end, "communication_step": communication_step, **solver}
@@ -169,7 +171,7 @@ def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
         picture = to_png(drawing)
     except ImportError:
         logging.getLogger(__name__).warning(
-            "the FMU gets no icon: that needs Pillow, which is not installed (pip install pillow)"
+            "the FMU gets no icon: that needs Pillow, which is not installed (pip install 'tlismni[fmu]')"
         )
         picture = None
     if fmi_version == "2.0":

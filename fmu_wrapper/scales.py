@@ -7,8 +7,8 @@ from typing import Any
 from ..core.description import Model
 from ..core.model.base import Record
 from ..core.model.channels import Parameter
+from ..core.model.units import parse_unit
 from .drawing.places import Places
-from .units import parse_unit
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from ..model.base import Name, Record
 from ..model.channels import Channel
 from ..model.markers import Marker2D
 from ..model.signals import Signal
+from ..model.units import UNKNOWN
 
 NO_INPUTS: Mapping[str, float] = MappingProxyType({})
 
@@ -210,7 +211,7 @@ class Coordinate:
         return self.unit if level == 0 or self.unit == UNKNOWN_UNIT else self.unit + ("", "/s", "/s2")[level]
 
 
-UNKNOWN_UNIT = "-"
+UNKNOWN_UNIT = UNKNOWN
 """Of generalised coordinates that do not say theirs."""
 
 

@@ -54,6 +54,8 @@ class ContactInfo:
     """Index of its friction's internal coordinate, whose velocity is the deflection of the bristles; -1: none."""
     kind: int = EQUATIONS
     """What is known of its geometry."""
+    units: tuple[str, str] = ("m", "m")
+    """Of gap and sliding distance."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -155,7 +157,9 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
 
 
 def assemble(model: Model) -> Assembly:
-    """The model as flat tables. Raises ModelError for a contact of a body with itself."""
+    """The model as flat tables. Raises ModelError without bodies, and for a contact of a body with itself."""
+    if not model.bodies:
+        raise ModelError(f"model '{model.name}' has no bodies, so nothing can move: give it at least one in `bodies`")
     for contact in model.contacts:
         bodies = [marker.body for marker in contact.markers()]
         if len(bodies) > 1 and len(set(bodies)) == 1:
@@ -237,7 +241,8 @@ def assemble(model: Model) -> Assembly:
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 c.friction,
                 next(iter(numbering.internal(c.name)), -1),
-                kind_of(c.form().kernel),
+                kind=kind_of(c.form().kernel),
+                units=c.units_in(numbering.bodies),
             )
             for c in model.contacts
         ],

@@ -3,6 +3,7 @@
 import getpass
 import json
 import re
+import sys
 import zipfile
 from datetime import UTC, datetime
 from types import SimpleNamespace
@@ -203,3 +204,10 @@ def test_author_version_and_date(fake_fmu, version, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
     with pytest.raises(ExportError, match="SOURCE_DATE_EPOCH = 'yesterday'"):
         fake_fmu(fmi_version=version)
+
+
+def test_install_without_the_extra_is_told_what_is_missing(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "lxml", None)
+    with pytest.raises(ExportError, match=r"export_fmu needs lxml, which.*pip install 'tlismni\[fmu\]'"):
+        export_fmu(ball_model(), tmp_path / "x.fmu")
+    assert not list(tmp_path.iterdir())
