@@ -1,4 +1,4 @@
-"""What one-stage formulas of order 2 make wrong in velocities and work accounts.
+"""What one-stage formulas of order 2 make wrong in velocities, and TLISMNI's in work accounts.
 
 Their accelerations at the last three times span a parabola; its integral over the step (the implicit Adams formula of
 order 3, on the actual grid) is one order better than the formula itself. What v_{n+1} - v_n differs from it by is the
@@ -105,7 +105,8 @@ def velocity_error(ws: Any, ms: Any, h: float) -> float:
 
 @internal
 def absolute_velocity_error(ws: Any, ms: Any, h: float, shift: float, factored: bool) -> Any:
-    """(status, the same norm) for formulas on all coordinates, without what lies along the constraints.
+    """(status, norm) of the velocities alone for formulas on all coordinates, without what lies along the constraints:
+    nor do work accounts count, since the multipliers that ring there are the power and the impulse of contacts.
 
     `shift`: the accelerations of a step of size h stand for its end plus `shift` h (0, but for HHT on all coordinates);
     those of the row that begins a history, for its own time. `factored`: whether `kkt_query` has the mass matrix of
@@ -116,7 +117,7 @@ def absolute_velocity_error(ws: Any, ms: Any, h: float, shift: float, factored: 
         if factor(lu_at(ws.kkt_query), ws.values) != 0:
             return REANALYZE, 0.0
         ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
-    of_work = _find_error(ws, ms, h, shift)
+    _find_error(ws, ms, h, shift)
     if ws.m_act > 0:
         _remove_normal_part(ws)
-    return OK, max(of_work, weighted_norm(vec(ws.rhs, ws.n), vec(ws.weight_v, ws.n_ext), ws.n))
+    return OK, weighted_norm(vec(ws.rhs, ws.n), vec(ws.weight_v, ws.n_ext), ws.n)
