@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..methods.history import recall
-from ..system.evaluate import evaluate_power, evaluate_residuals
+from ..system.evaluate import evaluate_residuals
 from ..system.records import FACTOR_AGE, LEAST_CONDITION, LOOKED_CONDITION, MOST_CONDITION, OK, REANALYZE
 from ..system.redundancy import singular_directions
 from .collocation import Collocation, Points, gauss
@@ -56,8 +56,9 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
     """One accepted long step from the newest row over a singular position near by, or away from one behind.
 
     Returns OK; REANALYZE if there is no such position within reach, if the step had better begin nearer to it, or if no
-    step could be made (nothing is accepted then); EVENT if a contact has an event at once (nothing is accepted;
-    TRIAL_STEP is the size of a step that it lies in). `last_resort`: ordinary steps do not lead any nearer.
+    step could be made (nothing is accepted then); EVENT if a contact has an event at once: nothing is accepted,
+    TRIAL_STEP is the size of a step that it lies in, and `sim.long_step` makes such steps. `last_resort`: ordinary
+    steps do not lead any nearer.
 
     Raises
     ------
@@ -95,7 +96,7 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
             "(rtol = %.3g): that is what rounding leaves of a step over it",
             sim.t_internal + near, best.error, sim.settings.rtol,
         )  # fmt: skip
-    return _accept(sim, best.points, natural)
+    return _accept(sim, over, best.points, natural)
 
 
 def _plans(near: float, natural: float, remaining: float) -> list[tuple[float, tuple[int, ...]]]:
@@ -105,15 +106,13 @@ def _plans(near: float, natural: float, remaining: float) -> list[tuple[float, t
         plans.append((2.0 * near, STAGES))
     least = 2.0 * max(abs(near), natural)
     lengths = [min(length * least, remaining) for length in LENGTHS]
-    for h in sorted(set(lengths)):
-        clear = [
-            s
-            for s in ALL_STAGES
-            if float(np.min(np.abs(gauss(s).c * h - near))) >= CLEARANCE * h / s and abs(h - near) > 0.0
-        ]
-        if len(clear) > 1:
-            plans.append((h, tuple(clear)))
+    plans += [(h, clear) for h in sorted(set(lengths)) if len(clear := _clear_stages(h, near)) > 1]
     return plans
+
+
+def _clear_stages(h: float, near: float) -> tuple[int, ...]:
+    """Numbers of stages that keep clear of the position, `near` s from the start, in a step of size h."""
+    return tuple(s for s in ALL_STAGES if np.min(np.abs(gauss(s).c * h - near)) >= CLEARANCE * h / s)
 
 
 @dataclass
@@ -131,7 +130,7 @@ class _Over:
 
     def __init__(self, sim: "Simulation", near: float, steepness: float) -> None:
         recall(sim.workspace.record, sim._method.record, 0)
-        self.sim, arrays = sim, sim.workspace.arrays
+        self.sim, self.near, arrays = sim, near, sim.workspace.arrays
         n, w = sim.assembly.n, sim.assembly.n_extended - len(sim.assembly.work_names)
         active = sim.workspace.structure.active
         self.start = Points(
@@ -149,6 +148,37 @@ class _Over:
         self.collocation = Collocation(sim, self.start, trusted, noise)
         self.weights = tuple(arrays[name][:n].copy() for name in ("weight_q", "weight_v"))
         self.work_weights = arrays["weight_v"][w:].copy()
+
+    def place(self, points: Points, k: int) -> None:
+        """Point k becomes the current one."""
+        arrays, n, stop = self.sim.workspace.arrays, len(self.weights[0]), float(self.sim.clock[STOP_TIME])
+        w = len(arrays["v"]) - points.work.shape[1]
+        arrays["t"][0] = points.times[k]
+        if k == len(points.times) - 1 and abs(points.times[k] - stop) <= 1e-12 * np.ptp(points.times):
+            # the stop time itself, not t + h with its rounding
+            arrays["t"][0] = stop
+        arrays["q"][:n], arrays["v"][:n], arrays["a"][:n] = points.q[k], points.v[k], points.a[k]
+        arrays["lam"][self.sim.workspace.structure.active] = points.lam[k]
+        arrays["v"][w:], arrays["a"][w:] = points.work[k], points.power[k]
+        arrays["aux"][:] = arrays["a"]
+        evaluate_residuals(self.sim.workspace.record)
+
+    def trial(self, h: float) -> None:
+        """A step of size h, not accepted yet; its end becomes the current point.
+
+        Raises
+        ------
+        SimulationError : if there is none.
+        """
+        points = self.make(h, _clear_stages(h, self.near)).points
+        if points is None:
+            raise SimulationError(
+                f"at t = {self.sim.t_internal + h:.9g} s a contact has an event so near to the singular position of "
+                f"t = {self.sim.t_internal + self.near:.9g} s that no step ends there: move the contact a little",
+                t=self.sim.t_internal,
+                loop="event",
+            )
+        self.place(points, len(points.times) - 1)
 
     def make(self, h: float, stages: tuple[int, ...]) -> _Result:
         """A step of size h, with more stages until it stands still."""
@@ -241,37 +271,27 @@ def _refuse_branching(sim: "Simulation", result: _Result, singular: float) -> No
     )
 
 
-def _accept(sim: "Simulation", points: Points, natural: float) -> int:
+def _accept(sim: "Simulation", over: _Over, points: Points, natural: float) -> int:
     """The points become rows of the history, up to the first event of a contact; OK, or EVENT if that comes at once."""
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
-    arrays, rate = sim.workspace.arrays, sim.workspace.arrays["rate"]
-    ring = sim.method_arrays["ring"]
-    n, w = sim.assembly.n, sim.assembly.n_extended - len(sim.assembly.work_names)
+    ring, rate = sim.method_arrays["ring"], sim.workspace.arrays["rate"]
     sim.clock[[STEP_SIZE, HELD, PREVIOUS_NORM]] = natural, 0.0, 0.0
     rate[FACTOR_AGE] = -1.0
-    stop = float(sim.clock[STOP_TIME])
-    count = 1
-    for k in range(1, len(points.times)):
+    count, last = 1, len(points.times)
+    for k in range(1, last):
+        over.place(points, k)
         gap = float(points.times[k] - points.times[k - 1])
-        arrays["t"][0] = points.times[k]
-        if k == len(points.times) - 1 and abs(points.times[k] - stop) <= 1e-12 * gap:
-            # the stop time itself, not t + h with its rounding
-            arrays["t"][0] = stop
-        arrays["q"][:n], arrays["v"][:n], arrays["a"][:n] = points.q[k], points.v[k], points.a[k]
-        arrays["lam"][sim.workspace.structure.active] = points.lam[k]
-        arrays["v"][w:], arrays["a"][w:] = points.work[k], points.power[k]
-        arrays["aux"][:] = arrays["a"]
-        evaluate_residuals(ws)
-        evaluate_power(ws)
-        if violates_redundant(ws, 1.0) or find_events(ws, ms, lc, gap, False):
+        violated = violates_redundant(ws, 1.0)
+        if violated or find_events(ws, ms, lc, gap, False):
+            if count == 1:
+                sim.clock[TRIAL_STEP], sim.long_step = gap, over
+                return REANALYZE if violated else EVENT
             break
         accept(ws, ms, lc)
         count += 1
     sim.flush()
-    if count == 1:
-        sim.clock[TRIAL_STEP] = float(points.times[1] - points.times[0])
-        return EVENT if not violates_redundant(ws, 1.0) else REANALYZE
     ring[1], ring[2] = count, count
-    # the position lies as far behind as it lay ahead: ordinary steps lead away from here
-    rate[LOOKED_CONDITION] = 2.0 * arrays["control"][MOST_CONDITION] * rate[LEAST_CONDITION]
+    # after all of it the position lies as far behind as it lay ahead: ordinary steps lead away from here
+    whole = 2.0 * sim.workspace.arrays["control"][MOST_CONDITION] * rate[LEAST_CONDITION]
+    rate[LOOKED_CONDITION] = whole if count == last else 0.0
     return OK
