@@ -222,7 +222,10 @@ def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
         repair(sim)
     code = pass_singular(sim, last_resort)
     if code == EVENT:
-        _locate(sim)
+        try:
+            _locate(sim)
+        finally:
+            sim.long_step = None
     elif code != OK:
         # nothing near: go on, and look again when it has become twice as bad
         rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
@@ -316,6 +319,9 @@ def _locate_first(sim: "Simulation") -> None:
 def _trial(sim: "Simulation", step: float, full: float) -> None:
     """Make the step again with another size. Small fractions of it are made by the one-step starter: the
     multistep coefficients of a grid with a very small last step lose digits."""
+    if sim.long_step is not None:
+        sim.long_step.trial(step)
+        return
     table = sim._loop.table
     usual = (int(table["starter"][0]), int(table["rows"][0]))
     if step < 0.1 * full or usual[1] == 1:

@@ -107,6 +107,12 @@ class Collocation:
         self.n_work = len(sim.assembly.work_names)
         self.active = self.workspace.structure.active
         self.t0 = float(start.times[0])
+        scale, rtol = sim.assembly.coordinate_scale, sim.settings.rtol
+        # to see whether the iteration converges: rounding moves coordinates that stand still as much as large ones
+        self.weights = tuple(
+            np.asarray(sim.workspace.arrays[name][: self.n] + rtol * scale * np.max(np.abs(x[0] / scale)))
+            for name, x in (("weight_q", start.q), ("weight_v", start.v))
+        )
 
     def step(self, h: float, stages: int, guess: Points) -> Points | None:
         """The points at the start, at the stages and at the end of a step of size h; None if it does not converge.
@@ -163,8 +169,8 @@ class Collocation:
             return None
         increment = increment.reshape(s, n + m)
         da = increment[:, :n]
-        of_q = h * h * (table.a2 @ da) / arrays["weight_q"][:n]
-        of_v = h * (table.a @ da) / arrays["weight_v"][:n]
+        of_q = h * h * (table.a2 @ da) / self.weights[0]
+        of_v = h * (table.a @ da) / self.weights[1]
         norm = float(np.sqrt(max(np.mean(of_q**2, axis=1).max(), np.mean(of_v**2, axis=1).max())))
         return da, increment[:, n:], norm
 

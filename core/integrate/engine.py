@@ -104,6 +104,7 @@ class Engine(ContactSide):
         self.progress: Callable[[float], None] | None = None
         self.open_accounts: dict[int, tuple[float, float]] = {}
         self.pending: list[int] = []
+        self.long_step: Any = None
         self.t = float(t0)
         self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)

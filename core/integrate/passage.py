@@ -10,7 +10,7 @@ position; rounding for a longer one. So the region in which the step may begin i
 
 import logging
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..methods.history import recall
-from ..system.evaluate import evaluate_power, evaluate_residuals
-from ..system.records import FACTOR_AGE, LOOKED_CONDITION, OK, REANALYZE, WORST_CONDITION
+from ..system.evaluate import evaluate_residuals
+from ..system.records import FACTOR_AGE, LEAST_CONDITION, LOOKED_CONDITION, MOST_CONDITION, OK, REANALYZE
+from ..system.redundancy import singular_directions
 from .collocation import Collocation, Points, gauss
 from .loop import accept, set_weights_at, violates_redundant
 from .records import EVENT, HELD, PREVIOUS_NORM, STEP_SIZE, STOP_TIME, TRIAL_STEP
@@ -40,6 +41,8 @@ LENGTHS = (1.0, 1.5, 2.2, 3.3, 5.0)
 """Longer steps, with the position not in the middle, where rounding asks for them."""
 FALLING = 0.3
 """Ratio of two differences between orders up to which truncation is what they show."""
+NOISE = 2e-15
+"""Rounding of a constraint, relative to the coordinates' scales."""
 UNDETERMINED = 1e-4
 """Least singular value of the scaled Phi_q up to which a point is not brought onto the constraints: rounding would move
 it by more than the error of the polynomial."""
@@ -50,11 +53,12 @@ TURN = 0.2
 
 
 def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
-    """One accepted long step from the newest row over a singular position near by.
+    """One accepted long step from the newest row over a singular position near by, or away from one behind.
 
     Returns OK; REANALYZE if there is no such position within reach, if the step had better begin nearer to it, or if no
-    step could be made (nothing is accepted then); EVENT if a contact has an event at once (nothing is accepted;
-    TRIAL_STEP is the size of a step that it lies in). `last_resort`: ordinary steps do not lead any nearer.
+    step could be made (nothing is accepted then); EVENT if a contact has an event at once: nothing is accepted,
+    TRIAL_STEP is the size of a step that it lies in, and `sim.long_step` makes such steps. `last_resort`: ordinary
+    steps do not lead any nearer.
 
     Raises
     ------
@@ -62,12 +66,13 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
     """
     natural = natural_step(sim)
     remaining = float(sim.clock[STOP_TIME]) - sim.t_internal
-    found = find_singular(sim, natural, last_resort)
+    found = find_singular(sim, natural)
     if found is None:
         return REANALYZE
     near, steepness = found
     set_weights_at(sim.workspace.record, sim._method.record)
     over = _Over(sim, near, steepness)
+    may_come_nearer = near > 2.0 * natural and not last_resort
     best: _Result | None = None
     for h, stages in _plans(near, natural, remaining):
         result = over.make(h, stages)
@@ -77,9 +82,9 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
         )  # fmt: skip
         if best is None or result.error < best.error:
             best = result
-        if best.error <= 1.0 or result.truncation:
+        if best.error <= 1.0 or (may_come_nearer and result.truncation):
             break
-    if best is None or (not last_resort and near > natural and (_too_long(best) or _leaps(sim, best))):
+    if best is None or (may_come_nearer and (_too_long(best) or _leaps(sim, best))):
         return REANALYZE
     if best.points is None or best.error * sim.settings.rtol > LARGEST_TOLERANCE:
         if last_resort:
@@ -91,7 +96,7 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
             "(rtol = %.3g): that is what rounding leaves of a step over it",
             sim.t_internal + near, best.error, sim.settings.rtol,
         )  # fmt: skip
-    return _accept(sim, best.points, natural)
+    return _accept(sim, over, best.points, natural)
 
 
 def _plans(near: float, natural: float, remaining: float) -> list[tuple[float, tuple[int, ...]]]:
@@ -99,17 +104,15 @@ def _plans(near: float, natural: float, remaining: float) -> list[tuple[float, t
     plans: list[tuple[float, tuple[int, ...]]] = []
     if 0.25 * natural <= near <= 0.5 * remaining:
         plans.append((2.0 * near, STAGES))
-    least = max(2.0 * near, 2.0 * natural)
+    least = 2.0 * max(abs(near), natural)
     lengths = [min(length * least, remaining) for length in LENGTHS]
-    for h in sorted(set(lengths)):
-        clear = [
-            s
-            for s in ALL_STAGES
-            if float(np.min(np.abs(gauss(s).c * h - near))) >= CLEARANCE * h / s and abs(h - near) > 0.0
-        ]
-        if len(clear) > 1:
-            plans.append((h, tuple(clear)))
+    plans += [(h, clear) for h in sorted(set(lengths)) if len(clear := _clear_stages(h, near)) > 1]
     return plans
+
+
+def _clear_stages(h: float, near: float) -> tuple[int, ...]:
+    """Numbers of stages that keep clear of the position, `near` s from the start, in a step of size h."""
+    return tuple(s for s in ALL_STAGES if np.min(np.abs(gauss(s).c * h - near)) >= CLEARANCE * h / s)
 
 
 @dataclass
@@ -127,7 +130,7 @@ class _Over:
 
     def __init__(self, sim: "Simulation", near: float, steepness: float) -> None:
         recall(sim.workspace.record, sim._method.record, 0)
-        self.sim, arrays = sim, sim.workspace.arrays
+        self.sim, self.near, arrays = sim, near, sim.workspace.arrays
         n, w = sim.assembly.n, sim.assembly.n_extended - len(sim.assembly.work_names)
         active = sim.workspace.structure.active
         self.start = Points(
@@ -146,10 +149,42 @@ class _Over:
         self.weights = tuple(arrays[name][:n].copy() for name in ("weight_q", "weight_v"))
         self.work_weights = arrays["weight_v"][w:].copy()
 
+    def place(self, points: Points, k: int) -> None:
+        """Point k becomes the current one."""
+        arrays, n, stop = self.sim.workspace.arrays, len(self.weights[0]), float(self.sim.clock[STOP_TIME])
+        w = len(arrays["v"]) - points.work.shape[1]
+        arrays["t"][0] = points.times[k]
+        if k == len(points.times) - 1 and abs(points.times[k] - stop) <= 1e-12 * np.ptp(points.times):
+            # the stop time itself, not t + h with its rounding
+            arrays["t"][0] = stop
+        arrays["q"][:n], arrays["v"][:n], arrays["a"][:n] = points.q[k], points.v[k], points.a[k]
+        arrays["lam"][self.sim.workspace.structure.active] = points.lam[k]
+        arrays["v"][w:], arrays["a"][w:] = points.work[k], points.power[k]
+        arrays["aux"][:] = arrays["a"]
+        evaluate_residuals(self.sim.workspace.record)
+
+    def trial(self, h: float) -> None:
+        """A step of size h, not accepted yet; its end becomes the current point.
+
+        Raises
+        ------
+        SimulationError : if there is none.
+        """
+        points = self.make(h, _clear_stages(h, self.near)).points
+        if points is None:
+            raise SimulationError(
+                f"at t = {self.sim.t_internal + h:.9g} s a contact has an event so near to the singular position of "
+                f"t = {self.sim.t_internal + self.near:.9g} s that no step ends there: move the contact a little",
+                t=self.sim.t_internal,
+                loop="event",
+            )
+        self.place(points, len(points.times) - 1)
+
     def make(self, h: float, stages: tuple[int, ...]) -> _Result:
         """A step of size h, with more stages until it stands still."""
         before: Points | None = None
-        best, last_inside = _Result(None, math.inf, True), math.inf
+        best, last_inside, last_error = _Result(None, math.inf, True), math.inf, math.inf
+        falling = True
         for s in stages:
             times = float(self.start.times[0]) + gauss(s).c * h
             if before is None:
@@ -161,20 +196,40 @@ class _Over:
                 there = points.at(before.times)
                 inside = max(self._distance(there, before, k) for k in range(1, len(before.times)))
                 error = self._distance(points, before, -1)
+                if error > 1.0:
+                    error = self._distance(self._without_noise(points, before), before, -1)
                 if error <= 1.0 and not 1.0 < inside <= FALLING * last_inside:
                     return _Result(points, error, False)
-                if error < best.error:
-                    falling = error <= FALLING * best.error
-                    best = _Result(points, error, falling)
-                else:
-                    best.truncation = False
-                last_inside = inside
+                # one difference may be smaller than another by chance
+                falls = error <= FALLING * last_error
+                truncation, falling = falling and falls, falls
+                best = (
+                    _Result(points, error, truncation) if error < best.error else replace(best, truncation=truncation)
+                )
+                last_inside, last_error = inside, error
             before = points
         return best
 
     def _start_values(self) -> tuple[NDArray[np.float64], ...]:
         start = self.start
         return start.q, start.v, start.a, start.lam, start.work, start.power
+
+    def _without_noise(self, one: Points, other: Points) -> Points:
+        """`one` with an end that differs from that of `other` by less: by what rounding makes of the constraints there.
+        It is no error of the step, and later ones do not take it over."""
+        workspace, n = self.sim.workspace, len(self.weights[0])
+        workspace.arrays["q"][:n], workspace.arrays["v"][:n] = one.q[-1], one.v[-1]
+        workspace.arrays["t"][0] = one.times[-1]
+        values, directions = singular_directions(workspace)
+        scale = self.sim.assembly.coordinate_scale
+        level = max(1.0, float(np.max(np.abs(one.q[-1] / scale))))
+        noise_q = NOISE * level / np.maximum(values, 1e-300)
+        noise_v = noise_q * float(np.max(np.abs(one.v[-1] / scale))) / np.maximum(values, 1e-300)
+        ends = []
+        for x, y, noise in ((one.q[-1], other.q[-1], noise_q), (one.v[-1], other.v[-1], noise_v)):
+            parts = directions @ ((x - y) / scale)
+            ends.append(x - scale * (np.clip(parts, -noise, noise) @ directions))
+        return replace(one, q=np.vstack([one.q[:-1], ends[0]]), v=np.vstack([one.v[:-1], ends[1]]))
 
     def _distance(self, one: Points, other: Points, k: int) -> float:
         """Norm of the difference at point k, in units of the tolerance."""
@@ -216,37 +271,27 @@ def _refuse_branching(sim: "Simulation", result: _Result, singular: float) -> No
     )
 
 
-def _accept(sim: "Simulation", points: Points, natural: float) -> int:
+def _accept(sim: "Simulation", over: _Over, points: Points, natural: float) -> int:
     """The points become rows of the history, up to the first event of a contact; OK, or EVENT if that comes at once."""
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
-    arrays, rate = sim.workspace.arrays, sim.workspace.arrays["rate"]
-    ring = sim.method_arrays["ring"]
-    n, w = sim.assembly.n, sim.assembly.n_extended - len(sim.assembly.work_names)
+    ring, rate = sim.method_arrays["ring"], sim.workspace.arrays["rate"]
     sim.clock[[STEP_SIZE, HELD, PREVIOUS_NORM]] = natural, 0.0, 0.0
-    worst, rate[FACTOR_AGE] = max(float(rate[WORST_CONDITION]), float(rate[LOOKED_CONDITION])), -1.0
-    stop = float(sim.clock[STOP_TIME])
-    count = 1
-    for k in range(1, len(points.times)):
+    rate[FACTOR_AGE] = -1.0
+    count, last = 1, len(points.times)
+    for k in range(1, last):
+        over.place(points, k)
         gap = float(points.times[k] - points.times[k - 1])
-        arrays["t"][0] = points.times[k]
-        if k == len(points.times) - 1 and abs(points.times[k] - stop) <= 1e-12 * gap:
-            # the stop time itself, not t + h with its rounding
-            arrays["t"][0] = stop
-        arrays["q"][:n], arrays["v"][:n], arrays["a"][:n] = points.q[k], points.v[k], points.a[k]
-        arrays["lam"][sim.workspace.structure.active] = points.lam[k]
-        arrays["v"][w:], arrays["a"][w:] = points.work[k], points.power[k]
-        arrays["aux"][:] = arrays["a"]
-        evaluate_residuals(ws)
-        evaluate_power(ws)
-        if violates_redundant(ws, 1.0) or find_events(ws, ms, lc, gap, False):
+        violated = violates_redundant(ws, 1.0)
+        if violated or find_events(ws, ms, lc, gap, False):
+            if count == 1:
+                sim.clock[TRIAL_STEP], sim.long_step = gap, over
+                return REANALYZE if violated else EVENT
             break
         accept(ws, ms, lc)
         count += 1
     sim.flush()
-    if count == 1:
-        sim.clock[TRIAL_STEP] = float(points.times[1] - points.times[0])
-        return EVENT if not violates_redundant(ws, 1.0) else REANALYZE
     ring[1], ring[2] = count, count
-    # the position lies behind now: it need not be looked for again
-    rate[LOOKED_CONDITION] = 2.0 * worst
+    # after all of it the position lies as far behind as it lay ahead: ordinary steps lead away from here
+    whole = 2.0 * sim.workspace.arrays["control"][MOST_CONDITION] * rate[LEAST_CONDITION]
+    rate[LOOKED_CONDITION] = whole if count == last else 0.0
     return OK

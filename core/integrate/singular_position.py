@@ -12,9 +12,11 @@ if TYPE_CHECKING:
     from .simulation import Simulation
 
 FARTHEST = 0.6
-"""How far ahead a singular position is looked for: the motion of the fastest coordinate, relative to its scale."""
-LOOKS = 25
-"""Places where it is looked for."""
+"""How far away a singular position is looked for: the motion of the fastest coordinate, relative to its scale."""
+STEPS_AWAY = 60.0
+"""A failure that many steps from a singular position has other reasons."""
+LOOKS = 24
+"""Places where it is looked for, ahead and behind."""
 DIP = 0.1
 """A singular position lies where the least singular value falls below this part of its values around."""
 RECENT = 7
@@ -22,11 +24,12 @@ RECENT = 7
 
 
 def near_singular(sim: "Simulation") -> float | None:
-    """Time of a singular position a few steps from the newest row, s; None if there is none."""
+    """Time of a singular position some steps from the newest row, s; None if there is none."""
     if sim.workspace.structure.active.size == 0:
         return None
-    found = find_singular(sim, natural_step(sim), True)
-    return None if found is None else sim.t_internal + found[0]
+    natural = natural_step(sim)
+    found = find_singular(sim, natural)
+    return None if found is None or abs(found[0]) > STEPS_AWAY * natural else sim.t_internal + found[0]
 
 
 def natural_step(sim: "Simulation") -> float:
@@ -37,10 +40,10 @@ def natural_step(sim: "Simulation") -> float:
     return max(float(sim.clock[TRIAL_STEP]), float(np.median(gaps)) if len(gaps) else 0.0)
 
 
-def find_singular(sim: "Simulation", natural: float, behind: bool) -> tuple[float, float] | None:
-    """Seconds to the first singular position ahead (if `behind` to one a step behind too, negative) on the parabola
-    through the newest row, and how fast the least singular value of the scaled Phi_q grows away from it, 1/s; None if
-    there is none within reach."""
+def find_singular(sim: "Simulation", natural: float) -> tuple[float, float] | None:
+    """Seconds to the first singular position ahead on the parabola through the newest row, or to the last one behind
+    (negative), and how fast the least singular value of the scaled Phi_q grows away from it, 1/s; None if none is in
+    reach: where that value would be zero if it went on as it does here."""
     workspace, n, arrays = sim.workspace, sim.assembly.n, sim.workspace.arrays
     recall(workspace.record, sim._method.record, 0)
     q, v, a, t = arrays["q"][:n].copy(), arrays["v"][:n].copy(), arrays["a"][:n].copy(), sim.t_internal
@@ -48,21 +51,21 @@ def find_singular(sim: "Simulation", natural: float, behind: bool) -> tuple[floa
     if speed == 0.0:
         return None
 
-    def distance(ahead: float) -> float:
-        arrays["q"][:n], arrays["v"][:n] = q + ahead * (v + 0.5 * ahead * a), v + ahead * a
-        arrays["t"][0] = t + ahead
+    def distance(s: float) -> float:
+        arrays["q"][:n], arrays["v"][:n] = q + s * (v + 0.5 * s * a), v + s * a
+        arrays["t"][0] = t + s
         return least_singular_value(workspace)
 
     little = 0.01 / speed
-    here, next_one = distance(0.0), distance(little)
-    reach = 3.0 * natural
-    if next_one < here:
-        # where it would be zero if it went on like this
-        reach = max(reach, 1.5 * little * here / (here - next_one))
-    reach = min(reach, FARTHEST / speed)
-    times = np.linspace(-min(reach, natural) if behind else 0.0, reach, LOOKS)
+    apart = max(min(natural, little), 1e-3 * little)
+    here, next_one = distance(0.0), distance(apart)
+    far = apart * here / max(abs(here - next_one), 1e-300)
+    ahead, behind = (max(3.0 * natural, 1.5 * far * side) for side in (next_one < here, next_one > here))
+    ahead, behind = min(ahead, FARTHEST / speed), min(behind, FARTHEST / speed)
+    times = np.concatenate([np.linspace(-behind, 0.0, LOOKS)[:-1], np.linspace(0.0, ahead, LOOKS)])
     values = np.array([distance(s) for s in times])
-    for k in range(1, LOOKS - 1):
+    nearest: tuple[float, float] | None = None
+    for k in range(1, len(times) - 1):
         if not values[k - 1] >= values[k] <= values[k + 1]:
             continue
         low, high = float(times[k - 1]), float(times[k + 1])
@@ -75,5 +78,7 @@ def find_singular(sim: "Simulation", natural: float, behind: bool) -> tuple[floa
         found = 0.5 * (low + high)
         around = min(float(np.max(values[:k])), float(np.max(values[k + 1 :])))
         if distance(found) < DIP * around:
-            return found, max(distance(found - little), distance(found + little)) / little
-    return None
+            nearest = found, max(distance(found - little), distance(found + little)) / little
+            if found > 0.0:
+                break
+    return nearest
