@@ -9,10 +9,13 @@ from tlismni.core import (
     CoordinateContact,
     CoordinateDriver,
     CoordinateTerm,
+    CoulombFriction,
     Disk2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
     DiskOnSegment2D,
+    EquationSystem,
+    GapContact,
     HalfPlane2D,
     Marker2D,
     Model,
@@ -110,32 +113,49 @@ def stop(rng):
     return Model(bodies=[ball], contacts=[contact]), (speed - math.sqrt(2.0 * G * top * below)) / G
 
 
-PASSAGES = {"arm": arm, "blade": blade, "pair": pair, "bullet": bullet, "stop": stop}
+def equations(rng):
+    """The arm as equations of a user, with a gap function of which nothing else is known."""
+    length, way, rate = rng.uniform(1.0, 10.0), rng.uniform(1.0, 6.0), rng.uniform(1.0, 20.0)
+    both = length * rng.uniform(0.02, 0.2)
+    at = length + rng.uniform(-0.98, 0.98) * both
+
+    def gap(t, q):
+        return np.sqrt((q[1] - length * np.cos(q[0])) ** 2 + (q[2] - length * np.sin(q[0])) ** 2) - both
+
+    system = EquationSystem(
+        mass=np.eye(3), force=np.zeros(3), contacts=[GapContact("c", gap, BOUNCE)],
+        q0=[0.0, at * math.cos(way), at * math.sin(way)], v0=[rate, 0.0, 0.0],
+    )  # fmt: skip
+    return system, (way - math.acos((length**2 + at**2 - both**2) / (2.0 * length * at))) / rate
 
 
-def shaken_table(excess, frequency, phase):
+PASSAGES = {"arm": arm, "blade": blade, "pair": pair, "bullet": bullet, "stop": stop, "equations": equations}
+
+
+def shaken_table(excess, frequency, phase, friction=None):
     """A block on a table that moves by A sin(omega t + phase), A omega^2 = (1 + excess) g: it lifts off once a period,
-    when sin = 1/(1 + excess)."""
-    amplitude = (1.0 + excess) * G / frequency**2
-    place, speed = amplitude * math.sin(phase), amplitude * frequency * math.cos(phase)
-    motions = {
-        "x": Constant(value=0.0),
-        "y": Sine(amplitude=amplitude, angular_frequency=frequency, phase=phase),
-        "angle": Constant(value=0.0),
-    }
-    table = RigidBody2D(name="table", mass=1.0, inertia=1.0, position=(0.0, place), velocity=(0.0, speed))
-    block = PointMass2D(name="block", mass=1.0, position=(0.0, place), velocity=(0.0, speed))
+    when sin = 1/(1 + excess). With a coefficient of `friction` mu the table moves sideways, A omega^2 =
+    (1 + excess) mu g, and the block slips twice a period, when |sin| = 1/(1 + excess)."""
+    amplitude = (1.0 + excess) * (1.0 if friction is None else friction) * G / frequency**2
+    shaken, axis = Sine(amplitude=amplitude, angular_frequency=frequency, phase=phase), 1 if friction is None else 0
+    motions = {name: shaken if k == axis else Constant(value=0.0) for k, name in enumerate(("x", "y", "angle"))}
+    start = {"position": [0.0, 0.0], "velocity": [0.0, 0.0]}
+    start["position"][axis] = amplitude * math.sin(phase)
+    start["velocity"][axis] = amplitude * frequency * math.cos(phase)
+    table = RigidBody2D(name="table", mass=1.0, inertia=1.0, **start)
+    block = PointMass2D(name="block", mass=1.0, **start)
     drivers = [
         CoordinateDriver(name=f"d{name}", body="table", coordinate=name, motion=motion)
         for name, motion in motions.items()
     ]
     contact = DiskOnHalfPlane2D(
-        name="c", plane=HalfPlane2D(marker=on("table")), disk=Disk2D(marker=on("block")), law=PLASTIC
-    )
+        name="c", plane=HalfPlane2D(marker=on("table")), disk=Disk2D(marker=on("block")), law=PLASTIC,
+        friction=None if friction is None else CoulombFriction(coefficient=friction),
+    )  # fmt: skip
     return Model(bodies=[table, block], joints=drivers, contacts=[contact])
 
 
-def lift_offs(excess, frequency, phase, periods):
-    """Times of the lift-offs of `shaken_table` within so many periods."""
-    first = (math.asin(1.0 / (1.0 + excess)) - phase) % (2.0 * math.pi)
-    return (first + 2.0 * math.pi * np.arange(periods)) / frequency
+def lift_offs(excess, frequency, phase, count, period=2.0 * math.pi):
+    """Times of the first lift-offs of `shaken_table`; with `period` pi, of its slips."""
+    first = (math.asin(1.0 / (1.0 + excess)) - phase) % period
+    return (first + period * np.arange(count)) / frequency
