@@ -116,12 +116,11 @@ class Assembly:
 
     @property
     def leap(self) -> NDArray[np.float64]:
-        """How far one error-controlled step may move each coordinate, (n,): half its scale, and half the size of the
-        smallest pair of shapes, so that no shape passes through another unseen. Without contacts nothing limits it."""
+        """How far one error-controlled step may move each coordinate, (n,): half its scale, so that the dense output
+        between its ends is as good as these. Without contacts nothing limits it."""
         if not self.contacts:
             return np.full(self.n, np.inf)
-        smallest = min(contact.extent for contact in self.contacts)
-        leap = np.ascontiguousarray(0.5 * np.minimum(self.coordinate_scale, smallest))
+        leap = 0.5 * self.coordinate_scale
         leap[self.n - self.n_internal :] = np.inf
         return leap
 
