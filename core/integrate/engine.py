@@ -14,6 +14,7 @@ from ..compiled.notices import compile_notices
 from ..contact import machine
 from ..contact.laws import ForceLaw
 from ..contact.modes import MODE, RATE_ROUNDING
+from ..contact.progress import Progress
 from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
@@ -108,6 +109,7 @@ class Engine(ContactSide):
         self.t = float(t0)
         self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
+        self.guard, self.events_handled = Progress(float(t0)), 0
         self.input_times = (float(t0), math.inf)
         self.start_open = True
         self.fallbacks: list[Fallback] = []
@@ -212,14 +214,8 @@ class Engine(ContactSide):
         t = self.t_internal if self.method_arrays["ring"][1] else self.settings.t0
         count = self._times_handled[1] + 1 if t == self._times_handled[0] else 1
         self._times_handled = (t, count)
-        if count > machine.MOST_EVENTS_AT_ONCE:
-            names = [self.assembly.contacts[k].name for k in pending]
-            raise SimulationError(
-                f"{count} events of contacts {names} at t = {t:.9g} s without progress in time: the contact chatters. "
-                "Use a larger rest_ratio, a force law, or smaller tolerances.",
-                t=t,
-                loop="event",
-            )
+        self.events_handled += 1
+        self.guard.note(t, count, [self.assembly.contacts[k].name for k in pending])
         if self.method_arrays["ring"][1]:
             # samples may have been asked for since the step that ended here
             recall(self.workspace.record, self._method.record, 0)

@@ -302,7 +302,7 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
     if code < DECLINED:
-        sim.go_on(t, int(clock[FIRST_STEP]), code)
+        sim.go_on(t, int(clock[FIRST_STEP]) + sim.events_handled, code)
     sim.t = float(t)
     if code != READ:
         return None

@@ -40,8 +40,8 @@ class Simulation(Engine):
         "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are 1e-9.
     step : fixed step in s; None: error-controlled steps.
     max_step, first_step : bounds of error-controlled steps, s.
-    max_steps : most steps between two times that are asked for, None for no limit: a SimulationError then, in place of
-        a run that would not end in this life.
+    max_steps : most steps (and instants with events) between two times that are asked for, None for no limit: a
+        SimulationError then, in place of a run that would not end in this life.
     t0 : start time, s.
     outer : "newton", "simple" or "jfnk", the outer loop of the stage solver (`tlismni.core.stage.OUTER_LOOPS`).
     acceleration : "none", "aitken" or "anderson", of outer = "simple"; depth : that of Anderson's, 1 to 5.
