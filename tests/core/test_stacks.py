@@ -25,7 +25,7 @@ def check_energies(result, rtol):
 
 
 def slip_begins(blocks, pulled, friction=0.3):
-    """When the pull has reached the friction of what holds the block least: the block alone on both its faces, or it and
+    """When the pull has reached the friction of what holds it least: the block alone on both its faces, or it and
     all above it on the face below, s."""
     above = (blocks - 1 - pulled) * friction * G
     below = (blocks - pulled) * friction * G
