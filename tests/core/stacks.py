@@ -40,13 +40,13 @@ def stack(blocks, pulled, rate, friction=0.3, restitution=0.0, force=None):
 
     contacts = []
     for side, name in ((-1, "left"), (1, "right")):
-        contacts.append(DiskOnHalfPlane2D(name=f"ground.{name}", plane=HalfPlane2D(), disk=corner(0, side, -1), **how))
+        contacts.append(DiskOnHalfPlane2D(name=f"ground_{name}", plane=HalfPlane2D(), disk=corner(0, side, -1), **how))
         for i in range(1, blocks):
             contacts.append(
-                DiskOnSegment2D(name=f"lower{i}.{name}", segment=face(i - 1, 1), disk=corner(i, side, -1), **how)
+                DiskOnSegment2D(name=f"lower{i}_{name}", segment=face(i - 1, 1), disk=corner(i, side, -1), **how)
             )
             contacts.append(
-                DiskOnSegment2D(name=f"upper{i}.{name}", segment=face(i, -1), disk=corner(i - 1, side, 1), **how)
+                DiskOnSegment2D(name=f"upper{i}_{name}", segment=face(i, -1), disk=corner(i - 1, side, 1), **how)
             )
     pull = force or Ramp(start=START, duration=10.0, after=10.0 * rate)
     load = AppliedForce2D(name="pull", marker=Marker2D(body=f"block{pulled}"), force_x=pull)
