@@ -13,7 +13,7 @@ CATEGORIES = {
     WARNING: "warnings",
     DISCARD: "figures that were asked and are not available",
     ERROR: "errors; these are logged even when logging is off",
-    COMPILATION: "compiling for this machine, which takes long and happens once; logged even when logging is off",
+    COMPILATION: "compiling for this machine, which takes long and happens once",
     TRACEBACK: "Python traceback of each error",
     ALL: "all messages",
 }
@@ -31,14 +31,11 @@ def to_python_logging(status: int, category: str, message: str) -> None:
 
 
 class Log:
-    """Passes messages on to `callback`: errors always, others if logging is on for their category.
-
-    A master that logs nothing still hears why its first instance takes so long, unless it turns that off by name.
-    """
+    """Passes messages on to `callback`: errors always, others if logging is on for their category."""
 
     def __init__(self, callback: LogCallback | None = None, on: bool = False) -> None:
         self._callback = to_python_logging if callback is None else callback
-        self._heard = frozenset(CATEGORIES) if on else frozenset({COMPILATION})
+        self._heard = frozenset(CATEGORIES) if on else frozenset()
         self.passed_on = callback is not None
         """Whether messages go elsewhere than to `logging`."""
         self.last_problem = ""

@@ -72,7 +72,7 @@ def _amplitudes(model: Model, scales: Scales) -> dict[str, float]:
     """Of coordinates that vibrate by themselves: the amplitude v / omega to which a speed v of the model's size brings
     each, and its rates; motions slower than the model's are left out."""
     speed = scales.length / scales.time
-    found = {}
+    found: dict[str, float] = {}
     for body in model.bodies:
         if isinstance(body, FloatingBody2D):
             own = body.invariants()

@@ -42,23 +42,25 @@ def prepared(heard: list[Any], logging_on: bool = False, factory: Callable[..., 
     return slave
 
 
-@pytest.mark.parametrize("logging_on", [False, True])
-def test_beginning_and_end_are_logged_at_once_whether_or_not_logging_is_on(logging_on, caplog):
+def test_beginning_and_end_are_logged_at_instantiation(caplog):
     caplog.set_level(logging.INFO)
     heard: list[Any] = []
-    prepared(heard, logging_on)
+    prepared(heard, logging_on=True)
     assert [(status, category) for status, category, _ in heard] == [
         (Status.OK, logs.COMPILATION), (Status.WARNING, logs.COMPILATION), (Status.OK, logs.COMPILATION),
     ]  # fmt: skip
     texts = [text for *_, text in heard]
     assert texts[0].startswith("compiling") and "compiled 1 function in 12.3 s" in texts[2]
     assert [record.getMessage() for record in caplog.records] == texts  # and from Python, once
+    caplog.clear()
+    prepared(heard := [])
+    assert heard == [] and len(caplog.records) == 3  # a master that wants no log gets none
 
 
 @pytest.mark.parametrize("calls", [Fmi2Calls, Fmi3Calls])
 def test_the_category_can_be_switched_off_by_its_name(calls):
     heard: list[Any] = []
-    slave = prepared(heard)
+    slave = prepared(heard, logging_on=True)
     heard.clear()
     set_logging = f"{'fmi2' if calls is Fmi2Calls else 'fmi3'}SetDebugLogging"
     assert getattr(calls(slave), set_logging)(0, [logs.COMPILATION.encode()]) == Status.OK
@@ -119,5 +121,5 @@ def test_an_fmu_is_prepared_when_it_is_read(fake_fmu, tmp_path, monkeypatch):
         archive.extractall(tmp_path / "fmu")
     monkeypatch.setattr(tlismni.core, "Simulation", Compiling)
     heard: list[Any] = []
-    read_slave(tmp_path / "fmu" / "resources", on_log=lambda *message: heard.append(message))
+    read_slave(tmp_path / "fmu" / "resources", logging_on=True, on_log=lambda *m: heard.append(m))
     assert [category for _, category, _ in heard] == [logs.COMPILATION] * 3
