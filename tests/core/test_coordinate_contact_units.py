@@ -66,7 +66,7 @@ def test_units_of_channels_follow_from_the_terms(terms, expected):
 
 
 def test_units_reach_the_fmu_and_the_table_of_events():
-    turning, plain = contact(term("a", "angle", -1.0)), contact(term("b", "x", -1.0))
+    turning, plain = contact(term("a", "angle", -1.0)), contact(term("b", "x"))
     model = Model(bodies=BODIES[:2], contacts=[turning, plain.model_copy(update={"name": "d"})])
     variables = Slave(model).variables.by_name
     assert {name: variables[f"c.{name}"].unit for name in TURNING} == TURNING
