@@ -11,6 +11,8 @@ from ..model.markers import Marker2D
 from ..model.signals import Signal
 
 NO_INPUTS: Mapping[str, float] = MappingProxyType({})
+MOST_ELEMENTS = 100_000
+"""Of one flexible body: a number in a model file that would take all memory is refused before anything is built."""
 
 
 class Numbering(Protocol):
