@@ -34,8 +34,7 @@ def create(interface, name, token, resources, logging_on, log, event_mode, early
 
     `own` says that the shim has started Python: then its paths belong to the FMUs alone.
     """
-    with open(os.path.join(resources, "python.json"), encoding="utf-8") as file:
-        record = json.load(file)
+    record = _record(os.path.join(resources, "python.json"))
     flags = {"logging_on": bool(logging_on), "event_mode": bool(event_mode), "early_return": bool(early_return)}
     try:
         with LOCK:
@@ -45,6 +44,22 @@ def create(interface, name, token, resources, logging_on, log, event_mode, early
         # a package that is too old fails in ways of its own, on import or later
         _refuse_missing(record, f" ({type(error).__name__}: {error})")
         raise
+
+
+def _record(path):  # type: ignore[no-untyped-def]
+    """What the export has written of its Python."""
+    with open(path, encoding="utf-8") as file:
+        try:
+            record = json.load(file)
+        except (ValueError, RecursionError) as error:
+            raise ImportError(f"'{path}' is no JSON: {error}; unzip or export the FMU anew") from None
+    needed = {"version": str, "prefix": str, "tlismni": str, "folders": list, "requires": list}
+    for name, kind in needed.items():
+        if not isinstance(record, dict) or not isinstance(record.get(name), kind):
+            raise ImportError(f"'{name}' in '{path}' is missing or broken: unzip or export the FMU anew")
+    if not all(isinstance(x, list) and len(x) == 2 and all(isinstance(y, str) for y in x) for x in record["requires"]):
+        raise ImportError(f"'requires' in '{path}' is broken: unzip or export the FMU anew")
+    return record
 
 
 def _installed(record, own):  # type: ignore[no-untyped-def]

@@ -12,6 +12,8 @@ from ..model.signals import Signal
 from ..model.units import UNKNOWN
 
 NO_INPUTS: Mapping[str, float] = MappingProxyType({})
+MOST_ELEMENTS = 100_000
+"""Of one flexible body: a number in a model file that would take all memory is refused before anything is built."""
 
 
 class Numbering(Protocol):

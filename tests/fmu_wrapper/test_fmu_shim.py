@@ -2,6 +2,7 @@
 
 import ctypes
 import gc
+import json
 import re
 import shutil
 import subprocess
@@ -127,6 +128,29 @@ def test_each_missing_resource_gives_null_and_a_line(unzipped, messages, file, m
     (Path(unzipped) / "resources" / file).unlink()
     assert not instance(unzipped, messages).component
     assert len(messages) == 1 and messages.errors[0].startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("file", "change", "message"),
+    [
+        ("settings.json", lambda data: [data], "ExportError: 'settings.json' in the FMU's resources is no JSON object"),
+        ("settings.json", lambda data: {**data, "solver": 3}, "ExportError: 'solver' in 'settings.json' of the FMU's"),
+        ("settings.json", lambda data: {k: v for k, v in data.items() if k != "variables"},
+         "ExportError: 'variables' in 'settings.json' of the FMU's resources is missing, where a list is needed"),
+        ("settings.json", lambda data: {**data, "variables": [{"name": 3}]}, "ExportError: 'settings.json'"),
+        ("settings.json", lambda data: {**data, "variables": []}, "ExportError: 'settings.json'"),
+        ("settings.json", lambda data: {**data, "solver": {**data["solver"], "rtol": "x"}}, "ExportError: 'settings"),
+        ("settings.json", lambda data: {**data, "solver": {**data["solver"], "rtol": -1.0}}, "FmuValueError: 'rtol'"),
+        ("settings.json", lambda data: {**data, "solver": {"on_log": "x"}}, "ExportError: 'solver' in 'settings.json'"),
+        ("python.json", lambda data: [], "ImportError: 'version' in "),
+        ("python.json", lambda data: {**data, "requires": [3]}, "ImportError: 'requires' in "),
+    ],
+)  # fmt: skip
+def test_each_broken_resource_gives_null_and_a_line(unzipped, messages, file, change, message):
+    path = Path(unzipped) / "resources" / file
+    path.write_text(json.dumps(change(json.loads(path.read_text()))))
+    assert not instance(unzipped, messages).component
+    assert len(messages) == 1 and messages.errors[0].startswith(f"fmi2Instantiate: {message}")
 
 
 def test_model_exchange_is_refused(unzipped, messages):
