@@ -65,8 +65,9 @@ MOST_HALVINGS = 40
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
-PRESSING = 1e-9
-"""Of the largest acceleration: with more, the gap of shapes that touch begins to close."""
+PRESSING = 1e-6
+"""Of the largest acceleration: with more, the gap of shapes that touch begins to close. The forces of many contacts
+leave less of it."""
 VELOCITY_JUMP = 1e-9
 """m/s; a larger change of the velocity constraints' violation at a breakpoint is a jump in a driver's rate."""
 _REASONS = {
