@@ -48,6 +48,14 @@ def _margins(ws: Any, k: int, lam: Any) -> Any:
 
 
 @internal
+def _starting(ws: Any, k: int, lam: Any) -> Any:
+    """The margins at the newest row; infinite those that are not positive there: a contact that is held closed though
+    it pulls a little, for it would come back at once (`returns_at_once`), is looked at from the end of the step on."""
+    force, left = _margins(ws, k, lam)
+    return force if force > 0.0 else np.inf, left if left > 0.0 else np.inf
+
+
+@internal
 def _bend(m0: float, m1: float, before: float, ratio: float) -> float:
     """Depth at the middle of the step, below the line through its ends, of the parabola through these and the value
     `before`, a step of `ratio` times this one's size earlier."""
@@ -99,10 +107,10 @@ def forces_may_vanish(ws: Any, ms: Any, lc: Any, h: float) -> bool:
             continue
         if not known or h > longest * (1.0 + 1e-9):
             return True
-        force, left = _margins(ws, k, start)
+        force, left = _starting(ws, k, start)
         force_end, left_end = _margins(ws, k, lam)
         force_before, left_before = _margins(ws, k, before)
-        if _least(force, force_end, _bend(force, force_end, force_before, ratio)) < 0.0:
+        if force < np.inf and _least(force, force_end, _bend(force, force_end, force_before, ratio)) < 0.0:
             return True
         if left < np.inf and _least(left, left_end, _bend(left, left_end, left_before, ratio)) < 0.0:
             return True
@@ -120,8 +128,11 @@ def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
     longest, known = vec(lc.clock, CLOCK_SIZE)[MAX_STEP], rows_available(ms) > 1
     ratio = (history_time(ms, 0) - history_time(ms, 1)) / h if known else 1.0
     start, lam = history_row(ws, ms, 0)[4 * ws.n_ext :], vec(ws.lam, ws.m_ext)
+    watched = np.empty((n, WANT), dtype=np.bool_)
     for k in range(n):
-        left[k, 0], left[k, 1] = _margins(ws, k, start)
+        left[k, 0], left[k, 1] = _starting(ws, k, start)
+        for j in range(WANT):
+            watched[k, j] = memory[k, MODE] == CLOSED and left[k, j] < np.inf
         values[0, k, 0], values[0, k, 1] = _margins(ws, k, lam)
         if known:
             before, friction_before = _margins(ws, k, history_row(ws, ms, 1)[4 * ws.n_ext :])
@@ -133,16 +144,14 @@ def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
         right, long = values[depth - 1], places[depth - 1] - place
         doubtful, below = long * h > longest * (1.0 + 1e-9), False
         for k in range(n):
-            if memory[k, MODE] != CLOSED:
-                continue
             for j in range(WANT):
-                if left[k, j] == np.inf:
+                if not watched[k, j]:
                     continue
                 below = below or right[k, j] < -none
                 doubtful = doubtful or _least(left[k, j], right[k, j], bends[depth - 1, k, j]) < -none
         if below:
             for k in range(n):
-                if memory[k, MODE] == CLOSED and (right[k, 0] < -none or right[k, 1] < -none):
+                if (watched[k, 0] and right[k, 0] < -none) or (watched[k, 1] and right[k, 1] < -none):
                     brackets[k, 0], brackets[k, 1], brackets[k, 2] = place, places[depth - 1], places[depth - 1]
                     brackets[k, HAPPENS] = 1.0
             return True
@@ -157,7 +166,7 @@ def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
         solutions += 1
         for k in range(n):
             for j in range(WANT):
-                if memory[k, MODE] != CLOSED or left[k, j] == np.inf:
+                if not watched[k, j]:
                     continue
                 off = abs(values[depth, k, j] - 0.5 * (left[k, j] + right[k, j]))
                 least = bends[depth - 1, k, j] / 16.0
