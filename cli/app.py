@@ -2,7 +2,7 @@
 
 import typer
 
-from .commands import cosim, crosscheck, export, info, lyapunov, methods, run, study
+from .commands import cosim, crosscheck, export, info, lyapunov, methods, run, study, warm
 from .commands import list as list_command
 
 app = typer.Typer(
@@ -44,6 +44,7 @@ app.command("methods", epilog=methods.EXAMPLES)(methods.methods)
 app.command("run", epilog=run.EXAMPLES)(run.run)
 app.command("export", epilog=export.EXAMPLES)(export.export)
 app.command("info", epilog=info.EXAMPLES)(info.info)
+app.command("warm", epilog=warm.EXAMPLES)(warm.warm)
 app.command("cosim", epilog=cosim.EXAMPLES)(cosim.cosim)
 app.command("crosscheck", epilog=crosscheck.EXAMPLES)(crosscheck.crosscheck)
 app.command("lyapunov", epilog=lyapunov.EXAMPLES)(lyapunov.lyapunov)

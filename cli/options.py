@@ -126,6 +126,17 @@ Platforms = Annotated[
         help="Add the binary for another platform, e.g. x86_64-windows, or all; may be repeated. Needs ziglang.",
     ),
 ]  # fmt: skip
+Author = Annotated[str | None, typer.Option("--author", help="Who made the model; your login name if left out.")]
+ModelVersion = Annotated[
+    str | None, typer.Option("--model-version", help="Version of the model; a digest of its content if left out.")
+]
+ExecutionTool = Annotated[
+    bool,
+    typer.Option(
+        "--execution-tool/--no-execution-tool",
+        help="What the FMU says of itself: that it needs a tool (a Python) on the machine. Some masters refuse that.",
+    ),
+]
 ExistingFmu = Annotated[
     Path, typer.Argument(metavar="FMU", exists=True, dir_okay=False, help="An FMU, .fmu; of any origin.")
 ]

@@ -17,8 +17,6 @@ from rich.text import Text
 WIDTH = 120
 """Columns of a table that goes into a file or a pipe."""
 
-COMPILING = "compiling for this machine (first run only)…"
-
 
 def stdout() -> Console:
     """Where figures go."""
@@ -81,26 +79,12 @@ def shortened(rows: Sequence[Sequence[Any]], most: int = 24) -> list[Sequence[An
 
 @contextmanager
 def compile_notice() -> Iterator[None]:
-    """Say once if numba compiles: a warm cache compiles nothing, so this is the first run (or a new method)."""
-    from numba.core import event
+    """Say when compiling begins and what it took: a warm cache compiles nothing, so this is the first run (or a new
+    method)."""
+    from ..core.compiled.notices import hear
 
-    class Notice(event.Listener):
-        said = False
-
-        def on_start(self, event: Any) -> None:
-            if not self.said:
-                self.said = True
-                say(COMPILING)
-
-        def on_end(self, event: Any) -> None:
-            pass
-
-    listener = Notice()
-    event.register("numba:compile", listener)
-    try:
+    with hear(lambda level, text: say(text)):
         yield
-    finally:
-        event.unregister("numba:compile", listener)
 
 
 @contextmanager

@@ -25,6 +25,7 @@ def summarise(scenario: Scenario, result: Result) -> dict[str, Any]:
         "solver": solver_settings(scenario),
         "samples": len(result),
         "events": [event.to_dict() for event in result.events],
+        "event_units": event_units(result),
         "residuals": residuals,
         "energy": {
             "initial": float(sum(result[name][0] for name in STORED)),
@@ -40,6 +41,12 @@ def summarise(scenario: Scenario, result: Result) -> dict[str, Any]:
     }
 
 
+def event_units(result: Result) -> dict[str, tuple[str, str]]:
+    """Units of impulses and speeds in the events of each contact."""
+    units = {channel.name: channel.unit for channel in result.channel_records}
+    return {e.contact: (units[f"{e.contact}.impulse"], units[f"{e.contact}.gap_rate"]) for e in result.events}
+
+
 def print_summary(figures: dict[str, Any]) -> None:
     """The figures as tables."""
     solver = figures["solver"]
@@ -53,7 +60,7 @@ def print_summary(figures: dict[str, Any]) -> None:
         f"{figures['scenario']}: 0 to {number(figures['t_end'])} s with {solver['method']} ({control}{options})\n",
         markup=False,
     )
-    _print_events(figures["events"])
+    _print_events(figures["events"], figures["event_units"])
     units = dict(LEVELS) | {"velocity_increment": "m/s"}
     print_table(
         "largest constraint residuals",
@@ -74,14 +81,23 @@ def _statistic(name: str, value: float) -> str:
     return f"{number(float(value), 3)} s" if name == "wall_time" else str(value)
 
 
-def _print_events(events: list[dict[str, Any]]) -> None:
+def _print_events(events: list[dict[str, Any]], units: dict[str, tuple[str, str]]) -> None:
+    """One unit for a column if all contacts have it, else one for each number."""
     if not events:
         stdout().print("no contact events\n")
         return
-    columns = ("time s", "kind", "contact", "impulse N.s", "approach m/s", "separation m/s", "loss J")
+    common = len(set(units.values())) == 1
+    impulse, speed = next(iter(units.values())) if common else ("", "")
+    columns = ("time s", "kind", "contact", f"impulse {impulse}", f"approach {speed}", f"separation {speed}", "loss J")
     fields = ("t", "kind", "contact", "impulse", "approach_speed", "separation_speed", "energy_loss")
-    rows = [(number(event["t"], 9), *(event[field] for field in fields[1:])) for event in events]
-    print_table(f"{len(events)} events", columns, shortened(rows), left=3)
+    rows = []
+    for event in events:
+        cells = [number(event["t"], 9), *(event[field] for field in fields[1:])]
+        if not common:
+            own = units[event["contact"]]
+            cells[3:6] = (f"{number(x)} {unit}" for x, unit in zip(cells[3:6], (own[0], own[1], own[1]), strict=True))
+        rows.append(tuple(cells))
+    print_table(f"{len(events)} events", tuple(c.strip() for c in columns), shortened(rows), left=3)
 
 
 def _print_energy(energy: dict[str, float]) -> None:

@@ -19,11 +19,11 @@ class Event:
     kind: str
     contact: str
     impulse: float = 0.0
-    """N s; for "open" of a force law: the impulse of the whole contact."""
+    """N s (N m s where the gap is an angle); for "open" of a force law: the impulse of the whole contact."""
     energy_loss: float = 0.0
     """J."""
     approach_speed: float = 0.0
-    """m/s, before."""
+    """m/s (or the unit of the contact's gap per s), before."""
     separation_speed: float = 0.0
     """m/s, after."""
     velocity_increment_residual: float = 0.0

@@ -36,7 +36,8 @@ class Result:
         self.events = list(events)
         """What happened at contacts (`Event`)."""
         self.stats = dict(stats)
-        """steps, rejected, outer_iterations, inner_iterations, factorizations, partitions, wall_time ..."""
+        """steps, rejected, outer_iterations, inner_iterations, factorizations, partitions ...; wall_time, s: of the
+        run alone, without building the simulation and without compiling."""
         self.fallbacks = tuple(fallbacks)
         """Where another outer loop took over (only with fallback=True)."""
         self._step_log = step_log

@@ -15,6 +15,11 @@ times the mechanism's size still meet."""
 ANGLES = 0.1
 """What an angle counts in the level of the coordinates: most turn arms much shorter than the mechanism, and where they
 do not, there are translations that go as far. A tenth of CONSTRAINT_TOLERANCES is still above what rounding leaves."""
+CONSTRAINT_NOISE = 2e-15
+"""Of a row: what rounding leaves in a constraint of what the terms hold, divided by the least singular value of Phi_q
+across the motion near a singular position."""
+EXACTLY_MET = 1e-16
+"""Of a row: below half a rounding nothing is left to correct."""
 MET = 1e-15
 """Of a row: a Newton correction at rare work stops here, a few roundings."""
 NEARLY_MET = 1e-11
@@ -62,13 +67,14 @@ NO_ACCELERATION = 1e-11
 """Of what weights and forces make: a gap's acceleration below this is none."""
 NO_SLIDING = 2e-13
 """Of its terms: an acceleration along the tangent below this is none."""
-PRESSING = 1e-9
-"""Of the accelerations: with more, the gap of shapes that touch begins to close."""
+PRESSING = 1e-6
+"""Of the accelerations: with more, the gap of shapes that touch begins to close. The forces of many contacts leave less
+of it."""
 SLIP_EXCESS = 1e-9
 """Of its limit: friction that is beyond it by no more has not passed it. Blocks that ride on one another need exactly
 the limit all along, and rounding must not let them slip."""
-UNSOLVED = 1e-8
-"""Of the fastest approach: rounds of impacts that leave less, and no less than those before, are at their end."""
+UNSOLVED = 1e-7
+"""Of the fastest motion: rounds of impacts that leave less, and no less than those before, are at their end."""
 FIRST_TOUCH = 1e-8
 """Of a gap's size: by so much the first step of a force contact closes it, so that the error control sees the force
 grow."""

@@ -1,7 +1,6 @@
 """simulate: one call from a model to a result."""
 
 import math
-import time
 from collections.abc import Callable, Mapping
 from numbers import Integral, Real
 from typing import Any
@@ -9,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .compiled.watch import RunWatch
 from .errors import ModelError, SimulationError, TlismniError
 from .integrate.simulation import Simulation
 from .result import Result
@@ -71,11 +71,11 @@ def simulate(
             f"step = {step!r} would take {(t_end - t0) / step:.3g} steps from t0 to t_end: use a larger one"
         )
     times = None if t_eval is None else _check_times(t_eval, t0, t_end)
-    started = time.perf_counter()
     sim = Simulation(
         system, method, rtol, atol, step=step, t0=t0, record=_check_stride(record) if times is None else 0, **options
     )
     sim.progress = progress
+    watch = RunWatch()
     rows = []
     try:
         if times is None:
@@ -94,9 +94,11 @@ def simulate(
             sim.run_to(t_end)
     except TlismniError as error:
         if isinstance(error, SimulationError):
-            error.partial = _result(sim, rows, time.perf_counter() - started)
+            error.partial = _result(sim, rows, watch.stop())
         raise
-    return _result(sim, rows, time.perf_counter() - started)
+    finally:
+        watch.stop()
+    return _result(sim, rows, watch.stop())
 
 
 def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:

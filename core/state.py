@@ -1,9 +1,13 @@
-"""State is a value: everything that decides the future of a run, to copy, compare, store and restore bit for bit."""
+"""State is a value: everything that decides the future of a run, to copy, compare, store and restore bit for bit.
+
+As bytes: a checksum (32), the length of the header (8, little endian), the header (JSON: format, model, facts, name,
+type and shape of each array), the arrays' numbers one after the other. Nothing may follow.
+"""
 
 import hashlib
-import io
 import json
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,7 +16,8 @@ from numpy.typing import NDArray
 from .errors import ModelError
 from .events import Event
 
-FORMAT = "tlismni-state-4"
+FORMAT = "tlismni-state-5"
+TYPES = ("<f8", "<i8")
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +36,8 @@ class State:
     facts: dict[str, Any]
     model_hash: str
     events: tuple[Event, ...] = ()
+    foreign: bool = field(default=False, compare=False)
+    """Made from bytes, which anybody may have written: what it holds is looked at before it is used."""
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, State):
@@ -50,22 +57,17 @@ class State:
 
     def to_bytes(self) -> bytes:
         """The state as bytes, with a checksum."""
-        buffer = io.BytesIO()
-        header = json.dumps({"format": FORMAT, "model": self.model_hash, "facts": self._all_facts()})
-        np.savez(
-            buffer,
-            allow_pickle=False,
-            **{
-                "header": np.frombuffer(header.encode(), dtype=np.uint8),
-                **{f"a_{k}": v for k, v in self.arrays.items()},
-            },
-        )
-        payload = buffer.getvalue()
+        arrays = {name: np.ascontiguousarray(x, x.dtype.newbyteorder("<")) for name, x in self.arrays.items()}
+        listed = [[name, x.dtype.str, list(x.shape)] for name, x in arrays.items()]
+        facts = self._all_facts()
+        header = json.dumps({"format": FORMAT, "model": self.model_hash, "facts": facts, "arrays": listed}).encode()
+        parts = [len(header).to_bytes(8, "little"), header, *(x.tobytes() for x in arrays.values())]
+        payload = b"".join(parts)
         return hashlib.sha256(payload).digest() + payload
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "State":
-        """The state in `data`. Raises ModelError if the bytes are cut short, changed, or of another version."""
+        """The state in `data`. Raises ModelError if bytes are missing, too many, changed, or of another version."""
         if not isinstance(data, bytes | bytearray | memoryview):
             raise ModelError(f"the bytes of a solver state are needed, not {type(data).__name__}")
         digest, payload = bytes(data[:32]), bytes(data[32:])
@@ -74,11 +76,33 @@ class State:
                 f"these {len(data)} bytes are no complete solver state: the checksum does not fit; store and give "
                 "back exactly the bytes of State.to_bytes()"
             )
-        with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
-            header = json.loads(stored["header"].tobytes().decode())
+        start = 8 + int.from_bytes(payload[:8], "little")
+        try:
+            header = json.loads(payload[8:start])
             if header["format"] != FORMAT:
                 raise ModelError(f"the state has format '{header['format']}', this version reads '{FORMAT}'")
-            arrays = {name[2:]: stored[name] for name in stored.files if name.startswith("a_")}
-        facts = header["facts"]
-        events = tuple(Event(**event) for event in facts.pop("events"))
-        return cls(arrays, facts, header["model"], events)
+            facts, model, listed = dict(header["facts"]), str(header["model"]), list(header["arrays"])
+            events = tuple(Event(**event) for event in facts.pop("events"))
+            arrays = _arrays_in(payload, start, listed)
+        except (ValueError, TypeError, KeyError, RecursionError) as error:
+            if isinstance(error, ModelError):
+                raise
+            raise ModelError(f"this is no solver state, though its checksum fits: {error!r}; store it again") from None
+        return cls(arrays, facts, model, events, foreign=True)
+
+
+def _arrays_in(payload: bytes, at: int, listed: list[Any]) -> dict[str, NDArray[Any]]:
+    """The arrays in `payload` from byte `at` on, to its end."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for name, kind, shape in listed:
+        sizes = [int(n) for n in shape]
+        if kind not in TYPES or min(sizes, default=0) < 0 or name in arrays:
+            raise ModelError(f"array '{name}' of type {kind!r} and shape {shape} does not belong to a solver state")
+        count = math.prod(sizes)
+        if at + 8 * count > len(payload):
+            raise ModelError(f"array '{name}' of shape {shape} reaches beyond the end of the solver state")
+        arrays[name] = np.frombuffer(payload, kind, count, at).reshape(sizes).astype(kind[1:])
+        at += 8 * count
+    if at != len(payload):
+        raise ModelError(f"{len(payload) - at} bytes follow the solver state: give back exactly its own")
+    return arrays

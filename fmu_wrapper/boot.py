@@ -3,21 +3,30 @@
 Only the standard library may be imported here before `tlismni` is found. `sys.path` grows only in a process whose
 Python lacks packages that the FMU needs, once: by those of the Python that TLISMNI_PYTHON names, else by the folders
 recorded at export.
+
+Instances may be made by several threads at once, and by several FMUs: one lock for the whole process, which all of them
+find in `sys`, lets one import at a time. Otherwise one would import while `sys.path` grows for another, and could meet
+half of each environment.
 """
 
-import hashlib
-import importlib
-import importlib.machinery
-import importlib.metadata
-import importlib.util
-import json
-import os
-import re
-import shutil
-import site
+import _thread  # built in, as sys is: no path is searched before the lock is held
 import sys
-import tempfile
-import zipfile
+
+LOCK = vars(sys).setdefault("_tlismni_boot", _thread.RLock())
+
+with LOCK:
+    import hashlib
+    import importlib
+    import importlib.machinery
+    import importlib.metadata
+    import importlib.util
+    import json
+    import os
+    import re
+    import shutil
+    import site
+    import tempfile
+    import zipfile
 
 
 def create(interface, name, token, resources, logging_on, log, event_mode, early_return, own, *updates):  # type: ignore[no-untyped-def]
@@ -25,11 +34,32 @@ def create(interface, name, token, resources, logging_on, log, event_mode, early
 
     `own` says that the shim has started Python: then its paths belong to the FMUs alone.
     """
-    with open(os.path.join(resources, "python.json"), encoding="utf-8") as file:
-        record = json.load(file)
+    record = _record(os.path.join(resources, "python.json"))
     flags = {"logging_on": bool(logging_on), "event_mode": bool(event_mode), "early_return": bool(early_return)}
-    embedded = _bundled(record, resources, own) if record.get("bundle") else _installed(record, own)
-    return embedded.create(interface, name, token, resources, log, *updates, **flags)
+    try:
+        with LOCK:
+            embedded = _bundled(record, resources, own) if record.get("bundle") else _installed(record, own)
+        return embedded.create(interface, name, token, resources, log, *updates, **flags)
+    except Exception as error:
+        # a package that is too old fails in ways of its own, on import or later
+        _refuse_missing(record, f" ({type(error).__name__}: {error})")
+        raise
+
+
+def _record(path):  # type: ignore[no-untyped-def]
+    """What the export has written of its Python."""
+    with open(path, encoding="utf-8") as file:
+        try:
+            record = json.load(file)
+        except (ValueError, RecursionError) as error:
+            raise ImportError(f"'{path}' is no JSON: {error}; unzip or export the FMU anew") from None
+    needed = {"version": str, "prefix": str, "tlismni": str, "folders": list, "requires": list}
+    for name, kind in needed.items():
+        if not isinstance(record, dict) or not isinstance(record.get(name), kind):
+            raise ImportError(f"'{name}' in '{path}' is missing or broken: unzip or export the FMU anew")
+    if not all(isinstance(x, list) and len(x) == 2 and all(isinstance(y, str) for y in x) for x in record["requires"]):
+        raise ImportError(f"'requires' in '{path}' is broken: unzip or export the FMU anew")
+    return record
 
 
 def _installed(record, own):  # type: ignore[no-untyped-def]
@@ -95,7 +125,8 @@ def _extend(record, own):  # type: ignore[no-untyped-def]
             (i for i, entry in enumerate(before) if "site-packages" in entry or "dist-packages" in entry), None
         )
         if added and first is not None:
-            sys.path[:] = [*before[:first], *added, *before[first:]]
+            # a new list: another thread may be searching the one that there was
+            sys.path = [*before[:first], *added, *before[first:]]
     importlib.invalidate_caches()
 
 
@@ -125,12 +156,12 @@ def _missing(record):  # type: ignore[no-untyped-def]
     return found
 
 
-def _refuse_missing(record):  # type: ignore[no-untyped-def]
+def _refuse_missing(record, because=""):  # type: ignore[no-untyped-def]
     missing = _missing(record)
-    if missing:
+    if missing and because.find("this FMU needs packages") < 0:  # not said yet
         listed = ", ".join(f"{name} ({state})" for name, state in missing)
         remedy = _remedy(" ".join(f"'{name}'" for name, _ in missing))
-        raise ImportError(f"this FMU needs packages that {_here()} lacks: {listed}: {remedy}")
+        raise ImportError(f"this FMU needs packages that {_here()} lacks: {listed}: {remedy}{because}")
 
 
 def _here():  # type: ignore[no-untyped-def]
@@ -161,7 +192,10 @@ def _unpack(archive, digest):  # type: ignore[no-untyped-def]
         raise ImportError(f"'{archive}' is damaged: its content is not what the export wrote; unzip the FMU anew")
     with zipfile.ZipFile(archive) as content:
         problems = []
-        for parent in (os.path.join(user_cache(), "tlismni", "packages"), os.path.dirname(archive)):
+        users = user_cache()
+        for parent in (users and os.path.join(users, "tlismni", "packages"), os.path.dirname(archive)):
+            if not parent:
+                continue
             folder = os.path.join(parent, f"tlismni_{digest}")
             try:
                 if not _complete(folder, content):
@@ -204,9 +238,13 @@ def _complete(folder, content):  # type: ignore[no-untyped-def]
 
 
 def user_cache():  # type: ignore[no-untyped-def]
-    """The user's cache folder by the custom of the platform."""
+    """The user's cache folder by the custom of the platform, as `core.compiled.cache` has it; None if there is none."""
+    home = os.path.expanduser("~")
     if sys.platform == "win32":
-        return os.environ.get("LOCALAPPDATA") or os.path.expanduser("~\\AppData\\Local")
-    if sys.platform == "darwin":
-        return os.path.expanduser("~/Library/Caches")
-    return os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+        found = os.environ.get("LOCALAPPDATA") or os.path.join(home, "AppData", "Local")
+    elif sys.platform == "darwin":
+        found = os.path.join(home, "Library", "Caches")
+    else:  # empty counts as not set, and a relative path is to be ignored (XDG Base Directory Specification)
+        found = os.environ.get("XDG_CACHE_HOME", "")
+        found = found if os.path.isabs(found) else os.path.join(home, ".cache")
+    return found if os.path.isabs(found) else None

@@ -29,15 +29,24 @@ def binary(name: str) -> Path:
     ------
     ExportError : without ziglang, or if it fails.
     """
-    folder = Path(user_cache(), "tlismni", "binaries", _digest())
+    users = user_cache()
+    if users is None:
+        raise ExportError(
+            f"the binary for {name} is built once and kept, and there is neither a home nor a cache folder for it: set "
+            f"{'LOCALAPPDATA' if os.name == 'nt' else 'XDG_CACHE_HOME'} to a folder that can be written"
+        )
+    folder = Path(users, "tlismni", "binaries", _digest())
     path = folder / name / f"tlismni_shim{PLATFORMS[name].suffix}"
     if not path.is_file():
         if importlib.util.find_spec("ziglang") is None:
             raise ExportError(
                 f"the binary for {name} is not built yet, which needs Zig's C compiler: python -m pip install ziglang"
             )
-        path.parent.mkdir(parents=True, exist_ok=True)
-        compile_shim(PLATFORMS[name], path)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            compile_shim(PLATFORMS[name], path)
+        except OSError as error:
+            raise ExportError(f"the binary for {name} cannot be kept in '{path.parent}': {error.strerror}") from error
     return path
 
 

@@ -108,7 +108,7 @@ class Calls(SharedCalls):
     def write_state(self, handle: int, buffer: Any) -> None:
         """Write the bytes of the snapshot under `handle` into `buffer`. Raises SnapshotError if it is too small."""
         data = self.kept(handle).data
-        if len(buffer) < len(data):
+        if len(given(buffer, "the bytes")) < len(data):
             raise SnapshotError(f"the buffer holds {len(buffer)} bytes, the stored state needs {len(data)}")
         numbers_in(buffer, np.uint8)[: len(data)] = np.frombuffer(data, dtype=np.uint8)
 
@@ -118,20 +118,34 @@ class Calls(SharedCalls):
         self.slave.reset()
 
 
+def given(array: Any, what: str) -> Any:
+    """`array`, which the shim makes None of where a host gave NULL (or a length beyond all memory), or raises
+    FmuValueError."""
+    if array is None:
+        raise FmuValueError(f"NULL was given for {what}: pass its address, and its length")
+    return array
+
+
+def texts_in(array: Any, what: str) -> list[str]:
+    """Texts in a list of bytes from C. Raises FmuValueError for NULL or for what is not UTF-8."""
+    return [text_of(text, what) for text in given(array, f"an array whose items are each {what}")]
+
+
 def references_in(buffer: Any) -> npt.NDArray[np.uint32]:
-    """Value references in a buffer."""
+    """Value references in a buffer. Raises FmuValueError for NULL."""
+    buffer = given(buffer, "the value references")
     return np.frombuffer(buffer, dtype=np.uint32) if len(buffer) else np.empty(0, dtype=np.uint32)
 
 
 def numbers_in(buffer: Any, dtype: Any) -> npt.NDArray[Any]:
-    """Numbers in a buffer, as a view that writes through if the buffer can be written."""
+    """Numbers in a buffer, as a view that writes through if that can be written. Raises FmuValueError for NULL."""
+    buffer = given(buffer, "an array")
     return np.frombuffer(buffer, dtype=dtype) if len(buffer) else np.empty(0, dtype=dtype)
 
 
 def put(buffer: Any, code: str, value: Any, place: int = 0) -> None:
     """Write one number into a buffer; `code` is its type as in the module struct. Raises FmuValueError for NULL."""
-    if not len(buffer):
-        raise FmuValueError("NULL was given for what the call answers with: pass the address of a variable")
+    buffer = given(buffer, "what the call answers with")
     memoryview(buffer).cast("B").cast(code)[place] = value  # type: ignore[call-overload]
 
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from ..core.contact.laws import LAWS
 from ..core.methods.registry import METHODS
+from ..core.model.units import parse_unit
 from .log import CATEGORIES
 from .settings import Settings
-from .units import parse_unit
 from .variables import Variable, VariableTable
 
 ROLES: dict[str, tuple[str, str, str | None]] = {
@@ -40,7 +40,8 @@ DISPLAYED = {"rad": "deg", "rad/s": "deg/s", "rad/s2": "deg/s2"}
 class About:
     """What a description says of the FMU as a whole. `identifier` is the file name of the binary, `token` ties the
     description to the resources; `derivatives` says whether there are those with respect to all inputs, `arrays`
-    whether the vectors stand in it as arrays too (FMI 3.0)."""
+    whether the vectors stand in it as arrays too (FMI 3.0). `version` is the model's, `date` that of the export, as FMI
+    writes it; `needs_tool` says whether running it takes more than the FMU, which a Python is."""
 
     identifier: str
     name: str
@@ -49,12 +50,17 @@ class About:
     generator: str
     derivatives: bool
     arrays: bool = False
+    author: str | None = None
+    version: str | None = None
+    date: str | None = None
+    needs_tool: bool = True
 
 
 def start(version: str, token_name: str, about: About, **more: str) -> Any:
     """The root element."""
     from lxml import etree  # only the export needs it, the exported FMU does not
 
+    known = {"author": about.author, "version": about.version, "generationDateAndTime": about.date}
     return etree.Element(
         "fmiModelDescription",
         {
@@ -62,6 +68,7 @@ def start(version: str, token_name: str, about: About, **more: str) -> Any:
             "modelName": about.name,
             token_name: about.token,
             "description": about.description,
+            **{name: value for name, value in known.items() if value is not None},
             "generationTool": about.generator,
             "variableNamingConvention": "structured",
             **more,

@@ -1,10 +1,12 @@
 """The slave inside an FMU, made from the FMU's resources."""
 
 import json
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 from ..core.description import Model
+from ..core.errors import TlismniError
 from . import log as logs
 from .calls import Calls, references_in
 from .errors import ExportError, FmuValueError, Status
@@ -13,10 +15,14 @@ from .fmi3_calls import Fmi3Calls
 from .intermediate import UpdateCallback, Updates
 from .log import LogCallback
 from .slave import Slave
+from .slave_state import SlaveState
 from .variables import VariableTable
 from .version import package_version
 
 MODEL_FILE, SETTINGS_FILE, PYTHON_FILE = "model.json", "settings.json", "python.json"
+
+OWN_ARGUMENTS = frozenset(signature(SlaveState.__init__).parameters) - {"solver"}
+"""Arguments of a slave that are none of its solver's."""
 
 INTERFACES: dict[int, type[Calls]] = {2: Fmi2Calls, 3: Fmi3Calls}
 """Calls by FMI major version."""
@@ -33,22 +39,49 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
     """
     try:
         data = json.loads((Path(resources) / SETTINGS_FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise ExportError(
             f"'{SETTINGS_FILE}' in the FMU's resources cannot be read: {error}; export the FMU anew"
         ) from None
+    _check_settings(data)
     if token is not None and token != data["token"]:
         raise FmuValueError(
             f"the {token_name} given is '{token}', this FMU has '{data['token']}': "
             "modelDescription.xml and resources come from different exports"
         )
     model = Model.load(Path(resources) / MODEL_FILE)
-    table = VariableTable.from_data(data["variables"])
-    slave = Slave(model, variables=table, **data["solver"], **arguments)
+    try:
+        table = VariableTable.from_data(data["variables"])
+        slave = Slave(model, variables=table, **data["solver"], **arguments)
+    except TlismniError:
+        raise
+    except (TypeError, ValueError, KeyError, AttributeError, IndexError, OverflowError) as error:
+        raise ExportError(
+            f"'{SETTINGS_FILE}' in the FMU's resources is broken ({type(error).__name__}: {error}); export the FMU anew"
+        ) from error
     if data["tlismni"] != package_version():
         text = f"exported with tlismni {data['tlismni']}, running with {package_version()}: results may differ"
         slave.log.write(Status.WARNING, logs.WARNING, text)
+    slave.prepare()
     return slave
+
+
+def _check_settings(data: Any) -> None:
+    """Refuse with ExportError what `export_fmu` does not write."""
+    parts = {"token": str, "tlismni": str, "solver": dict, "variables": list}
+    if not isinstance(data, dict):
+        raise ExportError(f"'{SETTINGS_FILE}' in the FMU's resources is no JSON object; export the FMU anew")
+    for name, kind in parts.items():
+        if not isinstance(data.get(name), kind):
+            what = {str: "text", dict: "an object", list: "a list"}[kind]
+            given = f"is {data[name]!r:.60}" if name in data else "is missing"
+            raise ExportError(
+                f"'{name}' in '{SETTINGS_FILE}' of the FMU's resources {given}, where {what} is needed; "
+                "export the FMU anew"
+            )
+    foreign = sorted(OWN_ARGUMENTS & set(data["solver"]))
+    if foreign:
+        raise ExportError(f"'solver' in '{SETTINGS_FILE}' has {foreign}, which are no solver settings; export anew")
 
 
 def create(

@@ -1,5 +1,6 @@
 """Writes a model or scenario as an FMU."""
 
+import getpass
 import json
 import logging
 import os
@@ -10,6 +11,7 @@ import tempfile
 import uuid
 import zipfile
 from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +22,11 @@ from .documentation import documentation
 from .drawing import draw, to_png, to_svg
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
+from .extras import require
 from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
+from .nominal import with_nominals
 from .platforms import PLATFORMS, choose, this_platform
 from .python_library import library_record, shared_library
 from .recommended_step import recommended_step
@@ -48,13 +52,16 @@ def export_fmu(
     bundle: bool = False,
     platforms: Sequence[str] = (),
     arrays: bool = False,
+    author: str | None = None,
+    version: str | None = None,
+    needs_execution_tool: bool = True,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
 
     The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it, or that of another one
     on the machine where it runs (docs/fmu.md); with `bundle`, with what it carries along. The same source and settings
-    give the same file on one machine.
+    give the same file on one machine, but for its date: with SOURCE_DATE_EPOCH in the environment that is this one.
 
     Parameters
     ----------
@@ -67,6 +74,10 @@ def export_fmu(
     platforms : further platforms whose binaries the FMU shall have, such as "x86_64-windows", or "all" of
         `platforms.PLATFORMS`; they are built if need be, which takes ziglang and some time.
     arrays : describe vectors as arrays too (FMI 3.0); not every master reads FMUs that have some.
+    author : who made the model; without it the name under which this user is logged in.
+    version : version of the model; without it a digest of its content and settings.
+    needs_execution_tool : what the FMU says of itself: True, since it takes a Python on the machine where it runs, with
+        `bundle` too. Some masters refuse such FMUs, though the FMU finds its Python itself: say False for them.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -76,8 +87,8 @@ def export_fmu(
 
     Raises
     ------
-    ExportError : for an FMI version that is not written, a missing shim, a file that cannot be written, a setting
-        that is no JSON data.
+    ExportError : for an FMI version that is not written, a missing shim or package (lxml), a file that cannot be
+        written, a setting that is no JSON data.
     ModelError, FmuValueError : for a wrong model or setting.
     SourceError : for what is neither a Model nor a Scenario; an EquationSystem is code, not data.
     """
@@ -88,20 +99,25 @@ def export_fmu(
             f"arrays were asked of FMI {fmi_version}, which has none: export for FMI 3.0, or without them"
         )
     shim_path()  # before any work
+    require("export_fmu", "lxml", error=ExportError)
     if not path.parent.is_dir():
         raise ExportError(f"'{path}' cannot be written: there is no folder '{path.parent}'")
     given = {"t_end": t_end, "communication_step": communication_step, **solver}
     slave = Slave(source, **{k: v for k, v in given.items() if v is not None})
-    solver_data = slave.settings.as_arguments()
+    solver_data, simulation = slave.settings.as_arguments(), build_simulation(None, slave.model, slave.settings)
     if solver_data["communication_step"] is None:
-        simulation = build_simulation(None, slave.model, slave.settings)
         solver_data["communication_step"] = recommended_step(simulation, slave.model, slave.settings.t_end)
-        slave = Slave(slave.model, variables=slave.variables, **solver_data)
+    variables = with_nominals(slave.variables, slave.model, slave.settings, simulation)
+    slave = Slave(slave.model, variables=variables, **solver_data)
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
     generator = f"tlismni {package_version()}"
-    about = About(identifier, slave.model.name, token, text, generator, derivatives=True, arrays=arrays)
+    about = About(
+        identifier, slave.model.name, token, text, generator, derivatives=True, arrays=arrays,
+        author=_user() if author is None else author, version=slave.identity[:12] if version is None else version,
+        date=_date(), needs_tool=needs_execution_tool,
+    )  # fmt: skip
     description, _ = VERSIONS[fmi_version]
     settings = {
         "token": token,
@@ -155,7 +171,7 @@ def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
         picture = to_png(drawing)
     except ImportError:
         logging.getLogger(__name__).warning(
-            "the FMU gets no icon: that needs Pillow, which is not installed (pip install pillow)"
+            "the FMU gets no icon: that needs Pillow, which is not installed (pip install 'tlismni[fmu]')"
         )
         picture = None
     if fmi_version == "2.0":
@@ -209,6 +225,29 @@ def known_version(version: str) -> str:
     if full not in VERSIONS:
         raise ExportError(f"fmi_version '{version}': there is no such FMI version; use one of {list(VERSIONS)}")
     return full
+
+
+def _user() -> str | None:
+    """Who is logged in; None where nobody is known."""
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):  # a container's user may have no name
+        return None
+
+
+def _date() -> str:
+    """Now, as FMI writes it, or the time (s) in SOURCE_DATE_EPOCH, for files that can be made again byte by byte.
+
+    Raises
+    ------
+    ExportError : if that is no time.
+    """
+    given = os.environ.get("SOURCE_DATE_EPOCH")
+    try:
+        now = datetime.now(UTC) if not given else datetime.fromtimestamp(int(given), UTC)
+    except (ValueError, OverflowError, OSError):
+        raise ExportError(f"SOURCE_DATE_EPOCH = '{given}' is no time: give seconds since 1970, or unset it") from None
+    return now.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def c_identifier(name: str) -> str:

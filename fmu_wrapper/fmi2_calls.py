@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .calls import Calls, fmi_call, numbers_in, references_in, text_of
+from .calls import Calls, fmi_call, given, numbers_in, references_in, texts_in
 from .errors import DiscardError, UnavailableError
 from .variables import Kind
 
@@ -23,7 +23,7 @@ class Fmi2Calls(Calls):
     @fmi_call()
     def fmi2SetDebugLogging(self, on: int, categories: Sequence[bytes]) -> None:
         """Turn logging on or off, for some categories or (none given) all."""
-        self.slave.log.choose(bool(on), [text_of(c, "a log category") for c in categories])
+        self.slave.log.choose(bool(on), texts_in(categories, "a log category"))
 
     @fmi_call()
     def fmi2SetupExperiment(
@@ -105,7 +105,7 @@ class Fmi2Calls(Calls):
     @fmi_call()
     def fmi2SetString(self, vr: Any, value: Sequence[bytes | None]) -> None:
         """Set String variables."""
-        self.slave.set("string", references_in(vr), [text_of(v, "a string value") for v in value])
+        self.slave.set("string", references_in(vr), texts_in(value, "a string value"))
 
     # state
 
@@ -137,7 +137,7 @@ class Fmi2Calls(Calls):
     @fmi_call(on_error=0)
     def fmi2DeSerializeFMUstate(self, buffer: Any, handle: int) -> int:
         """Answers with the handle of the stored state made from bytes, or 0 after an error."""
-        return self.keep(self.slave.snapshot_from_bytes(bytes(buffer)), handle)
+        return self.keep(self.slave.snapshot_from_bytes(bytes(given(buffer, "the bytes"))), handle)
 
     @fmi_call()
     def fmi2GetDirectionalDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .calls import Calls, fmi_call, numbers_in, put, references_in, text_of
+from .calls import Calls, fmi_call, given, numbers_in, put, references_in, texts_in
 from .errors import FmuValueError, UnavailableError
 from .variables import Kind
 
@@ -57,7 +57,7 @@ class Fmi3Calls(Calls):
     @fmi_call()
     def fmi3SetDebugLogging(self, on: int, categories: Sequence[bytes]) -> None:
         """Turn logging on or off, for some categories or (none given) all."""
-        self.slave.log.choose(bool(on), [text_of(c, "a log category") for c in categories])
+        self.slave.log.choose(bool(on), texts_in(categories, "a log category"))
 
     @fmi_call()
     def fmi3EnterInitializationMode(
@@ -183,7 +183,7 @@ class Fmi3Calls(Calls):
     @fmi_call()
     def fmi3SetString(self, vr: Any, value: Sequence[bytes | None]) -> None:
         """Set String variables."""
-        self.slave.set("string", references_in(vr), [text_of(v, "a string value") for v in value])
+        self.slave.set("string", references_in(vr), texts_in(value, "a string value"))
 
     @fmi_call()
     def fmi3GetDirectionalDerivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
@@ -241,4 +241,4 @@ class Fmi3Calls(Calls):
     @fmi_call(on_error=0)
     def fmi3DeserializeFMUState(self, buffer: Any, handle: int) -> int:
         """Answers with the handle of the stored state made from bytes, or 0 after an error."""
-        return self.keep(self.slave.snapshot_from_bytes(bytes(buffer)), handle)
+        return self.keep(self.slave.snapshot_from_bytes(bytes(given(buffer, "the bytes"))), handle)

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterable
 from .errors import FmuValueError, Status
 
 EVENTS, WARNING, DISCARD, ERROR = "logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError"
-TRACEBACK, ALL = "logTraceback", "logAll"
+COMPILATION, TRACEBACK, ALL = "logCompilation", "logTraceback", "logAll"
 
 CATEGORIES = {
     EVENTS: "impacts and other contact events",
     WARNING: "warnings",
     DISCARD: "figures that were asked and are not available",
     ERROR: "errors; these are logged even when logging is off",
+    COMPILATION: "compiling for this machine, which takes long and happens once",
     TRACEBACK: "Python traceback of each error",
     ALL: "all messages",
 }
@@ -35,6 +36,8 @@ class Log:
     def __init__(self, callback: LogCallback | None = None, on: bool = False) -> None:
         self._callback = to_python_logging if callback is None else callback
         self._heard = frozenset(CATEGORIES) if on else frozenset()
+        self.passed_on = callback is not None
+        """Whether messages go elsewhere than to `logging`."""
         self.last_problem = ""
         """Text of the last warning or error."""
 
@@ -54,6 +57,11 @@ class Log:
             chosen = every
         # switching off some categories leaves the others as they are
         self._heard = chosen if on else self._heard - chosen
+
+    def tell(self, level: int, message: str) -> None:
+        """Pass on what is said about compiling, with a level of `logging`, which has it already."""
+        if self.passed_on:
+            self.write(Status.WARNING if level >= logging.WARNING else Status.OK, COMPILATION, message)
 
     def wants(self, category: str) -> bool:
         """True if a message of this category would be passed on."""

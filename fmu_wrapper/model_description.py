@@ -20,7 +20,6 @@ from .settings import Settings
 from .variables import VariableTable
 
 CAPABILITIES = {
-    "needsExecutionTool": "false",
     "canHandleVariableCommunicationStepSize": "true",
     "canInterpolateInputs": "true",
     "maxOutputDerivativeOrder": str(HIGHEST_ORDER),
@@ -38,7 +37,10 @@ def fmi2_description(table: VariableTable, settings: Settings, about: About, kno
     """The file's bytes."""
     root = start("2.0", "guid", about, numberOfEventIndicators="0")
     derivatives = {"providesDirectionalDerivative": about.derivatives}
-    add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES, **derivatives)
+    add(
+        root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool, **CAPABILITIES,
+        **derivatives,
+    )  # fmt: skip
     add_units(root, table)
     if types := enumerations(table):
         definitions = add(root, "TypeDefinitions")

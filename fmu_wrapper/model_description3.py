@@ -20,7 +20,6 @@ from .settings import Settings
 from .variables import VariableTable
 
 CAPABILITIES = {
-    "needsExecutionTool": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
@@ -41,7 +40,10 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     """The file's bytes."""
     root = start("3.0", "instantiationToken", about)
     derivatives = dict.fromkeys(("providesDirectionalDerivatives", "providesAdjointDerivatives"), about.derivatives)
-    add(root, "CoSimulation", modelIdentifier=about.identifier, **CAPABILITIES, **derivatives)
+    add(
+        root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool, **CAPABILITIES,
+        **derivatives,
+    )  # fmt: skip
     add_units(root, table)
     if types := enumerations(table):
         definitions = add(root, "TypeDefinitions")

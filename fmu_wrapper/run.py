@@ -97,6 +97,8 @@ class Run:
         self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
         self._set_columns(values.table)
         self._exchange = getattr(self._simulation, "exchange", None)
+        if self._exchange is not None:
+            self._simulation.prepare_exchange()
 
     @staticmethod
     def key_of(values: Values, t0: float) -> tuple[Any, ...]:
@@ -114,6 +116,7 @@ class Run:
                 "version of tlismni names them differently; export the FMU anew"
             )
         self._names = [channel.name for channel in self._simulation.channels]
+        self._units = {channel.name: channel.unit for channel in self._simulation.channels}
         self._columns = [
             (
                 kind,
@@ -216,6 +219,10 @@ class Run:
     def horizon(self) -> float:
         """Time up to which the solver has gone without an event, s."""
         return float(self._simulation.horizon)
+
+    def unit(self, channel: str, otherwise: str) -> str:
+        """Unit of a channel; `otherwise` if the simulation does not show it."""
+        return self._units.get(channel, otherwise)
 
     def handle_event(self) -> bool:
         """Let a contact event at the present time happen, if one is due. True if it entails another at once."""

@@ -1,4 +1,4 @@
-"""Typical magnitudes of a model's quantities, which FMI calls nominal values, and the limits of its parameters."""
+"""Length, mass and time that are typical of a model, and the limits of its parameters."""
 
 import math
 from dataclasses import dataclass
@@ -7,8 +7,8 @@ from typing import Any
 from ..core.description import Model
 from ..core.model.base import Record
 from ..core.model.channels import Parameter
+from ..core.model.units import parse_unit
 from .drawing.places import Places
-from .units import parse_unit
 
 
 @dataclass(frozen=True)
@@ -34,14 +34,19 @@ class Scales:
         return cls(length, mass or 1.0, min(times, default=1.0))
 
     def nominal(self, unit: str | None) -> float | None:
-        """A power of ten, or 2 or 5 times one, near what has this unit; None for units without dimension (whose nominal
-        value is 1) and such as are unknown. For units with a factor (mm) it is in that unit."""
+        """A power of ten, or 2 or 5 times one, near `magnitude`, or None."""
+        value = self.magnitude(unit)
+        return None if value is None else round_number(value)
+
+    def magnitude(self, unit: str | None) -> float | None:
+        """What has this unit is about so large; None for units without dimension (whose nominal value is 1) and such as
+        are unknown. For units with a factor (mm) it is in that unit."""
         base = None if unit is None else parse_unit(unit)
         if base is None or not {"m", "kg", "s"} & base.exponents.keys():
             return None
         own = {"m": self.length, "kg": self.mass, "s": self.time}
         value = math.prod(own[name] ** power for name, power in base.exponents.items() if name in own)
-        return round_number(value / base.factor)
+        return value / base.factor
 
 
 def round_number(value: float) -> float:

@@ -224,7 +224,8 @@ class Slave(SlaveDerivatives):
         if self.log.wants(logs.EVENTS):
             for event in run.events[seen:]:
                 text = f"{event.kind} of contact '{event.contact}' at t = {event.t!r} s"
-                self.log.write(Status.OK, logs.EVENTS, f"{text}, impulse {event.impulse:.6g} N s")
+                unit = run.unit(f"{event.contact}.impulse", "N.s").replace(".", " ")
+                self.log.write(Status.OK, logs.EVENTS, f"{text}, impulse {event.impulse:.6g} {unit}")
 
     # values
 

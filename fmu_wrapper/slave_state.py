@@ -1,5 +1,6 @@
 """What a slave holds: the values of its variables, its simulation, its phase; all of it can be stored and restored."""
 
+import logging
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,6 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.compiled.notices import compile_notices, hear
+from ..core.errors import ModelError
 from .derivatives import driven_motions
 from .errors import CallOrderError, SnapshotError
 from .intermediate import Updates
@@ -49,11 +52,23 @@ class SlaveState:
         self.variables = variables
         self._input_rows = {v.reference: i for i, v in enumerate(variables.block("input"))}
         self._inputs = as_slice([variables.position[v.reference] for v in variables.block("input")])
-        self._time_position = variables.position[TIME]
+        self._time_position = variables.position[variables.by_name[TIME].reference]
         self.drivers = driven_motions(self.model)
         self.identity = identity(self.model, self.settings, variables)
         self._run: Run | None = None
+        self._spare: Run | None = None
         self.reset()
+
+    def prepare(self) -> None:
+        """Compile now what the model needs, with the values that it has: not in initialization, or in the first step.
+
+        What cannot be built with these values may be so with those that come before initialization, whose end says
+        what is wrong.
+        """
+        try:
+            self._spare = self._build(self._values, self._start_time)
+        except Exception as error:
+            logging.getLogger(__name__).debug("%s cannot be prepared: %s", self.name, error)
 
     @property
     def phase(self) -> Phase:
@@ -174,6 +189,8 @@ class SlaveState:
                 run = self._build(values, snapshot.start_time)
             try:
                 run.restore(snapshot.simulation, snapshot.applied)
+            except ModelError as error:  # a state that the simulation refuses leaves it as it was
+                raise SnapshotError(f"the stored state is refused: {error}") from error
             except BaseException:  # what is left may be half of each
                 self._phase = Phase.FAILED
                 raise
@@ -198,7 +215,11 @@ class SlaveState:
             raise CallOrderError(f"cannot {what} in phase '{self._phase}': {WAYS[self._phase]}")
 
     def _build(self, values: Values, start_time: float) -> Run:
-        return Run(self._factory, self.model, self.settings, values, start_time)
+        spare, self._spare = self._spare, None
+        if spare is not None and spare.key == Run.key_of(values, start_time):
+            return spare
+        with hear(self.log.tell), compile_notices(f"'{self.name}' (model {self.model.name})"):
+            return Run(self._factory, self.model, self.settings, values, start_time)
 
     def _engine(self) -> Run:
         if self._run is None:

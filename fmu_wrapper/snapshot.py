@@ -2,13 +2,15 @@
 
 import hashlib
 import json
+import math
 import zlib
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from ..core.description import Model
-from .errors import SnapshotError
+from ..core.model.signals import MOST_DERIVATIVES
+from .errors import FmuValueError, SnapshotError
 from .phases import Phase
 from .settings import Settings
 from .values import Values
@@ -86,11 +88,23 @@ class Snapshot:
         start = len(MAGIC) + LENGTHS
         numbers = [int.from_bytes(data[i : i + 8], "little") for i in range(len(MAGIC), start, 8)]
         *lengths, checksum = numbers
-        body = data[start : start + sum(lengths)]
+        body = bytes(data[start : start + sum(lengths)])
         if len(body) != sum(lengths) or zlib.crc32(body) != checksum:
             raise SnapshotError(f"the stored state is damaged or cut off ({len(data)} bytes): store it again")
+        if len(data) > start + len(body):
+            raise SnapshotError(
+                f"{len(data) - start - len(body)} bytes follow the stored state: give back exactly its own"
+            )
         a, b = lengths[0], lengths[0] + lengths[1]
-        head = json.loads(body[:a])
+        try:
+            return cls._from_parts(json.loads(body[:a]), body[a:b], body[b:], table, identity)
+        except (ValueError, TypeError, KeyError, RecursionError, OverflowError) as error:
+            raise SnapshotError(
+                f"the stored state is none of a slave, though its checksum fits: {error or repr(error)}; store it again"
+            ) from None
+
+    @classmethod
+    def _from_parts(cls, head: Any, values: bytes, state: bytes, table: VariableTable, identity: str) -> "Snapshot":
         # another version may solve the same in another way: its state would be taken for something it is not
         stored, here = (head["format"], head["tlismni"]), (FORMAT, package_version())
         if stored != here:
@@ -103,17 +117,36 @@ class Snapshot:
                 "the stored state belongs to another model or other settings (identity "
                 f"{head['identity'][:12]}, this slave has {identity[:12]}): use the FMU that stored it"
             )
-        return cls(
+        snapshot = cls(
             phase=Phase(head["phase"]),
-            start_time=head["start_time"],
-            stop_time=head["stop_time"],
-            time=head["time"],
-            rtol_given=head["rtol_given"],
-            values=Values.from_bytes(table, body[a:b]),
-            applied=head["applied"],
-            simulation=body[b:] or None,
+            start_time=_number("start_time", head["start_time"]),
+            stop_time=None if head["stop_time"] is None else _number("stop_time", head["stop_time"]),
+            time=_number("time", head["time"]),
+            rtol_given=bool(head["rtol_given"]),
+            values=Values.from_bytes(table, values),
+            applied=[[_number("applied", x) for x in level] for level in head["applied"]],
+            simulation=state or None,
             identity=identity,
         )
+        snapshot._check(len(table.block("input")))
+        return snapshot
+
+    def _check(self, inputs: int) -> None:
+        """Refuse with FmuValueError what does not fit together."""
+        begun = self.phase not in (Phase.INSTANTIATED, Phase.INITIALIZATION)
+        if self.phase in (Phase.FAILED, Phase.INTERMEDIATE) or (begun and self.simulation is None):
+            raise FmuValueError(f"nothing can be stored in phase '{self.phase}' like this")
+        if self.time < self.start_time or (self.stop_time is not None and self.stop_time < self.start_time):
+            raise FmuValueError(f"the times {self.start_time!r}, {self.time!r}, {self.stop_time!r} s are out of order")
+        levels = [len(level) for level in self.applied]
+        if any(n != inputs for n in levels) or len(levels) > 1 + MOST_DERIVATIVES or (self.simulation and not levels):
+            raise FmuValueError(f"there are {inputs} inputs, and courses of {levels}")
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise FmuValueError(f"'{name}' is {value!r}, no finite number")
+    return float(value)
 
 
 def identity(model: Model, settings: Settings, variables: VariableTable) -> str:

@@ -4,6 +4,10 @@ A flange is where one load or driver of the model is an input: its members are t
 the body's motion and forces. The members of a flange that takes a force and gives the motion have the same names as
 those of one that takes the motion and gives the force, so that the rule "bus" (members of one name are connected)
 couples the two; both are of the kind `tlismni.flange`.
+
+Motions are signals: equal on both sides. Forces are flows, whose sum at a connection is zero: a force that the flange
+takes flows in (`inflow`), the force that it gives is that which leaves through it (`outflow`), so that the two numbers
+are equal, too.
 """
 
 from collections.abc import Iterator
@@ -23,12 +27,14 @@ FORCES = {"x": "force_x", "y": "force_y", "angle": "torque"}
 
 @dataclass(frozen=True)
 class Terminal:
-    """A flange: its kind, and its members with the names of their variables."""
+    """A flange: its kind, its members with the names of their variables, and those among them that are forces, with
+    "inflow" or "outflow"."""
 
     name: str
     kind: str
     description: str
     members: dict[str, str]
+    flows: dict[str, str]
 
 
 def terminals(model: Model, table: VariableTable) -> list[Terminal]:
@@ -42,8 +48,15 @@ def terminals(model: Model, table: VariableTable) -> list[Terminal]:
         members = {member: variable for member, variable in members.items() if variable in table.by_name}
         what = "takes the motion, gives the force" if flange.takes == "motion" else "takes the force, gives the motion"
         text = f"{element.name} on {flange.body}: {what}"
-        found.append(Terminal(element.name, KIND, text, members))
+        way = "outflow" if flange.takes == "motion" else "inflow"
+        flows = {member: way for member in members if _is_force(member)}
+        found.append(Terminal(element.name, KIND, text, members, flows))
     return found
+
+
+def _is_force(member: str) -> bool:
+    """Whether a member is a force or a torque: the names that `FORCES` and `_flange` give them."""
+    return member == "torque" or member.startswith("force_")
 
 
 @dataclass(frozen=True)
@@ -125,6 +138,7 @@ def terminals_and_icons(model: Model, table: VariableTable, icon: bool) -> bytes
             terminal = add(parent, "Terminal", name=flange.name, matchingRule="bus", terminalKind=flange.kind,
                            description=flange.description)  # fmt: skip
             for member, variable in flange.members.items():
-                add(terminal, "TerminalMemberVariable", variableName=variable, memberName=member, variableKind="signal")
+                kind = flange.flows.get(member, "signal")
+                add(terminal, "TerminalMemberVariable", variableName=variable, memberName=member, variableKind=kind)
     data: bytes = etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
     return data

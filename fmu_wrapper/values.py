@@ -102,19 +102,47 @@ class Values:
 
     @classmethod
     def from_bytes(cls, table: VariableTable, data: bytes) -> "Values":
-        """The values in bytes made by `to_bytes` for the same table."""
+        """The values in bytes made by `to_bytes` for the same table.
+
+        Raises
+        ------
+        FmuValueError : if they are not, or a variable could not have been set to its value.
+        """
         values = cls(table)
+        least = sum(vector.nbytes for kind, vector in values.vectors.items() if kind != "string")
+        least += values.slopes.nbytes + values.slope_times.nbytes
+        if len(data) < least:
+            raise FmuValueError(f"the values take {len(data)} bytes, at least {least} are needed")
         offset = 0
         for kind in NUMERIC:
             count = len(table.of_kind[kind])
-            values.vectors[kind] = np.frombuffer(data, DTYPES[kind], count, offset).copy()
-            offset += values.vectors[kind].nbytes
+            stored = DTYPES[kind] if kind != "boolean" else "u1"  # a byte that is neither 0 nor 1 is no boolean
+            vector = np.frombuffer(data, stored, count, offset)
+            if kind == "boolean" and vector.max(initial=0) > 1:
+                raise FmuValueError(f"the booleans are {vector.tolist()}, not 0 or 1")
+            values.vectors[kind] = vector.astype(DTYPES[kind])
+            offset += vector.nbytes
         for part in (values.slopes, values.slope_times):
             part[...] = np.frombuffer(data, "<f8", part.size, offset).reshape(part.shape)
             offset += part.nbytes
+        if not np.isfinite(values.slopes).all() or np.isnan(values.slope_times).any():
+            raise FmuValueError("the derivatives of the inputs are not finite")
         values.sloped = bool(values.slopes.any())
-        values.vectors["string"][:] = json.loads(data[offset:])
+        texts = json.loads(data[offset:])
+        if not isinstance(texts, list) or len(texts) != len(table.of_kind["string"]):
+            raise FmuValueError(f"{len(table.of_kind['string'])} strings are needed, not {texts!r}")
+        values.vectors["string"][:] = texts
+        values._check()
         return values
+
+    def _check(self) -> None:
+        """Refuse what no variable could have been set to, and constants of another value, with FmuValueError."""
+        for variable in self.table.variables:
+            value = self[variable]
+            if variable.role in ("parameter", "input", "independent"):
+                check_value(variable, value)
+            elif variable.role == "constant" and value != variable.start:
+                raise FmuValueError(f"the constant '{variable.name}' is {value!r}, not {variable.start!r}")
 
 
 def check_value(variable: Variable, value: Any) -> Any:

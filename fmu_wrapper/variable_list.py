@@ -1,6 +1,7 @@
 """The variables that an FMU of a model has: solver settings, parameters, contact laws, inputs, channels."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import count
 from typing import Any
 
 from ..core.contact.laws import LAWS
@@ -10,20 +11,7 @@ from ..core.methods.registry import METHODS
 from ..core.model.channels import Channel, Input, Parameter
 from .scales import Scales, parameter_limits
 from .settings import Settings
-from .variables import (
-    EVENTS,
-    FIRST_CHANNEL,
-    FIRST_FIGURE,
-    FIRST_INPUT,
-    FIRST_LAW,
-    FIRST_OPTION,
-    FIRST_PARAMETER,
-    METHOD,
-    TIME,
-    Variable,
-    VariableTable,
-    kind_of,
-)
+from .variables import EVENTS, TIME, Variable, VariableTable, kind_of
 
 
 def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -> VariableTable:
@@ -35,15 +23,16 @@ def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -
     """
     scales = Scales.of(model, settings.t_end)
     laws = tuple(dict.fromkeys([*(law.__name__ for law in LAWS), *(type(c.law).__name__ for c in model.contacts)]))
+    number = count(1)  # value references: the index of each variable
     return VariableTable(
         [
-            Variable(TIME, "time", "real", "independent", "time", "s", "simulation time"),
-            *_solver(settings),
-            Variable(FIRST_FIGURE, EVENTS, "integer", "output", "figure", None, "contact events so far", minimum=0),
-            *(_parameter(FIRST_PARAMETER + i, p, model) for i, p in enumerate(model.parameters)),
-            *(_law(FIRST_LAW + i, contact, laws) for i, contact in enumerate(model.contacts)),
-            *(_input(FIRST_INPUT + i, n, scales) for i, n in enumerate(model.inputs)),
-            *(_channel(FIRST_CHANNEL + i, c, scales) for i, c in enumerate(channels)),
+            Variable(next(number), TIME, "real", "independent", "time", "s", "simulation time"),
+            *_solver(settings, number),
+            Variable(next(number), EVENTS, "integer", "output", "figure", None, "contact events so far", minimum=0),
+            *(_parameter(next(number), p, model) for p in model.parameters),
+            *(_law(next(number), contact, laws) for contact in model.contacts),
+            *(_input(next(number), n, scales) for n in model.inputs),
+            *(_channel(next(number), c, scales) for c in channels),
         ]
     )
 
@@ -88,12 +77,12 @@ def _channel(reference: int, c: Channel, scales: Scales) -> Variable:
     )
 
 
-def _solver(settings: Settings) -> list[Variable]:
+def _solver(settings: Settings, number: Iterator[int]) -> list[Variable]:
     names = tuple(METHODS)
     if settings.method not in names:
         raise ModelError(f"unknown method '{settings.method}'; known are {sorted(names)}")
     method = Variable(
-        METHOD, "solver.method", "integer", "parameter", "solver", None, "integration method",
+        next(number), "solver.method", "integer", "parameter", "solver", None, "integration method",
         names.index(settings.method), enumeration="SolverMethod", items=names,
     )  # fmt: skip
     numbers = (
@@ -104,15 +93,15 @@ def _solver(settings: Settings) -> list[Variable]:
     return [
         method,
         *(
-            Variable(METHOD + i, f"solver.{name}", "real", "parameter", "solver", unit, text, start, 0.0,
+            Variable(next(number), f"solver.{name}", "real", "parameter", "solver", unit, text, start, 0.0,
                      nominal=start or None)
-            for i, (name, start, unit, text) in enumerate(numbers, start=1)
+            for name, start, unit, text in numbers
         ),
-        *_options(settings),
+        *_options(settings, number),
     ]  # fmt: skip
 
 
-def _options(settings: Settings) -> list[Variable]:
+def _options(settings: Settings, number: Iterator[int]) -> list[Variable]:
     """The options of the method that are one value; a list or the like stays as exported."""
     known = METHODS[settings.method].options
     variables: list[Variable] = []
@@ -125,8 +114,8 @@ def _options(settings: Settings) -> list[Variable]:
         text = option.description if option else name
         numeric = option is not None and option.numeric and kind in ("real", "integer")
         limits = (option.minimum, option.maximum) if option is not None and numeric else ()
-        reference, unit = FIRST_OPTION + len(variables), "1" if kind == "real" else None
+        unit = "1" if kind == "real" else None
         text = f"option of method {settings.method}: {text}"
         name = f"solver.{name}"
-        variables.append(Variable(reference, name, kind, "parameter", "solver", unit, text, value, *limits))
+        variables.append(Variable(next(number), name, kind, "parameter", "solver", unit, text, value, *limits))
     return variables

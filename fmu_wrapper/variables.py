@@ -1,17 +1,18 @@
 """The variable table of a slave: names, kinds, roles, units and value references.
 
-Value references are one numbering over all kinds (FMI 3.0 wants that, FMI 2.0 allows it), in blocks, so that
-a further input does not renumber the outputs:
+Value references are 1, 2, 3, ... in the order of modelDescription.xml: one numbering over all kinds (FMI 3.0 wants
+that, FMI 2.0 allows it), in which each is also the variable's index. FMI 2.0 lists dependencies by index and FMI 3.0 by
+reference; a master that takes the one for the other (OMSimulator does) finds the same variable. The order is
 
-    0                   time
-    1 method  2 rtol  3 atol  4 step        solver settings (`solver.*`), parameters
-    10 ...              the method's further options, by name
-    100 ...             figures of the solver, outputs: 100 `solver.events`
-    500000 ...          the contacts' laws (`CONTACT.law`), constants, in the order of the model
-    1000 ...            the model's parameters, in the order of the model
-    1000000 ...         the model's inputs, in the order of the model
-    2000000 ...         the channels, in the order of `Simulation.channels`
-    3000000 ...         arrays of channels (FMI 3.0), which hold no values of their own
+    time; `solver.method`, `.rtol`, `.atol`, `.step` and the method's further options, by name: parameters
+    `solver.events`, an output
+    the model's parameters, in the order of the model
+    the contacts' laws (`CONTACT.law`), constants, in the order of the model
+    the model's inputs, in the order of the model
+    the channels, in the order of `Simulation.channels`
+    arrays of channels (FMI 3.0), which hold no values of their own
+
+so a reference belongs to one FMU and not to a model: masters look names up.
 """
 
 from collections.abc import Iterable, Mapping
@@ -22,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arrays import arrays_of
-from .errors import FmuValueError
+from .errors import ExportError, FmuValueError
 
 Kind = Literal["real", "integer", "boolean", "string"]
 Role = Literal["independent", "parameter", "input", "output", "constant"]
@@ -30,9 +31,7 @@ Block = Literal["time", "solver", "figure", "law", "parameter", "input", "channe
 
 KINDS: tuple[Kind, ...] = ("real", "integer", "boolean", "string")
 EVENTS = "solver.events"
-TIME, METHOD, FIRST_OPTION, FIRST_FIGURE = 0, 1, 10, 100
-FIRST_PARAMETER, FIRST_LAW, FIRST_INPUT, FIRST_CHANNEL = 1000, 500_000, 1_000_000, 2_000_000
-FIRST_ARRAY = 3_000_000
+TIME = "time"
 PLANS_KEPT = 256  # a master asks for the same few lists of references over and over
 
 
@@ -104,7 +103,7 @@ class VariableTable:
             for kind in KINDS
         }
         """Positions of the outputs among their kind."""
-        self.arrays = arrays_of(self.variables, FIRST_ARRAY)
+        self.arrays = arrays_of(self.variables, len(self.variables) + 1)
         self._elements = {array.reference: array.elements for array in self.arrays}
         self._plans: dict[tuple[Kind, bytes], Plan] = {}
 
@@ -163,8 +162,19 @@ class VariableTable:
 
     @classmethod
     def from_data(cls, data: Iterable[Mapping[str, Any]]) -> "VariableTable":
-        """The table in JSON data made by `to_data`."""
-        return cls(Variable(**{**record, "items": tuple(record["items"])}) for record in data)
+        """The table in JSON data made by `to_data`.
+
+        Raises
+        ------
+        ExportError : if references are not indices, as they were in earlier versions.
+        """
+        table = cls(Variable(**{**record, "items": tuple(record["items"])}) for record in data)
+        if [v.reference for v in table.variables] != list(range(1, len(table.variables) + 1)):
+            raise ExportError(
+                "the value references in this FMU are not 1, 2, 3, ...: another version of tlismni wrote it, or its "
+                "resources were changed; export the FMU anew"
+            )
+        return table
 
 
 def kind_of(value: object) -> Kind | None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.errors import TlismniError
 from ..models import catalogue
-from .comparisons.common import Row
+from .comparisons.common import Row, reasons_of
 from .drawing import drawing
 from .interactive import figures, plotly_library
 from .provenance import provenance
@@ -49,7 +49,7 @@ def render(found: "CrossCheck") -> str:
             library=_script(library or ""),
             drawing=json.dumps(motion) if motion else None,
             third=", ".join(sources),
-            reasons=sorted({row.reason for row in found.rows if row.verdict == "not comparable"}),
+            reasons=sorted(reasons_of(found.rows)),
             machine=found.machine,
         )
     )

@@ -10,15 +10,18 @@ from ..fmu_file import binaries
 from ..options import (
     Arrays,
     Atol,
+    Author,
     Bundle,
     CommunicationStep,
     Debug,
     EndTime,
+    ExecutionTool,
     FmiVersion,
     FmuFile,
     Json,
     MethodName,
     MethodOption,
+    ModelVersion,
     Platforms,
     Rtol,
     Set,
@@ -54,12 +57,16 @@ def export(
     bundle: Bundle = False,
     arrays: Arrays = False,
     platform: Platforms = None,
+    author: Author = None,
+    model_version: ModelVersion = None,
+    execution_tool: ExecutionTool = True,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Export a scenario or a model file as a co-simulation FMU, or a system file (.toml) as an SSP archive (.ssp)."""
     if is_system_file(source):
-        others = (sets, t_end, communication_step, method, rtol, atol, step, option, arrays or None)
+        solver = (t_end, communication_step, method, rtol, atol, step, option)
+        others = (sets, *solver, arrays or None, author, model_version, None if execution_tool else False)
         _system(source, output, json, any(value is not None for value in others), bundle, platform)
         return
     check_suffix(output, (".fmu",), "--output")
@@ -82,6 +89,9 @@ def export(
             bundle=bundle,
             platforms=platforms,
             arrays=arrays,
+            author=author,
+            version=model_version,
+            needs_execution_tool=execution_tool,
         )
     size = path.stat().st_size
     with zipfile.ZipFile(path) as archive:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled_unlocked, internal
 from ..integrate.loop import run
 from ..integrate.records import CHUNK
 from ..methods.history import history_time
@@ -43,7 +43,7 @@ def _varies(mass: Any) -> bool:
     return change > VARYING * largest
 
 
-@compiled
+@compiled_unlocked
 def fly(
     ws: Any, ms: Any, lc: Any, most: int, layout: Any, room: Any, work: Any, dq: Any, dv: Any, growth: Any, totals: Any
 ) -> int:  # fmt: skip

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled_unlocked, internal
 from ..methods.tableaus import TABLEAUS
 
 Floats = NDArray[np.float64]
@@ -245,7 +245,7 @@ def orthonormal(mass: Any, dq: Any, dv: Any, r: Any) -> None:
                     dv[i, c] /= r[c, c]
 
 
-@compiled
+@compiled_unlocked
 def carry(
     h: float, mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, dependent: Any, independent: Any,
     dq: Any, dv: Any, r: Any, work: Any,

@@ -5,6 +5,7 @@ A vibration matters as far as it gives way to what acts from outside: its share 
 """
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -96,11 +97,23 @@ def _null_space(jacobian: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(right[rank:].T)
 
 
-def contact_durations(sim: Any, speed: float) -> dict[str, float]:
-    """About how long a blow takes in each contact with a force law, s, by its name, at the present effective mass m.
+@dataclass(frozen=True)
+class Blow:
+    """What a blow is like: its duration (s), largest force (N), energy (J) and depth (m), approach speed (m/s)."""
 
-    pi d / v, with d the penetration at which the law's elastic energy is m v^2/2: exact for a linear spring, 7 % above
-    for Hertz's exponent 3/2. v is the present approach speed, or `speed` (m/s) where the shapes do not approach.
+    duration: float
+    force: float
+    energy: float
+    depth: float
+    speed: float
+
+
+def contact_blows(sim: Any, speed: float) -> dict[str, Blow]:
+    """About what a blow is like in each contact with a force law, by its name, at the present effective mass m.
+
+    The depth d is that at which the law's elastic energy is m v^2/2, the duration pi d / v: exact for a linear spring,
+    7 % above for Hertz's exponent 3/2; the force m v^2 / d is exact for the spring, and 4/5 of Hertz's. v is the
+    present approach speed, or `speed` (m/s) where the shapes do not approach.
     """
     found = {}
     before = sim.state()
@@ -111,12 +124,19 @@ def contact_durations(sim: Any, speed: float) -> dict[str, float]:
             sim.sample()
             approach = -sim.gap_rate(k)
             v = approach if approach > 1e-3 * speed else speed
-            found[contact.name] = math.pi * _deepest(contact.law, 0.5 * sim.effective_mass(k) * v * v) / v
+            energy = 0.5 * sim.effective_mass(k) * v * v
+            depth = _deepest(contact.law, energy)
+            found[contact.name] = Blow(math.pi * depth / v, 2.0 * energy / depth, energy, depth, v)
         except (TlismniError, ArithmeticError, ValueError):  # a contact that cannot be struck as things are now
             continue
         finally:
             sim.restore(before)
     return found
+
+
+def contact_durations(sim: Any, speed: float) -> dict[str, float]:
+    """About how long a blow takes in each contact with a force law, s, by its name: see `contact_blows`."""
+    return {name: blow.duration for name, blow in contact_blows(sim, speed).items()}
 
 
 def _deepest(law: ForceLaw, energy: float) -> float:

@@ -6,15 +6,24 @@ from types import FunctionType
 from typing import Any
 
 from numba import njit, types
-from numba.core import cgutils, config
+from numba.core import cgutils
 from numba.extending import intrinsic
 
-from .cache import cache_folder
+from .kept import KeptCode
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Decorator of compiled functions that Python calls; they are compiled when first used."""
     return _cached(njit(error_model="numpy")(function))
+
+
+def compiled_unlocked(function: Callable[..., Any]) -> Any:
+    """The same for what takes long: other threads of Python run on meanwhile, other instances of an FMU too.
+
+    Whoever calls back to Python from in there takes its lock first (ctypes' callbacks and numba's objmode do). Others
+    are not worth it: to give the lock away and to get it back takes longer than they do.
+    """
+    return _cached(njit(error_model="numpy", nogil=True)(function))
 
 
 def internal(function: Callable[..., Any]) -> Any:
@@ -24,13 +33,8 @@ def internal(function: Callable[..., Any]) -> Any:
 
 
 def _cached(dispatcher: Any) -> Any:
-    # numba reads the folder when caching is enabled; the setting is put back so that other packages keep theirs
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder())
-    try:
-        dispatcher.enable_caching()
-    finally:
-        config.CACHE_DIR = before
+    # what numba's enable_caching does, with a cache that bears damage, full disks and several processes (`kept.py`)
+    dispatcher._cache = KeptCode(dispatcher.py_func)
     return dispatcher
 
 

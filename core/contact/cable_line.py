@@ -105,7 +105,32 @@ def _find(b: Any, first: int, c: Any) -> Any:
         if square < least:
             best, t_best, least = e, t, square
     _coefficients(q, coord[best], par[best, LENGTH], c)
+    other = _beyond_joint(c, best - first, imat(b.extra, b.count, b.nextra)[first, PIECES], t_best, x, y)
+    if other >= 0:
+        best = first + other
+        _coefficients(q, coord[best], par[best, LENGTH], c)
+        t_best, _ = _nearest(c, x, y)
     return best, t_best
+
+
+@internal
+def _beyond_joint(c: Any, k: int, elements: int, t: float, x: float, y: float) -> int:
+    """The neighbour of element k on which the foot lies if that ends before it is reached; else -1.
+
+    Within sqrt(rounding) of a joint both elements are as near as the other, and their curvatures are not the same: the
+    slope of the distance, which is not zero where an element ends too early, tells them apart down to rounding.
+    """
+    if 0.0 < t < 1.0:
+        return -1
+    on = 0.0
+    for d in range(2):
+        place = c[0, d] + t * (c[1, d] + t * (c[2, d] + t * c[3, d]))
+        on += ((x if d == 0 else y) - place) * (c[1, d] + t * (2.0 * c[2, d] + 3.0 * t * c[3, d]))
+    if t <= 0.0 and on < 0.0 and k > 0:
+        return k - 1
+    if t >= 1.0 and on > 0.0 and k < elements - 1:
+        return k + 1
+    return -1
 
 
 @internal

@@ -5,12 +5,14 @@ friction P_T = -mu P_N sgn(w_T) where it slides, |P_T| <= mu P_N where w_T = 0 (
 1996, chapter 8). The same problem holds for accelerations and forces, and for velocities and impulses.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .lcp import NoComplementarySolution, solve_lcp
+from .sweeps import solve_by_sweeps
 
 Vector = NDArray[np.float64]
 
@@ -18,6 +20,8 @@ IMMOVABLE = 1e-12
 """A direction whose inverse effective mass is below this part of what it could be cannot move."""
 RANK = 1e-10
 """Singular values of the tangential block below this part of the largest are zero."""
+MANY = 8
+"""Contacts; more are solved by sweeps."""
 
 
 @dataclass(frozen=True)
@@ -81,12 +85,11 @@ def solve_contacts(
     # columns of the normal forces, the friction of sliding contacts included
     nn, tn = a.nn + a.nt * sliding, a.nt.T + a.tt * sliding
     b_n, b_t = b_n + nn @ base, b_t + tn @ base
-    if len(free):
-        found = _all_stick(a, nn, tn, b_n, b_t, mu, free, base)
-        normal, tangential = found or _with_limits(a, nn, tn, b_n, b_t, mu, free, base)
+    found = _all_stick(a, nn, tn, b_n, b_t, mu, free, base) if len(free) else None
+    if found is not None:
+        normal, tangential = found
     else:
-        found = None
-        normal, tangential = _scaled(nn, b_n, np.diag(a.nn)), np.zeros(n)
+        normal, tangential = _found(a, nn, tn, b_n, b_t, mu, direction, free, base)
     total = normal + base
     tangential = tangential + sliding * total
     return ContactSolution(
@@ -96,6 +99,49 @@ def solve_contacts(
         b_t + tn @ normal + a.tt[:, free] @ tangential[free],
         found is not None,
     )
+
+
+def _found(
+    a: Delassus,
+    nn: Vector,
+    tn: Vector,
+    b_n: Vector,
+    b_t: Vector,
+    mu: Vector,
+    direction: Vector,
+    free: NDArray[np.intp],
+    base: Vector,
+) -> tuple[Vector, Vector]:
+    """Forces beyond `base` and friction of the contacts `free`, by pivoting or by sweeps: those are quicker where there
+    are many contacts, and get through where they nearly repeat each other."""
+    many = len(b_n) > MANY
+    for by_sweeps in (many, not many):
+        if by_sweeps:
+            # what the least forces do is in b already
+            start = b_n - nn @ base, b_t - tn @ base
+            forces = solve_by_sweeps(a.nn, a.nt, a.tt, *start, mu, direction, base)
+            if forces is not None:
+                tangential = np.zeros(len(b_n))
+                tangential[free] = forces[1][free]
+                return forces[0] - base, tangential
+            continue
+        with suppress(NoComplementarySolution):
+            if len(free):
+                return _with_limits(a, nn, tn, b_n, b_t, mu, free, base)
+            return _scaled(nn, b_n, np.diag(a.nn)), np.zeros(len(b_n))
+    raise NoComplementarySolution("neither pivoting nor sweeps over the contacts find a solution")  # fmt: skip
+
+
+def _without_friction(m: Vector, q: Vector, inverse_mass: Vector) -> Vector | None:
+    """Normal forces with the matrix m, or None if there are none."""
+    try:
+        return _scaled(m, q, inverse_mass)
+    except NoComplementarySolution:
+        if np.any(np.diag(m) <= 0.0):
+            return None
+        none = np.zeros(len(q))
+        forces = solve_by_sweeps(m, np.zeros_like(m), np.zeros_like(m), q, none, none, none, none)
+        return None if forces is None else forces[0]
 
 
 def _scaled(m: Vector, q: Vector, inverse_mass: Vector) -> Vector:
@@ -115,9 +161,8 @@ def _all_stick(
     root = np.sqrt(np.diag(a.nn))
     m = np.where(np.abs(m) <= RANK * np.outer(root, root), 0.0, m)
     q = np.where(np.abs(q) <= RANK * (np.abs(b_n) + np.abs(across) @ np.abs(b_t[free])), 0.0, q)
-    try:
-        normal = _scaled(m, q, np.diag(a.nn))
-    except NoComplementarySolution:
+    normal = _without_friction(m, q, np.diag(a.nn))
+    if normal is None:
         return None
     wanted = b_t[free] + tn[free] @ normal
     tangential = np.zeros(len(b_n))

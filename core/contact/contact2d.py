@@ -1,12 +1,12 @@
 """Planar contacts: two shapes, a law along the normal, and friction."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ..elements.base import Element, Form, Numbering, Row
+from ..elements.base import BodyElement, Element, Form, Numbering, Row
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker2D
 from ..rounding import LEAST_DEFLECTION
@@ -107,6 +107,10 @@ class Contact2D(Element):
     def extent(self) -> float:
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
         return math.inf
+
+    def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
+        """Units of gap and sliding distance in a model with these bodies."""
+        return "m", "m"
 
     def _row(
         self, numbering: Numbering, a: Marker2D, b: Marker2D, angle: float, radius: float, first: float = 0.0

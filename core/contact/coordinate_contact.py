@@ -4,7 +4,7 @@ For end stops of a coordinate, and for systems whose geometry has been linearise
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -12,9 +12,10 @@ from pydantic import Field, model_validator
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
-from ..elements.base import Numbering, Row
+from ..elements.base import BodyElement, Numbering, Row
 from ..model.base import Name, Record
 from ..model.markers import GROUND
+from ..model.units import UNKNOWN, parse_unit, product
 from .bristle2d import act_bristles
 from .contact2d import Contact2D
 from .laws import ForceLaw
@@ -70,7 +71,24 @@ class CoordinateTerm(Record):
     body: Name
     coordinate: Name
     factor: float = 1.0
-    """m per unit of the coordinate."""
+    unit: str | None = None
+    """Unit of the factor: "m/rad" for the radius that makes a length of an angle. Left out: none, where all terms are
+    in one unit; m per unit of the coordinate, where they are not."""
+
+    @model_validator(mode="after")
+    def _check_unit(self) -> "CoordinateTerm":
+        if self.unit is not None and parse_unit(self.unit) is None:
+            raise ValueError(
+                f"unit '{self.unit}' of the factor of '{self.body}.{self.coordinate}' is not understood: products and "
+                "powers of SI units such as 'm/rad' or '1' are"
+            )
+        return self
+
+
+def _coordinate_unit(term: CoordinateTerm, bodies: Mapping[str, BodyElement]) -> str | None:
+    """Unit of a term's coordinate; None if there is no such coordinate."""
+    records = bodies[term.body].coordinate_records() if term.body in bodies else ()
+    return next((c.unit for c in records if c.name == term.coordinate), None)
 
 
 class CoordinateContact(Contact2D):
@@ -78,9 +96,13 @@ class CoordinateContact(Contact2D):
 
     An end stop that keeps a coordinate q below a limit has offset = limit and one term with factor -1.
 
+    Gap and sliding distance have the unit of their terms, (unit of the factor) times (unit of the coordinate): on
+    angles with plain factors rad, and then the force is a torque, N m, and a law's stiffness is in N m/rad.
+
     Raises
     ------
-    ModelError : without terms, with more than six coordinates, or with friction but without slide terms.
+    ModelError : without terms, with more than six coordinates, with friction but without slide terms, or with terms
+        whose declared units do not add.
     """
 
     type: Literal["CoordinateContact"] = "CoordinateContact"
@@ -89,7 +111,7 @@ class CoordinateContact(Contact2D):
     bristle_kernel: ClassVar[Any] = bristle_coordinate_contact_kernel
 
     offset: float = 0.0
-    """Gap at coordinates zero, m."""
+    """Gap at coordinates zero, m or what its terms are in."""
     terms: Annotated[tuple[CoordinateTerm, ...], Field(min_length=1)]
     slide: tuple[CoordinateTerm, ...] = ()
 
@@ -109,6 +131,32 @@ class CoordinateContact(Contact2D):
     @property
     def linear(self) -> bool:
         return self.friction is None and not isinstance(self.law, ForceLaw)
+
+    def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
+        self.units_in(bodies)
+
+    def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
+        return self._unit("gap", self.terms, bodies), self._unit("sliding distance", self.slide, bodies)
+
+    def _unit(self, what: str, terms: Sequence[CoordinateTerm], bodies: Mapping[str, BodyElement]) -> str:
+        """Unit of a sum of terms."""
+        found = {}
+        for term in terms:
+            plain = _coordinate_unit(term, bodies)
+            if plain is None or term.factor == 0.0:  # a coordinate that does not exist is refused elsewhere
+                continue
+            found[f"{term.body}.{term.coordinate}"] = (
+                plain if term.unit is None else product(plain, term.unit) or UNKNOWN
+            )
+        units = set(found.values())
+        if len(units) < 2:
+            return next(iter(units), "m")
+        if all(term.unit is None for term in terms):
+            return "m"
+        raise ValueError(
+            f"the {what} of contact '{self.name}' adds terms in different units, {found}: give every term the `unit` "
+            "of its factor that makes them one, such as 'm/rad' for a radius on an angle"
+        )
 
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:
         return tuple(dict.fromkeys((term.body, term.coordinate) for term in (*self.terms, *self.slide)))

@@ -21,6 +21,12 @@ from .segment2d import refuse_point_on_line
 
 SHARPEST = math.radians(170.0)
 """Largest angle of a vertex: beyond it the line runs back on itself."""
+FEWEST_CLOSED = 4
+"""Nodes of a triangle, the first one twice."""
+SAME_PLACE = 1e-12
+"""Distance of two points, relative to the line's coordinates, that is rounding: cos(2 pi) and cos(0)."""
+NO_END = -1
+"""Number of a piece at whose ends the line goes on."""
 
 
 class Line2D(Record):
@@ -29,6 +35,9 @@ class Line2D(Record):
     Straight between two nodes but for the part `rounding` of each half segment beside a vertex, which is rounded: the
     line passes a vertex inside by rounding/8 |a - 2 b + c|, its neighbours being a and c. With rounding 1 it is a
     quadratic spline with its nodes as control points.
+
+    A line whose last node is its first one again (same body, same point) is closed: a cam, a ring. That vertex is
+    rounded like all others, so that nothing tells where the line begins.
     """
 
     type: Literal["Line2D"] = "Line2D"
@@ -37,6 +46,20 @@ class Line2D(Record):
     radius: NonNegative = 0.0
     """Half its thickness, m."""
     rounding: Annotated[float, Field(gt=0.0, le=1.0)] = 0.5
+
+    @property
+    def closed(self) -> bool:
+        """True if the last node is the first one again, but for rounding."""
+        first, last = self.nodes[0], self.nodes[-1]
+        if len(self.nodes) < FEWEST_CLOSED or first.body != last.body:
+            return False
+        size = max(abs(x) for node in self.nodes for x in node.point)
+        return math.dist(first.point, last.point) <= SAME_PLACE * size
+
+    @property
+    def corners(self) -> tuple[Marker2D, ...]:
+        """Its nodes, each once."""
+        return self.nodes[:-1] if self.closed else self.nodes
 
 
 class DiskOnLine2D(Contact2D):
@@ -83,7 +106,7 @@ class DiskOnLine2D(Contact2D):
         return self.disk.radius + self.line.radius
 
     def markers(self) -> Sequence[Marker2D]:
-        return (*self.line.nodes, self.disk.marker)
+        return (*self.line.corners, self.disk.marker)
 
     def contact_rows(self, numbering: Numbering) -> Sequence[Row]:
         """One row a piece.
@@ -92,10 +115,10 @@ class DiskOnLine2D(Contact2D):
         ------
         ModelError : if neighbouring nodes start at the same place, or the line turns back on itself.
         """
-        nodes, law = self.line.nodes, self._law_columns(numbering)
+        nodes, closed, law = self.line.corners, self.line.closed, self._law_columns(numbering)
         start = np.array([place(node.point, numbering.initial(node.body)) for node in nodes])
-        self._refuse_folds(start)
-        pieces = make_pieces(len(nodes), self.line.rounding)
+        self._refuse_folds(start, closed)
+        pieces = make_pieces(len(nodes), self.line.rounding, closed)
         rows = []
         for k, piece in enumerate(pieces):
             used = [None if i is None else nodes[i] for i in piece.nodes]
@@ -107,23 +130,24 @@ class DiskOnLine2D(Contact2D):
                 *(x for point in (*points, self.disk.marker.point) for x in point),
                 *piece.mixture.ravel(),
             )  # fmt: skip
-            rows.append(Row(parameters, coordinates, (*law.extra, k, len(pieces))))
+            rows.append(Row(parameters, coordinates, (*law.extra, NO_END if closed else k, len(pieces))))
         return rows
 
-    def _refuse_folds(self, start: NDArray[np.float64]) -> None:
-        legs = np.diff(start, axis=0)
+    def _refuse_folds(self, start: NDArray[np.float64], closed: bool) -> None:
+        count = len(start)
+        legs = np.diff(start[[*range(count), *range(closed)]], axis=0)
         size = np.hypot(legs[:, 0], legs[:, 1])
         if np.any(size == 0.0):
             k = int(np.argmin(size))
             raise ModelError(
-                f"nodes {k} and {k + 1} of the line of contact '{self.name}' start at the same place "
+                f"nodes {k} and {(k + 1) % count} of the line of contact '{self.name}' start at the same place "
                 f"{tuple(start[k])}: leave one out, or move it"
             )
-        for k in range(len(legs) - 1):
-            angle = abs(_angle_between(legs[k], legs[k + 1]))
+        for k in range(1 - closed, len(legs)):
+            angle = abs(_angle_between(legs[k - 1], legs[k]))
             if angle > SHARPEST:
                 raise ModelError(
-                    f"the line of contact '{self.name}' turns by {math.degrees(angle):.0f} degrees at node {k + 1}: "
+                    f"the line of contact '{self.name}' turns by {math.degrees(angle):.0f} degrees at node {k}: "
                     f"at most {math.degrees(SHARPEST):.0f} are possible"
                 )
 
@@ -143,18 +167,19 @@ class Piece:
         return np.asarray(self.mixture @ own)
 
 
-def make_pieces(count: int, rounding: float) -> list[Piece]:
-    """The pieces of a line with `count` nodes, in their order."""
+def make_pieces(count: int, rounding: float, closed: bool = False) -> list[Piece]:
+    """The pieces of a line with `count` different nodes, in their order; a closed one ends at its first piece again."""
     pieces, half = [], 0.5 * rounding
-    for k in range(count - 1):
-        last = k == count - 2
-        begin, end = 0.0 if k == 0 else half, 1.0 if last else 1.0 - half
+    for k in range(count if closed else count - 1):
+        last = not closed and k == count - 2
+        begin, end = 0.0 if k == 0 and not closed else half, 1.0 if last else 1.0 - half
+        following, after = (k + 1) % count, (k + 2) % count
         if end > begin:
             places = (begin, 0.5 * (begin + end), end)
-            pieces.append(Piece((k, k + 1, None), np.array([(1.0 - u, u, 0.0) for u in places])))
+            pieces.append(Piece((k, following, None), np.array([(1.0 - u, u, 0.0) for u in places])))
         if not last:
             mixture = [(half, 1.0 - half, 0.0), (0.0, 1.0, 0.0), (0.0, 1.0 - half, half)]
-            pieces.append(Piece((k, k + 1, k + 2), np.array(mixture)))
+            pieces.append(Piece((k, following, after), np.array(mixture)))
     return pieces
 
 

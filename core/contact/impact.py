@@ -68,7 +68,8 @@ def strike(touching: Touching, restitution: Vector, rounding: Vector) -> Impact:
     normal, tangential, loss = np.zeros(count), np.zeros(count), np.zeros(count)
     approach = np.maximum(-first, 0.0)
     sequential = any(isinstance(law, NewtonImpact) and law.propagation == "sequential" for law in laws)
-    left, noise = np.inf, UNSOLVED * float(np.max(np.abs(first) / rounding))
+    rates = touching.rates()
+    left, noise = np.inf, UNSOLVED * max(float(np.max(np.abs(x) / rounding)) for x in rates)
     for _ in range(MOST_ROUNDS):
         gap_rate, slide_rate = touching.rates()
         before_round, left = left, max(-float(np.min(gap_rate / rounding)), 0.0)

@@ -15,11 +15,6 @@ TIES = (1e-13, 1e-11, 1e-9)
 first, the next is tried."""
 VIOLATION = 1e-9
 """Of the conditions, relative: beyond it a result is none."""
-PROXIMITY = 1e-4
-"""What is added to the diagonal, relative to the largest entry of it, where contacts repeat each other so nearly that no
-pivoting gets through."""
-MOST_APPROACHES = 30
-"""Problems with such a diagonal, each nearer to the given one."""
 
 
 class NoComplementarySolution(ArithmeticError):
@@ -41,44 +36,7 @@ def solve_lcp(m: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.floa
         z = _lemke(m, q, size, tie)
         if z is not None and float(np.min(m @ z + q)) >= -VIOLATION * size:
             return z
-    z = _approached(m, q, size)
-    if z is not None:
-        return z
     raise NoComplementarySolution("Lemke's pivoting ends on a ray: the complementarity problem has no solution")
-
-
-def _approached(m: NDArray[np.float64], q: NDArray[np.float64], size: float) -> NDArray[np.float64] | None:
-    """The solution as the limit of problems (M + c I) z + q - c z_before, whose pivots are large; None if they do not lead
-    there. Each takes away all but c/(c + lambda) of the error along an eigenvalue lambda (proximal point algorithm,
-    Rockafellar 1976)."""
-    n = len(q)
-    c = PROXIMITY * float(np.max(np.abs(np.diag(m)), initial=0.0))
-    z, least = np.zeros(n), np.inf
-    for _ in range(MOST_APPROACHES):
-        shifted = q - c * z
-        found = _lemke(m + c * np.eye(n), shifted, max(float(np.max(np.abs(shifted))), size), TIES[0])
-        if found is None:
-            return None
-        z, before = _polished(m, q, found), least
-        least = _violation(m, q, z)
-        if least <= 1e-3 * VIOLATION * size or before <= least <= VIOLATION * size:
-            return z
-    return None
-
-
-def _violation(m: NDArray[np.float64], q: NDArray[np.float64], z: NDArray[np.float64]) -> float:
-    return float(np.max(np.abs(np.minimum(m @ z + q, z))))
-
-
-def _polished(m: NDArray[np.float64], q: NDArray[np.float64], z: NDArray[np.float64]) -> NDArray[np.float64]:
-    """z, or what the equations of its active set make of it if that is better."""
-    w = m @ z + q
-    basic = np.flatnonzero(z > w)
-    better = z.copy()
-    better[basic] -= np.linalg.lstsq(m[np.ix_(basic, basic)], w[basic], rcond=1e-13)[0]
-    better[z <= w] = 0.0
-    better = np.maximum(better, 0.0)
-    return better if _violation(m, q, better) < _violation(m, q, z) else z
 
 
 def _lemke(m: NDArray[np.float64], q: NDArray[np.float64], size: float, tie: float) -> NDArray[np.float64] | None:

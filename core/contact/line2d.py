@@ -31,7 +31,8 @@ BOTH, RADIUS = 0, 1
 POINTS = 16  # of the nodes and of the disk in their bodies, (NODES + 1, 2)
 MIXTURE = POINTS + 2 * (NODES + 1)  # control points of the parabola as weighted sums of nodes, (3, NODES)
 
-# columns of `extra` after those that every contact has
+# columns of `extra` after those that every contact has: the number of the piece, -1 for all pieces of a closed line,
+# whose foot no end holds; and how many there are
 PIECE, PIECES = 6, 7
 
 
@@ -93,7 +94,38 @@ def _find_piece(b: Any, first: int, points: Any, directions: Any, bends: Any, co
         t, square = nearest_on_parabola(control, points[NODES, 0], points[NODES, 1])
         if square < least:
             best, t_best, least = e, t, square
+    other = _beyond_joint(b, first, best, t_best, points, directions, bends, control)
+    if other >= 0:
+        _place(q, coord[other], par[other], points, directions, bends)
+        _controls(par[other], points, control)
+        t_best, _ = nearest_on_parabola(control, points[NODES, 0], points[NODES, 1])
+        best = other
     return best, t_best
+
+
+@internal
+def _beyond_joint(b: Any, first: int, e: int, t: float, points: Any, directions: Any, bends: Any, control: Any) -> int:
+    """The neighbour of piece `e` on which the foot lies if that ends before it is reached; else -1.
+
+    Within sqrt(rounding) of a joint both pieces are as near as the other, and their curvatures are not the same: the
+    slope of the distance, which is not zero where a piece ends too early, tells them apart down to rounding.
+    """
+    if 0.0 < t < 1.0:
+        return -1
+    par, q = mat(b.par, b.count, b.npar)[e], vec(b.q, b.n_extended)
+    extra = imat(b.extra, b.count, b.nextra)[e]
+    pieces, closed = extra[PIECES], extra[PIECE] < 0
+    _place(q, imat(b.coord, b.count, b.ncoord)[e], par, points, directions, bends)
+    _controls(par, points, control)
+    here, k = 0 if t <= 0.0 else 2, e - first
+    along_x = (control[1, 0] - control[0, 0]) if here == 0 else (control[2, 0] - control[1, 0])
+    along_y = (control[1, 1] - control[0, 1]) if here == 0 else (control[2, 1] - control[1, 1])
+    on = (points[NODES, 0] - control[here, 0]) * along_x + (points[NODES, 1] - control[here, 1]) * along_y
+    if here == 0 and on < 0.0 and (closed or k > 0):
+        return first + (k - 1) % pieces
+    if here == 2 and on > 0.0 and (closed or k < pieces - 1):
+        return first + (k + 1) % pieces
+    return -1
 
 
 @internal

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-MOST_EVENTS_AT_ONCE = 50
-"""Events without progress in time before a run is given up."""
 ENERGY_GAIN = 1e-12
 """Of the kinetic energy: an impact that gains more is reported."""
 

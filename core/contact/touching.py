@@ -152,8 +152,8 @@ class Touching:
         return self._rows("phid")
 
     def free_accelerations(self, ahead: float = 0.0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Their accelerations without contact forces, each (contacts,), m/s^2; `ahead`: as they are so many seconds later
-        if the velocities stay."""
+        """Their accelerations without contact forces, each (contacts,), m/s^2; `ahead`: as they are so many seconds
+        later if the velocities stay."""
         if ahead > 0.0:
             arrays, n = self.sim.workspace.arrays, self.sim.assembly.n
             here = arrays["q"][:n].copy()

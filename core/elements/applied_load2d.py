@@ -17,7 +17,7 @@ from .base import Element, Numbering, Row
 def applied_load2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT and job != POWER:
         return
-    par = mat(b.par, b.count, 3)  # offset of the point, 1 if the force turns with the body
+    par = mat(b.par, b.count, 4)  # offset of the point, 1 if the force turns with the body, its angle there
     coord = imat(b.coord, b.count, 3)
     extra = imat(b.extra, b.count, 4)
     q = vec(b.q, b.n_extended)
@@ -30,7 +30,9 @@ def applied_load2d_kernel(job: int, t: float, b: Any) -> None:
         c, s = math.cos(q[k]), math.sin(q[k])
         x, y = c * par[e, 0] - s * par[e, 1], s * par[e, 0] + c * par[e, 1]
         if par[e, 2] != 0.0:
-            fx, fy = c * fx - s * fy, s * fx + c * fy
+            turned = q[k] + par[e, 3]
+            along, across = math.cos(turned), math.sin(turned)
+            fx, fy = along * fx - across * fy, across * fx + along * fy
         moment = x * fy - y * fx + torque
         if job == RESIDUAL:
             r = vec(b.r, b.n_extended)
@@ -57,7 +59,7 @@ class _AppliedLoad2D(Element):
 
 
 class AppliedForce2D(_AppliedLoad2D):
-    """Force at `marker`: components in N, in the inertial frame, or in the body's frame if `follower`."""
+    """Force at `marker`: components in N, in the inertial frame, or along the marker's own axes if `follower`."""
 
     type: Literal["AppliedForce2D"] = "AppliedForce2D"
     marker: Marker2D
@@ -68,7 +70,7 @@ class AppliedForce2D(_AppliedLoad2D):
     def row(self, numbering: Numbering) -> Row:
         zero = Constant(value=0.0)
         return Row(
-            (*self.marker.point, float(self.follower)),
+            (*self.marker.point, float(self.follower), self.marker.angle),
             numbering.coordinates(self.marker.body),
             (
                 numbering.signal(self.force_x),
@@ -95,7 +97,7 @@ class AppliedTorque2D(_AppliedLoad2D):
     def row(self, numbering: Numbering) -> Row:
         zero = numbering.signal(Constant(value=0.0))
         return Row(
-            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
             numbering.coordinates(self.body),
             (zero, zero, numbering.signal(self.torque), numbering.work("input")),
         )

@@ -18,7 +18,7 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive
 from ..model.channels import Channel
-from .base import Coordinate, Form, Numbering, Part, Row
+from .base import MOST_ELEMENTS, Coordinate, Form, Numbering, Part, Row
 from .flexible_body import FlexibleBody, PointShape, Section
 from .massless_end import massless_end_kernel
 
@@ -102,7 +102,7 @@ class AxialRod(FlexibleBody):
     type: Literal["AxialRod"] = "AxialRod"
     kernel: ClassVar[Any] = axial_rod_kernel
 
-    elements: Annotated[int, Field(ge=1)]
+    elements: Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
     """N."""
     length: Positive
     """L of the unstrained rod, m."""

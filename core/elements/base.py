@@ -9,8 +9,11 @@ from ..model.base import Name, Record
 from ..model.channels import Channel
 from ..model.markers import Marker2D
 from ..model.signals import Signal
+from ..model.units import UNKNOWN
 
 NO_INPUTS: Mapping[str, float] = MappingProxyType({})
+MOST_ELEMENTS = 100_000
+"""Of one flexible body: a number in a model file that would take all memory is refused before anything is built."""
 
 
 class Numbering(Protocol):
@@ -219,7 +222,7 @@ class Coordinate:
         return self.unit if level == 0 or self.unit == UNKNOWN_UNIT else self.unit + ("", "/s", "/s2")[level]
 
 
-UNKNOWN_UNIT = "-"
+UNKNOWN_UNIT = UNKNOWN
 """Of generalised coordinates that do not say theirs."""
 
 

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Vector2
-from .base import Coordinate, Numbering, Row
+from .base import MOST_ELEMENTS, Coordinate, Numbering, Row
 from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
 from .cable_shape import POINTS, gauss_places, weights
 from .flexible_body import FlexibleBody, PointShape, Section, along_axis
@@ -38,7 +38,7 @@ class Cable2D(FlexibleBody):
     kernel: ClassVar[Any] = cable2d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
 
-    elements: Annotated[int, Field(ge=1)]
+    elements: Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
     """Number of elements."""
     length: Positive
     """Undeformed length of the whole cable, m."""

@@ -1,6 +1,5 @@
 """EquationSystem: equations of motion from a user's functions instead of elements."""
 
-import ctypes
 import hashlib
 import math
 from collections.abc import Callable, Sequence
@@ -10,15 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, kernel_address
-from ..contact.laws import ContactLaw, ForceLaw
-from ..contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
+from ..compiled.kernels import kernel_address
+from ..contact.laws import ContactLaw
 from ..model.channels import Channel
 from ..system.assembly import GROUND_SLOTS, Assembly, Batch, ContactInfo
+from .binding import EquationBinding
 from .constraints import ConstraintFunctions
 from .errors import EquationError, NotDifferentiableError
 from .functions import EquationFunctions
-from .kernel import CALLBACK, equations_kernel
+from .kernel import equations_kernel
 from .user_function import UserFunction
 
 SMALL = 1e-3
@@ -196,7 +195,7 @@ class EquationSystem:
         full = tuple((i, j) for i in range(n) for j in range(n))
         work_names = [f"{c.name}.{what}" for c in self.contacts for what in ("impulse", "dissipation")]
         first = n + GROUND_SLOTS
-        binding = _Binding(self)
+        binding = EquationBinding(self)
         assembly = Assembly(
             n=n,
             m=rows,
@@ -246,108 +245,6 @@ class EquationSystem:
             for k, name in enumerate(self.coordinates):
                 columns.append((Channel(prefix + name, "1", f"{what} {name}"), part.start + k))
         return columns
-
-
-class _Binding:
-    """Connects the kernel's callback with one workspace."""
-
-    def __init__(self, system: EquationSystem) -> None:
-        self.system = system
-        self.errors: list[BaseException] = []
-        self.workspace: Any = None
-        self._callback = CALLBACK(self._call)
-        self.address = int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
-
-    def bind(self, workspace: Any) -> None:
-        self.workspace = workspace
-
-    def _call(self, job: int, t: float) -> int:
-        try:
-            self._act(job, t)
-        except BaseException as error:  # it must not cross the compiled frames: it is raised when they have returned
-            self.errors.append(error)
-            return 1
-        return 0
-
-    def _act(self, job: int, t: float) -> None:
-        system, arrays = self.system, self.workspace.arrays
-        n, m, functions = system.n, system.m, self.system.functions
-        q, v, a = arrays["q"][:n].copy(), arrays["v"][:n].copy(), arrays["a"][:n].copy()
-        lam = arrays["lam"][:m].copy()
-        if job == RESIDUAL:
-            r, phi, phid, phidd = functions.residuals(t, q, v, a, lam)
-            arrays["r"][:n] += r
-            arrays["phi"][:m], arrays["phid"][:m], arrays["phidd"][:m] = phi, phid, phidd
-            self._gap_residuals(t, q, v, a)
-        elif job == TANGENT:
-            self._tangent(t, q, v, a, lam)
-        elif job == ENERGY:
-            arrays["energy"][0] += 0.5 * float(v @ functions.mass(t, q) @ v)
-            if system.potential is not None:
-                arrays["energy"][1] += float(np.asarray(system.potential(t, q)).reshape(()))
-        elif job == POWER:
-            self._power(t, q, v, a)
-
-    def _force(self, k: int, gap: float, rate: float) -> tuple[float, ...]:
-        law = self.system.contacts[k].law
-        approach = float(self.workspace.arrays["memory"][k, APPROACH_SPEED])
-        if not isinstance(law, ForceLaw):
-            raise EquationError(f"contact '{self.system.contacts[k].name}' has no force law")
-        return law.evaluate(max(-gap, 0.0), -rate, approach)
-
-    def _gap_residuals(self, t: float, q: NDArray, v: NDArray, a: NDArray) -> None:
-        arrays, m = self.workspace.arrays, self.system.m
-        for k, gap in enumerate(self.system.gaps):
-            gradient, g, gd, gdd = (np.asarray(x).reshape(-1) for x in gap.levels(t, q, v, a))
-            row = m + k
-            arrays["phi"][row], arrays["phid"][row], arrays["phidd"][row] = g[0], gd[0], gdd[0]
-            mode = arrays["memory"][k, MODE]
-            if isinstance(self.system.contacts[k].law, ForceLaw):
-                force = self._force(k, g[0], gd[0])[0]
-                arrays["monitor"][k] = force
-                if mode == ACTIVE:
-                    arrays["r"][: len(q)] -= force * gradient
-            elif mode == CLOSED:
-                arrays["monitor"][k] = -arrays["lam"][row]
-                arrays["r"][: len(q)] += arrays["lam"][row] * gradient
-            else:
-                arrays["monitor"][k] = 0.0
-
-    def _tangent(self, t: float, q: NDArray, v: NDArray, a: NDArray, lam: NDArray) -> None:
-        arrays, m, n = self.workspace.arrays, self.system.m, self.system.n
-        c_q, c_v = arrays["coef"]
-        stiffness, jacobian = self.system.functions.tangent(t, q, v, a, lam, c_q, c_v)
-        rows = np.zeros((m + len(self.system.gaps), n))
-        rows[:m] = jacobian
-        for k, gap in enumerate(self.system.gaps):
-            mode = arrays["memory"][k, MODE]
-            if mode == CLOSED:
-                gradient, curvature = gap.jacobian_and_curvature(t, q, arrays["lam"][[m + k]])
-                rows[m + k] = gradient.reshape(-1)
-                stiffness = stiffness + c_q * curvature
-            elif mode == ACTIVE:
-                gradient = np.asarray(gap.jacobian(t, q)).reshape(-1)
-                _, g, gd, _ = (np.asarray(x).reshape(-1) for x in gap.levels(t, q, v, a))
-                _, f_d, f_dd, _, _ = self._force(k, g[0], gd[0])
-                # the curvature of the gap is left out: it changes the rate of convergence, not the solution
-                stiffness = stiffness + (c_q * f_d + c_v * f_dd) * np.outer(gradient, gradient)
-        structure, values = self.workspace.structure, arrays["values"]
-        values[structure.slot_s[0][0]] += stiffness.ravel()
-        if rows.size:
-            values[structure.slot_j[0][0]] += rows.ravel()
-            values[structure.slot_jt[0][0]] += rows.ravel()
-
-    def _power(self, t: float, q: NDArray, v: NDArray, a: NDArray) -> None:
-        arrays, m = self.workspace.arrays, self.system.m
-        for k, contact in enumerate(self.workspace.assembly.contacts):
-            mode = arrays["memory"][k, MODE]
-            if mode == CLOSED:
-                arrays["a"][contact.impulse_account] -= arrays["lam"][m + k]
-            elif mode == ACTIVE:
-                _, g, gd, _ = (np.asarray(x).reshape(-1) for x in self.system.gaps[k].levels(t, q, v, a))
-                force, _, _, elastic, _ = self._force(k, g[0], gd[0])
-                arrays["a"][contact.impulse_account] += force
-                arrays["a"][contact.dissipation_account] += (elastic - force) * gd[0]
 
 
 def _vector(name: str, given: ArrayLike, n: int | None) -> NDArray[np.float64]:

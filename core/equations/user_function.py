@@ -1,6 +1,7 @@
 """One user function: its plain value with checks, and its derivatives by jets or by the complex step."""
 
 import dis
+import threading
 import types
 import warnings
 from collections.abc import Callable
@@ -17,6 +18,8 @@ from .seeding import Array, along_curve, as_array, split, split_twice, values_of
 COMPLEX_STEP = 1e-150  # its square vanishes against 1; large enough that scaling by 1e-150 does not underflow
 _CONFIRM_STEP = 1e-5  # step and tolerance of the plausibility check of the complex step
 _CONFIRM_TOLERANCE = 1e-4
+_WARNINGS = threading.RLock()
+"""What is a warning and what an error is one choice for all threads."""
 _DYNAMIC_NAMES = {"locals", "vars", "eval", "exec"}
 
 
@@ -44,7 +47,6 @@ class UserFunction:
         check_arity(name, arguments, function)
         self._python: Callable[..., Any] = getattr(function, "py_func", function)
         self._variants: list[Callable[..., Any]] = [self._python]
-        self._rebound = False
         self._rebound_confirmed = False
         self._confirmed = False
 
@@ -146,16 +148,14 @@ class UserFunction:
                 array = as_array(function(*_copies(seeded)))
             except Exception as error:
                 cause = cause or error
-                if i == len(attempts) - 1 and not self._rebound:
-                    self._rebound = True
-                    rebound = rebind(self._python)
-                    self._variants.append(rebound)
-                    attempts.append(rebound)
+                if len(attempts) == 1:
+                    attempts.append(rebind(self._python))
+                    self._variants = list(attempts)
                 continue
             if attempts[i] is not self._python and not self._rebound_confirmed:
                 self._compare(self._reshaped(array), arguments)
-            if i > 0:  # what works comes first from now on
-                self._variants.insert(0, self._variants.pop(i))
+            if i > 0:  # what works comes first from now on; a new list, as another thread may read the old one
+                self._variants = [function, *(f for f in attempts if f is not function)]
             return self._reshaped(array)
         self.value(*arguments)  # an error of the function itself is the user's to see, not a lack of derivatives
         raise NotDifferentiableError(self._complaint(f"{type(cause).__name__}: {cause}")) from cause
@@ -180,7 +180,7 @@ class UserFunction:
 
     def _complex_call(self, arguments: list[Any], cause: Exception) -> NDArray[Any]:
         try:
-            with warnings.catch_warnings():
+            with _WARNINGS, warnings.catch_warnings():
                 # An imaginary part that is dropped is a derivative that is lost.
                 warnings.simplefilter("error", np.exceptions.ComplexWarning)
                 array = np.array(self._python(*arguments), dtype=complex)

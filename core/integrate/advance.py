@@ -20,6 +20,7 @@ from ..system.records import (
     FACTOR_AGE,
     FAILED_NORM,
     INNER_DIVERGED,
+    LEAST_CONDITION,
     LOOKED_CONDITION,
     NOT_FINITE,
     OK,
@@ -29,9 +30,11 @@ from ..system.records import (
     SINGULAR,
     WORST_CONDITION,
 )
-from .locate import find_root, first_crossing
+from .locate import find_root
 from .loop import accept, run, trial_step
-from .passage import near_singular, pass_singular
+from .near_singular import STRAINED
+from .passage import pass_singular
+from .probe import HAPPENS
 from .records import (
     BREAK_TIME,
     CHUNK,
@@ -49,8 +52,9 @@ from .records import (
     VIOLATED,
 )
 from .repair import repair
+from .singular_position import near_singular
 from .step_budget import step_count, steps_left
-from .watch import crossed, friction_margin
+from .watch import find_events, friction_margin
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -137,11 +141,15 @@ def advance_to(
                 _violated(sim, h)
         elif returned in _REPAIRABLE and repaired_at != sim.t_internal:
             repaired_at = sim.t_internal
-            repair(sim)
+            try:
+                repair(sim)
+            except SimulationError:
+                if not _pass_after_all(sim):
+                    raise
         elif returned in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
             if returned == REANALYZE:  # the matrix of the shorter step has other pivots
                 repaired_at = math.nan
-        else:
+        elif not _pass_after_all(sim):
             _fail(sim, returned)
 
 
@@ -204,20 +212,30 @@ def _violated(sim: "Simulation", h: float) -> None:
     )
 
 
-def _pass_singular(sim: "Simulation") -> bool:
+def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
     """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
     rate = sim.workspace.arrays["rate"]
     worst = float(rate[WORST_CONDITION])
     if sim.workspace.dropped:
         repair(sim)
-    code = pass_singular(sim)
+    code = pass_singular(sim, last_resort)
     if code == EVENT:
-        _locate(sim)
+        try:
+            _locate(sim)
+        finally:
+            sim.long_step = None
     elif code != OK:
         # nothing near: go on, and look again when it has become twice as bad
         rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
         return False
     return True
+
+
+def _pass_after_all(sim: "Simulation") -> bool:
+    """Step over a singular position because steps towards it have failed; False if there is none."""
+    rate = sim.workspace.arrays["rate"]
+    near = sim.clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    return bool(near) and _pass_singular(sim, last_resort=True)
 
 
 def _fail(sim: "Simulation", code: int) -> None:
@@ -270,34 +288,38 @@ def _locate(sim: "Simulation") -> None:
 
 
 def _locate_first(sim: "Simulation") -> None:
-    ws, lc = sim.workspace.record, sim._loop.record
+    ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     h = float(sim.clock[TRIAL_STEP])
-    contacts = range(len(sim.assembly.contacts))
     found: dict[int, float] = {}
+    safe: dict[int, float] = {}
     step = h
-    while late := [k for k in contacts if k not in found and crossed(ws, lc, k, step)]:
+    while find_events(ws, ms, lc, step, True):
+        late = [int(k) for k in np.flatnonzero(sim.brackets[:, HAPPENS]) if k not in found and k not in safe]
+        if not late:
+            break
         # the shorter step may end where a gap is negative that the longer one has passed
-        ends = {k: (sim.gap(k), sim.gap_rate(k), _gap_acceleration(sim, k)) for k in late}
-        found |= {k: _event_step(sim, k, step, ends[k]) for k in late}
-        first = min(step, *found.values())
+        ends = {k: (sim.gap(k), *(step * sim.brackets[k, :HAPPENS])) for k in late}
+        for k in late:
+            size, happens = _event_step(sim, k, step, ends[k])
+            (found if happens else safe)[k] = size
+        first = min(step, *found.values(), *safe.values())
         if not sim.formula.exact and first <= AT_ONCE * h:
-            recall(ws, sim._method.record, 0)
+            recall(ws, ms, 0)
             sim.pending = [k for k in found if found[k] <= AT_ONCE * h]
             return
         step = first
         _trial(sim, step, h)
-    accept(ws, sim._method.record, lc)
+    accept(ws, ms, lc)
     sim.flush()
     sim.pending = [k for k in found if found[k] <= step * (1.0 + 1e-12)]
-
-
-def _gap_acceleration(sim: "Simulation", k: int) -> float:
-    return float(sim.workspace.arrays["phidd"][sim.assembly.contacts[k].row])
 
 
 def _trial(sim: "Simulation", step: float, full: float) -> None:
     """Make the step again with another size. Small fractions of it are made by the one-step starter: the
     multistep coefficients of a grid with a very small last step lose digits."""
+    if sim.long_step is not None:
+        sim.long_step.trial(step)
+        return
     table = sim._loop.table
     usual = (int(table["starter"][0]), int(table["rows"][0]))
     if step < 0.1 * full or usual[1] == 1:
@@ -315,11 +337,16 @@ def _trial(sim: "Simulation", step: float, full: float) -> None:
         table["starter"], table["rows"] = usual
 
 
-def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, float]) -> float:
-    """Step size at which contact k has its event."""
+def _event_step(sim: "Simulation", k: int, h: float, found: tuple[float, ...]) -> tuple[float, bool]:
+    """Step size at which contact k has its event, and True; or False, and up to which size the motion has none.
+
+    found : the gap at the end of the step of size h, and times in it: before a root of the gap's dense output, beyond
+        it, and where that is deepest.
+    """
     mode = float(sim.memory[k, MODE])
+    end, low_step, high_step, deepest = found
     arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
-    by_force = mode == CLOSED or (mode == ACTIVE and end[0] <= 0.0) or (mode not in (OPEN, ACTIVE) and end[0] <= 0.0)
+    by_force = mode == CLOSED or (mode != OPEN and end <= 0.0 and high_step == h)
     force_sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
     slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
 
@@ -329,48 +356,49 @@ def _event_step(sim: "Simulation", k: int, h: float, end: tuple[float, float, fl
         return min(force, friction_margin(sim.workspace.record, k)) if slides else force
 
     if by_force:
-        return find_root(margin, 0.0, h, 0.5 * h, 0.0)
-    down = mode == OPEN
-    sign = 1.0 if down else -1.0
-    start = tuple(float(x) for x in sim.watch[k])
-    low, high, extremum = first_crossing(h, (start[0], start[1], start[2]), end, down)
+        if high_step < h and margin(high_step) > 0.0:
+            return (high_step if high_step > AT_ONCE * h else h), False
+        for _ in range(MOST_HALVINGS):
+            if low_step == 0.0 or margin(low_step) > 0.0:
+                break
+            low_step, high_step = 0.5 * low_step, low_step
+        return find_root(margin, low_step, high_step, 0.5 * (low_step + high_step), 0.0), True
+    sign = 1.0 if mode == OPEN else -1.0
 
     def gap(step: float) -> float:
         _trial(sim, step, h)
         return sign * float(arrays["phi"][contact.row])
 
     size = position_level(sim.workspace.record) * float(arrays["row_scale"][contact.row])
-    low_step, high_step = low * h, high * h
-    safe_end = sign * end[0] > 0.0
-    if high < 1.0 and gap(high_step) > 0.0:
-        # the motion is behind its interpolant: look where that goes deepest
-        low_step, high_step = high_step, extremum * h
-        if safe_end and gap(high_step) > 0.0:
-            return math.inf
-        if not safe_end and (high_step <= low_step or gap(high_step) > 0.0):
+    if high_step < h and gap(high_step) > 0.0:
+        # the motion is behind its dense output: look where that goes deepest
+        low_step = high_step
+        if low_step < deepest < h and gap(deepest) <= 0.0:
+            high_step = deepest
+        elif sign * end <= 0.0:
             high_step = h
-    elif high >= 1.0 and safe_end:
-        # the cubic dipped below zero, the quintic does not: no event
-        return math.inf
-    overlap = GAP_ROUNDING * size
+        else:
+            # what the dense output has shown is its own error; the very start of the step is no place to stop at
+            return (max(low_step, deepest) if low_step > AT_ONCE * h else h), False
     for _ in range(MOST_HALVINGS):
         # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
         if low_step == 0.0 or gap(low_step) > 0.0:
             break
         low_step, high_step = 0.5 * low_step, low_step
-    if down and abs(start[0]) <= overlap and gap(low_step) <= overlap:
-        return _closing_step(sim, contact.row, h, overlap, start[2])
+    overlap = GAP_ROUNDING * size
+    if mode == OPEN and abs(sim.watch[k, 0]) <= overlap and gap(low_step) <= overlap:
+        return _closing_step(sim, contact.row, h, overlap, float(sim.watch[k, 2])), True
     guess = 0.5 * (low_step + high_step)
     opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
     if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
         # the gap opens within this step, but the force has become tensile before
-        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0)
-    return opened
+        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0), True
+    return opened, True
 
 
 def _closing_step(sim: "Simulation", row: int, h: float, overlap: float, before: float) -> float:
     """Step size at which shapes that touch without force begin to close: their gap, zero by rounding, says so late, its
-    acceleration (`before` at the newest row) says it at once, and where it jumps (a corner is passed) just behind that."""
+    acceleration (`before` at the newest row) says it at once, and where that jumps (a corner is passed) just behind."""
     arrays = sim.workspace.arrays
 
     def gap(step: float) -> float:

@@ -14,7 +14,7 @@ from ..contact.touching import Touching
 from ..errors import ConsistencyError, SimulationError
 from ..events import Event
 from ..methods.registry import Formula
-from ..rounding import COORDINATE_NOISE, FIRST_TOUCH, FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING
+from ..rounding import COORDINATE_NOISE, FIRST_TOUCH, FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
@@ -261,7 +261,7 @@ class ContactSide:
                 found.append(k)
             elif contact.coulomb is not None and self.memory[k, SLIDE] == STICKS:
                 limit = contact.coulomb.sticking_coefficient * force
-                if abs(arrays["lam"][contact.slide_row]) > limit * (1.0 + 1e-9) + tolerance:
+                if abs(arrays["lam"][contact.slide_row]) > limit * (1.0 + SLIP_EXCESS) + tolerance:
                     found.append(k)
         return found
 
@@ -270,10 +270,10 @@ class ContactSide:
         noise = self.force_noise()
         rows, cols, values = self.workspace.jacobian()
         here = np.flatnonzero((self.workspace.structure.active[rows] == row) & (values != 0.0))
-        if not np.any(
-            noise[cols[here]]
-        ):  # on frames without stiffness of their own, which hand on the forces of others
-            return float(np.max(noise, initial=0.0) / np.max(np.abs(values[here]), initial=1.0))
+        if not np.any(noise[cols[here]]):
+            # on frames without stiffness of their own, which hand on the forces of others
+            work = float(np.max(noise * self.assembly.coordinate_scale, initial=0.0))
+            return work / float(self.workspace.arrays["row_scale"][row])
         return float(np.max(noise[cols[here]] / np.abs(values[here]), initial=0.0))
 
     def no_force(self, contacts: Sequence[int]) -> NDArray[np.float64]:

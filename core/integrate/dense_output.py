@@ -7,9 +7,9 @@ It is a pure function of the history: asking does not change what comes after.
 
 from typing import Any
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import mat, vec
-from ..methods.history import history_row, history_time, recall
+from ..methods.history import bridge_rows, history_row, history_time, recall
 from ..methods.multistep import rows_available
 from ..rounding import NO_STEP
 from ..stage.project import project
@@ -55,9 +55,44 @@ def third_row(ms: Any) -> int:
     return 0
 
 
+@internal
+def _interpolate_bridge(ws: Any, ms: Any, t: float) -> None:
+    """The polynomials through all points of a long step, whose nodes make that accurate."""
+    n, count = ws.n_ext, bridge_rows(ms)
+    span = history_time(ms, 0) - history_time(ms, count - 1)
+    weights, total = vec(ws.scratch, count), 0.0
+    for j in range(count):
+        distance = (t - history_time(ms, j)) / span
+        if distance == 0.0:
+            recall(ws, ms, j)
+            return
+        weights[j] = 1.0 / distance
+        for l in range(count):
+            if l != j:
+                weights[j] /= 4.0 * (history_time(ms, j) - history_time(ms, l)) / span
+        total += weights[j]
+    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    for i in range(n):
+        q[i], v[i], a[i] = 0.0, 0.0, 0.0
+    for i in range(ws.m_ext):
+        lam[i] = 0.0
+    for j in range(count):
+        row, weight = history_row(ws, ms, j), weights[j] / total
+        for i in range(n):
+            q[i] += weight * row[i]
+            v[i] += weight * row[n + i]
+            a[i] += weight * row[2 * n + i]
+        for i in range(ws.m_ext):
+            lam[i] += weight * row[4 * n + i]
+    vec(ws.t, 1)[0] = t
+
+
 @compiled
 def interpolate(ws: Any, ms: Any, t: float) -> None:
     """q, v and the work accounts at t from the newest rows, into the workspace."""
+    if bridge_rows(ms) > 0:
+        _interpolate_bridge(ws, ms, t)
+        return
     n = ws.n_ext
     third = third_row(ms)
     rows = 2 if third == 0 else 3
@@ -99,7 +134,7 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     vec(ws.t, 1)[0] = t
 
 
-@compiled
+@compiled_unlocked
 def query(ws: Any, ms: Any, t: float) -> int:
     """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point."""
     for back in range(min(rows_available(ms), 2)):

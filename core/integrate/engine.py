@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
+from ..compiled.notices import compile_notices
 from ..contact import machine
 from ..contact.laws import ForceLaw
 from ..contact.modes import MODE
+from ..contact.progress import Progress
 from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
@@ -35,6 +37,7 @@ from .contact_side import ContactSide
 from .dense_output import query
 from .near_singular import smooth_query, strained
 from .output import ChannelTable
+from .ready import make_ready
 from .records import MAX_STEP, STEP_SIZE
 from .sample import write_sample
 from .settings import Settings, set_control
@@ -62,6 +65,7 @@ def _own_error(assembly: Assembly) -> BaseException:
 class Engine(ContactSide):
     """Set-up of a run and the operations that event handling is made of. `Simulation` is the public face."""
 
+    @compile_notices("this model")
     def __init__(
         self,
         system: Any,
@@ -103,17 +107,20 @@ class Engine(ContactSide):
         self.progress: Callable[[float], None] | None = None
         self.open_accounts: dict[int, tuple[float, float]] = {}
         self.pending: list[int] = []
+        self.long_step: Any = None
         self.t = float(t0)
         self.redundant: tuple[RedundantRow, ...] = ()
         self._times_handled = (math.nan, 0)
+        self.guard, self.events_handled = Progress(float(t0)), 0
         self.input_times = (float(t0), math.inf)
         self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
         self._method = build_method(self.formula, self.settings, self.workspace.row_length)
         self.method_arrays: dict[str, NDArray[Any]] = self._method.arrays
-        self._loop = build_loop(self.assembly, self.formula, self.settings, record, step_records)
+        self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
         self.clock, self.watch = self._loop.arrays["clock"], self._loop.arrays["watch"]
+        self.brackets = self._loop.arrays["brackets"]
         self.buffer, self.cursor = self._loop.arrays["samples"], self._loop.arrays["cursor"]
         self.log_buffer, self.log_cursor = self._loop.arrays["log"], self._loop.arrays["log_cursor"]
         self.fine_starter = step_address(FINE_STARTER)
@@ -126,6 +133,7 @@ class Engine(ContactSide):
                 self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays, self.scales.rate
             )
             self._start()
+        make_ready(self)
 
     # ---- set-up -------------------------------------------------------------------------------------------------
 
@@ -216,14 +224,8 @@ class Engine(ContactSide):
         t = self.t_internal if self.method_arrays["ring"][1] else self.settings.t0
         count = self._times_handled[1] + 1 if t == self._times_handled[0] else 1
         self._times_handled = (t, count)
-        if count > machine.MOST_EVENTS_AT_ONCE:
-            names = [self.assembly.contacts[k].name for k in pending]
-            raise SimulationError(
-                f"{count} events of contacts {names} at t = {t:.9g} s without progress in time: the contact chatters. "
-                "Use a larger rest_ratio, a force law, or smaller tolerances.",
-                t=t,
-                loop="event",
-            )
+        self.events_handled += 1
+        self.guard.note(t, count, [self.assembly.contacts[k].name for k in pending])
         if self.method_arrays["ring"][1]:
             # samples may have been asked for since the step that ended here
             recall(self.workspace.record, self._method.record, 0)

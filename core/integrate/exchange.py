@@ -15,13 +15,13 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
-from ..compiled.jit import address_of, caller, compiled, internal, record_view
+from ..compiled.jit import address_of, caller, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
 from ..description import Model
 from ..errors import ModelError
-from ..methods.history import history_time, recall, restart
+from ..methods.history import bridge_rows, history_time, recall, restart
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
@@ -43,7 +43,17 @@ from .dense_output import query
 from .inputs import PUNCTUAL
 from .loop import run
 from .near_singular import STRAINED
-from .records import BREAK_TIME, CHUNK, CLOCK_SIZE, LOOP, REACHED, STOP_TIME, TARGET_TIME
+from .records import (
+    ACCELERATIONS_SIGNATURE,
+    BREAK_TIME,
+    CHUNK,
+    CLOCK_SIZE,
+    LOOP_TYPE,
+    REACHED,
+    STOP_TIME,
+    TARGET_TIME,
+    call_accelerations,
+)
 from .sample import write_sample
 from .watch import remember
 
@@ -81,11 +91,9 @@ ARRIVED = 201
 """At the goal; the channels have not been asked for, or are not to be had in this way."""
 READ = 202
 
-LOOP_TYPE = nb.from_dtype(LOOP)
 QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
-ACCELERATIONS_SIGNATURE = types.int64(WORKSPACE_TYPE)
 RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)
-call_query, call_accelerations, call_run = map(caller, (QUERY_SIGNATURE, ACCELERATIONS_SIGNATURE, RUN_SIGNATURE))
+call_query, call_run = map(caller, (QUERY_SIGNATURE, RUN_SIGNATURE))
 workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
 
 
@@ -183,7 +191,8 @@ def _near_singular(ws: Any, ms: Any, t: float) -> bool:
     """`strained` at time t."""
     rate = vec(ws.rate, RATE_SIZE)
     strained = rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
-    return strained and rows_available(ms) > 1 and history_time(ms, 1) < t < history_time(ms, 0)
+    inside = rows_available(ms) > 1 and history_time(ms, 1) < t < history_time(ms, 0)
+    return (strained and inside) or bridge_rows(ms) > 0
 
 
 @internal
@@ -214,7 +223,7 @@ def _read(ex: Any, ws: Any, ms: Any) -> bool:
     return True
 
 
-@compiled
+@compiled_unlocked
 def exchange(ex: Any) -> int:
     """Set the inputs, go to the goal, read the channels."""
     ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
@@ -258,6 +267,7 @@ class Exchange:
             },
         )  # fmt: skip
         self.record = self._record.record
+        exchange.compile((nb.from_dtype(EXCHANGE),))  # not at the first step
         # whose elements are written in half the time of those of the array
         self.clock: Any = self.times.data
         self.reads = False
@@ -292,7 +302,7 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
     if code < DECLINED:
-        sim.go_on(t, int(clock[FIRST_STEP]), code)
+        sim.go_on(t, int(clock[FIRST_STEP]) + sim.events_handled, code)
     sim.t = float(t)
     if code != READ:
         return None

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import ivec, mat, vec
-from ..methods.history import history_row, history_time, push
+from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
 from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
 from ..rounding import CONTRADICTION, COORDINATE_DIFFERENCES, LARGEST, NO_STEP
@@ -62,10 +62,11 @@ from .records import (
     TARGET_TIME,
     TRIAL_STEP,
     VIOLATED,
+    call_find_events,
 )
 from .sample import write_sample
 from .step_size import next_step, step_factor
-from .watch import any_crossed, remember
+from .watch import remember
 
 LOG_SIZE = len(LOG_COLUMNS)
 AWAY = 8.0  # decrease of the condition after which a singular position is looked for anew
@@ -97,6 +98,12 @@ def set_weights(ws: Any, ms: Any) -> None:
         weight_v[i] = control[ATOL] * work_scale[i] + control[RTOL] * max(work_scale[i], abs(row[ws.n_ext + i]))
 
 
+@compiled
+def set_weights_at(ws: Any, ms: Any) -> None:
+    """`set_weights`, for Python."""
+    set_weights(ws, ms)
+
+
 @internal
 def all_finite(ws: Any) -> bool:
     """No NaN or infinity in q, v, a, lam, nor what would make one of the energies and the other outputs."""
@@ -108,7 +115,7 @@ def all_finite(ws: Any) -> bool:
     return True
 
 
-@compiled
+@compiled_unlocked
 def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     """One step of size h from the newest row, not accepted yet; its end is the workspace's current point."""
     # a formula that looks ahead (extended BDF) must not see what lies behind a jump of a force
@@ -206,13 +213,14 @@ def violates_redundant(ws: Any, relaxed: float) -> bool:
     return False
 
 
-@compiled
+@compiled_unlocked
 def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
     """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
     clock = vec(lc.clock, CLOCK_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
     error = vec(ms.error, 2)
     control, rate = vec(ws.control, CONTROL_SIZE), vec(ws.rate, RATE_SIZE)
+    leave_bridge(ms)
     for _ in range(chunk):
         t = history_time(ms, 0)
         stop = clock[STOP_TIME]
@@ -263,7 +271,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 continue
         if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
             return VIOLATED
-        if ws.n_contacts > 0 and any_crossed(ws, lc, h):
+        if ws.n_contacts > 0 and call_find_events(lc.find_events, ws, ms, lc, h, False):
             return EVENT
         if h == remaining:
             # the stop time itself, not t + h with its rounding

@@ -12,6 +12,7 @@ import numpy as np
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import LEAST_CONDITION, OK, WORST_CONDITION
 from ..system.redundancy import least_singular_value
+from .collocation import interpolation_matrix
 from .dense_output import interpolate
 
 if TYPE_CHECKING:
@@ -27,7 +28,9 @@ NODES = 4
 def strained(sim: "Engine") -> bool:
     """True if the newest step came near a singular position and `t` lies within it."""
     rate, ring, times = sim.workspace.arrays["rate"], sim.method_arrays["ring"], sim.method_arrays["times"]
-    newest = int(ring[0])
+    newest, bridge = int(ring[0]), int(ring[2])
+    if bridge > 0:
+        return bool(times[(newest - bridge + 1) % len(times)] < sim.t < times[newest])
     return bool(
         rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
         and ring[1] > 1
@@ -47,6 +50,14 @@ def smooth_query(sim: "Engine", status: int) -> int:
     if status == OK and least_singular_value(workspace) > NOISY:
         return OK
     ring, times, history = (sim.method_arrays[name] for name in ("ring", "times", "history"))
+    if ring[2] > 0:
+        # the points of a long step: its polynomials are the smooth functions
+        rows = [int(ring[0] - back) % len(times) for back in range(int(ring[2]))]
+        values = history[rows].T @ interpolation_matrix(times[rows], sim.t)[0]
+        arrays["a"][:n], arrays["lam"][:] = values[2 * n_ext : 2 * n_ext + n], values[4 * n_ext :]
+        evaluate_residuals(workspace.record)
+        evaluate_power(workspace.record)
+        return OK
     rows = [int(ring[0] - back) % len(times) for back in range(min(int(ring[1]), NODES))]
     nodes, states = times[rows] - sim.t, history[rows]
     velocities = KroghInterpolator(

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel, Enumeration
-from ..system.assembly import Assembly
+from ..model.units import conjugate, per_second, times_second
+from ..system.assembly import Assembly, ContactInfo
 from .marker_channels import MarkerChannels
 
 CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
@@ -85,9 +86,9 @@ class ChannelTable:
         for k, channel in enumerate(assembly.multiplier_channels):
             self._formulas.append((channel, layout.multipliers.start + k))
         for k, contact in enumerate(assembly.contacts):
-            self._add_contact(k, contact.name, contact.slide_row >= 0)
+            self._add_contact(k, contact)
             if contact.bristle >= 0:
-                channel = Channel(f"{contact.name}.bristle", "m", "deflection of the friction's bristles")
+                channel = Channel(f"{contact.name}.bristle", contact.units[1], "deflection of the friction's bristles")
                 self._formulas.append((channel, layout.v.start + contact.bristle))
         self._add_energies(assembly)
         for column, level, unit in zip(
@@ -130,15 +131,16 @@ class ChannelTable:
         }  # fmt: skip
         return {**{name: x.astype(np.int64) for name, x in found.items()}, "signs": self._signs.astype(np.float64)}
 
-    def _add_contact(self, k: int, name: str, friction: bool) -> None:
-        layout = self.layout
+    def _add_contact(self, k: int, contact: ContactInfo) -> None:
+        layout, name, (gap, slide) = self.layout, contact.name, contact.units
+        force = conjugate(gap)
         impulse, dissipation = layout.work[f"{name}.impulse"], layout.work[f"{name}.dissipation"]
         self._formulas += [
-            (Channel(f"{name}.gap", "m", "gap, negative where the shapes overlap"), layout.gap + k),
-            (Channel(f"{name}.gap_rate", "m/s", "rate of the gap"), layout.gap_rate + k),
-            (Channel(f"{name}.normal_force", "N", "normal force, compression positive"), layout.force + k),
+            (Channel(f"{name}.gap", gap, "gap, negative where the shapes overlap"), layout.gap + k),
+            (Channel(f"{name}.gap_rate", per_second(gap), "rate of the gap"), layout.gap_rate + k),
+            (Channel(f"{name}.normal_force", force, "normal force, compression positive"), layout.force + k),
             (
-                Channel(f"{name}.impulse", "N.s", "normal impulse since the start, impacts included"),
+                Channel(f"{name}.impulse", times_second(force), "normal impulse since the start, impacts included"),
                 Sum((impulse, layout.impulse_jump + k)),
             ),
             (
@@ -155,13 +157,18 @@ class ChannelTable:
             ),
         ]
 
-        if friction:
+        if contact.slide_row >= 0:
             self._formulas += [
                 (
-                    Channel(f"{name}.friction_force", "N", "along the tangent, against the sliding velocity"),
+                    Channel(
+                        f"{name}.friction_force", conjugate(slide), "along the tangent, against the sliding velocity"
+                    ),
                     layout.friction + k,
                 ),
-                (Channel(f"{name}.sliding_velocity", "m/s", "of the second shape on the first"), layout.sliding + k),
+                (
+                    Channel(f"{name}.sliding_velocity", per_second(slide), "of the second shape on the first"),
+                    layout.sliding + k,
+                ),
             ]
 
     def _add_energies(self, assembly: Assembly) -> None:

@@ -1,16 +1,27 @@
 """The loop record: clock, sample buffer and what the watch over contacts remembers."""
 
+import numba as nb
 import numpy as np
+from numba import types
+
+from ..compiled.jit import caller
+from ..methods.records import METHOD_TYPE
+from ..system.records import WORKSPACE_TYPE
 
 LOOP = np.dtype(
     [
         (name, np.int64)
         for name in (
             "step", "starter", "rows",          # addresses of the step functions, rows that `step` needs
+            "find_events", "accelerations",     # addresses of the watch over contacts and of `solve_accelerations`
             "select",                           # address of the function that chooses the order; 0: none
             "clock",                            # (CLOCK_SIZE,) float64
             "leap",                             # (n,) float64: how far a step may move each coordinate
-            "watch",                            # (n_contacts, 3) float64: gap, rate, acceleration at the newest row
+            "watch",                            # (n_contacts, WATCH) float64: what `remember` says of the newest row
+            "near", "probes",                   # (n_contacts, NEAR_SIZE) int64, and a BATCH for each contact
+            *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor")),
+            "travel",                           # (2, n_ext) float64: bounds of the coordinates' ways within a step
+            "brackets",                         # (n_contacts, BRACKET) float64: where in a step events are
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
             "stride",                           # steps from one recorded sample to the next
             "cursor",                           # (1,) int64: samples in the buffer
@@ -19,6 +30,17 @@ LOOP = np.dtype(
         )
     ]
 )  # fmt: skip
+
+LOOP_TYPE = nb.from_dtype(LOOP)
+FIND_EVENTS_SIGNATURE = types.boolean(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64, types.boolean)
+call_find_events = caller(FIND_EVENTS_SIGNATURE)
+"""call_find_events(address, ws, ms, lc, h, all of them)."""
+
+ACCELERATIONS_SIGNATURE = types.int64(WORKSPACE_TYPE)
+call_accelerations = caller(ACCELERATIONS_SIGNATURE)
+
+WATCH = 5
+"""Columns of `watch`: gap, rate and acceleration of a contact; rate and acceleration of its sliding distance."""
 
 # columns of `clock`
 STEP_SIZE = 0  # proposed next step

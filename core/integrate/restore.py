@@ -13,6 +13,7 @@ from ..stage.accelerations import solve_accelerations
 from ..state import State
 from ..system.records import FACTOR_AGE, OK
 from .dense_output import query
+from .state_check import check_state
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -73,6 +74,21 @@ def set_state(sim: "Simulation", state: State) -> None:
             f"the state belongs to another model, method or tolerance (hash {state.model_hash[:12]}, this simulation "
             f"has {expected[:12]}): restore it into a simulation built the same way"
         )
+    if not state.foreign:
+        _take(sim, state)
+        return
+    own = get_state(sim)
+    check_state(sim, state, own)
+    try:
+        _take(sim, state)
+    except BaseException as error:  # what is left may be half of each
+        _take(sim, own)
+        if isinstance(error, ValueError):
+            raise ModelError(f"the solver state does not fit this simulation: {error}") from error
+        raise
+
+
+def _take(sim: "Simulation", state: State) -> None:
     workspace, facts, arrays = sim.workspace, state.facts, state.arrays
     if sim.outer != facts["outer"]:
         sim.use_outer_loop(facts["outer"])
@@ -93,8 +109,10 @@ def set_state(sim: "Simulation", state: State) -> None:
         wanted = arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"]
         if not (analysed and all(map(np.array_equal, factorization.analysis(), wanted))):
             factorization.analyze_with(*wanted)
-        factorization.lu_values[:] = arrays[f"{name}_values"]
-        factorization.pivots[:] = arrays[f"{name}_pivots"]
+        for own, stored in ((factorization.lu_values, "values"), (factorization.pivots, "pivots")):
+            if own.shape != arrays[f"{name}_{stored}"].shape:
+                raise ModelError(f"'{name}_{stored}' of the solver state has not {len(own)} entries")
+            own[:] = arrays[f"{name}_{stored}"]
     for name in _WORKSPACE:
         workspace.arrays[name][...] = arrays[name]
     for name, x in sim.method_arrays.items():

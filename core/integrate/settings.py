@@ -32,6 +32,9 @@ from .controllers import CONTROLLERS
 ACCELERATIONS = ("none", "aitken", "anderson")
 REDUNDANT = ("drop", "refuse")
 """What is done with constraints that repeat others."""
+CONSTRAINT_SHARE = 0.002
+"""Of the finest absolute tolerance: what a violation of the constraints may be. The solution of the constraints and the
+level of the coordinates (`position_level`) enlarge it by ten and more."""
 KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
 FINEST = 1e-13
@@ -161,7 +164,7 @@ def set_control(
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     # differences over several steps see what the constraints leave open: it has to be small against the tolerances
     finest = (settings.newton_tolerance or 1.0) if fixed else float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0))
-    control[EXACTNESS] = min(1.0, max(1e-2, 0.002 * finest / CONSTRAINT_TOLERANCES[0]))
+    control[EXACTNESS] = min(1.0, max(1e-2, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     control[MAX_INNER] = 12.0
     control[PATIENCE] = float(fixed)

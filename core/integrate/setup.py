@@ -5,18 +5,23 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
-from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, K, step_address
+from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula
-from ..system.assembly import Assembly
+from ..stage.accelerations import solve_accelerations
+from ..system.workspace import Workspace
 from .controllers import CONTROLLERS
+from .probe import build_probes
 from .records import (
     A2,
+    ACCELERATIONS_SIGNATURE,
     B1,
     B2,
     BREAK_TIME,
     CLOCK_SIZE,
     EAGER,
+    FIND_EVENTS_SIGNATURE,
     FIXED_STEP,
     GROWTH,
     HOLD,
@@ -24,9 +29,11 @@ from .records import (
     LOOP,
     MAX_STEP,
     STOP_TIME,
+    WATCH,
 )
 from .sample import empty_buffer, sample_length
 from .settings import Settings
+from .watch import find_events
 
 HISTORY_ROWS = 12
 """Rows of (q, v, a) that a multistep formula may look back on."""
@@ -49,7 +56,7 @@ def build_method(formula: Formula, settings: Settings, row_length: int) -> Array
         {
             "history": np.zeros((HISTORY_ROWS, row_length)),
             "times": np.zeros(HISTORY_ROWS),
-            "ring": np.zeros(2, dtype=np.int64),
+            "ring": np.zeros(RING_SIZE, dtype=np.int64),
             "parameters": parameters,
             "weights": weights,
             "error": np.zeros(2),
@@ -73,12 +80,13 @@ def _clock(formula: Formula, settings: Settings, longest_step: float) -> NDArray
 
 
 def build_loop(
-    assembly: Assembly, formula: Formula, settings: Settings, record: int, step_records: bool
+    workspace: Workspace, formula: Formula, settings: Settings, record: int, step_records: bool
 ) -> ArrayRecord:
     """The LOOP record of a run; buffers have room for one row only where nothing is to be recorded.
 
     `record` : every so many steps a sample; 0: none.
     """
+    assembly = workspace.assembly
     length = sample_length(assembly.n, assembly.m, len(assembly.contacts), len(assembly.work_names))
     capacity = max(16, min(4096, _LARGEST_BUFFER // length)) if record else 0
     log_capacity = _LOG_ROWS if step_records else 0
@@ -86,14 +94,17 @@ def build_loop(
         LOOP,
         {
             "clock": _clock(formula, settings, assembly.longest_step),
-            "watch": np.zeros((max(len(assembly.contacts), 1), 3)),
+            "watch": np.zeros((max(len(assembly.contacts), 1), WATCH)),
             "leap": assembly.leap,
+            **build_probes(workspace),
             "samples": empty_buffer(max(capacity, 1), length),
             "cursor": np.zeros(1, dtype=np.int64),
             "log": empty_buffer(max(log_capacity, 1), len(LOG_COLUMNS)),
             "log_cursor": np.zeros(1, dtype=np.int64),
         },
         {
+            "find_events": address_of(find_events, FIND_EVENTS_SIGNATURE),
+            "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
             "select": 0 if formula.select is None else step_address(formula.select),
             "log_capacity": log_capacity,
             "step": step_address(formula.step),

@@ -41,8 +41,8 @@ class Simulation(Engine):
         of "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are the default.
     step : fixed step in s; None: error-controlled steps.
     max_step, first_step : bounds of error-controlled steps, s.
-    max_steps : most steps between two times that are asked for, None for no limit: a SimulationError then, in place of
-        a run that would not end in this life.
+    max_steps : most steps (and instants with events) between two times that are asked for, None for no limit: a
+        SimulationError then, in place of a run that would not end in this life.
     t0 : start time, s.
     outer : "newton", "simple" or "jfnk", the outer loop of the stage solver (`tlismni.core.stage.OUTER_LOOPS`).
     acceleration : "none", "aitken" or "anderson", of outer = "simple"; depth : that of Anderson's, 1 to 5.
@@ -256,6 +256,10 @@ class Simulation(Engine):
         ConsistencyError, SimulationError : if there are no accelerations for these inputs; they are as before.
         """
         inputs.set_inputs(self, values, derivatives or {})
+
+    def prepare_exchange(self) -> bool:
+        """Compile now what `exchange` calls, not at its first call; False if that will do nothing of its own."""
+        return self.crossing is not None
 
     @cached_property
     def crossing(self) -> exchange.Exchange | None:

@@ -1,4 +1,4 @@
-"""How many steps a run may take on the way to a time that is asked for."""
+"""How many steps (and instants with events) a run may take on the way to a time that is asked for."""
 
 import sys
 from typing import TYPE_CHECKING
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 
 def step_count(sim: "Simulation") -> int:
-    """Steps accepted so far."""
-    return int(sim.workspace.arrays["counters"][STEPS])
+    """Steps accepted so far, and instants with events: each of these may begin and end a step."""
+    return int(sim.workspace.arrays["counters"][STEPS]) + sim.events_handled
 
 
 def steps_left(sim: "Simulation", first: int, t: float) -> int:
@@ -31,9 +31,10 @@ def steps_left(sim: "Simulation", first: int, t: float) -> int:
         return left
     now, h = sim.t_internal, float(sim.clock[TRIAL_STEP])
     raise SimulationError(
-        f"max_steps = {most} steps were not enough to reach t = {t:.9g} s: they ended at t = {now:.9g} s, and the last "
-        f"was {h:.3g} s long. Ask for a nearer time, give a larger max_steps or looser tolerances, or look for what "
-        "is so fast: a load or a speed that is out of proportion, a contact that is too stiff.",
+        f"max_steps = {most} steps (and instants with events) were not enough to reach t = {t:.9g} s: they ended at "
+        f"t = {now:.9g} s, and the last was {h:.3g} s long. Ask for a nearer time, give a larger max_steps or looser "
+        "tolerances, or look for what is so fast: a load or a speed that is out of proportion, a contact that is too "
+        "stiff.",
         t=now,
         loop="step size",
     )

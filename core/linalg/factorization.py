@@ -1,5 +1,7 @@
 """The Python side of the linear solver: analysis, storage, and what restores a solver's state."""
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -22,6 +24,14 @@ DENSE_LIMIT = 8
 PROGRAM_LIMIT = 4
 # Indices are unsigned 32-bit.
 _LARGEST_INDEX = 2**32 - 1
+
+
+@cache
+def make_sparse_ready() -> None:
+    """Compile all that sparse factorisations of any pattern call."""
+    for kind in ("program", "columns"):
+        functions_of(kind)
+    Factorization(1, [0], [0], [0], dense=False).analyze_with([0], [0])
 
 
 class Factorization:

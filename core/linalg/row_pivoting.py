@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numba import types
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled.jit import compiled, internal, interpreted
+from ..compiled.jit import compiled_unlocked, internal, interpreted
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -38,7 +39,7 @@ def _insert(pending: Any, count: int, row: int) -> int:
     return count + 1
 
 
-@compiled
+@compiled_unlocked
 def _eliminate(
     m: int,
     n: int,
@@ -135,6 +136,14 @@ def _eliminate(
 
 
 _eliminate_interpreted = interpreted(_eliminate, _insert)
+
+
+def make_elimination_ready() -> None:
+    """Compile the elimination."""
+    whole, real = types.int64, types.float64
+    wholes, reals = types.Array(whole, 1, "C"), types.Array(real, 1, "C")
+    matrix, tables = (whole, whole, wholes, wholes, reals, reals, real), (wholes,) * 5
+    _eliminate.compile((*matrix, *tables, reals, wholes, wholes, reals, wholes, wholes, reals))
 
 
 def eliminate_rows(

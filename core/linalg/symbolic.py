@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled_unlocked
 
 Ints = NDArray[np.int64]
 UInts = NDArray[np.uint32]
@@ -62,7 +62,7 @@ def _triangle(n: int, start: Ints, row: Ints) -> Triangle:
     return Triangle(start, row[np.argsort(col * n + row, kind="stable")], col)
 
 
-@compiled
+@compiled_unlocked
 def _search(
     n: int,
     start: Any,
@@ -143,7 +143,7 @@ def operation_list(n: int, l: Triangle, u: Triangle) -> Operations:
     return Operations(step_start, steps[:, : step_start[n]], sum_start, sums[:, : sum_start[n]])
 
 
-@compiled
+@compiled_unlocked
 def _write_operations(
     n: int,
     l_start: Any,

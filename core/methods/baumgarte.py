@@ -21,6 +21,7 @@ from .history import history_row, history_time
 from .multistep import rows_available
 from .one_stage import finish_work, predict_linearly
 from .sdirk import sdirk_step
+from .velocity_error import velocity_error
 
 # columns of `parameters`
 ALPHA, BETA, BY_STEP, SCHEME = 0, 1, 2, 3
@@ -57,7 +58,8 @@ def baumgarte_sdirk_step(ws: Any, ms: Any, h: float) -> int:
 
 @internal
 def baumgarte_trapezoidal_step(ws: Any, ms: Any, h: float) -> int:
-    """A step of the trapezoidal rule, over all coordinates; error estimate h^2 (a_{n+1} - a_n) / 12."""
+    """A step of the trapezoidal rule, over all coordinates; error estimate h^2 (a_{n+1} - a_n) / 12 of positions, and
+    that of velocities."""
     _set_stabilisation(ws, vec(ms.parameters, 8), h)
     n = ws.n_ext
     row = history_row(ws, ms, 0)
@@ -76,6 +78,7 @@ def baumgarte_trapezoidal_step(ws: Any, ms: Any, h: float) -> int:
         error[i] = h * h / 12.0 * (a[i] - row[2 * n + i])
     for i in range(n):
         aux[i] = a[i]
-    vec(ms.error, 2)[0] = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    vec(ms.error, 2)[0] = max(norm, velocity_error(ws, ms, h))
     vec(ms.error, 2)[1] = 2.0
     return OK

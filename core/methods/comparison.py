@@ -40,9 +40,10 @@ def _projection(values: Mapping[str, Any]) -> Formula:
     return Formula(projection_step, 0, parameters, stage=solve_explicit_stage, exact=False)
 
 
-def _hht_dae(values: Mapping[str, Any], stage: Any) -> Formula:
+def _hht_dae(values: Mapping[str, Any], form: str) -> Formula:
     alpha = values["alpha"]
-    return Formula(hht_dae_step, 0, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha), stage=stage, exact=False)
+    index, stage = FORMS[form]
+    return Formula(hht_dae_step, 0, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha, index), stage=stage, exact=False)
 
 
 def _generalized_alpha(values: Mapping[str, Any]) -> Formula:
@@ -79,14 +80,14 @@ COMPARISON_METHODS = (
         "hht_i3",
         "HHT-alpha on the index-3 equations: position constraints only; order 2",
         {"alpha": _DAMPING},
-        lambda o: _hht_dae(o, solve_index3_stage),
+        lambda o: _hht_dae(o, "index3"),
         "comparison",
     ),
     Method(
         "hht_ggl",
         "HHT-alpha on the stabilised index-2 equations: position and velocity constraints; order 2",
         {"alpha": _DAMPING},
-        lambda o: _hht_dae(o, solve_index2_stage),
+        lambda o: _hht_dae(o, "index2"),
         "comparison",
     ),
     Method(

@@ -14,8 +14,8 @@ A_0 = a_0 and v_0 themselves, an error O(h) in lambda that decays by r a step. P
 Bruls and Cardona (2015). A step of another size sees A_n - a_n scaled with it; in index 3 its velocities do not fit,
 which excites lambda by O(h) anew.
 
-Error estimate C h^2 (a_{n+1} - a_n): with A_n = a_n + (am - af) h a' the formula adds h^3 a' [(am - af)/2 + beta], the
-solution h^3 a'/6.
+Error estimate of positions C h^2 (a_{n+1} - a_n): with A_n = a_n + (am - af) h a' the formula adds
+h^3 a' [(am - af)/2 + beta], the solution h^3 a'/6. Beside it that of the velocities (`velocity_error.py`).
 """
 
 from typing import Any
@@ -29,7 +29,9 @@ from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import OK, call_stage
 from .history import history_row, history_time
 from .multistep import rows_available
-from .one_stage import finish_work, predict_linearly
+from .one_stage import MOST_GROWTH, finish_work, predict_linearly
+from .records import ESTIMATE
+from .velocity_error import absolute_velocity_error
 
 AM, AF, BETA, GAMMA, SHIFTED, INDEX = 0, 1, 2, 3, 4, 5
 
@@ -68,7 +70,7 @@ def _find_algorithmic(ws: Any, ms: Any, h: float) -> int:
     for i in range(ws.n):
         v_shift[i] = 0.0
     if rows_available(ms) > 1:
-        ratio = h / (history_time(ms, 0) - history_time(ms, 1))
+        ratio = min(h / (history_time(ms, 0) - history_time(ms, 1)), MOST_GROWTH)
         for i in range(ws.n):
             algorithmic[i] = row[2 * n + i] + ratio * (row[3 * n + i] - row[2 * n + i])
         return OK
@@ -120,6 +122,11 @@ def generalized_alpha_step(ws: Any, ms: Any, h: float) -> int:
     for i in range(ws.n):
         aux[i] = ((1.0 - af) * a[i] + af * row[2 * n + i] - am * algorithmic[i]) / (1.0 - am)
         error[i] = factor * (a[i] - row[2 * n + i])
-    vec(ms.error, 2)[0] = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    vec(ms.error, 2)[0] = norm
     vec(ms.error, 2)[1] = 2.0
-    return OK
+    if parameters[ESTIMATE] == 0.0:
+        return OK
+    status, of_velocities = absolute_velocity_error(ws, ms, h, 0.0, parameters[INDEX] == 2.0)
+    vec(ms.error, 2)[0] = max(norm, of_velocities)
+    return status

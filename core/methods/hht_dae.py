@@ -10,23 +10,29 @@ hht_ggl: on the form of Gear, Gupta and Leimkuhler, with the velocity constraint
 a_{n+1} is the method's only acceleration: it stands for the time t_{n+1} + alpha h, so that as the acceleration at
 t_{n+1} it is of order 1. It starts from the accelerations of the constraints, as published: for alpha < 0 that excites
 an error O(h) in lambda, which decays by (1 + alpha)/(1 - alpha) a step, and so does each change of the step.
+With a step of another size than the one before it a_n is moved to the time t_n + alpha h by its slope: else each
+change of the step by d adds alpha d h a' to the velocities, of first order.
 
 The stage solves for b = a_{n+1} / (1 + alpha): M b + F_{n+1} = alpha / (1 + alpha) F_n.
-Error estimate (Negrut et al. 2007): (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n), of order 2: the step follows
-Theta^(-1/6), Theta the square of its norm.
+Error estimate of positions (Negrut et al. 2007): (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n), of order 2: the step
+follows Theta^(-1/6), Theta the square of its norm. Beside it that of the velocities (`velocity_error.py`), in the norm
+of all methods: the larger counts.
 """
 
 from typing import Any
 
-from ..compiled.jit import internal
+from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.records import OK, call_stage
 from .history import history_row, history_time, recall
-from .one_stage import finish_work, predict_linearly
+from .multistep import rows_available
+from .one_stage import MOST_GROWTH, finish_work, predict_linearly
+from .records import ESTIMATE
+from .velocity_error import absolute_velocity_error
 
-ALPHA, BETA, GAMMA = 0, 1, 2
+ALPHA, BETA, GAMMA, INDEX = 0, 1, 2, 3
 
 
 @internal
@@ -47,6 +53,22 @@ def carry_force(ws: Any, ms: Any, factor: float) -> None:
         offset[i] = factor * r[i]
 
 
+@inlined
+def _change(ms: Any, h: float) -> float:
+    """By how much the step has changed, s."""
+    last = history_time(ms, 0) - history_time(ms, 1)
+    return min(h, MOST_GROWTH * last) - last
+
+
+@inlined
+def _between(ms: Any, alpha: float) -> float:
+    """Time between the newest two accelerations, s; that of the row that begins a history stands for its own time."""
+    last = history_time(ms, 0) - history_time(ms, 1)
+    if rows_available(ms) > 2:
+        return last + alpha * (last - history_time(ms, 1) + history_time(ms, 2))
+    return last + alpha * last
+
+
 @internal
 def hht_dae_step(ws: Any, ms: Any, h: float) -> int:
     parameters = vec(ms.parameters, 8)
@@ -56,25 +78,33 @@ def hht_dae_step(ws: Any, ms: Any, h: float) -> int:
     row = history_row(ws, ms, 0)
     carry_force(ws, ms, alpha / share)
     q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
+    older, ahead = history_row(ws, ms, 1), 0.0
+    if rows_available(ms) > 1:
+        ahead = alpha * _change(ms, h) / _between(ms, alpha)
     for i in range(n):
-        q_star[i] = row[i] + h * row[n + i] + h * h * (0.5 - beta) * row[2 * n + i]
-        v_star[i] = row[n + i] + h * (1.0 - gamma) * row[2 * n + i]
+        a_n = row[2 * n + i] + ahead * (row[2 * n + i] - older[2 * n + i])
+        q_star[i] = row[i] + h * row[n + i] + h * h * (0.5 - beta) * a_n
+        v_star[i] = row[n + i] + h * (1.0 - gamma) * a_n
     predict_linearly(ws, ms, h, share)
     status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, share * beta * h * h, share * gamma * h)
     if status != OK:
         return status
     for i in range(ws.n):
         a[i] *= share
-    if alpha != 0.0:
-        evaluate_residuals(ws)
     evaluate_power(ws)
     finish_work(ws, row, h)
+    status, of_velocities = OK, 0.0
+    if parameters[ESTIMATE] != 0.0:
+        status, of_velocities = absolute_velocity_error(ws, ms, h, alpha, parameters[INDEX] == 2.0)
+    elif alpha != 0.0:
+        evaluate_residuals(ws)
     error, aux = vec(ws.rhs, ws.n), vec(ws.aux, n)
     factor = (beta - 1.0 / (6.0 * share)) * h * h
     for i in range(ws.n):
         error[i] = factor * (a[i] - row[2 * n + i])
     for i in range(n):
         aux[i] = a[i]
-    vec(ms.error, 2)[0] = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    vec(ms.error, 2)[0] = max(norm, of_velocities)
     vec(ms.error, 2)[1] = 2.0
-    return OK
+    return status

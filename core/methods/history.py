@@ -7,6 +7,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, mat, vec
+from .records import RING_SIZE
 
 
 @inlined
@@ -29,7 +30,11 @@ def history_time(ms: Any, back: int) -> float:
 
 @internal
 def push(ws: Any, ms: Any) -> None:
-    """The current point of the workspace becomes the newest row."""
+    """The current point of the workspace becomes the newest row.
+
+    Multipliers of rows that are not active (open contacts) become zero. No stage solves for them, so what they had at
+    the last release would be extrapolated from step to step, and grow with the formula's order until it overflows.
+    """
     ring = ivec(ms.ring, 2)
     ring[0] = (ring[0] + 1) % ms.capacity
     ring[1] = min(ring[1] + 1, ms.capacity)
@@ -43,14 +48,33 @@ def push(ws: Any, ms: Any) -> None:
         row[2 * n + i] = a[i]
         row[3 * n + i] = aux[i]
     for i in range(ws.m_ext):
-        row[4 * n + i] = lam[i]
+        row[4 * n + i] = 0.0
+    active = ivec(ws.active, ws.m_act)
+    for i in range(ws.m_act):
+        row[4 * n + active[i]] = lam[active[i]]
     vec(ms.times, ms.capacity)[ring[0]] = vec(ws.t, 1)[0]
+
+
+@inlined
+def bridge_rows(ms: Any) -> int:
+    """How many of the newest rows are the points of one long step over a singular position; 0: the newest step is an
+    ordinary one."""
+    return ivec(ms.ring, RING_SIZE)[2]
+
+
+@internal
+def leave_bridge(ms: Any) -> None:
+    """Go on from the end of a long step: its other points are too far apart to be the history of a formula."""
+    ring = ivec(ms.ring, RING_SIZE)
+    if ring[2] > 0:
+        ring[1], ring[2] = 1, 0
 
 
 @compiled
 def restart(ws: Any, ms: Any) -> None:
     """Forget the history; the current point of the workspace is its only row."""
-    ivec(ms.ring, 2)[1] = 0
+    ring = ivec(ms.ring, RING_SIZE)
+    ring[1], ring[2] = 0, 0
     push(ws, ms)
 
 

@@ -2,8 +2,10 @@
 
 a^ = (1 + alpha) a_{n+1} - alpha a_n  (alpha = 0: Newmark; a is the true acceleration, a^ the algorithmic one)
 q_{n+1} = q_n + h v_n + h^2 [(1/2 - beta) a^_n + beta a^_{n+1}],  v_{n+1} = v_n + h [(1 - gamma) a^_n + gamma a^_{n+1}]
-Error estimate: (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n)  (Negrut et al. 2007); of the work accounts, whose power
-is integrated by the trapezoidal rule or nearly so, h^3/12 of the second derivative of the power through three points.
+a^_n stands for t_n + alpha h: before a step of another size its distance to a_n is scaled with the step, else each
+change of the step by d adds alpha d h a' to the velocities, of first order.
+Error estimate of positions: (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n)  (Negrut et al. 2007); of velocities and
+work accounts: `velocity_error.py`. The larger of both norms counts, as with the multistep formulas.
 """
 
 from typing import Any
@@ -16,6 +18,8 @@ from ..system.records import CONTROL_SIZE, OK, PATIENCE, call_stage
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import rows_available
+from .one_stage import MOST_GROWTH
+from .velocity_error import velocity_error
 
 ALPHA, BETA, GAMMA = 0, 1, 2
 MOST_ROWS = 3
@@ -91,14 +95,17 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
     row = history_row(ws, ms, 0)
     q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
     c_q, c_v = beta * h * h * (1.0 + alpha), gamma * h * (1.0 + alpha)
+    ratio = 1.0
+    if rows_available(ms) > 1:
+        ratio = min(h / (history_time(ms, 0) - history_time(ms, 1)), MOST_GROWTH)
     for i in range(n):
-        true, algorithmic = row[2 * n + i], row[3 * n + i]
+        true = row[2 * n + i]
+        algorithmic = true + ratio * (row[3 * n + i] - true)
         q_star[i] = row[i] + h * row[n + i] + h * h * ((0.5 - beta) * algorithmic - beta * alpha * true)
         v_star[i] = row[n + i] + h * ((1.0 - gamma) * algorithmic - gamma * alpha * true)
     extrapolation = 0.0
     if rows_available(ms) > 1:
         extrapolation = h / (history_time(ms, 0) - history_time(ms, 1))
-    older = history_row(ws, ms, 1)
     noisy = _noisy(ws, ms, c_q)
     if noisy:
         _predict_by_positions(ws, ms, h, c_q)
@@ -121,16 +128,6 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
     for i in range(ws.n):
         error[i] = factor * (a[i] - row[2 * n + i])
     norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
-    weight_v = vec(ws.weight_v, n)
-    for i in range(n - ws.n_work, n):
-        slope = (a[i] - row[2 * n + i]) / h
-        if extrapolation > 0.0:
-            before = h / extrapolation
-            curvature = (slope - (row[2 * n + i] - older[2 * n + i]) / before) / (h + before)
-        else:
-            # no third point: as if the power had been constant before
-            curvature = 0.5 * slope / h
-        norm = max(norm, abs(curvature) * h**3 / 6.0 / weight_v[i])
-    vec(ms.error, 2)[0] = norm
-    vec(ms.error, 2)[1] = 2.0
+    vec(ms.error, 2)[0] = max(norm, velocity_error(ws, ms, h))
+    vec(ms.error, 2)[1] = 2.0 if abs(gamma + alpha - 0.5) < 1e-12 else 1.0
     return OK

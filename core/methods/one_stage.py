@@ -7,6 +7,10 @@ from ..compiled.views import vec
 from .history import history_row, history_time
 from .multistep import rows_available
 
+MOST_GROWTH = 5.0
+"""Of the step from one to the next, up to which what hangs on its size is carried over; after a step that ended at some
+time just ahead the next may be larger by any factor, and so would noise of the accelerations."""
+
 
 @internal
 def predict_linearly(ws: Any, ms: Any, h: float, factor: float) -> None:

@@ -16,7 +16,7 @@ METHOD = np.dtype(
             "capacity",   # rows of history that are kept
             "history",    # (capacity, row_length) float64, a ring
             "times",      # (capacity,) float64
-            "ring",       # (2,) int64: position of the newest row, number of rows
+            "ring",       # (RING_SIZE,) int64: position of the newest row, number of rows, points of a long step
             "parameters", # (8,) float64: alpha, beta, gamma ...; the last is ESTIMATE
             "weights",    # (8, MAX_NODES) float64: nodes and coefficients of the present grid; a tableau
             "error",      # (2,) float64: error norm of the last step, order of its estimate
@@ -29,6 +29,8 @@ METHOD_TYPE = nb.from_dtype(METHOD)
 
 MAX_NODES = 12
 """Most rows of history that a formula uses, and the width of `weights`."""
+
+RING_SIZE = 3
 
 # columns of `choice`
 K = 0  # 0: the formula has no order to choose

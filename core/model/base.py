@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, get_args, get_origin
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, ValidationError, model_validator
@@ -10,6 +10,7 @@ from pydantic_core import CoreSchema
 
 from ..errors import ModelError
 from .docstrings import field_docstrings
+from .explain import ALONE, explain, shown
 
 
 class Record(BaseModel):
@@ -17,11 +18,19 @@ class Record(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="strings")
 
-    def __init__(self, **data: Any) -> None:
+    def __init__(self, /, *values: Any, **data: Any) -> None:
+        kind = type(self)
+        if values:
+            fields = [name for name in kind.model_fields if name != "type"]
+            raise ModelError(
+                f"{kind.__name__} takes its fields by name, not by position (given: {', '.join(map(repr, values))}): "
+                f"write {kind.__name__}({', '.join(f'{name}=...' for name in fields[: len(values)])}); its fields are "
+                f"{fields}"
+            )
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise ModelError(explain(error)) from None
+            raise ModelError(explain(error, kind, data)) from None
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -34,11 +43,14 @@ class Record(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _numbers_only(cls, data: Any) -> Any:
-        """pydantic would read the text '3' as 3 and True as 1: in a model either is a slip of the pen."""
+    def _refuse_slips(cls, data: Any) -> Any:
+        """pydantic would read the text '3' as 3, True as 1 and a record as the list of its fields: slips of the pen."""
         if isinstance(data, Mapping):
             for name in _number_fields(cls) & data.keys():
                 _refuse_no_number(name, data[name])
+            for name in _list_fields(cls) & data.keys():
+                if isinstance(data[name], BaseModel):
+                    raise ValueError(f"{name}: {ALONE} (given: {shown(data[name])})")
         return data
 
 
@@ -60,23 +72,18 @@ def _number_fields(record: type[BaseModel]) -> frozenset[str]:
     return frozenset(name for name, found in leaves.items() if found & {int, float} and not found & {str, bool})
 
 
+@cache
+def _list_fields(record: type[BaseModel]) -> frozenset[str]:
+    """Names of the fields that hold a sequence."""
+    fields = {name: field.annotation for name, field in record.model_fields.items()}
+    return frozenset(n for n, a in fields.items() if any(get_origin(part) is tuple for part in (a, *get_args(a))))
+
+
 def _leaves(annotation: Any) -> set[type]:
     """The plain types that an annotation is made of."""
     if isinstance(annotation, type) and not get_args(annotation):
         return {annotation}
     return {leaf for part in get_args(annotation) for leaf in _leaves(part)}
-
-
-def explain(error: ValidationError) -> str:
-    """One clause a problem: where, what was needed, what was given."""
-    clauses = []
-    for problem in error.errors():
-        place = ".".join(str(part) for part in problem["loc"])
-        given = problem.get("input")
-        plain = problem["type"] != "value_error" and isinstance(given, str | int | float | bool | None)
-        message = problem["msg"].removeprefix("Value error, ")
-        clauses.append((f"{place}: " if place else "") + message + (f" (given: {given!r})" if plain else ""))
-    return "; ".join(clauses)
 
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=60)]

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import compiled_unlocked, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at
 from ..rounding import ACCELERATIONS_LOST, ACCELERATIONS_SOLVED
@@ -25,7 +25,7 @@ def _largest(ws: Any, x: Any) -> float:
     return largest
 
 
-@compiled
+@compiled_unlocked
 def solve_accelerations(ws: Any) -> int:
     """(a, lambda) of the current (q, v) from the augmented system [M, Phi_q^T; Phi_q, 0], with matrices of its own."""
     n = ws.n

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..compiled.kernels import kernel_address
 from ..contact.friction import CoulombFriction, Friction
+from ..contact.geometry_kinds import EQUATIONS, kind_of
 from ..contact.laws import ForceLaw, ImpactLaw
 from ..description import Model
 from ..elements.base import Coordinate, Element, Form, Row
@@ -51,6 +52,10 @@ class ContactInfo:
     friction: Friction | None = None
     bristle: int = -1
     """Index of its friction's internal coordinate, whose velocity is the deflection of the bristles; -1: none."""
+    kind: int = EQUATIONS
+    """What is known of its geometry."""
+    units: tuple[str, str] = ("m", "m")
+    """Of gap and sliding distance."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -115,12 +120,11 @@ class Assembly:
 
     @property
     def leap(self) -> NDArray[np.float64]:
-        """How far one error-controlled step may move each coordinate, (n,): half its scale, and half the size of the
-        smallest pair of shapes, so that no shape passes through another unseen. Without contacts nothing limits it."""
+        """How far one error-controlled step may move each coordinate, (n,): half its scale, so that the dense output
+        between its ends is as good as these. Without contacts nothing limits it."""
         if not self.contacts:
             return np.full(self.n, np.inf)
-        smallest = min(contact.extent for contact in self.contacts)
-        leap = np.ascontiguousarray(0.5 * np.minimum(self.coordinate_scale, smallest))
+        leap = 0.5 * self.coordinate_scale
         leap[self.n - self.n_internal :] = np.inf
         return leap
 
@@ -156,7 +160,9 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
 
 
 def assemble(model: Model) -> Assembly:
-    """The model as flat tables. Raises ModelError for a contact of a body with itself."""
+    """The model as flat tables. Raises ModelError without bodies, and for a contact of a body with itself."""
+    if not model.bodies:
+        raise ModelError(f"model '{model.name}' has no bodies, so nothing can move: give it at least one in `bodies`")
     for contact in model.contacts:
         bodies = [marker.body for marker in contact.markers()]
         if len(bodies) > 1 and len(set(bodies)) == 1:
@@ -238,6 +244,8 @@ def assemble(model: Model) -> Assembly:
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 c.friction,
                 next(iter(numbering.internal(c.name)), -1),
+                kind=kind_of(c.form().kernel),
+                units=c.units_in(numbering.bodies),
             )
             for c in model.contacts
         ],

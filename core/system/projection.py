@@ -31,7 +31,7 @@ def correct_least(ws: Any, residual_address: int, x_address: int) -> None:
 
 
 @compiled
-def _least_correction(ws: Any, residual_address: int, x_address: int) -> int:
+def least_correction(ws: Any, residual_address: int, x_address: int) -> int:
     """The correction with matrices of the current point."""
     evaluate_tangent(ws, 0.0, 0.0)
     if factor(lu_at(ws.kkt_query), ws.values) != 0:
@@ -53,6 +53,6 @@ def bring_to_rest(workspace: Workspace, residual: str, x: str) -> bool:
         if not np.isfinite(norm) or norm > 1e3 * previous:
             return False
         previous = norm
-        if _least_correction(ws, int(table[residual][0]), int(table[x][0])) != 0:
+        if least_correction(ws, int(table[residual][0]), int(table[x][0])) != 0:
             return False
     return False

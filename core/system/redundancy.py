@@ -163,13 +163,27 @@ def choose_rows(workspace: Workspace) -> bool:
 def least_singular_value(workspace: Workspace) -> float:
     """Least singular value of Phi_q at the current point, rows and columns scaled, that is zero at singular positions
     only: not one of those that redundant rows make zero. 1 without constraints."""
+    matrix, rank = _scaled_jacobian(workspace)
+    return float(np.linalg.svd(matrix, compute_uv=False)[rank - 1]) if rank else 1.0
+
+
+def singular_directions(workspace: Workspace) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Singular values of that matrix but those that redundant rows make zero, and the directions (values, n) in which
+    the constraints hold the coordinates by them, as parts of the coordinates' scales."""
+    matrix, rank = _scaled_jacobian(workspace)
+    _, values, directions = np.linalg.svd(matrix, full_matrices=False)
+    return values[:rank], directions[:rank]
+
+
+def _scaled_jacobian(workspace: Workspace) -> tuple[NDArray[np.float64], int]:
+    """The matrix, with redundant rows, and its rank away from singular positions."""
     left_out = len(workspace.dropped)
     if left_out:
         with _AllRows(workspace) as scaled:
-            values = np.linalg.svd(scaled.matrix, compute_uv=False)
-            return float(values[len(scaled.matrix) - left_out - 1])
+            return scaled.matrix, len(scaled.matrix) - left_out
     _evaluate(workspace)
-    return _least_singular_value(_Scaled(workspace).matrix)
+    matrix = _Scaled(workspace).matrix
+    return matrix, len(matrix)
 
 
 def _least_singular_value(matrix: NDArray[np.float64]) -> float:

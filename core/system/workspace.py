@@ -168,17 +168,15 @@ class Workspace:
             },
         )  # fmt: skip
 
+    def batch_table(self, k: int) -> NDArray[Any]:
+        """The record of batch k, as a structured array (1,)."""
+        return self._batches[k].table
+
     def engage(self, closed: frozenset[int], engaged: frozenset[int], sticking: frozenset[int] = frozenset()) -> None:
         """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
         a place in the matrix."""
         self.key = (closed, closed | engaged, sticking)
-        a, key = self.assembly, (*self.key, self.dropped)
-        structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
-        while len(self._structures) >= MOST_STRUCTURES:
-            del self._structures[next(iter(self._structures))]
-        self._structures[key] = self.structure = structure
-        if structure.units is not self.units:
-            structure.use_units(self.units, a.n)
+        self.structure = structure = self.structure_of(*self.key, self.dropped)
         values = np.zeros(structure.nnz + 1)
         self._set("values", values, n_values=len(values))
         self._set("active", structure.active, m_act=len(structure.active))
@@ -204,6 +202,16 @@ class Workspace:
         """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
         self.units = units
         self.engage(*self.key)
+
+    def structure_of(self, *key: frozenset[int]) -> Structure:
+        """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
+        structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
+        while len(self._structures) >= MOST_STRUCTURES:
+            del self._structures[next(iter(self._structures))]
+        self._structures[key] = structure
+        if structure.units is not self.units:
+            structure.use_units(self.units, self.assembly.n)
+        return structure
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""

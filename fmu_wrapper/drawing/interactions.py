@@ -129,7 +129,7 @@ def _anchors(element: Any, drawing: Drawing, places: Places) -> None:
 @draw_interaction.register
 def _(element: AppliedForce2D, drawing: Drawing, places: Places) -> None:
     at = places.at(element.marker)
-    angle = places.frame(element.marker.body)[1] if element.follower else 0.0
+    angle = places.direction(element.marker) if element.follower else 0.0
     for signal, axis in ((element.force_x, (1.0, 0.0)), (element.force_y, (0.0, 1.0))):
         if not _is_zero(signal):
             sign = math.copysign(1.0, signal.value) if isinstance(signal, Constant) else 1.0

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-from ..units import BaseUnit, parse_unit
+from ...core.model.units import BaseUnit, parse_unit
 from .description import Connection, Hold
 from .errors import MasterError, near
 from .instance import Instance

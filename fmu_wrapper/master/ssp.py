@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from ...core.model.units import parse_unit
 from ..description_parts import add, finish
 from ..export import export_fmu
-from ..units import parse_unit
 from ..version import package_version
 from .description import InstanceRecord, SystemDescription
 from .errors import MasterError

@@ -206,6 +206,9 @@ EXPORT fmi2Status fmi2GetBooleanStatus(fmi2Component c, fmi2StatusKind kind, fmi
 }
 
 EXPORT fmi2Status fmi2GetStringStatus(fmi2Component c, fmi2StatusKind kind, fmi2String *value) {
+    if (!forward_has_room(c, "fmi2GetStringStatus", value)) {
+        return STATUS_ERROR;
+    }
     *value = "";
     FORWARD(c, "fmi2GetStringStatus", "(i)", kind);
 }

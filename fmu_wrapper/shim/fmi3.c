@@ -62,7 +62,7 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String toke
     Instance model = model_of(environment, logger);
     model.update = intermediate_update ? update_of_host : NULL;
     model.updater = (void (*)(void))intermediate_update;
-    Asked asked = {3, logging_on, event_mode, early_return, intermediate, intermediate ? intermediates : 0};
+    Asked asked = {3, logging_on, event_mode, early_return, intermediate, intermediates};
     return instance_new(&model, &asked, "fmi3InstantiateCoSimulation", name, token, resources);
 }
 

@@ -1,12 +1,20 @@
 #include "forward.h"
 
+bool forward_has_room(const Instance *c, const char *method, const void *room) {
+    if (!room && instance_alive(c)) {
+        instance_report(c, "%s: FmuValueError: NULL was given for what the call answers with: pass the address of a "
+                        "variable", method);
+    }
+    return room != NULL;
+}
+
 int forward_get_strings(Instance *c, const char *method, const unsigned vr[], size_t n, const char *value[]) {
     int gil, status = STATUS_ERROR;
-    if (!instance_enter(c, &gil)) {
+    if ((n && !forward_has_room(c, method, value)) || !instance_enter(c, &gil)) {
         return STATUS_ERROR;
     }
     PyObject *strings = instance_call(c, method, "(N)", IN(vr, n));
-    if (strings && py.PyList_Size(strings) == (Py_ssize_t)n) {
+    if (strings && n <= PTRDIFF_MAX && py.PyList_Size(strings) == (Py_ssize_t)n) {
         for (size_t i = 0; i < n; i++) {
             value[i] = py.PyBytes_AsString(py.PyList_GetItem(strings, (Py_ssize_t)i));
         }
@@ -30,7 +38,7 @@ static int store_handle(PyObject *answer, void **state) {
 
 int forward_get_state(Instance *c, const char *method, void **state) {
     int gil;
-    if (!instance_enter(c, &gil)) {
+    if (!forward_has_room(c, method, state) || !instance_enter(c, &gil)) {
         return STATUS_ERROR;
     }
     int status = store_handle(instance_call(c, method, "(K)", HANDLE(*state)), state);
@@ -49,7 +57,7 @@ int forward_free_state(Instance *c, const char *method, void **state) {
 
 int forward_state_size(Instance *c, const char *method, void *state, size_t *size) {
     int gil;
-    if (!instance_enter(c, &gil)) {
+    if (!forward_has_room(c, method, size) || !instance_enter(c, &gil)) {
         return STATUS_ERROR;
     }
     long long bytes = instance_number(instance_call(c, method, "(K)", HANDLE(state)), -1);
@@ -60,10 +68,10 @@ int forward_state_size(Instance *c, const char *method, void *state, size_t *siz
 
 int forward_read_state(Instance *c, const char *method, const void *bytes, size_t size, void **state) {
     int gil;
-    if (!instance_enter(c, &gil)) {
+    if (!forward_has_room(c, method, state) || !instance_enter(c, &gil)) {
         return STATUS_ERROR;
     }
-    PyObject *answer = instance_call(c, method, "(NK)", view_of(bytes, size), HANDLE(*state));
+    PyObject *answer = instance_call(c, method, "(NK)", view_of(bytes, size, 1), HANDLE(*state));
     int status = store_handle(answer, state);
     python_leave(gil);
     return status;

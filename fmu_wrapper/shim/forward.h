@@ -16,8 +16,8 @@
         return status;                                            \
     } while (0)
 
-#define IN(array, count) view_of(array, (count) * sizeof *(array))
-#define OUT(array, count) writable_view_of(array, (count) * sizeof *(array))
+#define IN(array, count) view_of(array, count, sizeof *(array))
+#define OUT(array, count) writable_view_of(array, count, sizeof *(array))
 /* A stored state is a number to the host, not an address. */
 #define HANDLE(state) ((unsigned long long)(uintptr_t)(state))
 
@@ -29,6 +29,9 @@ int forward_set_reals(Instance *c, const char *method, const unsigned vr[], size
 /* A step from `time`, if the Python side shares what that takes: its status, and the answer says how it ended. NULL:
  * nothing has been done. */
 const Shared *forward_step(Instance *c, const char *method, double time, double step, int *status);
+
+/* Whether the host has given something to answer into; if not, its log says so. */
+bool forward_has_room(const Instance *c, const char *method, const void *room);
 
 /* Strings into `value`; they stay valid until the next call of this function, the instance keeps their bytes. */
 int forward_get_strings(Instance *c, const char *method, const unsigned vr[], size_t n, const char *value[]);

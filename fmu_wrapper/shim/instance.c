@@ -120,7 +120,7 @@ static bool populate(Instance *self, const Asked *asked, const char *function, c
         PyObject *arguments = log && update ? py.Py_BuildValue(
             "(isssiNiiiNN)", asked->interface, self->name, token, resources, (int)asked->logging_on, log,
             (int)asked->event_mode, (int)asked->early_return, (int)python_is_own(), update,
-            view_of(asked->intermediate, asked->intermediates * sizeof *asked->intermediate)) : NULL;
+            view_of(asked->intermediate, asked->intermediates, sizeof *asked->intermediate)) : NULL;
         self->calls = boot(self, function, source, path, arguments);
         if (self->calls) {
             share(self);
@@ -265,25 +265,29 @@ long long instance_number(PyObject *answer, long long otherwise) {
     return number;
 }
 
-static PyObject *view(void *data, size_t bytes, int access) {
+static PyObject *view(void *data, size_t count, size_t size, int access) {
     static char nothing;
-    return py.PyMemoryView_FromMemory(data ? data : &nothing, data ? (Py_ssize_t)bytes : 0, access);
+    if (count && (!data || count > PTRDIFF_MAX / size)) {
+        return py.Py_BuildValue(""); /* the Python side says what is wrong with it */
+    }
+    return py.PyMemoryView_FromMemory(data ? data : &nothing, (Py_ssize_t)(count * size), access);
 }
 
-PyObject *view_of(const void *data, size_t bytes) {
+PyObject *view_of(const void *data, size_t count, size_t size) {
     union {
         const void *given;
         void *taken;
     } pointer = {data}; /* Python's function takes no const; PyBUF_READ keeps the promise */
-    return view(pointer.taken, bytes, PyBUF_READ);
+    return view(pointer.taken, count, size, PyBUF_READ);
 }
 
-PyObject *writable_view_of(void *data, size_t bytes) {
-    return view(data, bytes, PyBUF_WRITE);
+PyObject *writable_view_of(void *data, size_t count, size_t size) {
+    return view(data, count, size, PyBUF_WRITE);
 }
 
 PyObject *list_of_strings(const char *const strings[], size_t count) {
-    PyObject *list = py.PyList_New((Py_ssize_t)count);
+    PyObject *list = strings || !count ? py.PyList_New((Py_ssize_t)count) : py.Py_BuildValue("");
+    count = strings ? count : 0;
     for (size_t i = 0; list && i < count; i++) {
         PyObject *item = strings[i] ? py.PyBytes_FromString(strings[i]) : py.Py_BuildValue("");
         if (!item || py.PyList_SetItem(list, (Py_ssize_t)i, item) != 0) {

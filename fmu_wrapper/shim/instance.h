@@ -71,11 +71,11 @@ int instance_invoke(Instance *self, PyObject *method, const char *name);
 /* A number that a method answered with; `otherwise` if it is none. Takes over the reference. */
 long long instance_number(PyObject *answer, long long otherwise);
 
-/* Memory views on arrays, for the time of a call. */
-PyObject *view_of(const void *data, size_t bytes);
-PyObject *writable_view_of(void *data, size_t bytes);
+/* Memory views on arrays, for the time of a call; None for NULL where `count` says that there is something. */
+PyObject *view_of(const void *data, size_t count, size_t size);
+PyObject *writable_view_of(void *data, size_t count, size_t size);
 
-/* A list of bytes objects (None for NULL). */
+/* A list of bytes objects (None for NULL); None for NULL where `count` says that there is something. */
 PyObject *list_of_strings(const char *const strings[], size_t count);
 
 #endif

@@ -114,6 +114,24 @@ void platform_unlock(void) {
     ReleaseSRWLockExclusive(&lock);
 }
 
+static HANDLE process_lock;
+
+void platform_lock_process(void) {
+    char name[64];
+    snprintf(name, sizeof name, "Local\\tlismni-start-%lu", (unsigned long)GetCurrentProcessId());
+    process_lock = CreateMutexA(NULL, FALSE, name);
+    if (process_lock) {
+        WaitForSingleObject(process_lock, INFINITE);
+    }
+}
+
+void platform_unlock_process(void) {
+    if (process_lock) {
+        ReleaseMutex(process_lock);
+        CloseHandle(process_lock);
+    }
+}
+
 #else /* Linux, macOS */
 
 #include <dlfcn.h>
@@ -220,6 +238,16 @@ void platform_lock(void) {
 
 void platform_unlock(void) {
     pthread_mutex_unlock(&lock);
+}
+
+/* The libraries do not know one another. What they share is the C library, and in it the lock of a stream: it is held
+ * for the tenth of a second in which Python starts, and keeps nobody from anything but writing to it. */
+void platform_lock_process(void) {
+    flockfile(stderr);
+}
+
+void platform_unlock_process(void) {
+    funlockfile(stderr);
 }
 
 #endif

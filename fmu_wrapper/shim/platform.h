@@ -46,4 +46,8 @@ void platform_setenv(const char *name, const char *value);
 void platform_lock(void);
 void platform_unlock(void);
 
+/* One lock for all libraries of this kind in the process: each FMU has its own. */
+void platform_lock_process(void);
+void platform_unlock_process(void);
+
 #endif

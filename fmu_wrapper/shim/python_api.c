@@ -6,7 +6,9 @@
 
 PythonApi py;
 
-static bool ready, own;
+#define OWN "_tlismni_started" /* in `sys`, where the libraries of other FMUs find it */
+
+static bool ready;
 static _Thread_local bool thread_known;
 
 static bool find_functions(void *library, char *message, size_t size) {
@@ -38,8 +40,11 @@ static bool initialize(FoundPython *found, char *message, size_t size) {
     if (set_home) {
         platform_setenv("PYTHONHOME", NULL); /* not for programs that the host starts */
     }
+    PyObject *yes = py.Py_BuildValue("i", 1);
+    py.PySys_SetObject(OWN, yes);
+    py.Py_DecRef(yes);
     py.PyEval_SaveThread(); /* this thread keeps its Python state, but not the lock */
-    thread_known = own = true;
+    thread_known = true;
     return true;
 }
 
@@ -48,15 +53,17 @@ static bool start(const char *resources, char *message, size_t size) {
     if (!find_python(resources, &found, message, size) || !find_functions(found.library, message, size)) {
         return false;
     }
-    if (!py.Py_IsInitialized() && !initialize(&found, message, size)) {
-        return false;
+    platform_lock_process();
+    bool running = py.Py_IsInitialized() || initialize(&found, message, size);
+    platform_unlock_process();
+    if (running) {
+        platform_pin();
     }
-    platform_pin();
-    return true;
+    return running;
 }
 
 bool python_is_own(void) {
-    return own;
+    return py.PySys_GetObject(OWN) != NULL;
 }
 
 bool python_start(const char *resources, char *message, size_t size) {

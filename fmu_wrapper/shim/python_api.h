@@ -31,6 +31,8 @@ enum { PyGILState_LOCKED = 0, PyGILState_UNLOCKED = 1 };
     X(int, Py_IsInitialized, (void))                                             \
     X(void, Py_InitializeEx, (int))                                              \
     X(const char *, Py_GetVersion, (void))                                       \
+    X(int, PySys_SetObject, (const char *, PyObject *))                          \
+    X(PyObject *, PySys_GetObject, (const char *))                               \
     X(int, PyGILState_Ensure, (void))                                            \
     X(void, PyGILState_Release, (int))                                           \
     X(void *, PyEval_SaveThread, (void))                                         \
@@ -80,7 +82,8 @@ extern PythonApi py;
 /* Find Python and start it if nobody has. On false, `message` says what was tried and what to do. */
 bool python_start(const char *resources, char *message, size_t size);
 
-/* Whether python_start has started it: then nobody else needs its environment. */
+/* Whether python_start has started it, that of another FMU perhaps: then nobody else needs its environment. With
+ * Python's lock. */
 bool python_is_own(void);
 
 /* Take the interpreter's lock for this thread. False if Python is not (or no longer) running. */

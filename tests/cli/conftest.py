@@ -30,8 +30,9 @@ class Outcome:
 
     @property
     def cause(self) -> str:
-        """The one line on stderr, besides the notice of compiling that a cold cache brings."""
-        (line,) = [line for line in self.err.splitlines() if "first run only" not in line]
+        """The one line on stderr, besides the notices of compiling that a cold cache brings."""
+        notices = ("compiling ", "compiled ", "waiting for ")
+        (line,) = [line for line in self.err.splitlines() if not line.startswith(notices)]
         return line
 
 

@@ -9,7 +9,7 @@ from tlismni.cli.screen import COMPILING, compile_notice, number, plain, shorten
 from tlismni.core import METHODS
 from tlismni.models import catalogue, names
 
-COMMANDS = ("list", "methods", "run", "export", "cosim", "crosscheck")
+COMMANDS = ("list", "methods", "run", "export", "warm", "cosim", "crosscheck")
 
 Command = Callable[..., Any]
 

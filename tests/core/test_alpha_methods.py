@@ -102,8 +102,8 @@ def test_error_estimate_is_the_error_of_a_step(method, options):
     k, rtol, atol, speed = 40.0, 1e-6, 1e-8, 0.05
     for h in (0.02, 0.01, 0.005):
         result = simulate(
-            oscillator(k, 0.0, speed), h, method, rtol, atol, first_step=h, max_step=h, step_records=True,
-            newton_tolerance=1e-8, **options,
+            oscillator(k, 0.0, speed), h, method, rtol, {"length": atol, "speed": 1e3}, first_step=h, max_step=h,
+            step_records=True, newton_tolerance=1e-8, **options,
         )  # fmt: skip
         if len(result.t) != 2:
             continue
@@ -112,6 +112,31 @@ def test_error_estimate_is_the_error_of_a_step(method, options):
         assert result.steps["error"][0] == pytest.approx(error / weight / np.sqrt(2.0), rel=0.1)
         return
     pytest.fail("no step was accepted: choose smaller ones")
+
+
+@pytest.mark.parametrize(
+    "method, options",
+    [
+        ("newmark", {}),
+        ("hht", {"alpha": -0.2}),
+        ("hht_i3", {"alpha": 0.0}),
+        ("hht_i3", {"alpha": -0.2}),
+        ("hht_ggl", {"alpha": -0.2}),
+        ("generalized_alpha", {"rho": 0.5}),
+        ("baumgarte", {"scheme": "trapezoidal"}),
+    ],
+)
+def test_error_estimate_of_velocities_is_the_error_of_a_step(method, options):
+    """Once three accelerations are known: against the exact flow of the oscillator from the point before."""
+    frequency, h, atol = np.sqrt(40.0), 0.005, 1e-3
+    result = simulate(
+        oscillator(40.0, 0.02, 0.1), 8 * h, method, 1e-12, {"length": 1e3, "speed": atol}, first_step=h, max_step=h,
+        step_records=True, newton_tolerance=1e-8, **options,
+    )  # fmt: skip
+    assert np.allclose(np.diff(result.t), h)
+    x, v = result["p.x"] - 1.0, result["p.vx"]
+    flow = v[-2] * np.cos(frequency * h) - frequency * x[-2] * np.sin(frequency * h)
+    assert result.steps["error"][-1] == pytest.approx(abs(v[-1] - flow) / atol / np.sqrt(2.0), rel=0.15)
 
 
 def test_algorithmic_accelerations_survive_a_change_of_the_step():

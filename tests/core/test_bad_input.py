@@ -1,5 +1,6 @@
 """Wrong input is refused with a message that names it, before anything is computed."""
 
+import json
 import math
 
 import numpy as np
@@ -428,3 +429,10 @@ def test_user_equations_far_off_their_constraint_are_refused():
     system.q0[:] = [2.0, 0.0]
     with pytest.raises(ConsistencyError, match=r"constraint\[0\]"):
         simulate(system, 1.0)
+
+
+@pytest.mark.parametrize("kind", ["AxialRod", "Cable2D"])
+def test_more_elements_than_memory_holds_are_refused_at_the_door(kind):
+    body = {"type": kind, "name": "rod", "elements": 10**9, "length": 1.0}
+    with pytest.raises(ModelError, match=r"(?s)elements.*100000"):
+        Model.from_json(json.dumps({"name": "m", "bodies": [body]}))

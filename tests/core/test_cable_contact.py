@@ -72,6 +72,20 @@ def test_gap_is_the_distance_from_the_curve():
             assert abs(gap - exact) < 1e-8
 
 
+def test_curvature_changes_once_between_two_elements():
+    """There both are as near as the other within sqrt(rounding): which one acts must not change at random."""
+    point = system(NewtonImpact(restitution=0.5), (0.0, 0.0))
+    joint, ahead = np.array(SHAPE[1][:2]), np.array(SHAPE[1][2:]) / np.hypot(*SHAPE[1][2:])
+    for side in (-1.0, 1.0):
+        seen = []
+        for s in np.linspace(-1e-8, 1e-8, 401):
+            q, v = point.workspace.assembly.q0.copy(), np.zeros(point.n)
+            q[:2] = joint + s * ahead + side * 0.5 * np.array([-ahead[1], ahead[0]]) - (0.1, -0.2)
+            v[:2] = ahead
+            seen.append(point.at(0.0, q, v, np.zeros(point.n), np.zeros(1))[3][0])
+        assert np.count_nonzero(np.abs(np.diff(seen)) > 1e-3) == 1
+
+
 def bridge(law, elements=6, speed=3.0, mass=0.3):
     """A cable between two pins, and a mass that slides along on top of it."""
     points = [MaterialPoint2D(name=n, body="cable", point=(s, 0.0)) for n, s in (("left", 0.0), ("right", 2.0))]

@@ -10,7 +10,9 @@ from tlismni.core import (
     AppliedTorque2D,
     Constant,
     CoordinateDriver,
+    EquationSystem,
     Flores,
+    GapContact,
     Gonthier,
     Hertz,
     HuntCrossley,
@@ -27,8 +29,10 @@ from tlismni.core import (
     Sine,
     SpringDamper2D,
     Step,
+    Tsuji,
     simulate,
 )
+from tlismni.core.contact.laws import FORCE_LAWS
 from tlismni.models import load
 
 LAWS = [
@@ -80,6 +84,29 @@ def test_ledger_closes_for_a_mechanism_that_strikes(law):
     result = simulate(model, 2.0, rtol=1e-9, atol=1e-12)
     assert len(result.events) > 4
     assert imbalance(result) < 1e-7
+
+
+@pytest.mark.parametrize("kind", FORCE_LAWS, ids=lambda kind: kind.__name__)
+def test_ledger_of_own_equations_is_that_of_the_model(kind):
+    """A bounce and a start in touch, by a gap function and by shapes: the same strain energy and losses."""
+    given = {"stiffness": 1e5, "restitution": 0.6, "damping": 20.0, "relaxation_time": 1e-3}
+    if kind is Tsuji:
+        del given["restitution"]
+    law = kind(**{name: given[name] for name in kind.model_fields if name in given})
+    for height in (0.05, -2e-3):
+        own = EquationSystem(
+            np.eye(1), np.array([-G]), q0=[height], v0=[0.0], potential=lambda t, q: G * q[0],
+            contacts=[GapContact("floor", lambda t, q: q[0], law)],
+        )  # fmt: skip
+        grid = np.linspace(0.0, 0.13, 201)
+        results = [
+            simulate(system, 0.13, rtol=1e-8, atol=1e-11, t_eval=grid) for system in (own, ball_over_floor(law, height))
+        ]
+        largest = results[1]["energy.kinetic"].max()
+        assert results[0]["energy.strain"].max() > 0.2 * largest
+        for name in ("energy.strain", "energy.dissipation", "energy.impact_loss"):
+            assert results[0][name] == pytest.approx(results[1][name], abs=1e-5 * largest), name
+        assert imbalance(results[0]) < 1e-5
 
 
 def test_damper_dissipates_what_is_missing():

@@ -16,9 +16,6 @@ from tlismni.core.model.channels import Input
 from tlismni.core.model.signals import InputSignal
 from tlismni.fmu_wrapper import export_fmu
 
-Y = 2_000_000
-PUSH = 1_000_000
-
 
 def works(call: Callable[..., object], *arguments: object) -> bool:
     """Whether a call answers OK."""
@@ -38,6 +35,14 @@ class Exported:
         with zipfile.ZipFile(path) as archive:
             interface = etree.fromstring(archive.read("modelDescription.xml")).find("CoSimulation")
         self.flags = {k: v for k, v in interface.attrib.items() if k != "modelIdentifier"}
+        self.output, self.input = (
+            next(
+                v.valueReference
+                for v in self.description.modelVariables
+                if v.causality == causality and "Int" not in v.type
+            )
+            for causality in ("output", "input")
+        )
         self.kind = FMU2Slave if self.description.fmiVersion == "2.0" else FMU3Slave
 
     def instance(self, **arguments):
@@ -57,7 +62,7 @@ class Exported:
         return fmu
 
 
-def stateful(fmu, serialize):
+def stateful(fmu, y, serialize):
     """Whether a state can be stored, also as bytes, and leads back."""
     get, put, *rest = (
         (fmu.getFMUstate, fmu.setFMUstate, fmu.serializeFMUstate, fmu.deSerializeFMUstate)
@@ -69,11 +74,11 @@ def stateful(fmu, serialize):
         state = get()
         if serialize:
             state = rest[1](rest[0](state))
-        before = read([Y])
+        before = read([y])
         fmu.doStep(0.0, 0.1)
-        after = read([Y])
+        after = read([y])
         put(state)
-        return read([Y]) == before and before != after
+        return read([y]) == before and before != after
     except FMICallException:
         return False
 
@@ -102,16 +107,20 @@ def asked2(exported):
         return works(other.enterInitializationMode) and works(other.exitInitializationMode)
 
     return {
-        "needsExecutionTool": False,
+        "needsExecutionTool": True,  # a Python
         "canHandleVariableCommunicationStepSize": irregular(new()),
-        "canInterpolateInputs": works(fmu.setRealInputDerivatives, [PUSH], [1], [0.0]),
-        "maxOutputDerivativeOrder": order_of_outputs(lambda order: fmu.getRealOutputDerivatives([Y], [order])),
+        "canInterpolateInputs": works(fmu.setRealInputDerivatives, [exported.input], [1], [0.0]),
+        "maxOutputDerivativeOrder": order_of_outputs(
+            lambda order: fmu.getRealOutputDerivatives([exported.output], [order])
+        ),
         "canRunAsynchronuously": not works(new().doStep, 0.0, 0.1),
         "canBeInstantiatedOnlyOncePerProcess": not irregular(new()),
         "canNotUseMemoryManagementFunctions": without_memory_functions(),
-        "canGetAndSetFMUstate": stateful(new(), False),
-        "canSerializeFMUstate": stateful(new(), True),
-        "providesDirectionalDerivative": works(fmu.getDirectionalDerivative, [Y], [PUSH], [1.0]),
+        "canGetAndSetFMUstate": stateful(new(), exported.output, False),
+        "canSerializeFMUstate": stateful(new(), exported.output, True),
+        "providesDirectionalDerivative": works(
+            fmu.getDirectionalDerivative, [exported.output], [exported.input], [1.0]
+        ),
     }
 
 
@@ -150,7 +159,7 @@ def asked3(exported):
 
     def dependencies():
         count = ctypes.c_size_t()
-        return works(fmu.fmi3GetNumberOfVariableDependencies, fmu.component, Y, ctypes.byref(count))
+        return works(fmu.fmi3GetNumberOfVariableDependencies, fmu.component, exported.output, ctypes.byref(count))
 
     def evaluates():
         other = exported.instance(eventModeUsed=True)
@@ -159,20 +168,24 @@ def asked3(exported):
         return works(other.fmi3EvaluateDiscreteStates, other.component)
 
     return {
-        "needsExecutionTool": False,
+        "needsExecutionTool": True,  # a Python
         "canBeInstantiatedOnlyOncePerProcess": not irregular(new()),
-        "canGetAndSetFMUState": stateful(new(), False),
-        "canSerializeFMUState": stateful(new(), True),
+        "canGetAndSetFMUState": stateful(new(), exported.output, False),
+        "canSerializeFMUState": stateful(new(), exported.output, True),
         "providesPerElementDependencies": dependencies(),
         "canHandleVariableCommunicationStepSize": irregular(new()),
-        "maxOutputDerivativeOrder": order_of_outputs(lambda order: fmu.getOutputDerivatives([Y], [order])),
+        "maxOutputDerivativeOrder": order_of_outputs(
+            lambda order: fmu.getOutputDerivatives([exported.output], [order])
+        ),
         "providesIntermediateUpdate": updates(),
         "mightReturnEarlyFromDoStep": returns_early(),
         "canReturnEarlyAfterIntermediateUpdate": ends_when_asked(),
         "hasEventMode": works(lambda: new(eventModeUsed=True)),
         "providesEvaluateDiscreteStates": evaluates(),
-        "providesDirectionalDerivatives": works(fmu.getDirectionalDerivative, [Y], [PUSH], [1.0]),
-        "providesAdjointDerivatives": works(fmu.getAdjointDerivative, [Y], [PUSH], [1.0], 1),
+        "providesDirectionalDerivatives": works(
+            fmu.getDirectionalDerivative, [exported.output], [exported.input], [1.0]
+        ),
+        "providesAdjointDerivatives": works(fmu.getAdjointDerivative, [exported.output], [exported.input], [1.0], 1),
     }
 
 
@@ -202,4 +215,4 @@ def test_derivatives_with_respect_to_a_motion(tmp_path, version, asked):
     names = [name for name in exported.flags if name.startswith(("providesDirectional", "providesAdjoint"))]
     assert names
     call = fmu.getDirectionalDerivative
-    assert {truth(exported.flags[name]) for name in names} == {works(call, [Y], [PUSH], [1.0])}
+    assert {truth(exported.flags[name]) for name in names} == {works(call, [exported.output], [exported.input], [1.0])}

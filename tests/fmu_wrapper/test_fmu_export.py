@@ -1,8 +1,11 @@
 """What an exported FMU holds: its description, its resources, its checks (on the fake simulation)."""
 
+import getpass
 import json
 import re
+import sys
 import zipfile
+from datetime import UTC, datetime
 from types import SimpleNamespace
 
 import fmpy
@@ -33,25 +36,25 @@ def test_variables_and_value_references(fake_fmu):
         for v in description.modelVariables
     }
     assert found == {
-        "time": (0, "Real", "independent", "continuous", "s", None),
-        "solver.method": (1, "Enumeration", "parameter", "fixed", None, str(METHODS.index("ebdf"))),
-        "solver.rtol": (2, "Real", "parameter", "fixed", "1", "1e-06"),
-        "solver.atol": (3, "Real", "parameter", "fixed", "1", "1e-09"),
-        "solver.step": (4, "Real", "parameter", "fixed", "s", "0.0"),
-        "solver.light": (10, "Boolean", "parameter", "fixed", None, "true"),
-        "solver.order": (11, "Integer", "parameter", "fixed", None, "4"),
-        "solver.variant": (12, "String", "parameter", "fixed", None, "b"),
-        "solver.events": (100, "Integer", "output", "discrete", None, None),
-        "restitution": (1000, "Real", "parameter", "fixed", "1", "0.7"),
-        "mass": (1001, "Real", "parameter", "fixed", "kg", "2.0"),
-        "floor.law": (500_000, "Enumeration", "local", "constant", None, str(LAW_NAMES.index("NewtonImpact"))),
-        "push": (1_000_000, "Real", "input", "continuous", "N", "1.0"),
-        "ball.y": (2_000_000, "Real", "output", "continuous", "m", None),
-        "ball.vy": (2_000_001, "Real", "output", "continuous", "m/s", None),
-        "ball.ay": (2_000_002, "Real", "output", "continuous", "m/s2", None),
-        "floor.in_contact": (2_000_003, "Boolean", "output", "discrete", None, None),
-        "floor.mode": (2_000_004, "Integer", "output", "discrete", None, None),
-        "floor.state": (2_000_005, "Enumeration", "output", "discrete", None, None),
+        "time": (1, "Real", "independent", "continuous", "s", None),
+        "solver.method": (2, "Enumeration", "parameter", "fixed", None, str(METHODS.index("ebdf"))),
+        "solver.rtol": (3, "Real", "parameter", "fixed", "1", "1e-06"),
+        "solver.atol": (4, "Real", "parameter", "fixed", "1", "1e-09"),
+        "solver.step": (5, "Real", "parameter", "fixed", "s", "0.0"),
+        "solver.light": (6, "Boolean", "parameter", "fixed", None, "true"),
+        "solver.order": (7, "Integer", "parameter", "fixed", None, "4"),
+        "solver.variant": (8, "String", "parameter", "fixed", None, "b"),
+        "solver.events": (9, "Integer", "output", "discrete", None, None),
+        "restitution": (10, "Real", "parameter", "fixed", "1", "0.7"),
+        "mass": (11, "Real", "parameter", "fixed", "kg", "2.0"),
+        "floor.law": (12, "Enumeration", "local", "constant", None, str(LAW_NAMES.index("NewtonImpact"))),
+        "push": (13, "Real", "input", "continuous", "N", "1.0"),
+        "ball.y": (14, "Real", "output", "continuous", "m", None),
+        "ball.vy": (15, "Real", "output", "continuous", "m/s", None),
+        "ball.ay": (16, "Real", "output", "continuous", "m/s2", None),
+        "floor.in_contact": (17, "Boolean", "output", "discrete", None, None),
+        "floor.mode": (18, "Integer", "output", "discrete", None, None),
+        "floor.state": (19, "Enumeration", "output", "discrete", None, None),
     }
     outputs = {name for name, row in found.items() if row[2] == "output"}
     assert {u.variable.name for u in description.outputs} == outputs
@@ -95,7 +98,7 @@ def test_default_experiment_and_capabilities(fake_fmu):
     assert given == [0.0, 2.5, 1e-7, 0.01]
     flags = description.coSimulation
     assert flags.canHandleVariableCommunicationStepSize and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
-    assert flags.canInterpolateInputs and flags.providesDirectionalDerivative and not flags.needsExecutionTool
+    assert flags.canInterpolateInputs and flags.providesDirectionalDerivative and flags.needsExecutionTool
 
 
 def test_a_scenario_gives_its_settings(fake_fmu, model):
@@ -122,7 +125,9 @@ def test_the_model_travels_as_data(fake_fmu, model):
         assert "driven_ball.so" in " ".join(archive.namelist()) or len(archive.namelist()) == 7
 
 
-def test_equal_models_give_equal_files_and_others_another_guid(fake_fmu, model):
+def test_equal_models_give_equal_files_and_others_another_guid(fake_fmu, model, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1763800000")
+
     def guid(path):
         return fmpy.read_model_description(path).guid
 
@@ -176,3 +181,33 @@ def test_a_file_that_cannot_be_written_is_named(tmp_path, monkeypatch):
     with pytest.raises(ExportError) as caught:
         export_module._write(tmp_path / "y.fmu", {})
     assert str(caught.value) == f"'{tmp_path / 'y.fmu'}' cannot be written: Permission denied"
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_author_version_and_date(fake_fmu, version, monkeypatch):
+    def read(**arguments):
+        with zipfile.ZipFile(fake_fmu(fmi_version=version, **arguments)) as archive:
+            root = etree.fromstring(archive.read("modelDescription.xml"))
+        return root, root.find("CoSimulation").get("needsExecutionTool")
+
+    earliest = datetime.now(UTC).replace(microsecond=0)
+    root, tool = read()
+    date = datetime.strptime(root.get("generationDateAndTime"), "%Y-%m-%dT%H:%M:%SZ").replace(tzinfo=UTC)
+    assert earliest <= date <= datetime.now(UTC) and tool == "true"  # it takes a Python
+    assert root.get("author") == getpass.getuser() and root.get("version")
+    other, _ = read(source=ball_model(height=1.5))
+    assert other.get("version") != root.get("version") == read()[0].get("version")
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    root, tool = read(author="A. Nother", version="2.1", needs_execution_tool=False)
+    assert (root.get("author"), root.get("version"), tool) == ("A. Nother", "2.1", "false")
+    assert root.get("generationDateAndTime") == "1970-01-02T00:00:00Z"
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    with pytest.raises(ExportError, match="SOURCE_DATE_EPOCH = 'yesterday'"):
+        fake_fmu(fmi_version=version)
+
+
+def test_install_without_the_extra_is_told_what_is_missing(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "lxml", None)
+    with pytest.raises(ExportError, match=r"export_fmu needs lxml, which.*pip install 'tlismni\[fmu\]'"):
+        export_fmu(ball_model(), tmp_path / "x.fmu")
+    assert not list(tmp_path.iterdir())

@@ -241,9 +241,10 @@ def test_all_kinds_of_values(make_host, fake_fmu):
          "fmi2DoStep: FmuValueError: the communication point is 0.3 s, but this slave is at 0.0 s: step from there"),
         (lambda f, vr: f.doStep(0.0, -0.1), "fmi2DoStep: FmuValueError: the communication step is -0.1 s"),
         (lambda f, vr: f.setReal([vr["push"]], [math.nan]),
-         "fmi2SetReal: FmuValueError: 'push' (value reference 1000000) was set to nan, which is not finite"),
+         "fmi2SetReal: FmuValueError: 'push' (value reference {vr[push]}) was set to nan, which is not finite"),
         (lambda f, vr: f.setReal([4711], [1.0]), "fmi2SetReal: FmuValueError: value reference 4711 is unknown"),
-        (lambda f, vr: f.getReal([vr["solver.events"]]), "fmi2GetReal: FmuValueError: value reference 100 is 'solver"),
+        (lambda f, vr: f.getReal([vr["solver.events"]]),
+         "fmi2GetReal: FmuValueError: value reference {vr[solver.events]} is 'solver"),
         (lambda f, vr: f.getString([4711]), "fmi2GetString: FmuValueError: value reference 4711 is unknown"),
         (lambda f, vr: f.setReal([vr["mass"]], [1.0]), "fmi2SetReal: CallOrderError: parameter 'mass' is fixed"),
         (lambda f, vr: f.setupExperiment(), "fmi2SetupExperiment: CallOrderError: cannot setup in phase 'step'"),
@@ -282,7 +283,7 @@ def test_errors_are_statuses_with_one_line_in_the_log_and_the_instance_lives_on(
         call(fmu, host.vr)
     assert caught.value.status == ERROR
     assert len(messages) == 1 and "\n" not in messages[0][2]
-    assert messages.errors[0].startswith(message)
+    assert messages.errors[0].startswith(message.format(vr=host.vr))
     assert host.read(fmu) == before
     fmu.doStep(0.0, 0.125)
 

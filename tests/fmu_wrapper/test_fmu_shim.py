@@ -2,6 +2,7 @@
 
 import ctypes
 import gc
+import json
 import re
 import shutil
 import subprocess
@@ -129,6 +130,29 @@ def test_each_missing_resource_gives_null_and_a_line(unzipped, messages, file, m
     assert len(messages) == 1 and messages.errors[0].startswith(message)
 
 
+@pytest.mark.parametrize(
+    ("file", "change", "message"),
+    [
+        ("settings.json", lambda data: [data], "ExportError: 'settings.json' in the FMU's resources is no JSON object"),
+        ("settings.json", lambda data: {**data, "solver": 3}, "ExportError: 'solver' in 'settings.json' of the FMU's"),
+        ("settings.json", lambda data: {k: v for k, v in data.items() if k != "variables"},
+         "ExportError: 'variables' in 'settings.json' of the FMU's resources is missing, where a list is needed"),
+        ("settings.json", lambda data: {**data, "variables": [{"name": 3}]}, "ExportError: 'settings.json'"),
+        ("settings.json", lambda data: {**data, "variables": []}, "ExportError: 'settings.json'"),
+        ("settings.json", lambda data: {**data, "solver": {**data["solver"], "rtol": "x"}}, "ExportError: 'settings"),
+        ("settings.json", lambda data: {**data, "solver": {**data["solver"], "rtol": -1.0}}, "FmuValueError: 'rtol'"),
+        ("settings.json", lambda data: {**data, "solver": {"on_log": "x"}}, "ExportError: 'solver' in 'settings.json'"),
+        ("python.json", lambda data: [], "ImportError: 'version' in "),
+        ("python.json", lambda data: {**data, "requires": [3]}, "ImportError: 'requires' in "),
+    ],
+)  # fmt: skip
+def test_each_broken_resource_gives_null_and_a_line(unzipped, messages, file, change, message):
+    path = Path(unzipped) / "resources" / file
+    path.write_text(json.dumps(change(json.loads(path.read_text()))))
+    assert not instance(unzipped, messages).component
+    assert len(messages) == 1 and messages.errors[0].startswith(f"fmi2Instantiate: {message}")
+
+
 def test_model_exchange_is_refused(unzipped, messages):
     assert not instance(unzipped, messages, fmi_type=0).component
     assert messages.errors == ["fmi2Instantiate: this FMU does co-simulation only, type 0 was asked"]
@@ -172,9 +196,10 @@ def test_steps_from_other_threads(unzipped, messages):
         fmu.exitInitializationMode()
         for i in range(200):
             fmu.doStep(i * 0.01, (i + 1) * 0.01 - i * 0.01)
-        rows[k] = fmu.getReal([0, 2_000_000, 2_000_001])
+        rows[k] = fmu.getReal([vr[name] for name in ("time", "ball.y", "ball.vy")])
         fmu.freeInstance()
 
+    vr = {v.name: v.valueReference for v in fmpy.read_model_description(unzipped).modelVariables}
     rows = [None] * 4
     threads = [threading.Thread(target=work, args=(k,)) for k in range(4)]
     for thread in threads:

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tlismni.fmu_wrapper.units import parse_unit
+from tlismni.core.model.units import parse_unit
 
 
 @pytest.mark.parametrize(

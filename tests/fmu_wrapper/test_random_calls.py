@@ -18,7 +18,7 @@ def calls(fmu, vr, states, rng):
     """One random call. Its name is in the dictionary, so that a failure tells what it was."""
     number = NUMBERS[rng.integers(len(NUMBERS))]
     reference = [*vr.values(), 4711][rng.integers(len(vr) + 1)]
-    now = fmu.getFloat64([0])[0] if rng.random() < 0.5 else 0.0
+    now = fmu.getFloat64([vr["time"]])[0] if rng.random() < 0.5 else 0.0
     state = states[rng.integers(len(states))] if states else None
     table = {
         "enter": lambda: fmu.enterInitializationMode(startTime=0.0 if rng.random() < 0.8 else number),

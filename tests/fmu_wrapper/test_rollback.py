@@ -42,7 +42,7 @@ def continue_all(unzipped, folder):
     rows = []
     for k in range(INSTANTS):
         instance.setFMUState(instance.deserializeFMUState((Path(folder) / f"{k}").read_bytes()))
-        rows.append(going_on(fmu, instance, instance.getFloat64([0])[0]))
+        rows.append(going_on(fmu, instance, instance.getFloat64([fmu.vr["time"]])[0]))
     print(json.dumps(rows))
 
 

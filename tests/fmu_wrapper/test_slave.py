@@ -130,7 +130,7 @@ def test_calls_out_of_order_are_refused(fake_slave, calls, match):
 @pytest.mark.parametrize(
     ("values", "match"),
     [
-        ({"push": math.nan}, r"'push' \(value reference 1000000\) was set to nan, which is not finite"),
+        ({"push": math.nan}, r"'push' \(value reference 10\) was set to nan, which is not finite"),
         ({"push": math.inf}, "not finite"),
         ({"push": "much"}, "needs a number, not 'much'"),
         ({"restitution": 1.5}, r"'restitution' .* was set to 1.5, which is outside its range \[0.0, 1.0\]"),
@@ -138,7 +138,7 @@ def test_calls_out_of_order_are_refused(fake_slave, calls, match):
         ({"solver.rtol": 0.0}, "'rtol' = 0.0 must be greater than 0"),
         ({"solver.step": -1.0}, "outside its range"),
         ({"solver.method": 99}, "was set to 99, which is none of its values: 0 newmark, 1 hht"),
-        ({"solver.method": "euler"}, r"'solver.method' \(value reference 1\) has no item 'euler'; it has"),
+        ({"solver.method": "euler"}, r"'solver.method' \(value reference 2\) has no item 'euler'; it has"),
         ({"solver.method": True}, "needs a number, not True"),
         ({"floor.law": "Hertz"}, "'floor.law' is of role constant and cannot be set"),
         ({"ball.y": 1.0}, "'ball.y' is of role output and cannot be set"),
@@ -278,7 +278,8 @@ def test_foreign_and_damaged_states_are_refused(fake_slave, monkeypatch):
     monkeypatch.undo()
     with pytest.raises(SnapshotError, match="these 7 bytes are no stored state"):
         slave.snapshot_from_bytes(b"garbage")
-    slave.restore(slave.snapshot_from_bytes(data + b"\0\0"))  # a buffer may be longer
+    with pytest.raises(SnapshotError, match="2 bytes follow the stored state"):
+        slave.snapshot_from_bytes(data + b"\0\0")
 
 
 def test_a_failed_step_leaves_a_slave_that_can_be_restored_or_reset(fake_slave):

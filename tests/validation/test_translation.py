@@ -297,7 +297,7 @@ def test_applied_force_off_the_centre(follower: bool) -> None:
         forces=(
             AppliedForce2D(
                 name="f",
-                marker=Marker2D(body="b", point=(0.3, 0.0)),
+                marker=Marker2D(body="b", point=(0.3, 0.0), angle=0.7),
                 force_x=Polynomial(coefficients=(1.0, 0.5)),
                 force_y=Sine(amplitude=2.0, angular_frequency=4.0),
                 follower=follower,
@@ -309,8 +309,9 @@ def test_applied_force_off_the_centre(follower: bool) -> None:
     def motion(t: float, y: np.ndarray) -> list[float]:
         c, s = math.cos(y[2]), math.sin(y[2])
         fx, fy = 1.0 + 0.5 * t, 2.0 * math.sin(4.0 * t)
-        if follower:
-            fx, fy = c * fx - s * fy, s * fx + c * fy
+        if follower:  # along the axes of its marker
+            along, across = math.cos(y[2] + 0.7), math.sin(y[2] + 0.7)
+            fx, fy = along * fx - across * fy, across * fx + along * fy
         return [*y[3:], fx / 2.0, fy / 2.0, 0.3 * (c * fy - s * fx) / 0.5]
 
     exact = reference(motion, r.t, [0.0] * 6)

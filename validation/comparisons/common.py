@@ -38,7 +38,8 @@ class Row:
 
     verdict : "agree" within `tolerance`; "undecided" if the difference is larger, but not larger than the error bars
     of both sides together (`uncertainty`, `ours_uncertainty`), or smaller beside bars above MOST_BARS tolerances;
-    "not comparable" if `reason` says why it cannot be decided at all; "differ" otherwise.
+    "not comparable" if `reason` says why it cannot be decided at all; "undecided" too if `doubt` says why a difference
+    would tell nothing about the models; "differ" otherwise.
     """
 
     quantity: str
@@ -57,6 +58,8 @@ class Row:
     """Absolute, from our own convergence."""
     reason: str = ""
     """Why the two cannot be compared."""
+    doubt: str = ""
+    """Why a difference is one of the comparison, not of the models: a limit that is not reached, a run that ends."""
     channel: str = ""
     at: float | None = None
     """The channel and the time (s) that the row is about, where it is about a trajectory."""
@@ -102,7 +105,7 @@ class Row:
             return "agree" if told or self.difference == 0.0 or not self.required else "undecided"
         if self.reason:
             return "not comparable"
-        return "undecided" if self.within_bars else "differ"
+        return "undecided" if self.within_bars or self.doubt else "differ"
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, verdict and differences included."""
@@ -283,6 +286,12 @@ def energy_panel(result: Result) -> Panel:
     """How far our energy ledger is from closing."""
     curve = Curve("|energy - start - input work + losses|", result.t, np.abs(result["energy.balance"]), True)
     return Panel("our energy balance", "J", (curve,), None, True, points=True)
+
+
+def reasons_of(rows: Sequence[Row]) -> set[str]:
+    """Why quantities are not comparable, or undecided beyond what error bars say."""
+    told = {row.reason for row in rows if row.verdict == "not comparable"}
+    return told | {row.doubt for row in rows if row.verdict == "undecided" and row.doubt}
 
 
 def is_contact_channel(task: Task, channel: str) -> bool:

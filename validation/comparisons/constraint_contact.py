@@ -1,23 +1,18 @@
-"""Contact as a constraint against the penalty limit: exudyn with three growing stiffnesses, extrapolated.
+"""Contact as a constraint against the penalty limit: exudyn with growing stiffnesses, extrapolated.
 
-exudyn has no unilateral constraints and no impact law. But a force law whose rebound is exactly e tends to the
-impact with restitution e as its stiffness K grows: with F = K d^n (1 + D d'/v0) and D the exact root for e
-(Gonthier), duration and depth of the contact fall as x = K^(-1/(n+1)), and with them what gravity and the motion
-add during it. So every quantity is a + b x + c x^2 + ..., and a is what the constraint must give.
-
-exudyn's steps are the same part of a contact for every stiffness, so that they change the limit as much as one run:
-what twice the step changes with the softest contact goes into the error bar, beside what the extrapolation leaves open.
+A first comparison takes three stiffnesses and halves exudyn's step. What does not agree then is asked again with
+stiffer contacts, until the limits of the last three stiffnesses and of the three before tell the same: only such a
+limit can differ. Where contacts of the penalty merge, break into pieces or do not end, that is said, and nothing is
+decided.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
-from ...core import Gonthier, NewtonImpact, Result
-from ...core.description import Model
+from ...core import Result
 from ..errors import NotTranslatable
-from ..exudyn_run import ExudynResult, run_exudyn, settings_for
-from ..metrics import ContactInterval, contact_intervals, impulse, power_limit, speeds
+from ..exudyn_run import run_exudyn, settings_for
 from .common import (
     Comparison,
     Curve,
@@ -37,48 +32,31 @@ from .common import (
     touches,
     unit_of,
 )
+from .penalty_limit import (
+    EXPONENT,
+    RUNS,
+    PenaltyRun,
+    Sides,
+    contact_step,
+    contacts_of,
+    impact_quantities,
+    softest_stiffness,
+    stiffer,
+    with_stiffness,
+)
 from .toggled import toggled_rows
 
-STIFFNESSES = (1e6, 1e7, 1e8)
-EXPONENT = 1.5
-STEPS_IN_CONTACT = 100
 MOST_HALVINGS = 2
 """Of exudyn's steps, while an error bar is above the tolerance."""
-LOWEST_RESTITUTION = 0.05
+MOST_STIFFER = 3
+"""Stiffnesses beyond the first three, each ten times the one before."""
+MOST_STEPS = 400_000
+"""Of exudyn in the run with the stiffest contact."""
+SURE = 3.0
+"""Times both error bars and the tolerance: a larger difference from a confirmed limit is one of the models."""
 RELATIVE = 1e-3
 """Tolerance of every quantity against the extrapolated limit."""
 SAMPLES = 2001
-
-
-@dataclass(frozen=True)
-class PenaltyRun:
-    """A run of exudyn with one stiffness, and its contacts in time."""
-
-    stiffness: float
-    result: ExudynResult
-    contacts: list[tuple[str, ContactInterval]]
-
-    @property
-    def x(self) -> float:
-        return float(self.stiffness ** (-1.0 / (EXPONENT + 1.0)))
-
-
-@dataclass(frozen=True)
-class Sides:
-    """What is compared: our run on a grid, the same with looser tolerances, exudyn's of growing stiffness, and one of
-    the softest with twice the step."""
-
-    task: Task
-    found: list[Touch]
-    ours: Result
-    loose: Result
-    runs: list[PenaltyRun]
-    doubled: PenaltyRun
-
-    def limit(self, values: list[np.ndarray], doubled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(the limit, its error bar) of values, one for each run."""
-        found, open_ = power_limit(np.array([r.x for r in self.runs]), np.array(values))
-        return found, open_ + np.abs(values[0] - doubled)
 
 
 def compare_constraints(task: Task) -> Comparison:
@@ -97,18 +75,24 @@ def compare_constraints(task: Task) -> Comparison:
     t_end = _end(found, scenario.t_end)
     ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
     loose = our_looser_run(task, ours.t)
-    step = min(task.step or np.inf, nice_step(contact_step(found[0], STIFFNESSES[0])))
+    softest = softest_stiffness(found, t_end)
+    step = min(task.step or np.inf, nice_step(contact_step(found[0], softest)))
     for _ in range(1 + MOST_HALVINGS):
-        *runs, doubled = (_penalty_run(task, k, t_end, h) for k, h in _plan(step))
-        rows = _rows(Sides(task, found, ours, loose, runs, doubled))
+        plan = [(stiffer(softest, k), step * stiffer(1.0, k) ** (-1.0 / (EXPONENT + 1.0))) for k in range(RUNS)]
+        *runs, doubled = (_penalty_run(task, k, t_end, h) for k, h in (*plan, (softest, 2.0 * step)))
+        sides = Sides(task, found, ours, loose, runs, doubled)
+        rows = _rows(sides)
         if task.settled(rows):
             break
         step *= 0.5
+    sides, rows = _confirmed(sides, rows, t_end)
+    runs = sides.runs
     rows += toggled_rows(task, found[0], first_run)
     notes = (
         "the constraint is compared with the limit of Gonthier's law with exact restitution, "
-        f"K = {', '.join(f'{k:.0e}' for k in STIFFNESSES)} N/m^1.5, extrapolated in K^(-0.4); exudyn's error bar is "
-        "the difference of the quadratic and the linear extrapolation, and what twice the step changes",
+        f"K = {', '.join(f'{r.stiffness:.0e}' for r in runs)} N/m^1.5, the last three extrapolated in K^(-0.4); "
+        "exudyn's error bar is the difference of the quadratic and the linear extrapolation, and what twice the step "
+        "changes" + (", and how far the limit has moved with the last stiffness" if len(runs) > RUNS else ""),
         "force histories of a rigid impact are not compared: a constraint has none, a penalty's is its stiffness",
         *runs[-1].result.notes,
     )
@@ -121,41 +105,59 @@ def compare_constraints(task: Task) -> Comparison:
             residual_panel(first_run),
         ),
         notes,
-        tuple(r.result.step for r in (*runs, doubled)),
+        tuple(r.result.step for r in (*runs, sides.doubled)),
         runs[-1].result.version,
         first_run.stats["wall_time"],
-        sum(r.result.wall_time for r in (*runs, doubled)),
+        sum(r.result.wall_time for r in (*runs, sides.doubled)),
         tuple(first_run.events),
         ours,
     )
 
 
+def _confirmed(sides: Sides, rows: list[Row], t_end: float) -> tuple[Sides, list[Row]]:
+    """Stiffer contacts, until all rows agree or a difference is sure; then why what is left is not decided."""
+    for _ in range(MOST_STIFFER):
+        differing = any(row.verdict == "differ" for row in rows)
+        settled = sides.task.settled(rows) and not sides.doubts()
+        if all(row.verdict == "agree" for row in rows) or (sides.confirmed and any(_sure(row) for row in rows)):
+            break
+        if not differing and (not sides.task.refine or settled):
+            break
+        last = sides.runs[-1]
+        step = last.result.step * stiffer(1.0, 1) ** (-1.0 / (EXPONENT + 1.0))
+        if t_end / step > MOST_STEPS:
+            break
+        sides = replace(sides, runs=[*sides.runs, _penalty_run(sides.task, stiffer(last.stiffness, 1), t_end, step)])
+        rows = _rows(sides)
+    doubts = sides.doubts()
+    if doubts:
+        return sides, [replace(row, doubt="; ".join(doubts)) for row in rows]
+    decided = [row.verdict == "agree" or (sides.confirmed and _sure(row)) for row in rows]
+    return sides, [r if known else replace(r, doubt=_open_limit(sides)) for r, known in zip(rows, decided, strict=True)]
+
+
+def _sure(row: Row) -> bool:
+    """Whether a difference is far beyond what the two sides do not know."""
+    return row.verdict == "differ" and row.difference > SURE * (row.uncertainty + row.ours_uncertainty + row.allowed)
+
+
+def _open_limit(sides: Sides) -> str:
+    depth = sides.runs[-1].contacts[0][1].duration if sides.runs[-1].contacts else None
+    lasting = "" if depth is None else f", the last contact takes {depth:.1e} s"
+    return (
+        f"the limit of stiff contacts is not reached: K goes up to {sides.runs[-1].stiffness:.0e} N/m^1.5{lasting}, "
+        "and the limit still moves, or lies too near to ours, to call a difference one of the models"
+    )
+
+
 def _rows(sides: Sides) -> list[Row]:
     runs = [*sides.runs, sides.doubled]
-    if all(r.contacts for r in runs):
+    if all(r.first_of(sides.found[0].contact) for r in runs):
         return _impact_rows(sides) + _flight_rows(sides)
-    missing = [f"{r.stiffness:.0e}" for r in runs if not r.contacts]
-    return [Row(f"runs of exudyn without contact (K = {missing})", "1", 0.0, float(len(missing)), 0.0, "absolute")]
-
-
-def with_stiffness(model: Model, stiffness: float) -> Model:
-    """`model` with every constraint contact replaced by the force law with the same restitution.
-
-    Raises NotTranslatable for a restitution that the force law cannot have.
-    """
-    contacts = []
-    for contact in model.contacts:
-        law = contact.law
-        if isinstance(law, NewtonImpact):
-            if law.restitution < LOWEST_RESTITUTION:
-                raise NotTranslatable(
-                    f"contact '{contact.name}' has restitution {law.restitution:g}; below {LOWEST_RESTITUTION:g} the "
-                    "contact persists and a penalty force rings in it, so there is no limit to compare with"
-                )
-            law = Gonthier(stiffness=stiffness, restitution=law.restitution, exponent=EXPONENT)
-        contacts.append(contact.model_copy(update={"law": law}))
-    # a restitution is no parameter of every law; the copy is for exudyn only
-    return model.model_copy(update={"contacts": tuple(contacts), "parameters": ()})
+    name = sides.found[0].contact
+    missing = [f"{r.stiffness:.0e}" for r in runs if not r.first_of(name)]
+    title = f"{name}: runs of exudyn without contact (K = {', '.join(missing)})"
+    return [Row(title, "1", 0.0, float(len(missing)), 0.0, "absolute")]
 
 
 def _end(found: list[Touch], t_end: float) -> float:
@@ -163,38 +165,16 @@ def _end(found: list[Touch], t_end: float) -> float:
     return min(t_end, found[1].start + 0.9 * (found[2].start - found[1].start)) if len(found) > 2 else t_end
 
 
-def contact_step(first: Touch, stiffness: float) -> float:
-    """A step (s) that resolves a contact, from Hertz' duration with the effective mass of our impact."""
-    mass = first.impulse / (first.approach_speed + first.separation_speed)
-    depth = ((EXPONENT + 1.0) * mass * first.approach_speed**2 / (2.0 * stiffness)) ** (1.0 / (EXPONENT + 1.0))
-    return 2.94 * depth / first.approach_speed / STEPS_IN_CONTACT
-
-
-def _plan(step: float) -> list[tuple[float, float]]:
-    """Stiffness and step of each run: in proportion to the contact's duration, and the first with twice the step."""
-    softest = STIFFNESSES[0]
-    runs = [(k, step * (k / softest) ** (-1.0 / (EXPONENT + 1.0))) for k in STIFFNESSES]
-    return [*runs, (softest, 2.0 * step)]
-
-
 def _penalty_run(task: Task, stiffness: float, t_end: float, step: float) -> PenaltyRun:
     task.progress(f"exudyn, K = {stiffness:.0e} N/m^1.5, step {step:.1e} s")
     result = run_exudyn(with_stiffness(task.exudyn_model, stiffness), t_end, step, settings_for(task.exudyn_model))
-    return PenaltyRun(stiffness, result, _contacts(task, result))
-
-
-def _contacts(task: Task, result: ExudynResult) -> list[tuple[str, ContactInterval]]:
-    found = []
-    for contact in task.exudyn_model.contacts:
-        intervals = contact_intervals(result.t, result[f"{contact.name}.gap"], result[f"{contact.name}.gap_rate"])
-        found += [(contact.name, i) for i in intervals]
-    return sorted(found, key=lambda pair: pair[1].start)
+    return PenaltyRun(stiffness, result, contacts_of(task, result))
 
 
 def _impact_rows(sides: Sides) -> list[Row]:
     first = sides.found[0]
     again = next((x for x in touches(sides.loose.events) if x.contact == first.contact), first)
-    *values, doubled = (_impact(run) for run in (*sides.runs, sides.doubled))
+    *values, doubled = (impact_quantities(run, first.contact) for run in (*sides.runs, sides.doubled))
     limit, bar = sides.limit(values, doubled)
     names = (
         ("time of the first impact", "s", first.start, again.start),
@@ -207,14 +187,6 @@ def _impact_rows(sides: Sides) -> list[Row]:
             ours_uncertainty=float(own_bar(ours, loose)))
         for k, (name, unit, ours, loose) in enumerate(names)
     ]  # fmt: skip
-
-
-def _impact(run: PenaltyRun) -> np.ndarray:
-    """(start, approach speed, impulse, separation speed) of the first contact."""
-    (name, interval), r = run.contacts[0], run.result
-    approach, separation = speeds(r.t, r[f"{name}.gap_rate"], interval)
-    pushed = impulse(r.t, r[f"{name}.normal_force"], interval)
-    return np.array([interval.start, approach, pushed, separation])
 
 
 def _flight_rows(sides: Sides) -> list[Row]:

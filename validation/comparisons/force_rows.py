@@ -10,6 +10,7 @@ from ...core.description import Model
 from ..exudyn_run import ExudynResult
 from ..metrics import contact_intervals, impulse, peak, released, speeds, trajectory_difference
 from .common import Row, Task, Touch, at_times, course_scale, is_contact_channel, own_bar, touches, unit_of
+from .contact_count import contact_count
 
 RELATIVE = 1e-4
 Channels = Mapping[str, np.ndarray]
@@ -74,7 +75,7 @@ def force_rows(sides: Sides) -> list[Row]:
     """First contact of every contact element, state before the second impact, trajectories until then."""
     rows: list[Row] = []
     for contact in dict.fromkeys(touch.contact for touch in sides.found):
-        rows += _contact_rows(sides, contact)
+        rows += contact_count(sides, contact) or _contact_rows(sides, contact)
     return rows + _state_rows(sides)
 
 
@@ -116,7 +117,7 @@ def _contact_rows(sides: Sides, contact: str) -> list[Row]:
     if mine is None or other is None:
         return []
     if any(q is None for q in theirs):
-        return [Row(f"{contact}: contacts in exudyn", "1", float(len(sides.found)), 0.0, 0.0, "absolute")]
+        return []
     units = {"start": "s", "approach_speed": "m/s", "duration": "s", "peak_force": "N", "impulse": "N s",
              "separation_speed": "m/s"}  # fmt: skip
     rows = []

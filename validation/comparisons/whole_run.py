@@ -22,8 +22,8 @@ from .common import (
     touches,
     unit_of,
 )
-from .constraint_contact import EXPONENT, contact_step, with_stiffness
 from .events import away_from
+from .penalty_limit import EXPONENT, contact_step, with_stiffness
 
 STIFFNESSES = (1e6, 1e7, 1e8)
 STATE = 1e-3

@@ -5,7 +5,7 @@ from typing import Any
 from ...core.elements import AppliedForce2D, AppliedTorque2D, Bushing2D, CoordinateLoad, SpringDamper2D
 from ...core.model.markers import GROUND, Marker2D
 from .registry import Build, translates
-from .signals import TimeFunction, time_function
+from .signals import TimeFunction, time_function, turned
 
 
 @translates(SpringDamper2D)
@@ -50,6 +50,8 @@ def applied_force(record: AppliedForce2D, build: Build) -> None:
     fx, fy = (time_function(s, build.model) for s in (record.force_x, record.force_y))
     if record.marker.body == GROUND:
         return  # a force on the ground moves nothing
+    if record.follower:
+        fx, fy = turned(fx, fy, record.marker.angle)
     _load(build, "LoadForceVector", build.point(record.marker), (fx, fy, None), bodyFixed=record.follower)
 
 

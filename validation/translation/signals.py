@@ -20,6 +20,17 @@ class TimeFunction:
     constant: float | None = None
 
 
+def turned(x: TimeFunction, y: TimeFunction, angle: float) -> tuple[TimeFunction, TimeFunction]:
+    """The components of a vector (x, y) that is turned by `angle`."""
+    return _mixed(x, y, math.cos(angle), -math.sin(angle)), _mixed(x, y, math.sin(angle), math.cos(angle))
+
+
+def _mixed(x: TimeFunction, y: TimeFunction, a: float, b: float) -> TimeFunction:
+    if x.constant is not None and y.constant is not None:
+        return _constant(a * x.constant + b * y.constant)
+    return TimeFunction(lambda t: a * x.value(t) + b * y.value(t), lambda t: a * x.rate(t) + b * y.rate(t))
+
+
 def time_function(signal: Signal, model: Model) -> TimeFunction:
     """The time function that `signal` means. An input channel keeps its start value, a motion with a rate channel goes
     on with the start value of that.

@@ -1,4 +1,4 @@
-"""Unit strings as powers of the SI base units, as FMI wants them."""
+"""Unit strings as powers of the SI base units, as FMI wants them; products of units, and what does work on one."""
 
 import math
 import re
@@ -19,6 +19,9 @@ DERIVED: dict[str, tuple[float, dict[str, int]]] = {
     "deg": (math.pi / 180.0, {"rad": 1}),
     **{base: (1.0, {base: 1}) for base in BASE},
 }
+
+UNKNOWN = "-"
+"""Of quantities whose unit is left open."""
 
 _FACTOR = re.compile(r"([A-Za-z]+|1)(?:\^?([+-]?\d+))?$")
 
@@ -61,3 +64,40 @@ def _factors(text: str) -> list[tuple[int, str]]:
     pieces = re.split(r"([./])", text)
     signs = [1, *(-1 if separator == "/" else 1 for separator in pieces[1::2])]
     return list(zip(signs, pieces[::2], strict=True))
+
+
+def product(first: str, second: str) -> str | None:
+    """The unit of a product, as short as can be ("m/rad" times "rad" is "m"); None for units that are unknown."""
+    if "1" in (first, second):
+        return second if first == "1" else first
+    units = [parse_unit(first), parse_unit(second)]
+    if units[0] is None or units[1] is None:
+        return None
+    factor = units[0].factor * units[1].factor
+    powers = {b: units[0].exponents.get(b, 0) + units[1].exponents.get(b, 0) for b in BASE}
+    exponents = {base: n for base, n in powers.items() if n}
+    for name, (scale, own) in DERIVED.items():
+        if own == exponents and math.isclose(scale, factor, rel_tol=1e-12):
+            return name
+    if factor != 1.0:
+        return None
+    above = ".".join(base + (str(n) if n > 1 else "") for base, n in exponents.items() if n > 0)
+    below = "".join(f"/{base}{-n if n < -1 else ''}" for base, n in exponents.items() if n < 0)
+    return (above or "1") + below
+
+
+def conjugate(unit: str) -> str:
+    """The unit of what does work on a change of `unit`: N for m, N.m for rad; "-" where that is open."""
+    known = {"m": "N", "rad": "N.m", "1": "J", UNKNOWN: UNKNOWN}
+    return known.get(unit) or (f"J/({unit})" if "." in unit else f"J/{unit}" if "/" not in unit else UNKNOWN)
+
+
+def per_second(unit: str) -> str:
+    """`unit`/s; "-" stays as it is."""
+    return unit if unit == UNKNOWN else f"{unit}/s"
+
+
+def times_second(unit: str) -> str:
+    """`unit` times s; "-" stays as it is."""
+    above, slash, below = unit.partition("/")
+    return unit if unit == UNKNOWN else f"{above}.s{slash}{below}"

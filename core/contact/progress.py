@@ -1,0 +1,45 @@
+"""Guard against runs that events keep from going on: so many at one instant, or so many in next to no time."""
+
+from ..errors import SimulationError
+
+AT_ONCE = 50
+"""Events at one instant before a run is given up."""
+IN_A_ROW, STANDSTILL = 1000, 1e-7
+"""So many events within this part of the time that has passed are no progress. Bounces that accumulate end by the rest
+rule before that: with a restitution of 0.999 their last thousand take 2e-6 of it."""
+
+
+class Progress:
+    """Counts events in time. It decides nothing but when to give up, so a restored run may begin it anew."""
+
+    def __init__(self, start: float) -> None:
+        self._start = self._since = start
+        self._count = 0
+
+    def note(self, t: float, here: int, contacts: list[str]) -> None:
+        """Events of `contacts` (names) at time t, s, the `here`-th time at this instant.
+
+        Raises
+        ------
+        SimulationError : if the run does not get on.
+        """
+        if here > AT_ONCE:
+            raise _chatters(f"{here} events of contacts {contacts} at t = {t:.9g} s without progress in time", t)
+        self._count += 1
+        if self._count <= IN_A_ROW:
+            return
+        if not abs(t - self._since) > STANDSTILL * abs(t - self._start):
+            span = f"{t - self._since:.3g} s up to t = {t:.9g} s"
+            raise _chatters(f"{self._count} events within {span}, of contacts {contacts} and others", t)
+        self._since, self._count = t, 0
+
+
+def _chatters(what: str, t: float) -> SimulationError:
+    return SimulationError(
+        f"{what}: the contact chatters. Use a larger rest_ratio, smaller tolerances or another method; or give these "
+        "contacts a force law (KelvinVoigt, HuntCrossley, with TanhFriction for Coulomb's): forces need no decision "
+        "which of many contacts carry. Contacts that say the same twice (corners on faces and faces on corners) can be "
+        "left out.",
+        t=t,
+        loop="event",
+    )

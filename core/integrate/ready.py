@@ -1,0 +1,85 @@
+"""What a run may call later is compiled, or loaded, before it starts: no step and no impact waits for numba.
+
+Kernels, formulas and methods are there once the run is built, since tables hold their addresses. What is left is
+called from Python, at steps and at events; a test looks whether any of it is missing here (`test_compiled_before.py`).
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from numba import types
+
+from ..compiled.jit import address_of
+from ..contact.sweeps import sweep
+from ..contact.touching import evaluate_joints, factor_joints, solve_joints
+from ..linalg import DENSE_LIMIT
+from ..linalg.factorization import make_sparse_ready
+from ..linalg.record import FACTOR_SIGNATURE, SOLVE_SIGNATURE
+from ..linalg.row_pivoting import FEW_ENTRIES, make_elimination_ready
+from ..linalg.solve import factor, functions_of, solve
+from ..methods.history import recall, restart
+from ..methods.records import METHOD_TYPE
+from ..stage import OUTER_LOOPS
+from ..stage.accelerations import solve_accelerations
+from ..system.evaluate import constraint_norm, evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.projection import least_correction
+from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
+from .dense_output import interpolate, query
+from .loop import accept, run, set_weights_at, trial_step, violates_redundant
+from .records import FIND_EVENTS_SIGNATURE, LOOP_TYPE
+from .sample import write_sample
+from .watch import find_events, friction_margin, remember
+
+if TYPE_CHECKING:
+    from .engine import Engine
+
+_WORKSPACE, _METHOD, _LOOP = WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE
+_REAL, _WHOLE = types.float64, types.int64
+_VECTOR = types.Array(_REAL, 1, "C")
+
+_CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
+    (run, (_WORKSPACE, _METHOD, _LOOP, _WHOLE)),
+    (query, (_WORKSPACE, _METHOD, _REAL)),
+    (interpolate, (_WORKSPACE, _METHOD, _REAL)),
+    (write_sample, (_WORKSPACE, _VECTOR)),
+    (recall, (_WORKSPACE, _METHOD, _WHOLE)),
+    (restart, (_WORKSPACE, _METHOD)),
+    (remember, (_WORKSPACE, _LOOP)),
+    (set_weights_at, (_WORKSPACE, _METHOD)),
+    (trial_step, (_WORKSPACE, _METHOD, _LOOP, _REAL)),
+    (accept, (_WORKSPACE, _METHOD, _LOOP)),
+    (find_events, FIND_EVENTS_SIGNATURE.args),
+    (violates_redundant, (_WORKSPACE, _REAL)),
+    (solve_accelerations, (_WORKSPACE,)),
+    (evaluate_residuals, (_WORKSPACE,)),
+    (evaluate_tangent, (_WORKSPACE, _REAL, _REAL)),
+    (evaluate_power, (_WORKSPACE,)),
+    (evaluate_energy, (_WORKSPACE,)),
+    (constraint_norm, (_WORKSPACE, _WHOLE)),
+    (least_correction, (_WORKSPACE, _WHOLE, _WHOLE)),
+    (evaluate_joints, (_WORKSPACE,)),
+    (factor_joints, (_WORKSPACE,)),
+    (solve_joints, (_WORKSPACE,)),
+    (factor, FACTOR_SIGNATURE.args),
+    (solve, SOLVE_SIGNATURE.args),
+)
+"""Called by every run, with the types of their arguments."""
+
+
+def make_ready(sim: "Engine") -> None:
+    """Compile what the run of `sim` may call from now on, so far as it is not there yet."""
+    for function, arguments in _CALLED:
+        function.compile(arguments)
+    if sim.settings.fallback:
+        address_of(OUTER_LOOPS["newton"].stage, STAGE_SIGNATURE)
+    assembly = sim.assembly
+    if not assembly.contacts:
+        return
+    friction_margin.compile((_WORKSPACE, _WHOLE))
+    if len(assembly.contacts) > 1:
+        sweep.compile((types.Array(_REAL, 2, "C"),) * 3 + (_VECTOR,) * 7 + (_WHOLE,))
+    # closed contacts make the matrices larger, and open ones make them smaller than they are now
+    functions_of("dense")
+    if assembly.n + assembly.m > DENSE_LIMIT:
+        make_sparse_ready()
+    if sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches) > FEW_ENTRIES:
+        make_elimination_ready()
