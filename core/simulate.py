@@ -39,8 +39,8 @@ def simulate(
     t_end : end time, s.
     method : one of `METHODS`, which describes them.
     rtol, atol : tolerances of the error control, on coordinates and velocities. atol's default, 1e-9, is a part of the
-        model's own scales (`Simulation.scales`); another number is in the units of q and v, and counts at most as rtol
-        of the scale; a mapping by kind ("length", "angle", "speed", "angular_speed") counts as it stands.
+        model's own scales (`Simulation.scales`); another number counts as it stands, in the units of q and v, and so do
+        those of a mapping by kind ("length", "angle", "speed", "angular_speed").
     step : fixed step in s instead of error control.
     t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.
     record : False records only start and end (for timing); a number k records every k-th step, what happens at

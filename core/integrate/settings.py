@@ -138,24 +138,24 @@ def set_control(
     if fixed:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
         tolerance = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
-        largest = 1.0 if settings.newton_tolerance else np.inf
         control[RTOL] = control[ATOL] = tolerance
         control[NEWTON_TOLERANCE] = 1.0
-        arrays["atol_q"][:n] = tolerance * np.minimum(largest, size_q)
-        arrays["atol_v"][:n] = tolerance * np.minimum(largest, size_v)
+        given = settings.newton_tolerance is not None
+        arrays["atol_q"][:n] = tolerance * (np.ones(n) if given else size_q)
+        arrays["atol_v"][:n] = tolerance * (np.ones(n) if given else size_v)
     else:
         control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
             newton_tolerance, min(0.01, FINEST / settings.rtol)
         )
-        angles, most = assembly.is_angle, max(settings.rtol, DEFAULT_ATOL)
+        angles = assembly.is_angle
 
         def tolerances(kind: str, size: NDArray[np.float64]) -> NDArray[np.float64]:
             if isinstance(settings.atol, Mapping) and kind in settings.atol:
                 return np.full(n, float(settings.atol[kind]))
             if isinstance(settings.atol, Mapping) or settings.atol == DEFAULT_ATOL:
                 return DEFAULT_ATOL * size
-            return np.minimum(float(settings.atol), most * size)
+            return np.full(n, float(settings.atol))
 
         arrays["atol_q"][:n] = np.where(angles, tolerances("angle", size_q), tolerances("length", size_q))
         arrays["atol_v"][:n] = np.where(angles, tolerances("angular_speed", size_v), tolerances("speed", size_v))
@@ -166,7 +166,8 @@ def set_control(
     finest = (settings.newton_tolerance or 1.0) if fixed else float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0))
     control[EXACTNESS] = min(1.0, max(1e-2, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
-    control[MAX_INNER] = 12.0
+    # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
+    control[MAX_INNER] = 13.0
     control[PATIENCE] = float(fixed)
     control[LINEAR] = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it

@@ -104,6 +104,12 @@ def velocity_error(ws: Any, ms: Any, h: float) -> float:
 
 
 @internal
+def work_error(ws: Any, ms: Any, h: float) -> float:
+    """The largest local error of the work accounts alone, in units of their weights."""
+    return _find_error(ws, ms, h, 0.0)
+
+
+@internal
 def absolute_velocity_error(ws: Any, ms: Any, h: float, shift: float, factored: bool) -> Any:
     """(status, norm) of the velocities alone for formulas on all coordinates, without what lies along the constraints:
     nor do work accounts count, since the multipliers that ring there are the power and the impulse of contacts.

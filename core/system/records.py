@@ -65,7 +65,8 @@ PATIENCE = 14  # 1: steps are fixed, so that one that fails is tried once more f
 LINEAR = 15  # 1: the equations are linear, so that one iteration with their own matrices solves them
 RATE_SCALE = 16  # inverse of the model's own time, 1/s
 ENERGY_SCALE = 17  # work of its forces along its lengths, J
-CONTROL_SIZE = 18
+STIFFNESS_SCALE = 18  # square of the rate of its fastest vibration, 1/s^2
+CONTROL_SIZE = 19
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0

@@ -2,7 +2,8 @@
 
 Lengths stand in the model (`Assembly.coordinate_scale`, 1 for angles). What a row of Phi or a gap measures follows from
 them: how far it moves when the coordinates move by their scales. The time is that in which the start's velocities,
-accelerations and driven motions cross those lengths; the energy is that of the masses at these speeds.
+accelerations and driven motions cross those lengths, those of angles less (`ANGLES`): what spins fast makes nothing
+else fast. The energy is that of the masses at these speeds.
 """
 
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evaluate import evaluate_residuals, evaluate_tangent
-from .records import ENERGY_SCALE, RATE_SCALE
+from .records import ENERGY_SCALE, RATE_SCALE, STIFFNESS_SCALE
 from .workspace import Workspace
 
 PROBES = 4
@@ -55,14 +56,14 @@ def measure_scales(workspace: Workspace) -> Scales:
     kept = {name: arrays[name].copy() for name in ("q", "v", "a", "lam", "t", "counters")}
     try:
         arrays["row_scale"][: assembly.m] = _row_scale(workspace)
-        rate, energy, inertia = _rate_and_energy(workspace)
+        rate, energy, inertia, stiffness = _rate_and_energy(workspace)
     finally:
         for name, value in kept.items():
             arrays[name][:] = value
         evaluate_residuals(workspace.record)
         arrays["counters"][:] = kept["counters"]
     control = arrays["control"]
-    control[RATE_SCALE], control[ENERGY_SCALE] = rate, energy
+    control[RATE_SCALE], control[ENERGY_SCALE], control[STIFFNESS_SCALE] = rate, energy, stiffness
     work = arrays["work_scale"]
     work[:] = WORK * energy
     for contact in assembly.contacts:
@@ -96,8 +97,9 @@ def _row_scale(workspace: Workspace) -> NDArray[np.float64]:
     return sizes
 
 
-def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float]:
-    """Inverse of the model's time (1/s), the energy of its masses (J), and the largest of these (kg m^2)."""
+def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float, float]:
+    """Inverse of the model's time (1/s), the energy of its masses (J), the largest of these (kg m^2), and how stiff
+    what holds them is (1/s^2)."""
     arrays, assembly = workspace.arrays, workspace.assembly
     n, m, scale = assembly.n, assembly.m, assembly.coordinate_scale
     q, v, t = arrays["q"].copy(), assembly.v0, float(arrays["t"][0])
@@ -110,7 +112,8 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float]:
         found[structure.rows[diagonal]] = np.abs(arrays["values"][diagonal])
         return found
 
-    squares = [np.max((v / scale) ** 2, initial=0.0)]
+    reach = arrays["level_scale"]
+    squares = [np.max((v / reach) ** 2, initial=0.0)]
     arrays["a"][:], arrays["lam"][:] = 0.0, 0.0
     mass = np.zeros(n)
     for later in (0.0, *_later_times(workspace, t)):
@@ -124,22 +127,23 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float]:
                 evaluate_residuals(workspace.record)
             has_mass = mass > 0.0
             force = np.abs(arrays["r"][:n][has_mass])
-            squares.append(np.max(force / (mass[has_mass] * scale[has_mass]), initial=0.0))
+            squares.append(np.max(force / (mass[has_mass] * reach[has_mass]), initial=0.0))
             joints = slice(0, assembly.m_joints)
             sizes = arrays["row_scale"][:m][joints]
             squares.append(np.max(np.abs(arrays["phidd"][joints]) / sizes, initial=0.0))
             if not moving:
                 squares.append(np.max((arrays["phid"][joints] / sizes) ** 2, initial=0.0))
     squares = [float(x) for x in squares if np.isfinite(x) and x > 0.0]
-    if not squares:
-        # all at rest without loads: what vibrates gives the time
-        arrays["t"][0], arrays["v"][:] = t, 0.0
-        stiffness = np.abs(diagonals(1.0) - mass)
-        here = (mass > 0.0) & (stiffness > 1e-12 * mass)
-        squares = [float(np.max(stiffness[here] / mass[here], initial=0.0))]
+    arrays["t"][0], arrays["q"][:], arrays["v"][:] = t, q, 0.0
+    evaluate_residuals(workspace.record)
+    stiffness = np.abs(diagonals(1.0) - mass)
+    here = (mass > 0.0) & (stiffness > 1e-12 * mass) & np.isfinite(stiffness)
+    stiffest = float(np.max(stiffness[here] / mass[here], initial=0.0))
+    # all at rest without loads: what vibrates gives the time
+    squares = squares or [stiffest]
     rate = float(np.sqrt(max(squares))) or 1.0
     heaviest = float(np.max(mass * scale**2, initial=0.0)) or 1.0
-    return rate, heaviest * rate**2, heaviest
+    return rate, heaviest * rate**2, heaviest, stiffest
 
 
 def _later_times(workspace: Workspace, t: float) -> list[float]:
