@@ -118,6 +118,9 @@ def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
 DEFAULT_ATOL = 1e-9
 """What `atol` is unless told otherwise, and of kinds that a mapping leaves out: a part of the coordinates' scales and
 of their rates, so that it means the same in all units."""
+SPEEDS = 0.1
+"""Of the speeds that the model's time makes of its lengths: what its default tolerances are a part of. That time is
+that of the fastest of its motions and forces, and most of what moves is slower."""
 DEFAULT_NEWTON_TOLERANCE = 1e-10
 """Of runs with fixed steps, likewise."""
 
@@ -130,7 +133,7 @@ def set_control(
     of the model's time, 1/s."""
     control, n = arrays["control"], assembly.n
     # a tolerance as large as what it is for would let all pass
-    size_q, size_v = assembly.coordinate_scale, assembly.coordinate_scale * rate
+    size_q, size_v = assembly.coordinate_scale, SPEEDS * assembly.coordinate_scale * rate
     internal = assembly.is_internal
     # the state is the velocity of such a coordinate, and a deflection: a length
     size_v = np.where(internal, assembly.length, size_v)

@@ -3,7 +3,8 @@
 Lengths stand in the model (`Assembly.coordinate_scale`, 1 for angles). What a row of Phi or a gap measures follows from
 them: how far it moves when the coordinates move by their scales. The time is that in which the start's velocities,
 accelerations and driven motions cross those lengths, those of angles less (`ANGLES`): what spins fast makes nothing
-else fast. The energy is that of the masses at these speeds.
+else fast. The energy is that of the masses at their speeds and the work of the forces along those lengths, where there
+are none that of the masses at the model's speeds.
 """
 
 from dataclasses import dataclass
@@ -31,7 +32,7 @@ class Scales:
     ----------
     length : size of the mechanism, m.
     rate : inverse of its time, 1/s.
-    energy : of its masses at the speeds length * rate, J.
+    energy : of its motion and its forces, J.
     """
 
     length: float
@@ -115,7 +116,7 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float, float]:
     reach = arrays["level_scale"]
     squares = [np.max((v / reach) ** 2, initial=0.0)]
     arrays["a"][:], arrays["lam"][:] = 0.0, 0.0
-    mass = np.zeros(n)
+    mass, works = np.zeros(n), []
     for later in (0.0, *_later_times(workspace, t)):
         arrays["t"][0] = t + later
         arrays["q"][:] = q
@@ -128,6 +129,7 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float, float]:
             has_mass = mass > 0.0
             force = np.abs(arrays["r"][:n][has_mass])
             squares.append(np.max(force / (mass[has_mass] * reach[has_mass]), initial=0.0))
+            works.append(np.max(force * scale[has_mass], initial=0.0))
             joints = slice(0, assembly.m_joints)
             sizes = arrays["row_scale"][:m][joints]
             squares.append(np.max(np.abs(arrays["phidd"][joints]) / sizes, initial=0.0))
@@ -143,7 +145,9 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float, float]:
     squares = squares or [stiffest]
     rate = float(np.sqrt(max(squares))) or 1.0
     heaviest = float(np.max(mass * scale**2, initial=0.0)) or 1.0
-    return rate, heaviest * rate**2, heaviest, stiffest
+    # each mass with its own speed: a heavy one need not move as fast as the fastest
+    works = [float(x) for x in (*works, np.max(mass * v**2, initial=0.0)) if np.isfinite(x) and x > 0.0]
+    return rate, max(works, default=heaviest * rate**2), heaviest, stiffest
 
 
 def _later_times(workspace: Workspace, t: float) -> list[float]:
