@@ -199,7 +199,8 @@ def _check_method(sim: "Simulation", arrays: dict[str, NDArray[Any]], own: dict[
     ring, times = arrays["method_ring"], arrays["method_times"]
     capacity = len(times)
     _need_range("method_ring", ring[:1], 0, capacity - 1)
-    _need_range("method_ring", ring[1:], 1, capacity)
+    _need_range("method_ring", ring[1:2], 1, capacity)
+    _need_range("method_ring", ring[2:], 0, capacity)
     rows = times[(ring[0] - np.arange(ring[1])) % capacity]
     _need("method_times", (np.diff(rows) <= 0.0).all(), f"does not grow: {rows[::-1].tolist()}")
     parameters = own["method_parameters"]

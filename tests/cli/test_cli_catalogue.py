@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 import tlismni.cli as cli
-from tlismni.cli.screen import COMPILING, compile_notice, number, plain, shortened
+from tlismni.cli.screen import compile_notice, number, plain, shortened
 from tlismni.core import METHODS
 from tlismni.models import catalogue, names
 
@@ -89,15 +89,18 @@ def test_help_does_not_load_the_solver() -> None:
 
 
 def test_compile_notice_is_given_once_and_only_if_something_is_compiled(capsys: pytest.CaptureFixture[str]) -> None:
-    from numba import njit
+    from tlismni.core.compiled import notices
 
-    with compile_notice():
+    with compile_notice(), notices.compile_notices("the ball"):
         pass
     assert capsys.readouterr().err == ""
-    with compile_notice():
-        for function in (lambda x: x + 1.0, lambda x: x + 2.0):
-            njit(function)(1.0)
-    assert capsys.readouterr().err.splitlines() == [COMPILING]
+    with compile_notice(), notices.compile_notices("the ball"):
+        for name in ("first", "second"):
+            notices.begin(name)
+            notices.end(name, 0.5)
+    begun, done = capsys.readouterr().err.splitlines()
+    assert begun == "compiling for this machine what the ball needs, once: it can take a minute"
+    assert done.startswith("compiled 2 functions in 1.0 s for the ball")
 
 
 def test_numbers_and_plain_data() -> None:
