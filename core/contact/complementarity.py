@@ -129,7 +129,7 @@ def _found(
             if len(free):
                 return _with_limits(a, nn, tn, b_n, b_t, mu, free, base)
             return _scaled(nn, b_n, np.diag(a.nn)), np.zeros(len(b_n))
-    raise NoComplementarySolution("neither pivoting nor sweeps over the contacts find a solution")  # fmt: skip
+    raise NoComplementarySolution("neither pivoting nor sweeps over the contacts find a solution")
 
 
 def _without_friction(m: Vector, q: Vector, inverse_mass: Vector) -> Vector | None:

@@ -166,9 +166,11 @@ class Resting:
         """How far ahead accelerations are looked at, s: where a geometry's curvature jumps (a corner is passed), the
         present point may lie before the jump by rounding, and what holds behind it decides. 0 at first."""
         again = self.sim.events_here - 1
-        scale = self.sim.assembly.coordinate_scale
-        speed = float(np.max(np.abs(self.sim.workspace.arrays["v"][: len(scale)]) / scale))
-        if again < 1 or speed == 0.0:
+        if again < 1:
+            return 0.0
+        workspace, assembly = self.sim.workspace, self.sim.assembly
+        speed = float(np.max(np.abs(workspace.arrays["v"][: assembly.n]) / assembly.coordinate_scale))
+        if speed == 0.0:
             return 0.0
         return min(AHEAD * 10.0 ** (again - 1), FARTHEST_AHEAD) / speed
 

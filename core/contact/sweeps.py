@@ -126,7 +126,7 @@ class _Problem:
 
     def basic(self, normal: Vector, friction: Vector, size: float) -> tuple[Vector, Vector] | None:
         """Of the forces that make the same motion those that stand on no more contacts than it takes, with the least
-        friction; None if these are beyond its limits."""
+        share of what friction allows; None if these are beyond its limits."""
         # importing scipy costs more than most runs: only who needs it pays
         from scipy.optimize import nnls
 
@@ -149,7 +149,11 @@ class _Problem:
         normal = self.base.copy()
         normal[some] += more
         friction = ratio * normal
-        friction[stuck] = -inverse @ (w_t[stuck] + coupled @ more)
+        # each takes as much of what its normal force allows as the others that it shares with
+        limit = self.mu[stuck] * normal[stuck]
+        wanted = -(w_t[stuck] + coupled @ more)
+        part = np.linalg.lstsq(self.tt[np.ix_(stuck, stuck)] * limit, wanted, rcond=PSEUDO)[0]
+        friction[stuck] = limit * part
         return normal, friction
 
     def direct(self, normal: Vector, friction: Vector) -> tuple[Vector, Vector]:

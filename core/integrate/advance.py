@@ -25,6 +25,7 @@ from ..system.records import (
     NOT_FINITE,
     OK,
     OUTER_DIVERGED,
+    OUTER_RATE,
     OUTER_SLOW,
     REANALYZE,
     SINGULAR,
@@ -327,6 +328,8 @@ def _trial(sim: "Simulation", step: float, full: float) -> None:
         table["rows"] = 10**9 if usual[1] > 1 else usual[1]
     try:
         for attempt in range(2):
+            # with old matrices the same step would come out a little different each time it is made
+            sim.workspace.arrays["rate"][[FACTOR_AGE, OUTER_RATE]] = -1.0, 1.0
             status = trial_step(sim.workspace.record, sim._method.record, sim._loop.record, step)
             if status == OK:
                 return

@@ -117,8 +117,6 @@ def test_error_estimate_is_the_error_of_a_step(method, options):
 @pytest.mark.parametrize(
     "method, options",
     [
-        ("newmark", {}),
-        ("hht", {"alpha": -0.2}),
         ("hht_i3", {"alpha": 0.0}),
         ("hht_i3", {"alpha": -0.2}),
         ("hht_ggl", {"alpha": -0.2}),

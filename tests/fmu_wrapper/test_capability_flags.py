@@ -7,7 +7,7 @@ from collections.abc import Callable
 import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 from lxml import etree
 from tlismni.core.description import Model
@@ -43,6 +43,8 @@ class Exported:
             )
             for causality in ("output", "input")
         )
+        self.quiet = fmi2CallbackFunctions()
+        self.quiet.logger = fmi2CallbackLoggerTYPE(lambda *message: None)
         self.kind = FMU2Slave if self.description.fmiVersion == "2.0" else FMU3Slave
 
     def instance(self, **arguments):
@@ -50,6 +52,9 @@ class Exported:
             guid=self.description.guid, unzipDirectory=self.unzipped,
             modelIdentifier=self.description.coSimulation.modelIdentifier,
         )  # fmt: skip
+        if self.kind is FMU2Slave:
+            # a logger of its own: the default one is whichever some FMU of this process was given last
+            arguments.setdefault("callbacks", self.quiet)
         fmu.instantiate(**arguments)
         return fmu
 

@@ -95,7 +95,7 @@ def _row(
     return Row(
         f"{channel} {name}, where it differs most (t = {t[k]:.5g} s)", unit_of(ours, channel), float(mine[k]),
         float(theirs[k]), STATE, "relative", float(moved[k]), course_scale(ours, channel, found.scale), not reason,
-        float(own), reason, channel, float(t[k]),
+        float(own), reason=reason, channel=channel, at=float(t[k]),
     )  # fmt: skip
 
 
