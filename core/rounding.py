@@ -49,8 +49,8 @@ ACCELERATIONS_LOST = 1e-8
 
 # ---- contacts -------------------------------------------------------------------------------------------------------
 
-GAP_ROUNDING = 1e-12
-"""Of a gap's size: shapes nearer than this touch; what the constraints are met to."""
+GAP_ROUNDING = 3e-13
+"""Of a gap's size: shapes nearer than this touch; three times what the constraints are met to."""
 UNRESOLVED = 1e-12
 """Of a gap's size: bounces lower than this are not told from rest."""
 START_OVERLAP = 1e-9

@@ -35,7 +35,7 @@ def build_simulation(factory: SimulationFactory | None, model: Model, settings: 
         model,
         method=settings.method,
         rtol=settings.rtol,
-        atol=settings.atol,
+        atol=settings.tolerance,
         step=settings.step or None,
         t0=t0,
         **{"max_steps": MAX_STEPS, **settings.options},

@@ -87,7 +87,7 @@ def _solver(settings: Settings, number: Iterator[int]) -> list[Variable]:
     )  # fmt: skip
     numbers = (
         ("rtol", settings.rtol, "1", "relative tolerance of the error control"),
-        ("atol", settings.atol, "1", "absolute tolerance of the error control"),
+        ("atol", settings.atol, "1", "absolute tolerance of the error control; 1e-9: of the model's own scales"),
         ("step", settings.step, "s", "fixed internal step; 0 for error control"),
     )
     return [

@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..core.description import Model
+from ..core.tolerances import DEFAULT_ATOL
 
 
 def _no_entries() -> Mapping[str, Any]:
@@ -30,7 +31,7 @@ class Scenario:
     t_end: float
     method: str = "ebdf"
     rtol: float = 1e-6
-    atol: float = 1e-9
+    atol: float = DEFAULT_ATOL
     options: Mapping[str, Any] = field(default_factory=_no_entries)
     parameters: Mapping[str, Any] = field(default_factory=_no_entries)
     compare: tuple[str, ...] = ()

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ..elements.base import BodyElement, Element, Form, Numbering, Row
 from ..model.base import NonNegative, Record
-from ..model.markers import Marker2D
+from ..model.markers import GROUND, Marker2D
 from ..rounding import LEAST_DEFLECTION
 from .bristle2d import bristle_disk_on_disk_kernel, bristle_disk_on_half_plane_kernel
 from .friction import CoulombFriction, Friction, LuGreFriction
@@ -100,6 +100,12 @@ class Contact2D(Element):
     def disks(self) -> Sequence[Disk2D]:
         """The disks that it brings in touch, for the drawing."""
         return ()
+
+    def reach(self) -> Sequence[tuple[float, float]]:
+        """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""
+        points = [marker.point for marker in self.markers() if marker.body != GROUND]
+        fixed = [marker.point for marker in self.markers() if marker.body == GROUND]
+        return [*points, *sorted(fixed, key=lambda point: max(abs(x) for x in point))[:1]]
 
     def lengths(self) -> Sequence[float]:
         return tuple(disk.radius for disk in self.disks())

@@ -159,6 +159,10 @@ class Element(Record):
         """The markers it uses (their bodies must exist)."""
         return ()
 
+    def reach(self) -> Sequence[tuple[float, float]]:
+        """Points on its bodies that tell the size of the mechanism, m."""
+        return [marker.point for marker in self.markers()]
+
     def lengths(self) -> Sequence[float]:
         """Its lengths that tell the size of a mechanism whose points do not, m."""
         return ()

@@ -32,6 +32,7 @@ from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, S
 from ..system.redundancy import RedundantRow
 from ..system.scales import Scales, measure_scales
 from ..system.workspace import Workspace
+from ..tolerances import DEFAULT_ATOL
 from . import motions
 from .contact_side import ContactSide
 from .dense_output import query
@@ -71,7 +72,7 @@ class Engine(ContactSide):
         system: Any,
         method: str = "ebdf",
         rtol: float = 1e-6,
-        atol: float | Mapping[str, float] = 1e-9,
+        atol: float | Mapping[str, float] = DEFAULT_ATOL,
         *,
         step: float | None = None,
         max_step: float | None = None,

@@ -27,6 +27,7 @@ from ..system.records import (
     RTOL,
     VELOCITY_TOLERANCE,
 )
+from ..tolerances import DEFAULT_ATOL, OfScales
 from .controllers import CONTROLLERS
 
 ACCELERATIONS = ("none", "aitken", "anderson")
@@ -115,9 +116,6 @@ def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
         raise ModelError(f"{name} must be finite, not {value!r}")
 
 
-DEFAULT_ATOL = 1e-9
-"""What `atol` is unless told otherwise, and of kinds that a mapping leaves out: a part of the coordinates' scales and
-of their rates, so that it means the same in all units."""
 SPEEDS = 0.1
 """Of the speeds that the model's time makes of its lengths: what its default tolerances are a part of. That time is
 that of the fastest of its motions and forces, and most of what moves is slower."""
@@ -154,11 +152,8 @@ def set_control(
         angles = assembly.is_angle
 
         def tolerances(kind: str, size: NDArray[np.float64]) -> NDArray[np.float64]:
-            if isinstance(settings.atol, Mapping) and kind in settings.atol:
-                return np.full(n, float(settings.atol[kind]))
-            if isinstance(settings.atol, Mapping) or settings.atol == DEFAULT_ATOL:
-                return DEFAULT_ATOL * size
-            return np.full(n, float(settings.atol))
+            atol = settings.atol.get(kind, DEFAULT_ATOL) if isinstance(settings.atol, Mapping) else settings.atol
+            return float(atol) * (size if isinstance(atol, OfScales) else np.ones(n))
 
         arrays["atol_q"][:n] = np.where(angles, tolerances("angle", size_q), tolerances("length", size_q))
         arrays["atol_v"][:n] = np.where(angles, tolerances("angular_speed", size_v), tolerances("speed", size_v))

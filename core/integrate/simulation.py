@@ -36,9 +36,9 @@ class Simulation(Engine):
     ----------
     system : a Model or an EquationSystem.
     method : name of an integration method (`tlismni.core.methods.registry.METHODS`).
-    rtol, atol : tolerances of the error control. atol's default, 1e-9, is a part of the model's own scales (`scales`);
-        another number counts as it stands, in the units of q and v; it may be a mapping with any of "length" (m),
-        "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are the default.
+    rtol, atol : tolerances of the error control. atol's default, `OfScales(1e-9)`, is a part of the model's own scales
+        (`scales`); a plain number counts as it stands, in the units of q and v; it may be a mapping with any of
+        "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are the default.
     step : fixed step in s; None: error-controlled steps.
     max_step, first_step : bounds of error-controlled steps, s.
     max_steps : most steps (and instants with events) between two times that are asked for, None for no limit: a

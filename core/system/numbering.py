@@ -104,6 +104,6 @@ def _length(model: Model) -> float:
     """Size of the mechanism, m: how far its points reach; of one whose points are all at the origin, its longest rod or
     largest disk. 1 if it says none."""
     points = [point for body in model.bodies for point in body.extent()]
-    points += [marker.point for e in model.elements() for marker in e.markers()]
+    points += [point for e in model.elements() for point in e.reach()]
     size = max((max(abs(x), abs(y)) for x, y in points), default=0.0)
     return size or max((x for e in model.elements() for x in e.lengths()), default=0.0) or 1.0
