@@ -143,7 +143,8 @@ class _Problem:
         coupled = (self.nt.T[stuck] + self.tt[stuck] * ratio)[:, some]
         matrix = (self.nn[some] + self.nt[some] * ratio)[:, some] - across @ coupled
         try:
-            more, _ = nnls(matrix, across @ w_t[stuck] - w_n[some])
+            # in parts of the motion: it takes what is small as a number for zero
+            more = size * nnls(matrix, (across @ w_t[stuck] - w_n[some]) / size)[0]
         except RuntimeError:
             return None
         normal = self.base.copy()
@@ -196,7 +197,7 @@ def solve_by_sweeps(
         np.ascontiguousarray(x, dtype=np.float64) for x in (nn, nt, tt, b_n, b_t, mu, direction, base)
     )
     problem = _Problem(nn, nt, tt, b_n, b_t, mu, direction, base)
-    size = max(float(np.max(np.abs(b_n))), float(np.max(np.abs(b_t))))
+    size = max(float(np.max(np.abs(b_n))), float(np.max(np.abs(b_t)))) or 1.0
     normal, friction = base.copy(), -direction * mu * base
     best, least = (normal, friction), np.inf
     count = FIRST_SWEEPS

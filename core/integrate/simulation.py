@@ -49,7 +49,7 @@ class Simulation(Engine):
     fallback : let newton take over if the outer loop fails; `fallbacks` says when and why, and a warning is logged.
     controller : "elementary", "pi" or "h211b", how one-step methods choose their next step.
     newton_tolerance : where the outer loop stops; with `step` an absolute and relative tolerance on q and v
-        (default 1e-10), else a fraction of the error weights (default 0.01, irk 0.001).
+        (default 2e-10 of the scales), else a fraction of the error weights (default 0.01, irk 0.0005).
     start_tolerance : how far q0 and v0 may be moved to meet the constraints (relative).
     redundant : "drop": constraints that repeat others are left out of the equations but checked, and listed in the
         attribute of this name; "refuse": they are an error.

@@ -8,16 +8,20 @@ from helpers import ball_over_floor, floor_contact, on, rod_pendulum
 from linkages import three_cranks
 from tlismni.core import (
     CoordinateDriver,
+    Disk2D,
+    DiskOnLine2D,
     EquationSystem,
     GapContact,
     Gonthier,
     Hertz,
     HuntCrossley,
     KelvinVoigt,
+    Line2D,
     LuGreFriction,
     Marker2D,
     Model,
     NewtonImpact,
+    OfScales,
     PointMass2D,
     Revolute2D,
     RigidBody2D,
@@ -232,13 +236,27 @@ def test_scales_follow_the_units():
         assert found.energy == pytest.approx(plain.energy * units.factor((2, 1, -2)), rel=1e-12)
 
 
-@pytest.mark.parametrize("atol", [1e-6, {"length": 1e-6}])
+@pytest.mark.parametrize("atol", [1e-6, 1e-9, {"length": 1e-6}])
 def test_given_tolerances_are_absolute(atol):
-    """A number, or one of a mapping by kind, counts in the units of q and v as it stands; the default by the scales."""
+    """A number, or one of a mapping by kind, counts in the units of q and v as it stands, be it that of the default,
+    which goes by the scales, as a part of them does that is given."""
     model = load("pendulum_stop").model
     for length in (1e-9, 1.0):
         scaled = Units(length=length).model(model)
         weights = Simulation(scaled, rtol=1e-8, atol=atol).workspace.arrays["atol_q"]
-        assert math.isclose(weights[0], 1e-6)
-        default = Simulation(scaled, rtol=1e-8)
-        assert math.isclose(default.workspace.arrays["atol_q"][0], 1e-9 * default.assembly.coordinate_scale[0])
+        assert math.isclose(weights[0], atol["length"] if isinstance(atol, dict) else atol)
+        for part, options in ((1e-9, {}), (1e-6, {"atol": OfScales(1e-6)}), (1e-7, {"atol": 100.0 * OfScales(1e-9)})):
+            sim = Simulation(scaled, rtol=1e-8, **options)
+            assert math.isclose(sim.workspace.arrays["atol_q"][0], part * sim.assembly.coordinate_scale[0])
+
+
+def test_a_road_that_goes_on_makes_no_wheel_larger():
+    wheel = RigidBody2D(name="wheel", mass=2.0, inertia=0.1, position=(0.1, 0.6))
+
+    def length(*road):
+        nodes = tuple(Marker2D(point=(x, 0.0)) for x in road)
+        disk = Disk2D(marker=on("wheel"), radius=0.25)
+        contact = DiskOnLine2D(name="c", line=Line2D(nodes=nodes), disk=disk, law=NewtonImpact(restitution=0.5))
+        return Simulation(Model(bodies=[wheel], contacts=[contact])).scales.length
+
+    assert length(-0.3, 1.0) == length(-0.3, 1.0, 1e3) == 0.6
