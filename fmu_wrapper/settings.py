@@ -30,7 +30,7 @@ class Settings:
 
     method: str = "ebdf"
     rtol: float = 1e-6
-    atol: float = DEFAULT_ATOL
+    atol: float = float(DEFAULT_ATOL)
     step: float = 0.0
     options: Mapping[str, Any] = field(default_factory=dict)
     t_end: float | None = None

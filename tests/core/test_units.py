@@ -106,7 +106,7 @@ SCENARIOS = {
     "bouncing_ball": 5.0, "pendulum_stop": 2.5, "rocking_block": 2.0, "slider_crank_stop": 1.5, "stick_slip": 2.8,
     "double_pendulum_wall": 1.2, "impact_oscillator": 5.0, "newtons_cradle": 0.8, "woodpecker": 0.3,
 }  # fmt: skip
-LONG = {"four_bar": 2.0, "sphere_beam": 0.0013, "hub_beam_stop": 0.05, "cable_ground": 0.3, "rod_wall": 0.0005}
+LONG = {"four_bar": 2.0, "sphere_beam": 0.0013, "hub_beam_stop": 0.05, "cable_ground": 0.3, "rod_wall": 0.0006}
 
 
 def model_of(name):
