@@ -72,12 +72,13 @@ def _origin(data: Any) -> Origin | None:
     if data is None:  # a model of its own, or an FMU of an earlier version
         return None
     name, given = (data.get("name"), data.get("parameters")) if isinstance(data, dict) else (None, None)
-    if not isinstance(name, str) or not isinstance(given, dict):
-        raise ExportError(
-            f"'scenario' in '{SETTINGS_FILE}' of the FMU's resources is {data!r:.60}, where a name and parameters are "
-            "needed; export the FMU anew"
-        )
-    return Origin(name, given)
+    if isinstance(name, str) and isinstance(given, dict):
+        if all(isinstance(value, bool | int | float | str | None) for value in given.values()):
+            return Origin(name, given)
+    raise ExportError(
+        f"'scenario' in '{SETTINGS_FILE}' of the FMU's resources is {data!r:.60}, where a name and parameters are "
+        "needed; export the FMU anew"
+    )
 
 
 def _check_settings(data: Any) -> None:

@@ -137,7 +137,10 @@ def test_a_wrong_value_is_an_error_and_changes_nothing(exported, value):
         exported.give(fmu, length=2.0)  # fixed by now
 
 
-@pytest.mark.parametrize("scenario", [5, {"name": 1, "parameters": {}}, {"name": "pendulum_stop"}])
+@pytest.mark.parametrize(
+    "scenario",
+    [5, {"name": 1, "parameters": {}}, {"name": "pendulum_stop"}, {"name": "pendulum", "parameters": {"mass": [1.0]}}],
+)
 def test_a_broken_scenario_in_the_resources_gets_words(exported, tmp_path, scenario):
     shutil.copytree(f"{exported.unzipped}/resources", tmp_path / "resources")
     file = tmp_path / "resources" / SETTINGS_FILE
