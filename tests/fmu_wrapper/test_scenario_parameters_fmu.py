@@ -1,8 +1,12 @@
 """An FMU of a scenario with a builder's parameter changed by the host: the scenario built with it, bit for bit."""
 
+import io
 import json
 import re
 import shutil
+import subprocess
+import sys
+import zipfile
 
 import fmpy
 import numpy as np
@@ -13,6 +17,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from fmu_helpers import Messages
 from tlismni.fmu_wrapper import Slave, export_fmu
+from tlismni.fmu_wrapper.bundle import package_archive
 from tlismni.fmu_wrapper.embedded import SETTINGS_FILE, read_slave
 from tlismni.fmu_wrapper.errors import ExportError, FmuValueError
 from tlismni.fmu_wrapper.in_process import InProcess
@@ -160,3 +165,26 @@ def test_an_fmu_whose_scenario_is_gone_runs_as_exported(exported, tmp_path):
     slave.enter_initialization()
     slave.exit_initialization()
     assert slave["length"] == 1.0
+
+
+CARRIED = """
+import importlib, importlib.machinery, importlib.util, sys
+
+spec = importlib.machinery.ModuleSpec("carried", None, is_package=True)
+spec.submodule_search_locations = [sys.argv[1]]
+sys.modules["carried"] = importlib.util.module_from_spec(spec)
+load = importlib.import_module("carried.models").load
+Origin = importlib.import_module("carried.fmu_wrapper.origin").Origin
+scenario = load("pendulum")
+changed = Origin("pendulum", dict(scenario.given)).changed({"length": 2.0}, scenario.model)
+print(changed.model == load("pendulum", length=2.0).model, any(name.startswith("tlismni") for name in sys.modules))
+"""
+
+
+def test_a_bundle_carries_the_catalogue(tmp_path):
+    """Under another name than `tlismni`, which is not imported."""
+    with zipfile.ZipFile(io.BytesIO(package_archive()[0])) as archive:
+        archive.extractall(tmp_path)
+    command = [sys.executable, "-c", CARRIED, str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.stdout.split() == ["True", "False"], done.stderr
