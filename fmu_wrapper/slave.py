@@ -243,8 +243,7 @@ class Slave(SlaveDerivatives):
         plan = self.variables.plan(kind, references)
         if "output" in plan.roles:
             self.look()
-        found = self._values.vectors[kind].take(plan.positions)
-        return self._with_following(plan, found) if "parameter" in plan.roles else found
+        return self._found(plan, self._values.vectors[kind].take(plan.positions))
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.

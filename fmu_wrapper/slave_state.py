@@ -239,9 +239,9 @@ class SlaveState:
                     self.origin.check(variable, value)
         return checked
 
-    def _with_following(self, plan: Plan, found: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def _found(self, plan: Plan, found: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """The values `found` of the variables of `plan`, with those of parameters that follow from others."""
-        if self.origin is None:
+        if self.origin is None or "parameter" not in plan.roles:
             return found
         if self._run is not None:
             following = self._run.following
