@@ -21,7 +21,6 @@ from ..system.records import (
     MAX_INNER,
     MOST_CONDITION,
     NEWTON_TOLERANCE,
-    PATIENCE,
     POSITION_TOLERANCE,
     RTOL,
     VELOCITY_TOLERANCE,
@@ -152,7 +151,6 @@ def set_control(
     control[EXACTNESS] = min(1.0, max(1e-3, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     control[MAX_INNER] = 12.0
-    control[PATIENCE] = float(fixed)
     control[LINEAR] = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
     control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

@@ -59,9 +59,8 @@ STAGE_BETA = 10
 OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, for formulas that solve coupled stages themselves
 MOST_CONDITION = 12  # growth of the condition of the constraints beyond which a position counts as nearly singular
 EXACTNESS = 13  # at most 1: how much more exactly than they must the constraints are solved, if rounding allows it
-PATIENCE = 14  # 1: steps are fixed, so that one that fails is tried once more from another guess
-LINEAR = 15  # 1: the equations are linear, so that one iteration with their own matrices solves them
-CONTROL_SIZE = 16
+LINEAR = 14  # 1: the equations are linear, so that one iteration with their own matrices solves them
+CONTROL_SIZE = 15
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
