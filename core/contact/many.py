@@ -39,6 +39,10 @@ RANK = 1e-13
 """Singular values below this part of the largest are zero."""
 PSEUDO = 1e-10
 """The same of the block of friction that sticks."""
+NONE = 1e-12
+"""Of the largest force: below it there is none."""
+SAME = 1e-11
+"""The same of normals that repeat one another."""
 
 
 def shared(along: Vector, limit: Vector, wanted: Vector) -> Vector:
@@ -199,37 +203,51 @@ class _Problem:
     def basic(self, normal: Vector, friction: Vector) -> tuple[Vector, Vector] | None:
         """Of the forces that make the same motion those that stand on no more contacts than it takes, with the least
         share of what friction allows; None if there are none."""
-        # importing scipy costs more than most runs: only who needs it pays
-        from scipy.optimize import nnls
-
         w_n, w_t = self.motion(normal, friction)
         presses = np.abs(w_n) <= AT_REST * self.size
         free = self.free & presses
         sticks = free & (np.abs(w_t) <= AT_REST * self.size)
         ratio = np.where(free, -np.sign(w_t), -self.direction) * np.where(sticks, 0.0, self.mu)
-        some, stuck = np.flatnonzero(presses), np.flatnonzero(sticks)
-        friction = ratio * self.base
-        w_n, w_t = self.motion(self.base, friction)
+        some, stuck = np.flatnonzero(presses & (normal > self.base)), np.flatnonzero(sticks)
         along = self.tt[np.ix_(stuck, stuck)]
-        across = self.nt[np.ix_(some, stuck)] @ np.linalg.pinv(along, rcond=PSEUDO, hermitian=True)
-        coupled = (self.nt.T[stuck] + self.tt[stuck] * ratio)[:, some]
-        matrix = (self.nn[some] + self.nt[some] * ratio)[:, some] - across @ coupled
-        try:
-            more, _ = nnls(matrix, across @ w_t[stuck] - w_n[some])
-        except RuntimeError:
-            return None
-        normal = self.base.copy()
-        normal[some] += more
+        across = self.nt[:, stuck] @ np.linalg.pinv(along, rcond=PSEUDO, hermitian=True)
+        # with the friction that follows: of sliding contacts their part, of sticking ones what holds them
+        matrix = self.nn + self.nt * ratio - across @ (self.nt.T[stuck] + self.tt[stuck] * ratio)
+        normal = np.where(presses, np.maximum(normal, self.base), self.base)
+        normal[some] = self.base[some] + _on_few(matrix[np.ix_(presses, some)], normal[some] - self.base[some])
         # the same contacts, free of the rounding that finding them has left
         loaded = normal > self.base
         start = ratio * normal
         normal, _ = self.solved(loaded, sticks & loaded, np.where(sticks, 0.0, ratio), normal, start)
-        if np.any(normal < self.base):
+        if np.any(normal < self.base - NONE * np.max(normal)):
             return None
+        normal = np.maximum(normal, self.base)
         friction = ratio * normal
         _, w_t = self.motion(normal, friction)
         friction[stuck] = shared(along, self.mu[stuck] * normal[stuck], -w_t[stuck])
         return normal, friction
+
+
+def _on_few(matrix: Vector, forces: Vector) -> Vector:
+    """Positive `forces` that make the same motion with no more contacts than it takes: as long as columns of the
+    matrix depend on one another, the forces are moved along that until one of them is zero."""
+    if len(forces) == 0:
+        return forces
+    _, values, rows = np.linalg.svd(matrix)
+    same = rows[int(np.sum(values > SAME * values[0])) :]
+    forces, left = forces.copy(), np.arange(len(forces))
+    for _ in range(len(same)):
+        # the one that ends first on the way along a direction; of all directions, that with the largest part there
+        reach = forces[left] / np.maximum(np.abs(same), 1e-300)
+        ends = np.argmin(reach, axis=1)
+        k = int(np.argmax(np.abs(same[np.arange(len(same)), ends]) / np.max(np.abs(same), axis=1)))
+        i = int(ends[k])
+        step = forces[left[i]] / same[k, i]
+        forces[left] = np.maximum(forces[left] - step * same[k], 0.0)
+        forces[left[i]] = 0.0
+        rest = np.delete(same - np.outer(same[:, i] / same[k, i], same[k]), k, axis=0)
+        same, left = np.delete(rest, i, axis=1), np.delete(left, i)
+    return forces
 
 
 def _solve(matrix: Vector, wanted: Vector, regular: bool) -> Vector:
