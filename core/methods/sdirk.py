@@ -141,7 +141,7 @@ def _in_unequal_parts(ws: Any, t: float, h: float) -> int:
 @internal
 def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
     """One grid step in as many equal parts as keep the embedded error of each below one: starting values that
-    do not spoil the order of a fixed-step multistep method. Where that takes very many parts, something jumps inside."""
+    do not spoil the order of a fixed-step multistep method. Where that takes very many, something jumps inside."""
     parts = 1
     while True:
         base_from_row(ws, ms)
