@@ -254,5 +254,5 @@ def _solve(matrix: Vector, wanted: Vector, regular: bool) -> Vector:
     """The least solution; a `regular` matrix may still be singular where friction makes contacts jam."""
     if regular:
         with suppress(np.linalg.LinAlgError):
-            return np.linalg.solve(matrix, wanted)
-    return np.linalg.lstsq(matrix, wanted, rcond=RANK)[0]
+            return np.asarray(np.linalg.solve(matrix, wanted), dtype=np.float64)
+    return np.asarray(np.linalg.lstsq(matrix, wanted, rcond=RANK)[0], dtype=np.float64)
