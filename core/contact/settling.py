@@ -19,6 +19,8 @@ NEAR_ZERO = 1e-6
 UNRESOLVED = 1e-12
 """Of the largest coordinate (or of 1 m): bounces that are lower than this are not told from rest. Shapes touch where
 their gap is below this, and closing one contact may move the gap of another by as much."""
+BRAKED = 1e-9
+"""Of the largest acceleration: what slides with no speed and is braked by less begins to slide, it does not stop."""
 AT_LIMIT = 1e-9
 """Friction within this part of its limit has reached it."""
 
@@ -78,6 +80,7 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
     leaves, stops, slips = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool), np.zeros(count)
     no_force, rounding = sim.no_force(), sim.rate_rounding()
     strongest, fastest = (max(1.0, float(np.max(np.abs(arrays[name]), initial=0.0))) for name in ("lam", "v"))
+    braked = BRAKED * float(np.max(np.abs(arrays["a"][: sim.assembly.n]), initial=0.0))
     for i, k in enumerate(contacts):
         contact = sim.assembly.contacts[k]
         if was[i] != CLOSED:
@@ -85,7 +88,7 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
         if contact.coulomb is not None and abs(slid[i]) == 1.0:
             rate, acceleration = (float(arrays[level][contact.slide_row]) for level in ("phid", "phidd"))
             # what moves with another that stops does so at the same time
-            stops[i] = abs(rate) <= rounding and slid[i] * acceleration < 0.0
+            stops[i] = abs(rate) <= rounding and slid[i] * acceleration < -braked
         if k not in pending:
             continue
         force, coulomb = -float(arrays["lam"][contact.row]), contact.coulomb
