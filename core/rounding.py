@@ -9,9 +9,9 @@ where these scales come from.
 
 # ---- constraints ----------------------------------------------------------------------------------------------------
 
-CONSTRAINT_TOLERANCES = (1e-13, 1e-13, 1e-13)
+CONSTRAINT_TOLERANCES = (1e-13, 1e-14, 1e-13)
 """Of a row at position, velocity and acceleration level: a thousand roundings, what some terms with lever arms of ten
-times the mechanism's size still meet."""
+times the mechanism's size still meet. Velocities are solved for once the positions are met: they come out finer."""
 ANGLES = 0.1
 """What an angle counts in the level of the coordinates: most turn arms much shorter than the mechanism, and where they
 do not, there are translations that go as far. A tenth of CONSTRAINT_TOLERANCES is still above what rounding leaves."""

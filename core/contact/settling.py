@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+BRAKED = 1e-9
+"""Of the largest acceleration: what slides with no speed and is braked by less begins to slide, it does not stop."""
 AT_LIMIT = 1e-9
 """Friction within this part of its limit has reached it."""
 
@@ -76,6 +78,8 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
     leaves, stops, slips = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool), np.zeros(count)
     no_force, rounding = sim.no_force(contacts), sim.rate_rounding(contacts)
     strongest, fastest = sim.force_size(contacts), sim.rate_size(contacts)
+    scale = sim.assembly.coordinate_scale
+    braked = BRAKED * float(np.max(np.abs(arrays["a"][: sim.assembly.n]) / scale, initial=0.0))
     for i, k in enumerate(contacts):
         contact = sim.assembly.contacts[k]
         if was[i] != CLOSED:
@@ -83,7 +87,8 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
         if contact.coulomb is not None and abs(slid[i]) == 1.0:
             rate, acceleration = (float(arrays[level][contact.slide_row]) for level in ("phid", "phidd"))
             # what moves with another that stops does so at the same time
-            stops[i] = abs(rate) <= rounding[i] and slid[i] * acceleration < 0.0
+            slow = braked * float(arrays["row_scale"][contact.slide_row])
+            stops[i] = abs(rate) <= rounding[i] and slid[i] * acceleration < -slow
         if k not in pending:
             continue
         force, coulomb = -float(arrays["lam"][contact.row]), contact.coulomb

@@ -293,7 +293,7 @@ def _locate_first(sim: "Simulation") -> None:
     h = float(sim.clock[TRIAL_STEP])
     found: dict[int, float] = {}
     safe: dict[int, float] = {}
-    step = h
+    step, least = h, NO_STEP * abs(sim.t_internal)
     while find_events(ws, ms, lc, step, True):
         late = [int(k) for k in np.flatnonzero(sim.brackets[:, HAPPENS]) if k not in found and k not in safe]
         if not late:
@@ -302,7 +302,13 @@ def _locate_first(sim: "Simulation") -> None:
         ends = {k: (sim.gap(k), *(step * sim.brackets[k, :HAPPENS])) for k in late}
         for k in late:
             size, happens = _event_step(sim, k, step, ends[k])
-            (found if happens else safe)[k] = size
+            # where the motion has none up to next to no time, what was seen is rounding
+            (found if happens else safe)[k] = size if happens or size > least else step
+        if sim.formula.exact and any(size <= least for size in found.values()):
+            # no time lies between: a step to there would be none
+            recall(ws, ms, 0)
+            sim.pending = [k for k in found if found[k] <= least]
+            return
         first = min(step, *found.values(), *safe.values())
         if not sim.formula.exact and first <= AT_ONCE * h:
             recall(ws, ms, 0)

@@ -115,6 +115,9 @@ class ContactSide:
         try:
             touching = Touching(self, [k], frozenset(int(j) for j in others if j != k))
             motion, jerks = touching.free_accelerations()[0], touching.free_jerks()
+        except SimulationError:
+            # the others hold it, with the friction of those that slide: which of them stay is for all to settle
+            return False
         finally:
             self.memory[k] = before
             self.use_modes()

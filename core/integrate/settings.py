@@ -22,7 +22,6 @@ from ..system.records import (
     MAX_INNER,
     MOST_CONDITION,
     NEWTON_TOLERANCE,
-    PATIENCE,
     POSITION_TOLERANCE,
     RTOL,
     VELOCITY_TOLERANCE,
@@ -119,8 +118,9 @@ def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
 SPEEDS = 0.1
 """Of the speeds that the model's time makes of its lengths: what its default tolerances are a part of. That time is
 that of the fastest of its motions and forces, and most of what moves is slower."""
-DEFAULT_NEWTON_TOLERANCE = 2e-10
-"""Of runs with fixed steps, likewise a part; what rounding leaves in stiff bodies is not far below."""
+DEFAULT_NEWTON_TOLERANCE = 1e-10
+"""Of runs with fixed steps: a part of the lengths, and of all the speeds that the model's time makes of them, since
+what rounding leaves in stiff bodies is not far below."""
 
 
 def set_control(
@@ -143,7 +143,7 @@ def set_control(
         control[NEWTON_TOLERANCE] = 1.0
         given = settings.newton_tolerance is not None
         arrays["atol_q"][:n] = tolerance * (np.ones(n) if given else size_q)
-        arrays["atol_v"][:n] = tolerance * (np.ones(n) if given else size_v)
+        arrays["atol_v"][:n] = tolerance * (np.ones(n) if given else np.where(internal, size_v, size_v / SPEEDS))
     else:
         control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
@@ -166,7 +166,6 @@ def set_control(
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
     control[MAX_INNER] = 13.0
-    control[PATIENCE] = float(fixed)
     control[LINEAR] = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
     control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

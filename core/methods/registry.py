@@ -51,7 +51,7 @@ def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: t
 
 # errors of the stages of one-step formulas add up over many more steps than those of multistep ones, and nothing
 # smooths their forces
-FINE = 5e-4
+FINE = 1e-3
 
 
 def _irk(name: str) -> Formula:

@@ -61,12 +61,11 @@ STAGE_BETA = 10
 OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, for formulas that solve coupled stages themselves
 MOST_CONDITION = 12  # growth of the condition of the constraints beyond which a position counts as nearly singular
 EXACTNESS = 13  # at most 1: how much more exactly than they must the constraints are solved, if rounding allows it
-PATIENCE = 14  # 1: steps are fixed, so that one that fails is tried once more from another guess
-LINEAR = 15  # 1: the equations are linear, so that one iteration with their own matrices solves them
-RATE_SCALE = 16  # inverse of the model's own time, 1/s
-ENERGY_SCALE = 17  # work of its forces along its lengths, J
-STIFFNESS_SCALE = 18  # square of the rate of its fastest vibration, 1/s^2
-CONTROL_SIZE = 19
+LINEAR = 14  # 1: the equations are linear, so that one iteration with their own matrices solves them
+RATE_SCALE = 15  # inverse of the model's own time, 1/s
+ENERGY_SCALE = 16  # work of its forces along its lengths, J
+STIFFNESS_SCALE = 17  # square of the rate of its fastest vibration, 1/s^2
+CONTROL_SIZE = 18
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
