@@ -22,8 +22,8 @@ FIRST, LAST = 0.1, 1e-8
 """Part of its own inverse mass by which each contact gives way, at first and at last."""
 LOWER, LOWER_AT_LEAST = 0.03, 0.5
 """Factor from one part to the next; where Newton's method fails, its root is tried, but nothing above the second."""
-ITERATIONS, SWEEPS = 60, 8
-"""Of Newton's method; and sweeps where it goes in a circle, each time twice as many."""
+ITERATIONS, SWEEPS, MOST_SWEEPS = 60, 8, 1024
+"""Of Newton's method; and sweeps where it goes in a circle, each time twice as many, but not more at once."""
 CONVERGED = 1e-12
 """Of the largest motion: what is left of the conditions is rounding."""
 NEAR = 1e-7
@@ -143,7 +143,7 @@ class _Problem:
                 if swept is None:
                     break
                 normal, friction = swept
-                count *= 2
+                count = min(2 * count, MOST_SWEEPS)
             else:
                 seen.add(key)
                 normal = np.where(presses, 0.0, self.base)

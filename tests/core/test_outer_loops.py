@@ -110,8 +110,10 @@ class TestFallBack:
         """Without falling back the steps stay below the limit of the fixed point."""
         omega = 1e4
         system = oscillator(omega**2)
-        slow = simulate(system, 0.02, "hht", 1e-2, 1e-2, outer="simple", alpha=-0.3)
-        quick = simulate(system, 0.02, "hht", 1e-2, 1e-2, outer="simple", alpha=-0.3, fallback=True)
+        # of positions alone: the velocities of a vibration that has been resolved would hold the steps in either
+        atol = {"length": 1e-2, "speed": 1e3}
+        slow = simulate(system, 0.02, "hht", 1e-2, atol, outer="simple", alpha=-0.3)
+        quick = simulate(system, 0.02, "hht", 1e-2, atol, outer="simple", alpha=-0.3, fallback=True)
         assert np.diff(slow.t).max() < 3.0 / omega < np.diff(quick.t).max()
         assert len(quick.fallbacks) == 1
 
