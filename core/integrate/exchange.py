@@ -39,21 +39,21 @@ from ..system.records import (
 )
 from . import advance
 from .dense_output import query
+from .drive import drive_on, loop_at, method_at, workspace_at
 from .inputs import PUNCTUAL
-from .loop import run
 from .near_singular import STRAINED
 from .records import (
     ACCELERATIONS_SIGNATURE,
-    BREAK_TIME,
-    CHUNK,
-    CLOCK_SIZE,
-    LOOP_TYPE,
-    NO_STEP,
+    BUDGET,
+    COUNTS_SIZE,
+    DRIVE_TYPE,
+    GOALS_SIZE,
+    HANDLED,
+    LAST_STOP,
     REACHED,
-    STOP_TIME,
-    TARGET_TIME,
     call_accelerations,
 )
+from .records import GOAL as GOAL_TIME
 from .sample import write_sample
 from .watch import remember
 
@@ -65,10 +65,11 @@ EXCHANGE = np.dtype(
         (name, np.int64)
         for name in (
             "workspace", "method", "loop",                         # addresses of the records
-            "query", "accelerations", "run",                       # addresses of functions
+            "drive",                                               # and of that of `drive`
+            "query", "accelerations",                              # addresses of functions
             "times",                                               # (TIMES_SIZE,) float64
             "inputs", "before", "n_inputs",                        # wanted; (n_inputs, INPUT_SIZE): what they were
-            "breakpoints", "n_breakpoints", "chunk", "read",
+            "chunk", "read",
             "sample", "sample_length", "channels", "n_channels",   # one row, and what it gives
             "places", "summed", "n_sums", "number", "column", "signs", "n_terms", "flags", "flag_columns", "n_flags",
             "balance",
@@ -81,7 +82,7 @@ NOW = 0
 GOAL = 1
 LAST_CHANGE, INTERVAL = 2, 3  # of inputs
 INITIAL_ENERGY = 4  # J
-FIRST_STEP = 5  # steps made before
+FIRST_STEP = 5  # steps made, and instants with events, before
 TIMES_SIZE = 6
 
 # what `exchange` returns, besides what `run` does
@@ -92,9 +93,8 @@ ARRIVED = 201
 READ = 202
 
 QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
-RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)
-call_query, call_run = map(caller, (QUERY_SIGNATURE, RUN_SIGNATURE))
-workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
+call_query = caller(QUERY_SIGNATURE)
+drive_at = record_view(DRIVE_TYPE)
 
 
 @internal
@@ -159,34 +159,6 @@ def _stop(times: Any) -> float:
 
 
 @internal
-def _advance(ex: Any, ws: Any, ms: Any, lc: Any) -> int:
-    """`advance_to` as long as nothing happens: REACHED, what else `run` returned, CHUNK where a breakpoint is due."""
-    times, clock = vec(ex.times, TIMES_SIZE), vec(lc.clock, CLOCK_SIZE)
-    breakpoints = vec(ex.breakpoints, ex.n_breakpoints)
-    times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS]
-    goal, stop = times[GOAL], _stop(times)
-    while True:
-        now = history_time(ms, 0)
-        if now >= goal:
-            return REACHED
-        ahead = np.inf
-        for i in range(ex.n_breakpoints):
-            if now < breakpoints[i] < ahead:
-                ahead = breakpoints[i]
-        last = np.nextafter(ahead, -np.inf)
-        if last - now <= NO_STEP * abs(now):
-            return CHUNK
-        if goal - now <= NO_STEP * abs(goal):
-            return REACHED
-        clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(stop, last), goal
-        if clock[STOP_TIME] - now <= NO_STEP * abs(now):
-            return REACHED
-        code = call_run(ex.run, ws, ms, lc, ex.chunk)
-        if code != REACHED:
-            return code
-
-
-@internal
 def _near_singular(ws: Any, ms: Any, t: float) -> bool:
     """`strained` at time t."""
     rate = vec(ws.rate, RATE_SIZE)
@@ -234,7 +206,11 @@ def exchange(ex: Any) -> int:
     changes = _input_changes(ex, ws)
     if changes < 0 or (changes > 0 and not _change_inputs(ex, ws, ms, lc)):
         return DECLINED
-    code = _advance(ex, ws, ms, lc)
+    dr, times = drive_at(ex.drive), vec(ex.times, TIMES_SIZE)
+    goals, counts = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE)
+    goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[GOAL], _stop(times), ex.chunk
+    times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]
+    code = drive_on(dr, ws, ms, lc, False)
     if code != REACHED:
         return code
     return READ if ex.read != 0 and _read(ex, ws, ms) else ARRIVED
@@ -254,14 +230,13 @@ class Exchange:
             EXCHANGE,
             {
                 "times": self.times, "inputs": self.wanted, "before": np.zeros((inputs, INPUT_SIZE)),
-                "breakpoints": np.array(assembly.breakpoints, dtype=np.float64),
                 "sample": self.sample, "channels": self.channels, **formulas,
             },
             {
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": loop.address,
-                "query": address_of(query, QUERY_SIGNATURE), "run": address_of(run, RUN_SIGNATURE),
+                "drive": sim.drive.address, "query": address_of(query, QUERY_SIGNATURE),
                 "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
-                "n_inputs": inputs, "n_breakpoints": len(assembly.breakpoints), "chunk": chunk, "read": 0,
+                "n_inputs": inputs, "chunk": chunk, "read": 0,
                 "sample_length": length, "n_channels": channels, "n_sums": len(formulas["summed"]),
                 "n_terms": len(formulas["number"]), "n_flags": len(formulas["flags"]), "balance": table.balance,
             },
@@ -280,7 +255,7 @@ class Exchange:
 def possible(sim: "Simulation") -> bool:
     """Whether steps of this run can be made in one crossing at all."""
     recorded = sim._loop.table["capacity"][0] or sim._loop.table["log_capacity"][0]
-    return isinstance(sim.system, Model) and not (sim.assembly.motions or recorded)
+    return isinstance(sim.system, Model) and sim.compiled_events and not (sim.assembly.motions or recorded)
 
 
 def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: bool) -> NDArray[np.float64] | None:
@@ -299,10 +274,11 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     if code == DECLINED:
         _at_length(sim, inputs, t)
         return None
+    sim.take_events()
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
     if code < DECLINED:
-        sim.go_on(t, int(clock[FIRST_STEP]) + sim.events_handled, code)
+        sim.go_on(t, int(clock[FIRST_STEP]), code)
     sim.t = float(t)
     if code != READ:
         return None

@@ -24,8 +24,9 @@ from ..system.evaluate import constraint_norm, evaluate_energy, evaluate_power, 
 from ..system.projection import least_correction
 from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
 from .dense_output import interpolate, query
-from .loop import accept, run, set_weights_at, trial_step, violates_redundant
-from .records import FIND_EVENTS_SIGNATURE, LOOP_TYPE
+from .drive import drive, settle_now
+from .loop import accept, set_weights_at, trial_step, violates_redundant
+from .records import DRIVE_TYPE, FIND_EVENTS_SIGNATURE, LOOP_TYPE
 from .sample import write_sample
 from .watch import find_events, friction_margin, remember
 
@@ -37,7 +38,8 @@ _REAL, _WHOLE = types.float64, types.int64
 _VECTOR = types.Array(_REAL, 1, "C")
 
 _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
-    (run, (_WORKSPACE, _METHOD, _LOOP, _WHOLE)),
+    (drive, (DRIVE_TYPE, types.boolean)),
+    (settle_now, (DRIVE_TYPE,)),
     (query, (_WORKSPACE, _METHOD, _REAL)),
     (interpolate, (_WORKSPACE, _METHOD, _REAL)),
     (write_sample, (_WORKSPACE, _VECTOR)),
