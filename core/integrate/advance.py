@@ -39,6 +39,7 @@ from .records import (
     EVENT,
     FIXED_STEP,
     FULL,
+    JAM,
     NEAR_SINGULAR,
     NO_STEP,
     REACHED,
@@ -92,7 +93,6 @@ def advance_to(
     first, code = (step_count(sim), None) if came is None else came
     repaired_at = math.nan
     chunk = steps_at_once(sim.assembly.n)
-    sliding: list[int] = []
     while True:
         now = sim.t_internal
         if code is None:
@@ -101,15 +101,11 @@ def advance_to(
                     return
                 sim._handle_pending()
                 continue
-            # while a contact slides, each step is looked at
-            sliding = sliding_contacts(sim)
-            left = 1 if sliding else min(chunk, steps_left(sim, first, t))
+            left = min(chunk, steps_left(sim, first, t))
             code = sim.drive.go(t, stop, left, hold or not sim.compiled_events)
             sim.take_events()
         returned, code = code, None
         sim.flush()
-        if sliding and returned == CHUNK and sim.t_internal > now:
-            refuse_passed_jam(sim, sliding)
         if returned in (CHUNK, FULL):
             sim.report_progress(sim.t_internal)
         elif returned == REACHED:
@@ -121,6 +117,8 @@ def advance_to(
             sim.pending = sim.drive.take_pending()
         elif returned == UNLOCATED:
             _locate_again(sim)
+        elif returned == JAM:
+            refuse_passed_jam(sim, sliding_contacts(sim))
         elif returned == REPARTITION:
             repair(sim)
         elif returned in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":

@@ -43,6 +43,7 @@ from .records import (
     GOALS_SIZE,
     HANDLED,
     HANDLED_AT,
+    JAM,
     LAST_STOP,
     LOOP_TYPE,
     NO_STEP,
@@ -58,6 +59,7 @@ from .records import (
 )
 from .sample import write_sample
 from .search import locate
+from .sliding import any_slides, may_have_jammed
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -99,7 +101,13 @@ def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
         left = last - steps[STEPS] - counts[HANDLED]
         if left <= 0:
             return CHUNK
-        code = call_run(dr.run, ws, ms, lc, left)
+        # while a contact slides, each step is looked at
+        sliding, before = any_slides(ws), history_time(ms, 0)
+        code = call_run(dr.run, ws, ms, lc, 1 if sliding else left)
+        if code == CHUNK and sliding:
+            if history_time(ms, 0) > before and may_have_jammed(ws):
+                return JAM
+            continue
         if code == REACHED:
             continue
         if code != EVENT:

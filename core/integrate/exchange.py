@@ -1,8 +1,8 @@
 """Inputs in, time on, channels out, in one crossing into compiled code: what a slave does at every step.
 
 Whoever calls `set_inputs`, `advance` and `values` crosses a dozen times, with Python between that takes as long as the
-solver. Here stands the way that almost every step goes: no contact is closed, nothing happens at events. Where a run
-leaves it, Python goes on from there; where it cannot go it, nothing has happened.
+solver. Here stands the way that almost every step goes (`drive.py`). Where a run leaves it, Python goes on from there;
+where it cannot go it, nothing has happened.
 """
 
 import math
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of, caller, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
+from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..description import Model
 from ..errors import ModelError
 from ..methods.history import bridge_rows, history_time, recall, restart
@@ -55,7 +55,7 @@ from .records import (
 )
 from .records import GOAL as GOAL_TIME
 from .sample import write_sample
-from .watch import remember
+from .watch import no_force, remember
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -111,6 +111,23 @@ def _input_changes(ex: Any, ws: Any) -> int:
 
 
 @internal
+def _unsettled(ws: Any) -> bool:
+    """True if the mode of a closed contact may not fit the forces at the current point (`ContactSide.unsettled`)."""
+    memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
+    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
+    none, static = no_force(ws), vec(ws.contact_sticking, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if memory[k, MODE] != CLOSED:
+            continue
+        force = -lam[rows[k]]
+        if force < -none:
+            return True
+        if slides[k] >= 0 and memory[k, SLIDE] == STICKS and abs(lam[slides[k]]) > static[k] * force + none:
+            return True
+    return False
+
+
+@internal
 def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any) -> bool:
     """Let the inputs take the values that are wanted, and start anew from now, as `restart_here` does; False, with the
     inputs as they were, if that takes more."""
@@ -131,7 +148,7 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any) -> bool:
         vec(ws.t, 1)[0] = t
     if status == OK:
         status = call_accelerations(ex.accelerations, ws)
-    if status != OK:
+    if status != OK or _unsettled(ws):
         for k in range(n):
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]
@@ -199,10 +216,6 @@ def _read(ex: Any, ws: Any, ms: Any) -> bool:
 def exchange(ex: Any) -> int:
     """Set the inputs, go to the goal, read the channels."""
     ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
-    for k in range(ws.n_contacts):
-        if memory[k, MODE] == CLOSED:
-            return DECLINED
     changes = _input_changes(ex, ws)
     if changes < 0 or (changes > 0 and not _change_inputs(ex, ws, ms, lc)):
         return DECLINED

@@ -85,6 +85,7 @@ VIOLATED = 107
 UNLOCATED = 108  # events have been found whose times Python has to locate
 DUE = 109  # a breakpoint is due
 SETTLE = 110  # pending events are for Python to settle
+JAM = 111  # a sliding contact may have jammed
 
 DRIVE = np.dtype(
     [

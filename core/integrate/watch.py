@@ -58,7 +58,7 @@ def friction_margin(ws: Any, k: int) -> float:
 
 
 @internal
-def _no_force(ws: Any) -> float:
+def no_force(ws: Any) -> float:
     """Rounding of the multipliers, N."""
     lam, largest = vec(ws.lam, ws.m_ext), 1.0
     for i in range(ws.m_ext - 1):
@@ -137,7 +137,7 @@ def find_events(ws: Any, ms: Any, lc: Any, h: float, everyone: bool) -> bool:
     if ws.n_contacts == 0:
         return False
     set_travel(ws, ms, lc, h)
-    brackets, found, none = mat(lc.brackets, ws.n_contacts, BRACKET), False, _no_force(ws)
+    brackets, found, none = mat(lc.brackets, ws.n_contacts, BRACKET), False, no_force(ws)
     for k in range(ws.n_contacts):
         inside = _event_inside(ws, ms, lc, k, h, none)
         if inside and not everyone:
