@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, vec
-from ..contact.laws import ForceLaw, NewtonImpact, PoissonImpact
+from ..contact.laws import ForceLaw, ImpactLaw, NewtonImpact, PoissonImpact
 from ..contact.progress import Progress
 from ..events import Event
 from ..methods.history import history_time
@@ -128,6 +128,12 @@ def drive(dr: Any, hold: bool) -> int:
 
 
 @compiled
+def aim_now(dr: Any) -> int:
+    """`_aim`, for Python."""
+    return _aim(dr, method_at(dr.method), loop_at(dr.loop))
+
+
+@compiled
 def settle_now(dr: Any) -> bool:
     """`settle`, for Python."""
     return settle(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
@@ -158,15 +164,15 @@ class Drive:
         self.goals[HANDLED_AT] = np.nan
         self.pending = np.zeros(count, dtype=np.int64)
         self.events = np.zeros((EVENT_ROWS if contacts else 1, EVENT_SIZE))
-        laws: list[Any] = [c.law for c in contacts]
+        impacts = [c.law if isinstance(c.law, ImpactLaw) else None for c in contacts]
         self._record = ArrayRecord(
             DRIVE,
             {
                 "goals": self.goals, "counts": self.counts, "guard": guard.numbers, "pending": self.pending,
                 "breakpoints": np.array(assembly.breakpoints, dtype=np.float64),
                 "law": np.array([_law(assembly, k, c) for k, c in enumerate(contacts)], dtype=np.int64),
-                "restitution": np.array([getattr(law, "restitution", 0.0) for law in laws]),
-                "rest_ratio": np.array([getattr(law, "rest_ratio", 0.0) for law in laws]),
+                "restitution": np.array([law.restitution if law else 0.0 for law in impacts]),
+                "rest_ratio": np.array([law.rest_ratio if law else 0.0 for law in impacts]),
                 "friction": np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in contacts]),
                 "found": np.zeros((count, FOUND_SIZE)), "events": self.events, "last_trial": np.zeros(1),
                 **{name: np.zeros(n_ext) for name in ("velocities", "gradient", "response", "sideways")},
@@ -192,6 +198,11 @@ class Drive:
         """`drive` to `t` (s); no step goes beyond `stop`."""
         self.goals[GOAL], self.goals[LAST_STOP], self.counts[BUDGET] = t, stop, budget
         return int(drive(self._record.record, hold))
+
+    def aim(self, t: float, stop: float) -> None:
+        """Set the clock of the loop for the way to `t` (s); no step goes beyond `stop`."""
+        self.goals[GOAL], self.goals[LAST_STOP] = t, stop
+        aim_now(self._record.record)
 
     def settle(self, pending: list[int]) -> bool:
         """Let the events of the contacts `pending` happen at the newest row, if they are of the kind that compiled code

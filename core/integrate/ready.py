@@ -25,7 +25,7 @@ from ..system.evaluate import constraint_norm, evaluate_energy, evaluate_power, 
 from ..system.projection import least_correction
 from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
 from .dense_output import interpolate, query
-from .drive import drive, settle_now
+from .drive import aim_now, drive, settle_now
 from .loop import accept, set_weights_at, trial_step, violates_redundant
 from .records import DRIVE_TYPE, FIND_EVENTS_SIGNATURE, LOOP_TYPE
 from .sample import write_sample
@@ -41,6 +41,7 @@ _VECTOR = types.Array(_REAL, 1, "C")
 _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (drive, (DRIVE_TYPE, types.boolean)),
     (settle_now, (DRIVE_TYPE,)),
+    (aim_now, (DRIVE_TYPE,)),
     (query, (_WORKSPACE, _METHOD, _REAL)),
     (interpolate, (_WORKSPACE, _METHOD, _REAL)),
     (write_sample, (_WORKSPACE, _VECTOR)),

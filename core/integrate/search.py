@@ -11,7 +11,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, SLIDE
-from ..methods.history import history_time, recall
+from ..methods.history import recall
 from ..stage.inner import rounding_level
 from ..system.records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
 from .locate import JUMP, MAX_TRIALS
@@ -151,7 +151,7 @@ def _by_rate(
     """(status, size, found) of the step that ends at a root of the gap, by Newton's method from the dense output's: two
     or three trials where the gap crosses zero plainly. Not found: where it does not, or not between `low` and `high`.
     """
-    row, x, t = ivec(ws.contact_rows, ws.n_contacts)[k], guess, abs(history_time(ms, 0))
+    row, x = ivec(ws.contact_rows, ws.n_contacts)[k], guess
     for _ in range(MOST_NEWTON):
         status, g = _value(dr, ws, ms, lc, k, GAP, sign, 0.0, x, full)
         if status != OK:
@@ -162,10 +162,11 @@ def _by_rate(
         if not rate < 0.0:
             return OK, x, False
         change = -g / rate
-        if abs(change) <= 4e-16 * (t + x):
+        # of the step, not of the time: the state is as exact as the former
+        if abs(change) <= 4e-16 * x:
             if g < 0.0:
                 # the side past the event would be found again as a crossing: end on the safe one
-                x += change - 4e-16 * (t + x)
+                x += change - 4e-16 * x
             return make_trial(dr, ws, ms, lc, x, full), x, True
         x += change
         if not low < x < high:
