@@ -108,20 +108,17 @@ def drive_fmu(fmu: Path, unzipped: Path, times: NDArray[np.float64]) -> Columns:
     Failure : if a call fails, with the FMU's own message.
     """
     import fmpy
-    from fmpy.simulation import instantiate_fmu
+
+    from ..fmu_wrapper.master.listening import instantiate
 
     description = fmpy.read_model_description(str(fmu))
     fmpy.extract(str(fmu), unzipdir=str(unzipped))
     messages: list[str] = []
-
-    def listen(*arguments: Any) -> None:
-        messages.append(arguments[-1].decode(errors="replace"))  # the message comes last in both versions
-
     getters = GETTERS[description.fmiVersion]
     outputs = [v for v in description.modelVariables if v.causality == "output" and v.type in getters]
     experiment = {"startTime": float(times[0]), "stopTime": float(times[-1])}
     try:
-        instance = instantiate_fmu(str(unzipped), description, "CoSimulation", logger=listen)
+        instance = instantiate(str(unzipped), description, messages.append)
         try:
             if description.fmiVersion == "2.0":
                 instance.setupExperiment(**experiment)

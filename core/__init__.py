@@ -83,6 +83,7 @@ from .result import Result
 from .simulate import simulate
 from .state import State
 from .system.redundancy import RedundantRow
+from .tolerances import OfScales
 
 __all__ = [
     "METHODS",
@@ -142,6 +143,7 @@ __all__ = [
     "ModelError",
     "MovingFrame2D",
     "NewtonImpact",
+    "OfScales",
     "Parameter",
     "PointMass2D",
     "PoissonImpact",

@@ -12,6 +12,7 @@ from .compiled.watch import RunWatch
 from .errors import ModelError, SimulationError, TlismniError
 from .integrate.simulation import Simulation
 from .result import Result
+from .tolerances import DEFAULT_ATOL
 
 MOST_STEPS = 1e12
 """Fixed steps beyond this number are a slip of the pen: they would take days."""
@@ -22,7 +23,7 @@ def simulate(
     t_end: float,
     method: str = "ebdf",
     rtol: float = 1e-6,
-    atol: float | Mapping[str, float] = 1e-9,
+    atol: float | Mapping[str, float] = DEFAULT_ATOL,
     *,
     step: float | None = None,
     t_eval: ArrayLike | None = None,
@@ -38,7 +39,9 @@ def simulate(
     system : Model or EquationSystem.
     t_end : end time, s.
     method : one of `METHODS`, which describes them.
-    rtol, atol : tolerances of the error control, on coordinates and velocities; atol may be a mapping by kind.
+    rtol, atol : tolerances of the error control, on coordinates and velocities. atol's default, `OfScales(1e-9)`,
+        is a part of the model's own scales (`Simulation.scales`); a plain number counts as it stands, in the units of q
+        and v, and so do those of a mapping by kind ("length", "angle", "speed", "angular_speed").
     step : fixed step in s instead of error control.
     t_eval : times to record (ascending, within [t0, t_end]); left out: every step, and twice at impacts.
     record : False records only start and end (for timing); a number k records every k-th step, what happens at

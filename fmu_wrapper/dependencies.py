@@ -26,7 +26,7 @@ class Dependencies:
     def __init__(self, model: Model, table: VariableTable) -> None:
         self._model, self._table = model, table
         self._inputs = {v.name: v for v in table.block("input")}
-        self._parameters = table.block("parameter")
+        self._parameters = [v for v in table.of_role("parameter") if v.block != "solver"]
         tied = _groups(model, lambda e: bool(e.constraint_rows) or _is_impact_contact(e))
         connected = _groups(model, lambda e: True)
         self._felt: dict[str, set[str]] = {}

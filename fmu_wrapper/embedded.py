@@ -14,6 +14,7 @@ from .fmi2_calls import Fmi2Calls
 from .fmi3_calls import Fmi3Calls
 from .intermediate import UpdateCallback, Updates
 from .log import LogCallback
+from .origin import Origin
 from .slave import Slave
 from .slave_state import SlaveState
 from .variables import VariableTable
@@ -52,7 +53,7 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
     model = Model.load(Path(resources) / MODEL_FILE)
     try:
         table = VariableTable.from_data(data["variables"])
-        slave = Slave(model, variables=table, **data["solver"], **arguments)
+        slave = Slave(model, variables=table, origin=_origin(data.get("scenario")), **data["solver"], **arguments)
     except TlismniError:
         raise
     except (TypeError, ValueError, KeyError, AttributeError, IndexError, OverflowError) as error:
@@ -64,6 +65,20 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
         slave.log.write(Status.WARNING, logs.WARNING, text)
     slave.prepare()
     return slave
+
+
+def _origin(data: Any) -> Origin | None:
+    """The scenario that the FMU was exported from. Raises ExportError for what is none."""
+    if data is None:  # a model of its own, or an FMU of an earlier version
+        return None
+    name, given = (data.get("name"), data.get("parameters")) if isinstance(data, dict) else (None, None)
+    if isinstance(name, str) and isinstance(given, dict):
+        if all(isinstance(value, bool | int | float | str | None) for value in given.values()):
+            return Origin(name, given)
+    raise ExportError(
+        f"'scenario' in '{SETTINGS_FILE}' of the FMU's resources is {data!r:.60}, where a name and parameters are "
+        "needed; export the FMU anew"
+    )
 
 
 def _check_settings(data: Any) -> None:

@@ -108,7 +108,7 @@ def export_fmu(
     if solver_data["communication_step"] is None:
         solver_data["communication_step"] = recommended_step(simulation, slave.model, slave.settings.t_end)
     variables = with_nominals(slave.variables, slave.model, slave.settings, simulation)
-    slave = Slave(slave.model, variables=variables, **solver_data)
+    slave = Slave(slave.model, variables=variables, origin=slave.origin, **solver_data)
     identifier = c_identifier(slave.model.name)
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
@@ -124,6 +124,7 @@ def export_fmu(
         "tlismni": package_version(),
         "solver": solver_data,
         "variables": slave.variables.to_data(),
+        "scenario": None if slave.origin is None else slave.origin.to_data(),
     }
     archive, digest = package_archive() if bundle else (None, None)
     files = {

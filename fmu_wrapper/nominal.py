@@ -103,7 +103,13 @@ def rehearsal(model: Model, settings: Settings) -> dict[str, float]:
     options = {**settings.options, "record": True, "max_steps": max(100, min(MOST_STEPS, MOST_NUMBERS // width))}
     try:
         result = simulate(
-            model, settings.t_end, settings.method, settings.rtol, settings.atol, step=settings.step or None, **options
+            model,
+            settings.t_end,
+            settings.method,
+            settings.rtol,
+            settings.tolerance,
+            step=settings.step or None,
+            **options,
         )
     except SimulationError as error:
         logging.getLogger(__name__).debug("the rehearsal ends early: %s", error)

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +9,9 @@ import numpy.typing as npt
 
 from ..core.description import Model
 from .derivatives import check_finite
+from .effective import effective
 from .errors import FmuError
+from .origin import Origin
 from .settings import Settings
 from .values import Values
 from .variables import EVENTS, Variable, VariableTable
@@ -35,31 +36,11 @@ def build_simulation(factory: SimulationFactory | None, model: Model, settings: 
         model,
         method=settings.method,
         rtol=settings.rtol,
-        atol=settings.atol,
+        atol=settings.tolerance,
         step=settings.step or None,
         t0=t0,
         **{"max_steps": MAX_STEPS, **settings.options},
     )
-
-
-def effective(model: Model, settings: Settings, values: Values) -> tuple[Model, Settings]:
-    """Model and settings with the parameter values in `values` in place of the exported ones.
-
-    The options belong to the exported method: another method runs with its own defaults.
-
-    Raises
-    ------
-    ModelError : for a value that the model refuses.
-    """
-    table = values.table
-    parameters = {v.name: values[v] for v in table.block("parameter")}
-    changed = {name: value for name, value in parameters.items() if value != model.parameter_value(name)}
-    given: dict[str, Any] = {
-        v.name.removeprefix("solver."): v.item(values[v]) if v.items else values[v] for v in table.block("solver")
-    }
-    own = {name: given.pop(name) for name in ("method", "rtol", "atol", "step")}
-    options = {**settings.options, **given} if own["method"] == settings.method else {}
-    return (model.with_parameters(changed) if changed else model), replace(settings, options=options, **own)
 
 
 def as_slice(positions: list[int]) -> slice | npt.NDArray[np.intp]:
@@ -77,7 +58,8 @@ class StepEnd(NamedTuple):
 
 
 class Run:
-    """A simulation built for the parameter values in `values`.
+    """A simulation built for the parameter values in `values`. `following` are the values of parameters that follow
+    from others, by reference.
 
     Raises
     ------
@@ -86,15 +68,22 @@ class Run:
     """
 
     def __init__(
-        self, factory: SimulationFactory | None, model: Model, settings: Settings, values: Values, t0: float
+        self,
+        factory: SimulationFactory | None,
+        model: Model,
+        settings: Settings,
+        values: Values,
+        t0: float,
+        origin: Origin | None = None,
     ) -> None:
         self.key = self.key_of(values, t0)
         inputs = values.table.block("input")
         self._input_names = [v.name for v in inputs]
         self._applied: list[list[float]] = [[float(v.start or 0.0) for v in inputs]]
         self._events = values.table.position[values.table.by_name[EVENTS].reference]
-        changed_model, changed_settings = effective(model, settings, values)
-        self._simulation = build_simulation(factory, changed_model, changed_settings, t0)
+        found = effective(model, settings, values, origin)
+        self.following = found.following
+        self._simulation = build_simulation(factory, found.model, found.settings, t0)
         self._set_columns(values.table)
         self._exchange = getattr(self._simulation, "exchange", None)
         if self._exchange is not None:
@@ -104,7 +93,7 @@ class Run:
     def key_of(values: Values, t0: float) -> tuple[Any, ...]:
         """What a simulation is built from: equal keys can share a simulation."""
         table = values.table
-        return (t0, *(values[v] for v in (*table.block("solver"), *table.block("parameter"))))
+        return (t0, *(values[v] for v in table.of_role("parameter")))
 
     def _set_columns(self, table: VariableTable) -> None:
         column = {channel.name: i for i, channel in enumerate(self._simulation.channels)}

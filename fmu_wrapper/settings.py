@@ -7,6 +7,7 @@ from typing import Any
 
 from ..core.description import Model
 from ..core.equations.system import EquationSystem
+from ..core.tolerances import DEFAULT_ATOL
 from .errors import FmuValueError, SourceError
 
 OWN = ("method", "rtol", "atol", "step", "t_end", "communication_step")
@@ -19,7 +20,8 @@ class Settings:
     Attributes
     ----------
     method : integration method of `tlismni.core`.
-    rtol, atol : relative and absolute tolerance of the error control.
+    rtol, atol : relative and absolute tolerance of the error control. atol's default, 1e-9, is a part of the model's
+        own scales, another number counts in the units of the coordinates and velocities.
     step : fixed internal step, s; 0 for error control.
     options : further options of the method. Those that are a bool, int, float or str become FMU parameters.
     t_end : end of the default experiment, s, or None.
@@ -28,7 +30,7 @@ class Settings:
 
     method: str = "ebdf"
     rtol: float = 1e-6
-    atol: float = 1e-9
+    atol: float = float(DEFAULT_ATOL)
     step: float = 0.0
     options: Mapping[str, Any] = field(default_factory=dict)
     t_end: float | None = None
@@ -71,6 +73,11 @@ class Settings:
         own = {k: v for k, v in own.items() if v is not None}
         numbers = {k: float(v) for k, v in own.items() if k != "method"}
         return model, cls(method=str(own.get("method", cls.method)), options=merged, **numbers)
+
+    @property
+    def tolerance(self) -> float:
+        """`atol` as the solver understands it: variables are plain numbers, which cannot say that they are a part."""
+        return DEFAULT_ATOL if self.atol == DEFAULT_ATOL else self.atol
 
     def as_arguments(self) -> dict[str, Any]:
         """The settings as keyword arguments of `Settings.of`."""

@@ -47,9 +47,11 @@ class SharedCalls:
         return self._shared.address
 
     def get_places(self, references: npt.NDArray[np.uint32]) -> bytes:
-        """Places among the reals of what is got by these references, as int32; nothing if that is no output."""
+        """Places among the reals of what is got by these references, as int32; nothing if that is no output, or a
+        parameter too, which may follow from others."""
         plan = self.slave.variables.plan("real", np.frombuffer(references, dtype=np.uint32))
-        return plan.positions.astype(np.int32).tobytes() if "output" in plan.roles else b""
+        shown = "output" in plan.roles and "parameter" not in plan.roles
+        return plan.positions.astype(np.int32).tobytes() if shown else b""
 
     def set_places(self, references: npt.NDArray[np.uint32]) -> bytes:
         """Places among the reals of what is set by these references; nothing unless it is inputs that may take any

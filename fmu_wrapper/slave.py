@@ -21,7 +21,7 @@ from .intermediate import Updates
 from .phases import EVENT_PHASES, INPUTS, RUNNING, SETTABLE, Phase
 from .run import Run, StepEnd
 from .slave_derivatives import SlaveDerivatives
-from .values import check_values, item_value
+from .values import item_value
 from .variables import Kind, Variable
 
 MOST_STEPS = 1e12
@@ -36,6 +36,7 @@ class Slave(SlaveDerivatives):
     source : Model, or Scenario with `.model` and its solver settings.
     name : name of the instance, for the log.
     variables : the variable table that an FMU was exported with; None builds it, which needs a simulation.
+    origin : the scenario of the catalogue that an FMU was exported from; None if it is `source`, or none.
     on_log : called with status, category and message; None passes messages to `logging`.
     logging_on : True passes on all categories, False errors only.
     event_mode : contact events at the end of a step are left to `update_discrete_states`, in event mode.
@@ -242,7 +243,7 @@ class Slave(SlaveDerivatives):
         plan = self.variables.plan(kind, references)
         if "output" in plan.roles:
             self.look()
-        return self._values.vectors[kind].take(plan.positions)
+        return self._found(plan, self._values.vectors[kind].take(plan.positions))
 
     def set(self, kind: Kind, references: npt.NDArray[np.uint32], values: Iterable[Any]) -> None:
         """Set the variables of `kind` behind `references`: all of them or, on an error, none.
@@ -260,7 +261,7 @@ class Slave(SlaveDerivatives):
                 self._refuse(plan.variables)
         if self._phase == Phase.INTERMEDIATE and self.updates is not None:
             self.updates.check(plan.variables)
-        self._values.vectors[kind][plan.positions] = check_values(plan, values)
+        self._values.vectors[kind][plan.positions] = self._checked(plan, values)
         self._stale = self._untold = True
         if self._values.sloped and kind == "real" and "input" in plan.roles:
             self._values.end_slopes(plan.positions, self._time)

@@ -2,7 +2,7 @@
 
 import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -12,16 +12,18 @@ import numpy.typing as npt
 from ..core.compiled.notices import compile_notices, hear
 from ..core.errors import ModelError
 from .derivatives import driven_motions
+from .effective import effective
 from .errors import CallOrderError, SnapshotError
 from .intermediate import Updates
 from .log import Log, LogCallback
+from .origin import Origin
 from .phases import EVENT_PHASES, RUNNING, SOUND, WAYS, Phase
 from .run import Run, SimulationFactory, as_slice, build_simulation
 from .settings import Settings
 from .snapshot import Snapshot, identity
-from .values import Values
+from .values import Values, check_values
 from .variable_list import build_table
-from .variables import TIME, VariableTable
+from .variables import TIME, Plan, VariableTable
 
 
 class SlaveState:
@@ -33,6 +35,7 @@ class SlaveState:
         *,
         name: str = "slave",
         variables: VariableTable | None = None,
+        origin: Origin | None = None,
         on_log: LogCallback | None = None,
         logging_on: bool = False,
         event_mode: bool = False,
@@ -42,19 +45,20 @@ class SlaveState:
         **solver: Any,
     ) -> None:
         self.model, self.settings = Settings.of(source, **solver)
+        self.origin = Origin.of(source, self.model) if origin is None else origin
         self.name = name
         self.log = Log(on_log, logging_on)
         self.event_mode, self.early_return, self.updates = event_mode, early_return, updates
         self._factory = simulation_factory
         if variables is None:
             channels = build_simulation(simulation_factory, self.model, self.settings).channels
-            variables = build_table(self.model, self.settings, channels)
+            variables = build_table(self.model, self.settings, channels, self.origin)
         self.variables = variables
         self._input_rows = {v.reference: i for i, v in enumerate(variables.block("input"))}
         self._inputs = as_slice([variables.position[v.reference] for v in variables.block("input")])
         self._time_position = variables.position[variables.by_name[TIME].reference]
         self.drivers = driven_motions(self.model)
-        self.identity = identity(self.model, self.settings, variables)
+        self.identity = identity(self.model, self.settings, variables, self.origin)
         self._run: Run | None = None
         self._spare: Run | None = None
         self.reset()
@@ -219,12 +223,36 @@ class SlaveState:
         if spare is not None and spare.key == Run.key_of(values, start_time):
             return spare
         with hear(self.log.tell), compile_notices(f"'{self.name}' (model {self.model.name})"):
-            return Run(self._factory, self.model, self.settings, values, start_time)
+            return Run(self._factory, self.model, self.settings, values, start_time, self.origin)
 
     def _engine(self) -> Run:
         if self._run is None:
             self._run = self._build(self._values, self._start_time)
         return self._run
+
+    def _checked(self, plan: Plan, values: Iterable[Any]) -> Any:
+        """`values` for the variables of `plan`. Raises FmuValueError if one of them cannot take its own."""
+        checked = check_values(plan, values)
+        if "parameter" in plan.roles and self.origin is not None:
+            for variable, value in zip(plan.variables, checked, strict=True):
+                if variable.block == "scenario":
+                    self.origin.check(variable, value)
+        return checked
+
+    def _found(self, plan: Plan, found: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """The values `found` of the variables of `plan`, with those of parameters that follow from others."""
+        if self.origin is None or "parameter" not in plan.roles:
+            return found
+        if self._run is not None:
+            following = self._run.following
+        else:
+            try:
+                following = effective(self.model, self.settings, self._values, self.origin).following
+            except ModelError:  # values that do not fit together, as long as others are to come
+                return found
+        for place, variable in enumerate(plan.variables):
+            found[place] = following.get(variable.reference, found[place])
+        return found
 
     def _refresh(self) -> None:
         """Make the outputs fit the parameters and inputs.

@@ -11,6 +11,7 @@ from typing import Any
 from ..core.description import Model
 from ..core.model.signals import MOST_DERIVATIVES
 from .errors import FmuValueError, SnapshotError
+from .origin import Origin
 from .phases import Phase
 from .settings import Settings
 from .values import Values
@@ -149,7 +150,8 @@ def _number(name: str, value: Any) -> float:
     return float(value)
 
 
-def identity(model: Model, settings: Settings, variables: VariableTable) -> str:
+def identity(model: Model, settings: Settings, variables: VariableTable, origin: Origin | None = None) -> str:
     """Hash of everything that makes an FMU what it is."""
-    content = [model.model_dump(mode="json"), settings.as_arguments(), variables.to_data()]
+    content: list[Any] = [model.model_dump(mode="json"), settings.as_arguments(), variables.to_data()]
+    content += [] if origin is None else [origin.to_data()]
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=repr).encode()).hexdigest()

@@ -9,13 +9,17 @@ from ..core.description import Model
 from ..core.errors import ModelError
 from ..core.methods.registry import METHODS
 from ..core.model.channels import Channel, Input, Parameter
+from .origin import Origin
 from .scales import Scales, parameter_limits
 from .settings import Settings
 from .variables import EVENTS, TIME, Variable, VariableTable, kind_of
 
 
-def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -> VariableTable:
-    """The variables of a slave for `model` with `settings`, whose simulation has `channels`.
+def build_table(
+    model: Model, settings: Settings, channels: Iterable[Channel], origin: Origin | None = None
+) -> VariableTable:
+    """The variables of a slave for `model` with `settings`, whose simulation has `channels`, and which comes from
+    `origin`.
 
     Raises
     ------
@@ -23,13 +27,21 @@ def build_table(model: Model, settings: Settings, channels: Iterable[Channel]) -
     """
     scales = Scales.of(model, settings.t_end)
     laws = tuple(dict.fromkeys([*(law.__name__ for law in LAWS), *(type(c.law).__name__ for c in model.contacts)]))
+    channels = tuple(channels)
     number = count(1)  # value references: the index of each variable
+    own = [
+        Variable(next(number), TIME, "real", "independent", "time", "s", "simulation time"),
+        *_solver(settings, number),
+        Variable(next(number), EVENTS, "integer", "output", "figure", None, "contact events so far", minimum=0),
+    ]
+    taken = {n.name for n in model.inputs} | {c.name for c in channels}
+    built = [] if origin is None else list(origin.variables(taken, number))
+    known = {v.name for v in built}
     return VariableTable(
         [
-            Variable(next(number), TIME, "real", "independent", "time", "s", "simulation time"),
-            *_solver(settings, number),
-            Variable(next(number), EVENTS, "integer", "output", "figure", None, "contact events so far", minimum=0),
-            *(_parameter(next(number), p, model) for p in model.parameters),
+            *own,
+            *built,
+            *(_parameter(next(number), p, model) for p in model.parameters if p.name not in known),
             *(_law(next(number), contact, laws) for contact in model.contacts),
             *(_input(next(number), n, scales) for n in model.inputs),
             *(_channel(next(number), c, scales) for c in channels),
@@ -87,7 +99,7 @@ def _solver(settings: Settings, number: Iterator[int]) -> list[Variable]:
     )  # fmt: skip
     numbers = (
         ("rtol", settings.rtol, "1", "relative tolerance of the error control"),
-        ("atol", settings.atol, "1", "absolute tolerance of the error control"),
+        ("atol", settings.atol, "1", "absolute tolerance of the error control; 1e-9: of the model's own scales"),
         ("step", settings.step, "s", "fixed internal step; 0 for error control"),
     )
     return [

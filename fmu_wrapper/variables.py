@@ -6,7 +6,7 @@ reference; a master that takes the one for the other (OMSimulator does) finds th
 
     time; `solver.method`, `.rtol`, `.atol`, `.step` and the method's further options, by name: parameters
     `solver.events`, an output
-    the model's parameters, in the order of the model
+    the parameters of the scenario, if the model comes from one, in its order; the model's others, in its order
     the contacts' laws (`CONTACT.law`), constants, in the order of the model
     the model's inputs, in the order of the model
     the channels, in the order of `Simulation.channels`
@@ -27,7 +27,7 @@ from .errors import ExportError, FmuValueError
 
 Kind = Literal["real", "integer", "boolean", "string"]
 Role = Literal["independent", "parameter", "input", "output", "constant"]
-Block = Literal["time", "solver", "figure", "law", "parameter", "input", "channel"]
+Block = Literal["time", "solver", "figure", "law", "scenario", "parameter", "input", "channel"]
 
 KINDS: tuple[Kind, ...] = ("real", "integer", "boolean", "string")
 EVENTS = "solver.events"

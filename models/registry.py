@@ -49,7 +49,9 @@ def load(name: str, **parameters: Any) -> Scenario:
     values = fill(name, entry.parameters, parameters)
     built = entry.build(**values)
     # a builder may have filled in parameters that were left to it; those win
-    return replace(built, name=name, description=entry.description, parameters={**values, **built.parameters})
+    return replace(
+        built, name=name, description=entry.description, parameters={**values, **built.parameters}, given=values
+    )
 
 
 def names() -> tuple[str, ...]:

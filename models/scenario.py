@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..core.description import Model
+from ..core.tolerances import DEFAULT_ATOL
 
 
 def _no_entries() -> Mapping[str, Any]:
@@ -21,6 +22,7 @@ class Scenario:
     t_end : end time, s.
     method, rtol, atol, options : what `simulate` is called with.
     parameters : values of all parameters of the builder, defaults included.
+    given : what the builder was called with: as `parameters`, but None where it was left to the builder.
     compare : channels that a cross-check compares and plots.
     """
 
@@ -30,12 +32,14 @@ class Scenario:
     t_end: float
     method: str = "ebdf"
     rtol: float = 1e-6
-    atol: float = 1e-9
+    atol: float = DEFAULT_ATOL
     options: Mapping[str, Any] = field(default_factory=_no_entries)
     parameters: Mapping[str, Any] = field(default_factory=_no_entries)
     compare: tuple[str, ...] = ()
+    given: Mapping[str, Any] = field(default_factory=_no_entries)
 
     def __post_init__(self) -> None:
         # read-only views of copies: a frozen record must not change through a dict that someone else holds
         object.__setattr__(self, "options", MappingProxyType(dict(self.options)))
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+        object.__setattr__(self, "given", MappingProxyType(dict(self.given)))

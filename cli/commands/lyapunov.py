@@ -28,7 +28,7 @@ EXAMPLES = (
     "  tlismni lyapunov impact_oscillator --set damping_ratio=0.02 --set frequency=2 --periods 200 --json\n\n"
     "  tlismni lyapunov my_model.json --t-end 100 --transient 20 --count 2"
 )
-METHOD, RTOL, ATOL = "irk", 1e-7, 1e-9
+METHOD, RTOL = "irk", 1e-7
 TRANSIENT = 0.1
 """Of the run, if nothing is said."""
 
@@ -66,11 +66,12 @@ def lyapunov(
         raise typer.BadParameter("give --periods or --t-end, not both", param_hint="--periods")
 
     from ...core.analysis import lyapunov_exponents
+    from ...core.tolerances import DEFAULT_ATOL
     from ..source import read_source, solver_settings
 
     scenario = read_source(
         source, sets, t_end=1.0 if periods is not None else t_end, method=method or METHOD, rtol=rtol or RTOL,
-        atol=atol or ATOL, step=step, options=option,
+        atol=atol or DEFAULT_ATOL, step=step, options=option,
     )  # fmt: skip
     period = _period(scenario.model)
     end = scenario.t_end

@@ -9,11 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
-from ..integrate.records import NO_STEP
 from ..integrate.simulation import Simulation
+from ..rounding import NO_STEP
+from ..tolerances import OfScales
 from .variation import Variation
 
 Floats = NDArray[np.float64]
+
+TIGHT = OfScales(1e-12)
+"""What atol is unless told otherwise."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ def floquet_multipliers(
     period: float,
     method: str = "irk",
     rtol: float = 1e-10,
-    atol: float | Mapping[str, float] = 1e-12,
+    atol: float | Mapping[str, float] = TIGHT,
     *,
     t0: float = 0.0,
     **options: Any,

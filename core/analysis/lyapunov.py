@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..events import Event
 from ..integrate.simulation import Simulation
+from ..tolerances import DEFAULT_ATOL
 from .variation import Variation
 
 Floats = NDArray[np.float64]
@@ -88,7 +89,7 @@ def lyapunov_exponents(
     t_end: float,
     method: str = "irk",
     rtol: float = 1e-7,
-    atol: float | Mapping[str, float] = 1e-9,
+    atol: float | Mapping[str, float] = DEFAULT_ATOL,
     *,
     t0: float = 0.0,
     transient: float = 0.0,

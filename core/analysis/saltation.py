@@ -22,13 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.laws import ImpactLaw
-from ..contact.modes import CLOSED, MODE, RATE_ROUNDING
+from ..contact.modes import CLOSED, MODE
 from ..errors import SimulationError
 from ..events import Event
-from ..integrate.advance import VELOCITY_JUMP
 from ..integrate.dense_output import query
 from ..integrate.simulation import Simulation
+from ..rounding import CONTINUOUS
 from ..stage.accelerations import solve_accelerations
+from ..system.levels import rate_level
 from ..system.records import OK
 from .layout import Layout, Layouts, mass_by_time
 from .linearise import all_rows, gap_hessian
@@ -100,7 +101,7 @@ def cross(sim: Simulation, layouts: Layouts, dq: Floats, dv: Floats) -> Crossing
     dt = np.zeros(dq.shape[1])
     if striking is not None:
         row = sim.assembly.contacts[striking].row
-        if abs(rows.phid[row]) > RATE_ROUNDING:
+        if abs(rows.phid[row]) > float(sim.rate_rounding([striking])[0]):
             dt = -(rows.jacobian[row] @ dq) / rows.phid[row]
     dq, dv = dq + np.outer(v, dt), dv + np.outer(a, dt)
     impacts, log_determinant = 0, 0.0
@@ -115,7 +116,8 @@ def cross(sim: Simulation, layouts: Layouts, dq: Floats, dv: Floats) -> Crossing
         _refuse(sim, blows, impacts, new)
         look(sim)
         after = arrays["v"][:n].copy()
-        if blows or np.max(np.abs(after - v), initial=0.0) > VELOCITY_JUMP:
+        change = np.max(np.abs(after - v) / sim.assembly.coordinate_scale, initial=0.0)
+        if blows or change > CONTINUOUS * rate_level(sim.workspace.record):
             dv, restitution = _jump(sim, layouts.now(), blows[0] if blows else None, v, after, dq, dv, dt)
             log_determinant += 2.0 * np.log(restitution) if restitution > 0.0 else -np.inf
         v = after
@@ -162,7 +164,8 @@ def _jump(
     look(sim)
     mass, _ = layout.matrices(sim)
     w, multipliers = _solve(mass, jacobian, np.zeros(n), (target - early.phid)[active])
-    if np.max(np.abs(v + w - after)) > MISMATCH * max(1.0, np.max(np.abs(v))):
+    scale = sim.assembly.coordinate_scale
+    if np.max(np.abs(v + w - after) / scale) > MISMATCH * max(sim.scales.rate, np.max(np.abs(v) / scale)):
         t = sim.t_internal
         raise SimulationError(
             f"the velocities after the impact at t = {t:.9g} s are not those of Newton's law at one contact "

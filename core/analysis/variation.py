@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from ..contact.laws import ImpactLaw
 from ..errors import ModelError, SimulationError
 from ..integrate.engine import user_errors
-from ..integrate.records import CHUNK, EVENT, NO_STEP, REACHED
+from ..integrate.records import CHUNK, EVENT, REACHED
 from ..integrate.simulation import Simulation
 from ..linalg import SingularMatrixError
+from ..rounding import NO_STEP
 from .flight import STEP_LEFT, SUBSTEP, fly
 from .flow import NODES, STAGES, Work, carry, make_work
 from .layout import Layout, Layouts, mass_rates

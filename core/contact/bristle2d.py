@@ -17,10 +17,6 @@ from .modes import ACTIVE, MEMORY_SIZE, MODE
 from .normal2d import act, evaluate_law
 from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
 
-LEAST_DEFLECTION = 1e-8
-"""m; under normal forces at which bristles would slip at less, they slip and rub in proportion to the normal force:
-their equation has no limit at normal force zero, where a contact ends."""
-
 
 @internal
 def _add_row(
@@ -56,7 +52,9 @@ def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: An
     if not normal > 0.0:
         # a damper that pulls: nothing is pressed, nothing rubs, and the bristles stay as they are
         return 0.0, 0.0, 0.0
-    least = LEAST_DEFLECTION * s0 / par[FRICTION + 3]
+    # bristles that would slip at less slip and rub in proportion to the normal force: their equation has no limit at
+    # normal force zero, where a contact ends
+    least = par[last - 1] * s0 / par[FRICTION + 3]
     zd, zd_z, zd_v, zd_n, force, f_z, f_v, f_n = lugre_formula(
         z, rate, max(normal, least), s0, par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
         par[last],

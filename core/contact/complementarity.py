@@ -5,14 +5,13 @@ friction P_T = -mu P_N sgn(w_T) where it slides, |P_T| <= mu P_N where w_T = 0 (
 1996, chapter 8). The same problem holds for accelerations and forces, and for velocities and impulses.
 """
 
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .lcp import NoComplementarySolution, solve_lcp
-from .sweeps import solve_by_sweeps
+from .many import AT_REST, shared, solve_many
 
 Vector = NDArray[np.float64]
 
@@ -21,7 +20,7 @@ IMMOVABLE = 1e-12
 RANK = 1e-10
 """Singular values of the tangential block below this part of the largest are zero."""
 MANY = 8
-"""Contacts; more are solved by sweeps."""
+"""Contacts; the forces of more are found as the limit of those that give way a little (`many`)."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +30,19 @@ class Delassus:
     nn: Vector
     nt: Vector
     tt: Vector
+    directions: Vector | None = None
+    responses: Vector | None = None
+    """G and G M_b, each (2 n, coordinates), where they are at hand: they tell directions apart that differ by so little
+    that A has lost it."""
+
+    def vectors(self, some: NDArray[np.intp]) -> tuple[Vector, Vector]:
+        """Vectors of the directions `some` (normals first) and of what moves by them, whose products are A."""
+        if self.directions is not None and self.responses is not None:
+            return self.directions[some], self.responses[some]
+        every = np.arange(len(self.nn))
+        values, vectors = np.linalg.eigh(self.rows(every, every))
+        root = (vectors * np.sqrt(np.maximum(values, 0.0)))[some]
+        return root, root
 
     def among(self, part: NDArray[np.intp]) -> "Delassus":
         """The blocks of the contacts `part`."""
@@ -52,7 +64,7 @@ class ContactSolution:
     normal_motion: Vector
     tangential_motion: Vector
     sticks: bool
-    """True if all friction was found below its limit at once: the tangential forces are the least ones (in norm)."""
+    """True if all friction was found below its limit at once, shared in proportion to what the contacts allow."""
 
 
 def solve_contacts(
@@ -80,68 +92,58 @@ def solve_contacts(
         return ContactSolution(alone, np.zeros(1), motion, b_t + a.nt[0] * alone, False)
     base = np.zeros(n) if base is None else base
     largest = max(float(np.max(np.diag(a.nn), initial=0.0)), float(np.max(np.diag(a.tt), initial=0.0)))
-    free = np.flatnonzero((mu > 0.0) & (direction == 0.0) & (np.diag(a.tt) > IMMOVABLE * largest))
+    mu = np.where((direction != 0.0) | (np.diag(a.tt) > IMMOVABLE * largest), mu, 0.0)
+    ways = (_by_limit, _by_pivoting) if n > MANY else (_by_pivoting, _by_limit)
+    for way in ways:
+        found = way(a, b_n, b_t, mu, direction, base)
+        if found is not None:
+            return found
+    raise NoComplementarySolution("neither pivoting nor Newton's method find forces of the contacts")
+
+
+def _by_limit(
+    a: Delassus, b_n: Vector, b_t: Vector, mu: Vector, direction: Vector, base: Vector
+) -> ContactSolution | None:
+    """The solution as the limit of those with contacts that give way; None if that path ends."""
+    forces = solve_many(a.nn, a.nt, a.tt, b_n, b_t, mu, direction, base)
+    if forces is None:
+        return None
+    normal, tangential = forces
+    w_n, w_t = b_n + a.nn @ normal + a.nt @ tangential, b_t + a.nt.T @ normal + a.tt @ tangential
+    size = max(float(np.max(np.abs(b_n))), float(np.max(np.abs(b_t))))
+    held = (mu > 0.0) & (direction == 0.0) & (normal > 0.0)
+    sticks = bool(np.any(held) and np.all(np.abs(w_t[held]) <= AT_REST * size))
+    return ContactSolution(normal, tangential, w_n, w_t, sticks)
+
+
+def _by_pivoting(
+    a: Delassus, b_n: Vector, b_t: Vector, mu: Vector, direction: Vector, base: Vector
+) -> ContactSolution | None:
+    """The solution by Lemke's method: in few contacts quicker, and exact; None if it finds none."""
+    free = np.flatnonzero((mu > 0.0) & (direction == 0.0))
     sliding = np.where(direction == 0.0, 0.0, -mu * direction)
     # columns of the normal forces, the friction of sliding contacts included
     nn, tn = a.nn + a.nt * sliding, a.nt.T + a.tt * sliding
     b_n, b_t = b_n + nn @ base, b_t + tn @ base
-    found = _all_stick(a, nn, tn, b_n, b_t, mu, free, base) if len(free) else None
-    if found is not None:
-        normal, tangential = found
-    else:
-        normal, tangential = _found(a, nn, tn, b_n, b_t, mu, direction, free, base)
+    forces = _all_stick(a, nn, tn, b_n, b_t, mu, free, base) if len(free) else None
+    sticks = forces is not None
+    try:
+        if forces is not None:
+            normal, tangential = forces
+        elif len(free):
+            normal, tangential = _with_limits(a, nn, tn, b_n, b_t, mu, free, base)
+        else:
+            normal, tangential = _scaled(nn, b_n, np.diag(a.nn)), np.zeros(len(b_n))
+    except NoComplementarySolution:
+        return None
     total = normal + base
-    tangential = tangential + sliding * total
     return ContactSolution(
         total,
-        tangential,
+        tangential + sliding * total,
         b_n + nn @ normal + a.nt[:, free] @ tangential[free],
         b_t + tn @ normal + a.tt[:, free] @ tangential[free],
-        found is not None,
+        sticks,
     )
-
-
-def _found(
-    a: Delassus,
-    nn: Vector,
-    tn: Vector,
-    b_n: Vector,
-    b_t: Vector,
-    mu: Vector,
-    direction: Vector,
-    free: NDArray[np.intp],
-    base: Vector,
-) -> tuple[Vector, Vector]:
-    """Forces beyond `base` and friction of the contacts `free`, by pivoting or by sweeps: those are quicker where there
-    are many contacts, and get through where they nearly repeat each other."""
-    many = len(b_n) > MANY
-    for by_sweeps in (many, not many):
-        if by_sweeps:
-            # what the least forces do is in b already
-            start = b_n - nn @ base, b_t - tn @ base
-            forces = solve_by_sweeps(a.nn, a.nt, a.tt, *start, mu, direction, base)
-            if forces is not None:
-                tangential = np.zeros(len(b_n))
-                tangential[free] = forces[1][free]
-                return forces[0] - base, tangential
-            continue
-        with suppress(NoComplementarySolution):
-            if len(free):
-                return _with_limits(a, nn, tn, b_n, b_t, mu, free, base)
-            return _scaled(nn, b_n, np.diag(a.nn)), np.zeros(len(b_n))
-    raise NoComplementarySolution("neither pivoting nor sweeps over the contacts find a solution")
-
-
-def _without_friction(m: Vector, q: Vector, inverse_mass: Vector) -> Vector | None:
-    """Normal forces with the matrix m, or None if there are none."""
-    try:
-        return _scaled(m, q, inverse_mass)
-    except NoComplementarySolution:
-        if np.any(np.diag(m) <= 0.0):
-            return None
-        none = np.zeros(len(q))
-        forces = solve_by_sweeps(m, np.zeros_like(m), np.zeros_like(m), q, none, none, none, none)
-        return None if forces is None else forces[0]
 
 
 def _scaled(m: Vector, q: Vector, inverse_mass: Vector) -> Vector:
@@ -153,24 +155,27 @@ def _scaled(m: Vector, q: Vector, inverse_mass: Vector) -> Vector:
 def _all_stick(
     a: Delassus, nn: Vector, tn: Vector, b_n: Vector, b_t: Vector, mu: Vector, free: NDArray[np.intp], base: Vector
 ) -> tuple[Vector, Vector] | None:
-    """The solution in which no contact of `free` slides, with the least tangential forces; None if there is none."""
-    inverse = np.linalg.pinv(a.tt[np.ix_(free, free)], rcond=RANK, hermitian=True)
+    """The solution in which no contact of `free` slides, each with the same part of what its friction allows as the
+    others that it shares with; None if there is none."""
+    along = a.tt[np.ix_(free, free)]
+    inverse = np.linalg.pinv(along, rcond=RANK, hermitian=True)
     across = a.nt[:, free] @ inverse
     m, q = nn - across @ tn[free], b_n - across @ b_t[free]
     # where sticking leaves no motion along the normals, what is left is rounding
     root = np.sqrt(np.diag(a.nn))
     m = np.where(np.abs(m) <= RANK * np.outer(root, root), 0.0, m)
     q = np.where(np.abs(q) <= RANK * (np.abs(b_n) + np.abs(across) @ np.abs(b_t[free])), 0.0, q)
-    normal = _without_friction(m, q, np.diag(a.nn))
-    if normal is None:
+    try:
+        normal = _scaled(m, q, np.diag(a.nn))
+    except NoComplementarySolution:
         return None
     wanted = b_t[free] + tn[free] @ normal
     tangential = np.zeros(len(b_n))
-    tangential[free] = -inverse @ wanted
-    left = wanted + a.tt[np.ix_(free, free)] @ tangential[free]
+    limit = mu[free] * (normal + base)[free]
+    tangential[free] = shared(along, limit, -wanted)
+    left = wanted + along @ tangential[free]
     if np.max(np.abs(left)) > 1e-9 * np.max(np.abs(wanted), initial=1e-300):
         return None
-    limit = mu[free] * (normal + base)[free]
     force = np.abs(tangential[free])
     if np.all(force <= limit * (1.0 + 1e-12) + 1e-14 * np.max(force)):
         return normal, tangential
@@ -210,16 +215,21 @@ def _with_limits(
 
 def independent(a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.intp]) -> tuple[list[int], list[int]]:
     """Those of the directions that do not repeat earlier ones, normals first: positions in the given lists."""
-    matrix = a.rows(normal, tangential)
-    diagonal = np.diag(matrix).copy()
-    matrix = matrix / np.sqrt(np.outer(np.where(diagonal > 0, diagonal, 1.0), np.where(diagonal > 0, diagonal, 1.0)))
+    some = np.concatenate([normal, len(a.nn) + tangential]).astype(np.intp)
+    left, moves = (x.copy() for x in a.vectors(some))
+    size = np.einsum("ij,ij->i", left, moves)
     kept: list[int] = []
-    for i in range(len(matrix)):
-        rest = 1.0 if diagonal[i] > 0.0 else 0.0
-        if kept:
-            block = matrix[np.ix_(kept, kept)]
-            rest -= float(matrix[i, kept] @ np.linalg.solve(block, matrix[kept, i]))
-        if rest > RANK:
+    # orthogonal to one another, in the product that the inverse masses make, and of unit size
+    base, base_moves = np.zeros_like(left), np.zeros_like(left)
+    for i in range(len(some)):
+        x, moved, k = left[i], moves[i], len(kept)
+        for _ in range(2):
+            part = base_moves[:k] @ x
+            x, moved = x - part @ base[:k], moved - part @ base_moves[:k]
+        rest = float(x @ moved)
+        if rest > RANK * size[i]:
+            root = np.sqrt(rest)
+            base[k], base_moves[k] = x / root, moved / root
             kept.append(i)
     count = len(normal)
     return [i for i in kept if i < count], [i - count for i in kept if i >= count]

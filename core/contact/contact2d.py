@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 
 from ..elements.base import BodyElement, Element, Form, Numbering, Row
 from ..model.base import NonNegative, Record
-from ..model.markers import Marker2D
+from ..model.markers import GROUND, Marker2D
+from ..rounding import LEAST_DEFLECTION
 from .bristle2d import bristle_disk_on_disk_kernel, bristle_disk_on_half_plane_kernel
 from .friction import CoulombFriction, Friction, LuGreFriction
 from .laws import ContactLaw, ForceLaw
@@ -92,12 +93,22 @@ class Contact2D(Element):
         rows = self.contact_rows(numbering)
         if not isinstance(self.friction, LuGreFriction):
             return rows
-        last, own = self.friction.parameters()[-1], numbering.internal(self.name)
-        return tuple(Row((*row.parameters, last), (*row.coordinates, *own), row.extra) for row in rows)
+        least, own = LEAST_DEFLECTION * numbering.length, numbering.internal(self.name)
+        more = (least, self.friction.parameters()[-1])
+        return tuple(Row((*row.parameters, *more), (*row.coordinates, *own), row.extra) for row in rows)
 
     def disks(self) -> Sequence[Disk2D]:
         """The disks that it brings in touch, for the drawing."""
         return ()
+
+    def reach(self) -> Sequence[tuple[float, float]]:
+        """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""
+        points = [marker.point for marker in self.markers() if marker.body != GROUND]
+        fixed = [marker.point for marker in self.markers() if marker.body == GROUND]
+        return [*points, *sorted(fixed, key=lambda point: max(abs(x) for x in point))[:1]]
+
+    def lengths(self) -> Sequence[float]:
+        return tuple(disk.radius for disk in self.disks())
 
     def extent(self) -> float:
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""

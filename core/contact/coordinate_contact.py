@@ -161,6 +161,10 @@ class CoordinateContact(Contact2D):
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:
         return tuple(dict.fromkeys((term.body, term.coordinate) for term in (*self.terms, *self.slide)))
 
+    def lengths(self) -> Sequence[float]:
+        """How far its coordinates go, but for angles."""
+        return tuple(abs(self.offset / t.factor) for t in self.terms if t.factor and t.coordinate != "angle")
+
     def extent(self) -> float:
         return math.inf
 

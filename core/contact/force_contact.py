@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from ..events import Event
+from ..rounding import DEEPEST, FIRST_PENETRATION
 from ..system.assembly import ContactInfo
 from .friction import LuGreFriction
 from .laws import ForceLaw
@@ -10,9 +11,6 @@ from .modes import ACTIVE, APPROACH_SPEED, LARGEST_APPROACH, LOSS_JUMP, MODE, OP
 
 if TYPE_CHECKING:
     from ..integrate.engine import Engine
-
-DEEPEST = 1e12
-"""m; a penetration at which every spring that holds anything does."""
 
 
 def handle_force(sim: "Engine", k: int, law: ForceLaw) -> None:
@@ -27,13 +25,14 @@ def handle_force(sim: "Engine", k: int, law: ForceLaw) -> None:
 def _begin_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) -> None:
     memory = sim.memory[k]
     approach = -sim.gap_rate(k)
-    memory[APPROACH_SPEED] = max(approach, law.minimum_approach_speed, _settling_speed(sim, k, contact, law))
+    least = law.least_approach_speed(sim.scales.rate * float(sim.workspace.arrays["row_scale"][contact.row]))
+    memory[APPROACH_SPEED] = max(approach, least, _settling_speed(sim, k, contact, law))
     memory[MODE] = ACTIVE
     memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
     _let_bristles_go(sim, k, contact)
     sim.open_accounts[k] = sim.contact_accounts(k)
     sim.use_modes()
-    sim.start_small(memory[APPROACH_SPEED])
+    sim.start_small(k, memory[APPROACH_SPEED])
     sim.add_event(Event(sim.t_internal, "close", contact.name, approach_speed=approach))
 
 
@@ -56,10 +55,11 @@ def _settling_speed(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw) 
     if pressing <= 0.0:
         return 0.0
     weight = pressing * sim.effective_mass(k)
-    low, high = 0.0, 1e-12
+    size = float(sim.workspace.arrays["row_scale"][contact.row])
+    low, high = 0.0, FIRST_PENETRATION * size
     while law.evaluate(high, 0.0, 1.0)[3] < weight:
         low, high = high, 2.0 * high
-        if high > DEEPEST:
+        if high > DEEPEST * size:
             return 0.0
     for _ in range(50):
         middle = 0.5 * (low + high)
@@ -79,7 +79,7 @@ def _end_force(sim: "Engine", k: int, contact: ContactInfo, law: ForceLaw, mode:
             # pressed again before the shapes came apart
             memory[MODE] = ACTIVE
             memory[LOSS_JUMP] -= sim.elastic_energy(k, contact)
-            sim.start_small(memory[APPROACH_SPEED])
+            sim.start_small(k, memory[APPROACH_SPEED])
         sim.use_modes()
         return
     early = law.release == "force"

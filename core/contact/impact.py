@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rounding import UNSOLVED
 from .complementarity import ContactSolution, solve_contacts
 from .laws import ImpactLaw, NewtonImpact, PoissonImpact
 from .touching import Touching
@@ -20,10 +21,6 @@ MOST_BLOWS = 100_000
 
 MOST_ROUNDS = 2000
 """Of impacts at one instant, each of the contacts that approach then."""
-
-
-UNSOLVED = 1e-7
-"""Of the fastest motion: rounds that leave less than this, and no less than those before, are at their end."""
 
 
 class EndlessImpact(ArithmeticError):
@@ -45,16 +42,16 @@ class Impact:
     separation: Vector
     """g' after, m/s."""
     left: float
-    """Approach that the last round has left because of rounding, m/s."""
+    """Approach that the last round has left because of rounding, in parts of what counts as none."""
     residual: float
     """Largest violation of the joints and of complementarity at velocity-increment level, m/s."""
 
 
-def strike(touching: Touching, restitution: Vector, rounding: float) -> Impact:
+def strike(touching: Touching, restitution: Vector, rounding: Vector) -> Impact:
     """Change the current velocities by the laws of the touching contacts, with these coefficients of restitution.
 
     Those that separate beforehand take no part, so that none can put energy in without friction; if they approach
-    afterwards they are struck in another round. Rates below `rounding` (m/s) are none.
+    afterwards they are struck in another round. Rates below `rounding` (contacts,) in m/s are none.
 
     Raises
     ------
@@ -71,12 +68,13 @@ def strike(touching: Touching, restitution: Vector, rounding: float) -> Impact:
     normal, tangential, loss = np.zeros(count), np.zeros(count), np.zeros(count)
     approach = np.maximum(-first, 0.0)
     sequential = any(isinstance(law, NewtonImpact) and law.propagation == "sequential" for law in laws)
-    left, noise = np.inf, UNSOLVED * max(float(np.max(np.abs(x))) for x in touching.rates())
+    rates = touching.rates()
+    left, noise = np.inf, UNSOLVED * max(float(np.max(np.abs(x) / rounding)) for x in rates)
     for _ in range(MOST_ROUNDS):
         gap_rate, slide_rate = touching.rates()
-        before_round, left = left, max(-float(np.min(gap_rate)), 0.0)
+        before_round, left = left, max(-float(np.min(gap_rate / rounding)), 0.0)
         # where contacts repeat each other nearly, no round gets below what rounding leaves in the forces
-        if left <= rounding or 0.5 * before_round <= left <= noise:
+        if left <= 1.0 or 0.5 * before_round <= left <= noise:
             break
         approach = np.where(approach > rounding, approach, -gap_rate)
         if sequential:
@@ -101,7 +99,7 @@ def _at_once(
     laws: list[ImpactLaw],
     restitution: Vector,
     mu: Vector,
-    rounding: float,
+    rounding: Vector,
 ) -> tuple[Vector, Vector, float]:
     """One complementarity problem of the contacts `part`, and a second one for the expansion of Poisson's contacts."""
     poisson = np.array([isinstance(law, PoissonImpact) for law in laws])
@@ -125,9 +123,9 @@ def _at_once(
     return normal, tangential, violation
 
 
-def _clear_rates(touching: Touching, part: NDArray[np.intp], rounding: float) -> tuple[Vector, Vector]:
+def _clear_rates(touching: Touching, part: NDArray[np.intp], rounding: Vector) -> tuple[Vector, Vector]:
     """The rates of the contacts `part`, with zero for what is rounding."""
-    gap_rate, slide_rate = (np.where(np.abs(x[part]) <= rounding, 0.0, x[part]) for x in touching.rates())
+    gap_rate, slide_rate = (np.where(np.abs(x[part]) <= rounding[part], 0.0, x[part]) for x in touching.rates())
     return gap_rate, slide_rate
 
 
@@ -144,7 +142,7 @@ def _violation(found: ContactSolution, motion: Vector, base: Vector | float = 0.
     return max(float(np.max(-motion, initial=0.0)), float(np.max(np.abs(motion[struck]), initial=0.0)))
 
 
-def _sequence(touching: Touching, restitution: Vector, mu: Vector, rounding: float) -> tuple[Vector, Vector]:
+def _sequence(touching: Touching, restitution: Vector, mu: Vector, rounding: Vector) -> tuple[Vector, Vector]:
     """One blow after another, the fastest approach first, until none approaches."""
     count = len(restitution)
     normal, tangential = np.zeros(count), np.zeros(count)
@@ -152,7 +150,7 @@ def _sequence(touching: Touching, restitution: Vector, mu: Vector, rounding: flo
     gap_rate, slide_rate = touching.rates()
     for _ in range(MOST_BLOWS):
         k = int(np.argmin(gap_rate))
-        if gap_rate[k] >= -rounding:
+        if gap_rate[k] >= -rounding[k]:
             touching.push(normal, tangential)
             return normal, tangential
         one = np.array([k])

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..events import Event
+from ..rounding import FORCE_ROUNDING
 from .force_contact import handle_force
 from .impact import EndlessImpact, Impact, strike
 from .laws import ForceLaw, ImpactLaw
@@ -26,7 +27,7 @@ from .modes import (
     SLIDE_START,
     STICKS,
 )
-from .resting import NO_FORCE, Resting
+from .resting import Resting
 from .settling import Settling, read, unresolved_speed
 from .touching import Touching
 
@@ -60,14 +61,15 @@ def settle(sim: "Engine", pending: list[int]) -> None:
     """Impacts, then which of the touching constraint contacts stay, and which stick or slide."""
     contacts = sim.touching(pending)
     now = read(sim, contacts, pending)
-    accelerations = float(np.max(np.abs(sim.workspace.arrays["a"][: sim.assembly.n]), initial=0.0))
+    scale = sim.assembly.coordinate_scale
+    accelerations = float(np.max(np.abs(sim.workspace.arrays["a"][: sim.assembly.n]) / scale, initial=0.0))
     slide_values = sim.slide_values(contacts)
     touching = Touching(sim, contacts, sim.held())
-    rounding = sim.rate_rounding()
+    rounding = sim.rate_rounding(contacts)
     gap_rate, _ = touching.rates()
     approaching = (gap_rate < -rounding) & ((now.was == OPEN) | sim.formula.exact)
     if np.any(approaching):
-        rounding = max(rounding, 2.0 * _impact(sim, touching, now, rounding))
+        rounding = rounding * max(1.0, 2.0 * _impact(sim, touching, now, rounding))
         accelerations = 0.0
     chosen = Resting(sim, touching, now, rounding, accelerations).choose()
     _take(sim, now, chosen, slide_values)
@@ -77,9 +79,9 @@ def settle(sim: "Engine", pending: list[int]) -> None:
 # ---- velocity level -------------------------------------------------------------------------------------------------
 
 
-def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -> float:
+def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: NDArray[np.float64]) -> float:
     """Strike; contacts that would bounce ever lower are struck without restitution, if they then stay. Returns the
-    approach that rounding has left, m/s."""
+    approach that rounding has left, in parts of `rounding`."""
     memory, contacts = sim.memory, now.contacts
     laws: list[ImpactLaw] = [sim.assembly.contacts[k].law for k in contacts]  # type: ignore[misc]
     restitution = np.array([law.restitution for law in laws])
@@ -88,7 +90,7 @@ def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -
     impact = _strike(sim, touching, restitution, rounding)
     largest = np.maximum(memory[contacts, LARGEST_APPROACH], impact.approach)
     ratio = np.array([law.rest_ratio for law in laws])
-    low = impact.separation <= np.maximum(ratio * largest, unresolved_speed(sim, now.falls))
+    low = impact.separation <= np.maximum(ratio * largest, unresolved_speed(sim, contacts, now.falls))
     low &= (impact.impulse > 0.0) & (restitution > 0.0) & (impact.approach > rounding)
     if np.any(low):
         bounced, velocities = impact, sim.workspace.arrays["v"].copy()
@@ -111,16 +113,16 @@ def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -
             named,
             -total_loss,
         )
-    least = NO_FORCE * float(np.max(impact.impulse))
+    least = FORCE_ROUNDING * float(np.max(impact.impulse))
     # a gap that would open again by itself before it could be seen to be negative
-    grazes = (now.was == OPEN) & (impact.approach <= unresolved_speed(sim, -now.falls))
+    grazes = (now.was == OPEN) & (impact.approach <= unresolved_speed(sim, contacts, -now.falls))
     for i in np.argsort(-impact.approach, kind="stable"):
         k = contacts[i]
         if impact.impulse[i] <= least:
             continue
         memory[k, IMPULSE_JUMP] += impact.impulse[i]
         memory[k, LOSS_JUMP] += impact.energy_loss[i]
-        if impact.approach[i] > rounding:
+        if impact.approach[i] > rounding[i]:
             memory[k, APPROACH_SPEED] = impact.approach[i]
             memory[k, LARGEST_APPROACH] = largest[i]
         kind, name = "graze" if grazes[i] else "impact", sim.assembly.contacts[k].name
@@ -134,7 +136,9 @@ def _impact(sim: "Engine", touching: Touching, now: Settling, rounding: float) -
     return impact.left
 
 
-def _strike(sim: "Engine", touching: Touching, restitution: NDArray[np.float64], rounding: float) -> Impact:
+def _strike(
+    sim: "Engine", touching: Touching, restitution: NDArray[np.float64], rounding: NDArray[np.float64]
+) -> Impact:
     try:
         return strike(touching, restitution, rounding)
     except (NoComplementarySolution, EndlessImpact) as error:

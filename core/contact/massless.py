@@ -21,7 +21,7 @@ def settle_massless(sim: "ContactSide", pending: list[int]) -> None:
     ones whose force became zero open, open ones that approach close."""
     memory, rows = sim.memory, [sim.assembly.contacts[k].row for k in pending]
     rates, accelerations = (sim.workspace.arrays[level][rows].copy() for level in ("phid", "phidd"))
-    rounding = sim.rate_rounding()
+    rounding = sim.rate_rounding(pending)
     was = memory[pending, MODE].copy()
     closes = (was != CLOSED) & ((rates < -rounding) | ((rates <= rounding) & (accelerations < 0.0)))
     memory[pending, MODE] = [CLOSED if closing else OPEN for closing in closes]

@@ -21,9 +21,3 @@ SLIDE = 5  # STICKS, IDLE, +1 or -1
 SLIDE_START = 6  # sliding distance at which the contact began to stick, m
 RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slides
 MEMORY_SIZE = 8
-
-RATE_ROUNDING = 1e-12
-"""m/s; a gap rate below this is none."""
-SLIP_EXCESS = 1e-9
-"""Friction has passed its limit only if it is beyond by this part of it: blocks that ride on one another need exactly
-the limit all along, and rounding must not let them slip."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SimulationError
+from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST
 from .complementarity import RANK, ContactSolution, farthest, independent, solve_contacts
 from .lcp import NoComplementarySolution
 from .modes import CLOSED, IDLE, STICKS
@@ -24,16 +25,8 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-NO_FORCE = 1e-12
-"""A contact force below this part of the largest is none."""
-NO_ACCELERATION = 1e-11
-"""A gap's acceleration below this part of what weights and forces make is none."""
-NO_SLIDING = 2e-13
-"""Acceleration along the tangent below this part of its terms is none."""
 NEARLY_SINGULAR = 1e-6
 """Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
-PERHAPS_REST = 1e-3
-"""Of the largest speed (or of 1 m/s): gaps that open faster than this are not at rest."""
 SPARE = 1e-6
 """Part of its limit that a new distribution of sticking friction must leave to each contact."""
 
@@ -53,7 +46,7 @@ class Resting:
     """
 
     def __init__(
-        self, sim: "Engine", touching: Touching, now: Settling, rounding: float, accelerations: float = 0.0
+        self, sim: "Engine", touching: Touching, now: Settling, rounding: Vector, accelerations: float = 0.0
     ) -> None:
         self.sim, self.touching, self.now = sim, touching, now
         self.rounding = rounding
@@ -65,8 +58,8 @@ class Resting:
         if not now.struck:
             # a constraint that holds does not separate, however much its method drifts
             self.at_rest |= now.was == CLOSED
-        largest = float(np.max(np.abs(sim.workspace.arrays["v"][: sim.assembly.n])))
-        if np.any(np.abs(self.gap_rate) <= PERHAPS_REST * max(1.0, largest)) or not now.struck:
+        slow = np.abs(self.gap_rate) <= PERHAPS_REST * sim.rate_size(now.contacts)
+        if np.any(slow) or not now.struck:
             self._prepare(accelerations)
             self._hold(self._soon_back(self.b_n))
 
@@ -82,7 +75,7 @@ class Resting:
 
     def _soon_back(self, motion: Vector) -> Flags:
         """Gaps that open but, with these accelerations, less than could be told from zero."""
-        slow = (self.gap_rate > 0.0) & (self.gap_rate <= unresolved_speed(self.sim, -motion))
+        slow = (self.gap_rate > 0.0) & (self.gap_rate <= unresolved_speed(self.sim, self.now.contacts, -motion))
         return np.asarray(slow & ~self.at_rest)
 
     def _hold(self, back: Flags) -> None:
@@ -186,12 +179,13 @@ class Resting:
         touching = self.touching
         b_n, b_t = touching.free_accelerations(self._ahead())
         arrays, n = self.sim.workspace.arrays, self.sim.assembly.n
-        level = max(float(np.max(np.abs(arrays["a"][:n]), initial=0.0)), accelerations, 1e-300)
+        scale = self.sim.assembly.coordinate_scale
+        level = max(float(np.max(np.abs(arrays["a"][:n]) / scale, initial=0.0)), accelerations, 1e-300)
         self.none = NO_ACCELERATION * level
-        self.size = np.max(np.abs(touching.normal), axis=1)
+        self.size = np.max(np.abs(touching.normal) * scale, axis=1)
         noise_n, noise_t = touching.motion_noise(self.sim.force_noise())
         self.b_n = np.where(np.abs(b_n) <= np.maximum(self.none * self.size, noise_n), 0.0, b_n)
-        along = np.max(np.abs(touching.tangential), axis=1)
+        along = np.max(np.abs(touching.tangential) * scale, axis=1)
         self.b_t = np.where(np.abs(b_t) <= np.maximum(self.none * along, noise_t), 0.0, b_t)
 
     def _solve(self, direction: Vector, mu: Vector) -> ContactSolution:
@@ -245,7 +239,9 @@ class Resting:
         return None
 
     def _loaded(self, found: ContactSolution) -> Flags:
-        return np.asarray(found.normal > NO_FORCE * max(1.0, float(np.max(found.normal, initial=0.0))))
+        size = self.sim.gap_size(self.now.contacts)
+        largest = max(self.sim.scales.energy, float(np.max(found.normal * size, initial=0.0)))
+        return np.asarray(found.normal > FORCE_ROUNDING * largest / size)
 
     def sticking(self, found: ContactSolution) -> NDArray[np.intp]:
         """Contacts with friction below its limit (or below it in any case: the least distribution was found); those
@@ -291,12 +287,14 @@ class Resting:
         closed = self._loaded(found)
         if not now.struck:
             # touching without force: as it was
-            closed |= (now.was == CLOSED) & ~now.leaves & (np.abs(found.normal_motion) <= self.none)
+            closed |= (now.was == CLOSED) & ~now.leaves & (np.abs(found.normal_motion) <= self.none * self.size)
         idle = self.at_rest & ~closed & ~now.leaves
         if np.any(idle):
             # or left open at this very instant, and every step closes them at once
             again = (self.b_n == 0.0) & (found.normal_motion == 0.0) & (self.sim.events_here > 2)
-            closed |= idle & (again | comes_back(self.sim, self.touching.free_jerks(), found.normal_motion))
+            closed |= idle & (
+                again | comes_back(self.sim, now.contacts, self.touching.free_jerks(), found.normal_motion)
+            )
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]

@@ -1,45 +1,45 @@
 """What is known of the touching contacts while the state machine settles an instant: modes before, and their events."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rounding import NEAR_ZERO, UNRESOLVED
 from .modes import CLOSED, IDLE, MODE, RATIO, SLIDE, STICKS
 
 if TYPE_CHECKING:
+    from ..integrate.contact_side import ContactSide
     from ..integrate.engine import Engine
 
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-NEAR_ZERO = 1e-6
-"""Of the largest multiplier (or of 1 N): a force that an event has left with less may be zero."""
-UNRESOLVED = 1e-12
-"""Of the largest coordinate (or of 1 m): bounces that are lower than this are not told from rest. Shapes touch where
-their gap is below this, and closing one contact may move the gap of another by as much."""
+BRAKED = 1e-9
+"""Of the largest acceleration: what slides with no speed and is braked by less begins to slide, it does not stop."""
 AT_LIMIT = 1e-9
 """Friction within this part of its limit has reached it."""
 
 
-def unresolved_height(sim: "Engine") -> float:
-    """Height of a gap that cannot be told from zero, m."""
-    return UNRESOLVED * max(1.0, float(np.max(np.abs(sim.workspace.arrays["q"][: sim.assembly.n]))))
+def unresolved_height(sim: "ContactSide", contacts: Sequence[int]) -> Vector:
+    """Heights of gaps that cannot be told from zero, (contacts,), m."""
+    return UNRESOLVED * sim.gap_size(contacts)
 
 
-def unresolved_speed(sim: "Engine", falls: Vector) -> Vector:
-    """Speed of separation below which a gap with the acceleration -falls (m/s^2) cannot be seen to open, m/s."""
-    return np.asarray(np.sqrt(2.0 * unresolved_height(sim) * np.maximum(falls, 0.0)))
+def unresolved_speed(sim: "ContactSide", contacts: Sequence[int], falls: Vector) -> Vector:
+    """Speeds of separation below which gaps with the accelerations -falls (m/s^2) cannot be seen to open, m/s."""
+    return np.asarray(np.sqrt(2.0 * unresolved_height(sim, contacts) * np.maximum(falls, 0.0)))
 
 
-def comes_back(sim: "Engine", jerks: Vector, motion: Vector) -> Flags:
+def comes_back(sim: "ContactSide", contacts: Sequence[int], jerks: Vector, motion: Vector) -> Flags:
     """Gaps at rest that, with these accelerations (m/s^2) and their rates (m/s^3), do not open, or less than could be
     told from zero before they close again: a node of an elastic body that has come to rest while its neighbours still
     approach. g = b t^2/2 + j t^3/6, j < 0, is highest at t = -2 b/j."""
     with np.errstate(divide="ignore", invalid="ignore"):
         height = np.where(jerks < 0.0, 2.0 * np.maximum(motion, 0.0) ** 3 / (3.0 * jerks**2), np.inf)
-    return np.asarray(height <= unresolved_height(sim))
+    return np.asarray(height <= unresolved_height(sim, contacts))
 
 
 @dataclass
@@ -76,8 +76,10 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
     was, slid = memory[contacts, MODE].copy(), memory[contacts, SLIDE].copy()
     count = len(contacts)
     leaves, stops, slips = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool), np.zeros(count)
-    no_force, rounding = sim.no_force(), sim.rate_rounding()
-    strongest, fastest = (max(1.0, float(np.max(np.abs(arrays[name]), initial=0.0))) for name in ("lam", "v"))
+    no_force, rounding = sim.no_force(contacts), sim.rate_rounding(contacts)
+    strongest, fastest = sim.force_size(contacts), sim.rate_size(contacts)
+    scale = sim.assembly.coordinate_scale
+    braked = BRAKED * float(np.max(np.abs(arrays["a"][: sim.assembly.n]) / scale, initial=0.0))
     for i, k in enumerate(contacts):
         contact = sim.assembly.contacts[k]
         if was[i] != CLOSED:
@@ -85,16 +87,17 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
         if contact.coulomb is not None and abs(slid[i]) == 1.0:
             rate, acceleration = (float(arrays[level][contact.slide_row]) for level in ("phid", "phidd"))
             # what moves with another that stops does so at the same time
-            stops[i] = abs(rate) <= rounding and slid[i] * acceleration < 0.0
+            slow = braked * float(arrays["row_scale"][contact.slide_row])
+            stops[i] = abs(rate) <= rounding[i] and slid[i] * acceleration < -slow
         if k not in pending:
             continue
         force, coulomb = -float(arrays["lam"][contact.row]), contact.coulomb
         # a method that does not meet the constraints at all levels may end a little before its force is zero
-        leaves[i] = coulomb is None or slid[i] == IDLE or force <= no_force
+        leaves[i] = coulomb is None or slid[i] == IDLE or force <= no_force[i]
         if leaves[i] or coulomb is None:
             continue
         # a force is found less finely than a velocity: the event is of what is nearer to zero
-        part = force / strongest
+        part = force / strongest[i]
         if slid[i] == STICKS:
             friction = -float(arrays["lam"][contact.slide_row])
             if abs(friction) >= coulomb.sticking_coefficient * force * (1.0 - AT_LIMIT):
@@ -102,7 +105,7 @@ def read(sim: "Engine", contacts: list[int], pending: list[int]) -> Settling:
             else:
                 leaves[i] = part <= NEAR_ZERO
         elif abs(slid[i]) == 1.0:
-            leaves[i] = part <= NEAR_ZERO and part < abs(float(arrays["phid"][contact.slide_row])) / fastest
+            leaves[i] = part <= NEAR_ZERO and part < abs(float(arrays["phid"][contact.slide_row])) / fastest[i]
             stops[i] |= not leaves[i]
     falls = -arrays["phidd"][[sim.assembly.contacts[k].row for k in contacts]]
     return Settling(contacts, was, slid, memory[contacts, RATIO].copy(), leaves, slips, stops, falls)

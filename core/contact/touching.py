@@ -86,7 +86,7 @@ class Touching:
                 self._response[i], self._joint_response[i] = self._solve(direction)
         a = directions @ self._response.T
         a = 0.5 * (a + a.T)
-        self.a = Delassus(a[:count, :count], a[:count, count:], a[count:, count:])
+        self.a = Delassus(a[:count, :count], a[:count, count:], a[count:, count:], directions, self._response)
         self._refuse_immovable()
 
     def _read_rows(self) -> None:

@@ -176,6 +176,9 @@ class AxialRod(FlexibleBody):
     def form(self) -> Form:
         return Form(type(self).kernel, 0, ((0, 0), (0, 1), (1, 0), (1, 1)), ())
 
+    def lengths(self) -> Sequence[float]:
+        return (self.length,)
+
     def rows(self, numbering: Numbering) -> Sequence[Row]:
         """One row an element; the first of equal ones says how many there are."""
         account = numbering.work("dampers")

@@ -23,6 +23,11 @@ class Numbering(Protocol):
     def gravity(self) -> tuple[float, float]: ...
 
     @property
+    def length(self) -> float:
+        """Size of the mechanism, m."""
+        ...
+
+    @property
     def bodies(self) -> "Mapping[str, BodyElement]":
         """The model's bodies by name."""
         ...
@@ -152,6 +157,14 @@ class Element(Record):
 
     def markers(self) -> Sequence[Marker2D]:
         """The markers it uses (their bodies must exist)."""
+        return ()
+
+    def reach(self) -> Sequence[tuple[float, float]]:
+        """Points on its bodies that tell the size of the mechanism, m."""
+        return [marker.point for marker in self.markers()]
+
+    def lengths(self) -> Sequence[float]:
+        """Its lengths that tell the size of a mechanism whose points do not, m."""
         return ()
 
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:

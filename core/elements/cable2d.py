@@ -121,6 +121,9 @@ class Cable2D(FlexibleBody):
         places = self.start_shape()[:, :2]
         return [(float(x), float(y)) for x, y in (places.min(axis=0), places.max(axis=0))]
 
+    def lengths(self) -> Sequence[float]:
+        return (self.length,)
+
     def row(self, numbering: Numbering) -> Row:
         return self.rows(numbering)[0]
 

@@ -47,5 +47,8 @@ class Distance2D(PairElement2D):
             self.coordinates(numbering),
         )
 
+    def lengths(self) -> Sequence[float]:
+        return (self.length,)
+
     def multiplier_channels(self) -> Sequence[Channel]:
         return (Channel(f"{self.name}.tension", "N", "force in the rod, tension positive"),)

@@ -89,6 +89,9 @@ class FloatingBeam2D(FloatingBody2D):
         beam_modes(self)
         return self
 
+    def lengths(self) -> Sequence[float]:
+        return (self.length,)
+
     def mode_names(self) -> tuple[str, ...]:
         return tuple(f"mode{k + 1}" for k in range(self.modes + self.axial_modes + len(self.attachments)))
 

@@ -154,8 +154,9 @@ class ReducedBody2D(FloatingBody2D):
         )
 
     def material_point(self, point: Vector2) -> PointShape:
+        size = max((abs(x) for given in self.points for x in given.point), default=0.0)
         for given in self.points:
-            if np.allclose(given.point, point, rtol=1e-9, atol=1e-12):
+            if np.allclose(given.point, point, rtol=1e-9, atol=1e-12 * size):
                 n = len(self.modal_mass)
                 turn = np.vstack([np.zeros(n), _or_zero(given.rotation, (n,))])
                 return self.point_shape(np.array(given.point), np.array(given.shape), turn)

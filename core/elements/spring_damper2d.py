@@ -60,6 +60,9 @@ class SpringDamper2D(PairElement2D):
     natural_length: Positive
     """m. The direction of the force is that of the line: the markers must not meet."""
 
+    def lengths(self) -> Sequence[float]:
+        return (self.natural_length,)
+
     def row(self, numbering: Numbering) -> Row:
         """Raises ConsistencyError if the markers meet at the start: the force would have no direction."""
         a, b = (place(marker.point, numbering.initial(marker.body)) for marker in (self.a, self.b))

@@ -1,6 +1,7 @@
 """EquationSystem: equations of motion from a user's functions instead of elements."""
 
 import hashlib
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,10 +15,13 @@ from ..model.channels import Channel
 from ..system.assembly import GROUND_SLOTS, Assembly, Batch, ContactInfo
 from .binding import EquationBinding
 from .constraints import ConstraintFunctions
-from .errors import EquationError
+from .errors import EquationError, NotDifferentiableError
 from .functions import EquationFunctions
 from .kernel import equations_kernel
 from .user_function import UserFunction
+
+SMALL = 1e-3
+"""Coordinates and gaps that all begin below this are those of a small system."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +51,9 @@ class EquationSystem:
     contacts : `GapContact`s.
     potential : V(t, q) for the energy channels; left out, the potential energy counts as zero.
     coordinates : names of the coordinates (default q0, q1, ...).
-    scale : typical magnitudes of the coordinates (n,), so that units do not choose the partition (default 1).
+    scale : typical magnitudes of the coordinates (n,), so that units choose neither the partition nor what rounding
+        is (default 1; of systems that start nearer to zero than 1e-3 in all coordinates and gaps, the largest of
+        these).
     t0 : time at which the functions are checked.
 
     Raises
@@ -88,10 +94,7 @@ class EquationSystem:
     ) -> None:
         self.q0 = _vector("q0", q0, None)
         n = len(self.q0)
-        self.v0 = _vector("v0", v0, n)
-        self.scale = np.ones(n) if scale is None else _vector("scale", scale, n)
-        if np.any(self.scale <= 0.0):
-            raise EquationError(f"scale must be positive, it is {self.scale}")
+        self.v0, self.t0 = _vector("v0", v0, n), t0
         self.coordinates = tuple(f"q{k}" for k in range(n)) if coordinates is None else tuple(coordinates)
         if len(self.coordinates) != n or len(set(self.coordinates)) != n:
             raise EquationError(f"coordinates must be {n} different names, they are {self.coordinates}")
@@ -108,10 +111,23 @@ class EquationSystem:
             value = gap.value(t0, self.q0)
             if value.shape != (1,):
                 raise EquationError(f"gap of contact '{contact.name}' must be one number, it has shape {value.shape}")
+        self.scale = np.full(n, self._size()) if scale is None else _vector("scale", scale, n)
+        if np.any(self.scale <= 0.0):
+            raise EquationError(f"scale must be positive, it is {self.scale}")
         self.potential = potential
         if potential is not None:
             self._check_potential(t0)
         self._given = (mass, force, constraint, constraint_jacobian, gamma, constraint_rate)
+
+    def _size(self) -> float:
+        """Typical magnitude of coordinates that nobody told: 1, but for small systems how far they and their gaps are
+        from zero at the start."""
+        sizes = [float(np.max(np.abs(self.q0)))]
+        for gap in self.gaps:
+            slope = float(np.max(np.abs(gap.jacobian(self.t0, self.q0))))
+            sizes += [abs(float(gap.value(self.t0, self.q0)[0])) / slope] if slope > 0.0 else []
+        size = max(x for x in sizes if math.isfinite(x))
+        return size if 0.0 < size < SMALL else 1.0
 
     def _check_potential(self, t0: float) -> None:
         if not callable(self.potential):
@@ -155,6 +171,23 @@ class EquationSystem:
         parts += [c.name + repr(c.law) for c in self.contacts]
         return hashlib.sha256("|".join(parts).encode()).hexdigest()
 
+    def _row_scale(self) -> NDArray[np.float64]:
+        """How far constraints and gaps move when the coordinates move by their scales, curvature included, (rows,)."""
+        found = []
+        constraints = [] if self.functions.m == 0 else [self.functions.constraints]
+        for functions in (*constraints, *self.gaps):
+            for k in range(functions.m):
+                row = np.zeros(functions.m)
+                row[k] = 1.0
+                try:
+                    jacobian, curvature = functions.jacobian_and_curvature(self.t0, self.q0, row)
+                except NotDifferentiableError:
+                    jacobian, curvature = functions.jacobian(self.t0, self.q0), np.zeros((self.n, self.n))
+                by_gradient = np.abs(np.reshape(jacobian, (functions.m, self.n))[k]) * self.scale
+                by_curvature = np.abs(curvature) * np.outer(self.scale, self.scale)
+                found.append(max(np.max(by_gradient), np.max(by_curvature)))
+        return np.array(found, dtype=np.float64)
+
     def assemble(self) -> Assembly:
         """One batch whose kernel calls the functions."""
         n, m, contacts = self.n, self.m, len(self.contacts)
@@ -194,6 +227,8 @@ class EquationSystem:
             multiplier_channels=[Channel(f"lambda{k}", "1", f"multiplier of constraint {k}") for k in range(m)],
             body_columns=[],
             coordinate_scale=self.scale,
+            length=float(np.max(self.scale)),
+            row_scale=self._row_scale(),
             bind=binding.bind,
         )
         binding.errors = assembly.user_error

@@ -5,13 +5,16 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..contact.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
 from ..contact.painleve import refuse_passed_jam, sliding_contacts
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
+from ..rounding import CONTINUOUS, GAP_ROUNDING, NO_STEP, PRESSING, SHORTEST
 from ..system.evaluate import evaluate_residuals
+from ..system.levels import position_level, rate_level
 from ..system.projection import bring_to_rest
 from ..system.records import (
     FACTOR_AGE,
@@ -41,7 +44,6 @@ from .records import (
     FULL,
     JAM,
     NEAR_SINGULAR,
-    NO_STEP,
     REACHED,
     REPARTITION,
     SETTLE,
@@ -52,10 +54,10 @@ from .records import (
     VIOLATED,
 )
 from .repair import repair
-from .search import AT_ONCE, MOST_HALVINGS, PRESSING
+from .search import AT_ONCE, MOST_HALVINGS
 from .singular_position import near_singular
 from .step_budget import step_count, steps_left
-from .watch import GAP_ROUNDING, find_events, friction_margin
+from .watch import find_events, friction_margin
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -64,8 +66,6 @@ logger = logging.getLogger(__name__)
 
 CHUNK_STEPS = 20_000
 """Steps between two reports of progress, of systems with up to 100 coordinates; larger ones report more often."""
-VELOCITY_JUMP = 1e-9
-"""m/s; a larger change of the velocity constraints' violation at a breakpoint is a jump in a driver's rate."""
 _REASONS = {
     OUTER_DIVERGED: ("outer", "the outer loop diverged"),
     OUTER_SLOW: ("outer", "the outer loop did not converge"),
@@ -157,7 +157,7 @@ def _shrink(sim: "Simulation") -> bool:
     """A smaller step after a failure of a repaired system; False if it cannot be smaller."""
     h = 0.25 * sim.clock[TRIAL_STEP]
     sim.clock[STEP_SIZE] = h
-    return bool(h > 1e-13 * max(abs(sim.t_internal), 1e-6))
+    return bool(h > SHORTEST * max(abs(sim.t_internal), 1e-6 * sim.scales.time))
 
 
 def _fall_back(sim: "Simulation", code: int) -> None:
@@ -287,7 +287,7 @@ def _locate_first(sim: "Simulation") -> None:
     h = float(sim.clock[TRIAL_STEP])
     found: dict[int, float] = {}
     safe: dict[int, float] = {}
-    step = h
+    step, least = h, NO_STEP * abs(sim.t_internal)
     while find_events(ws, ms, lc, step, True):
         late = [int(k) for k in np.flatnonzero(sim.brackets[:, HAPPENS]) if k not in found and k not in safe]
         if not late:
@@ -296,7 +296,13 @@ def _locate_first(sim: "Simulation") -> None:
         ends = {k: (sim.gap(k), *(step * sim.brackets[k, :HAPPENS])) for k in late}
         for k in late:
             size, happens = _event_step(sim, k, step, ends[k])
-            (found if happens else safe)[k] = size
+            # where the motion has none up to next to no time, what was seen is rounding
+            (found if happens else safe)[k] = size if happens or size > least else step
+        if sim.formula.exact and any(size <= least for size in found.values()):
+            # no time lies between: a step to there would be none
+            recall(ws, ms, 0)
+            sim.pending = [k for k in found if found[k] <= least]
+            return
         first = min(step, *found.values(), *safe.values())
         if not sim.formula.exact and first <= AT_ONCE * h:
             recall(ws, ms, 0)
@@ -366,7 +372,7 @@ def _event_step(sim: "Simulation", k: int, h: float, found: tuple[float, ...]) -
         _trial(sim, step, h)
         return sign * float(arrays["phi"][contact.row])
 
-    size = float(np.max(np.abs(arrays["q"][: sim.assembly.n]), initial=1.0))
+    size = position_level(sim.workspace.record) * float(arrays["row_scale"][contact.row])
     if high_step < h and gap(high_step) > 0.0:
         # the motion is behind its dense output: look where that goes deepest
         low_step = high_step
@@ -382,7 +388,7 @@ def _event_step(sim: "Simulation", k: int, h: float, found: tuple[float, ...]) -
         if low_step == 0.0 or gap(low_step) > 0.0:
             break
         low_step, high_step = 0.5 * low_step, low_step
-    overlap = GAP_ROUNDING * max(1.0, size)
+    overlap = GAP_ROUNDING * size
     if mode == OPEN and abs(sim.watch[k, 0]) <= overlap and gap(low_step) <= overlap:
         return _closing_step(sim, contact.row, h, overlap, float(sim.watch[k, 2])), True
     guess = 0.5 * (low_step + high_step)
@@ -407,7 +413,8 @@ def _closing_step(sim: "Simulation", row: int, h: float, overlap: float, before:
         return float(arrays["phidd"][row]) + none
 
     closes = gap(h) <= 0.0
-    none = PRESSING * float(np.max(np.abs(arrays["a"][: sim.assembly.n]), initial=0.0))
+    largest = float(np.max(np.abs(arrays["a"][: sim.assembly.n]) / sim.assembly.coordinate_scale, initial=0.0))
+    none = PRESSING * largest * float(arrays["row_scale"][row])
     if before > -none and float(arrays["phidd"][row]) < -none:
         return find_root(acceleration, 0.0, h, 0.5 * h, 0.0)
     return find_root(gap, 0.0, h, 0.5 * h, 0.0) if closes else h
@@ -419,7 +426,7 @@ def _warn_of_jump(sim: "Simulation", t: float) -> None:
     jumps = {
         assembly.row_names[row]: -float(rates[row])
         for row in range(assembly.m_joints)
-        if abs(rates[row]) > VELOCITY_JUMP
+        if abs(rates[row]) > _no_jump(sim)[row]
     }
     logger.warning(
         "at t = %.9g s the velocity jumps (%s): an impact of the driver; its work is in energy.input_work. "
@@ -427,6 +434,12 @@ def _warn_of_jump(sim: "Simulation", t: float) -> None:
         t,
         ", ".join(f"driver '{name}' by {jump:.6g}" for name, jump in jumps.items()),
     )
+
+
+def _no_jump(sim: "Simulation") -> NDArray[np.float64]:
+    """Changes of the rates of rows of Phi at a breakpoint that are no jumps, (m,)."""
+    row_scale = sim.workspace.arrays["row_scale"][: sim.assembly.m]
+    return np.asarray(CONTINUOUS * rate_level(sim.workspace.record) * row_scale)
 
 
 def restart_at(sim: "Simulation", t: float) -> None:
@@ -443,7 +456,7 @@ def restart_at(sim: "Simulation", t: float) -> None:
     evaluate_residuals(ws)
     kinetic = sim.kinetic_energy()
     # what a method without velocity constraints has violated before is no jump
-    if np.max(np.abs(arrays["phid"][active] - before), initial=0.0) > VELOCITY_JUMP:
+    if np.any(np.abs(arrays["phid"][active] - before) > _no_jump(sim)[active]):
         _warn_of_jump(sim, t)
         bring_to_rest(sim.workspace, "phid", "v")
         sim.add_input_work(sim.kinetic_energy() - kinetic)

@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rounding import EXACTLY_MET, NEARLY_MET
 from ..system.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.levels import position_level, rate_level
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -234,9 +236,9 @@ class Collocation:
         previous = np.inf
         for _ in range(MOST_CORRECTIONS):
             violation = arrays[residual][self.active]
-            size = float(np.max(np.abs(violation)))
-            level = max(1.0, float(np.max(np.abs(arrays[x][:n]))))
-            if size <= 1e-16 * level or (size > 0.5 * previous and size <= 1e-11 * level):
+            size = float(np.max(np.abs(violation) / arrays["row_scale"][self.active]))
+            level = position_level(self.workspace.record) if x == "q" else rate_level(self.workspace.record)
+            if size <= EXACTLY_MET * level or (size > 0.5 * previous and size <= NEARLY_MET * level):
                 return True
             if not size <= 10.0 * previous:
                 return False

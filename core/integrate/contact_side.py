@@ -1,36 +1,35 @@
 """What the contact state machine may ask of a run and do with it, at the workspace's current point."""
 
 import logging
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, RATE_ROUNDING, SLIDE, SLIDE_START, STICKS
+from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, SLIDE, SLIDE_START, STICKS
 from ..contact.settling import comes_back
 from ..contact.touching import Touching
 from ..errors import ConsistencyError, SimulationError
 from ..events import Event
 from ..methods.registry import Formula
+from ..rounding import COORDINATE_NOISE, FIRST_TOUCH, FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.levels import force_level, position_level, rate_level
 from ..system.partition import prepare
 from ..system.projection import bring_to_rest
 from ..system.records import OK
 from ..system.redundancy import RedundantRow, choose_rows, describe
+from ..system.scales import Scales
 from ..system.workspace import Workspace
 from .drive import Drive
 from .records import HANDLED, HERE, MAX_STEP, STEP_SIZE
 from .settings import Settings
-from .watch import FORCE_ROUNDING, GAP_ROUNDING
 
 logger = logging.getLogger(__name__)
-
-FIRST_TOUCH = 1e-8
-COORDINATE_NOISE = 1e-14
-"""Rounding of a coordinate after many steps, relative."""
 
 
 class ContactSide:
@@ -45,6 +44,7 @@ class ContactSide:
     method_arrays: dict[str, NDArray[Any]]
     clock: NDArray[np.float64]
     drive: Drive
+    scales: Scales
 
     @property
     def memory(self) -> NDArray[np.float64]:
@@ -116,21 +116,24 @@ class ContactSide:
         try:
             touching = Touching(self, [k], frozenset(int(j) for j in others if j != k))
             motion, jerks = touching.free_accelerations()[0], touching.free_jerks()
+        except SimulationError:
+            # the others hold it, with the friction of those that slide: which of them stay is for all to settle
+            return False
         finally:
             self.memory[k] = before
             self.use_modes()
         # one that presses is unsettled by its friction, which is for the stick and slip to settle
-        if not motion[0] > 0.0 or not comes_back(self, jerks, motion)[0]:  # type: ignore[arg-type]
+        if not motion[0] > 0.0 or not comes_back(self, [k], jerks, motion)[0]:
             return False
         # b + j t, the acceleration of the open gap, has turned well before this
         beyond = min(4.0 * float(motion[0]) / -float(jerks[0]), float(self.clock[MAX_STEP]))
         self.clock[STEP_SIZE] = max(self.clock[STEP_SIZE], beyond)
         return True
 
-    def start_small(self, speed: float) -> None:
-        """Begin a contact with a step in which it closes by FIRST_TOUCH of the mechanism's size, so that the error
-        control sees the force grow: a step over the whole contact would find no force at its stages."""
-        size = float(np.max(self.assembly.coordinate_scale, initial=1.0))
+    def start_small(self, k: int, speed: float) -> None:
+        """Begin contact k with a step in which it closes by FIRST_TOUCH of its size, so that the error control sees the
+        force grow: a step over the whole contact would find no force at its stages."""
+        size = float(self.workspace.arrays["row_scale"][self.assembly.contacts[k].row])
         self.clock[STEP_SIZE] = min(self.clock[STEP_SIZE], FIRST_TOUCH * size / speed)
 
     def add_event(self, event: Event) -> None:
@@ -182,13 +185,13 @@ class ContactSide:
     def touching(self, pending: list[int]) -> list[int]:
         """Constraint contacts without a gap at the workspace's point: closed ones, `pending`, and others that touch.
         Those at massless ends are left out: they take no impulse."""
-        level = GAP_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]))))
+        none = GAP_ROUNDING * self.gap_size(range(len(self.assembly.contacts)))
         return [
             k
             for k, contact in enumerate(self.assembly.contacts)
             if not isinstance(contact.law, ForceLaw)
             and k not in self.assembly.massless_contacts
-            and (k in pending or self.memory[k, MODE] == CLOSED or abs(self.gap(k)) <= level)
+            and (k in pending or self.memory[k, MODE] == CLOSED or abs(self.gap(k)) <= none[k])
         ]
 
     def held(self) -> frozenset[int]:
@@ -205,9 +208,27 @@ class ContactSide:
                 found[k] = float(self.workspace.arrays["phi"][row] + (memory[SLIDE_START] if sticks else 0.0))
         return found
 
-    def rate_rounding(self) -> float:
-        """Rate of a gap or a sliding distance below which it is none, m/s."""
-        return RATE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["v"][: self.assembly.n]))))
+    def gap_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
+        """What the gaps of these contacts are small or large against at the workspace's point, (contacts,), m."""
+        return position_level(self.workspace.record) * self._row_scale(contacts)
+
+    def rate_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
+        """The same of the rates of their gaps and sliding distances, (contacts,), m/s."""
+        scale, rows = self.workspace.arrays["row_scale"], self.workspace.arrays["contact_slide_rows"][list(contacts)]
+        along = np.where(rows >= 0, scale[rows], 0.0)
+        return rate_level(self.workspace.record) * np.maximum(self._row_scale(contacts), along)
+
+    def force_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
+        """The same of their normal forces, (contacts,), N."""
+        return force_level(self.workspace.record) / self._row_scale(contacts)
+
+    def _row_scale(self, contacts: Sequence[int]) -> NDArray[np.float64]:
+        arrays = self.workspace.arrays
+        return np.asarray(arrays["row_scale"][arrays["contact_rows"][list(contacts)]])
+
+    def rate_rounding(self, contacts: Sequence[int]) -> NDArray[np.float64]:
+        """Rates of their gaps and sliding distances below which these are at rest, (contacts,), m/s."""
+        return RATE_ROUNDING * self.rate_size(contacts)
 
     @property
     def started(self) -> bool:
@@ -239,17 +260,17 @@ class ContactSide:
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the workspace's point: they pull, or are held beyond
         their friction."""
-        arrays, tolerance = self.workspace.arrays, self.no_force()
+        arrays, none = self.workspace.arrays, self.no_force(range(len(self.assembly.contacts)))
         found = []
         for k, contact in enumerate(self.assembly.contacts):
             if self.memory[k, MODE] != CLOSED:
                 continue
-            force = -arrays["lam"][contact.row]
+            force, tolerance = -arrays["lam"][contact.row], float(none[k])
             if force < -tolerance and force < -self._contact_noise(contact.row):
                 found.append(k)
             elif contact.coulomb is not None and self.memory[k, SLIDE] == STICKS:
                 limit = contact.coulomb.sticking_coefficient * force
-                if abs(arrays["lam"][contact.slide_row]) > limit * (1.0 + 1e-9) + tolerance:
+                if abs(arrays["lam"][contact.slide_row]) > limit * (1.0 + SLIP_EXCESS) + tolerance:
                     found.append(k)
         return found
 
@@ -258,15 +279,15 @@ class ContactSide:
         noise = self.force_noise()
         rows, cols, values = self.workspace.jacobian()
         here = np.flatnonzero((self.workspace.structure.active[rows] == row) & (values != 0.0))
-        if not np.any(
-            noise[cols[here]]
-        ):  # on frames without stiffness of their own, which hand on the forces of others
-            return float(np.max(noise, initial=0.0) / np.max(np.abs(values[here]), initial=1.0))
+        if not np.any(noise[cols[here]]):
+            # on frames without stiffness of their own, which hand on the forces of others
+            work = float(np.max(noise * self.assembly.coordinate_scale, initial=0.0))
+            return work / float(self.workspace.arrays["row_scale"][row])
         return float(np.max(noise[cols[here]] / np.abs(values[here]), initial=0.0))
 
-    def no_force(self) -> float:
-        """Rounding of the multipliers: a force below this is none, N."""
-        return FORCE_ROUNDING * max(1.0, float(np.max(np.abs(self.workspace.arrays["lam"]), initial=0.0)))
+    def no_force(self, contacts: Sequence[int]) -> NDArray[np.float64]:
+        """Rounding of the multipliers: forces of these contacts below this are none, (contacts,), N."""
+        return FORCE_ROUNDING * self.force_size(contacts)
 
     def tangent_product(self, c_q: float, c_v: float, x: NDArray[np.float64]) -> tuple[Any, Any]:
         """(c_v D + c_q K) x (n,), without the mass matrix, and the same of the magnitudes of all terms."""
@@ -282,8 +303,9 @@ class ContactSide:
     def force_noise(self) -> NDArray[np.float64]:
         """What rounding of the coordinates leaves in the forces (n,), N: in stiff bodies, coordinates that are nearly
         equal make large forces that cancel each other. That of the largest travels to all of them as waves."""
-        largest = float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]), initial=0.0))
-        noise = np.full(self.assembly.n, COORDINATE_NOISE * largest)
+        scale = self.assembly.coordinate_scale
+        largest = float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]) / scale, initial=0.0))
+        noise = COORDINATE_NOISE * largest * scale
         return np.asarray(self.tangent_product(1.0, 0.0, noise)[1])
 
     def presses(self, k: int) -> bool:

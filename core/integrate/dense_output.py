@@ -11,10 +11,10 @@ from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import mat, vec
 from ..methods.history import bridge_rows, history_row, history_time, recall
 from ..methods.multistep import rows_available
+from ..rounding import NO_STEP
 from ..stage.project import project
 from ..system.evaluate import evaluate_residuals
 from ..system.records import OK, SINGULAR
-from .records import NO_STEP
 
 APART = 0.1
 """Of the newest step: rows nearer to one another than this make divided differences of rounding."""

@@ -18,6 +18,7 @@ from ..contact.progress import Progress
 from ..events import Event
 from ..methods.history import history_time
 from ..methods.records import METHOD_TYPE
+from ..rounding import NO_STEP
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly, ContactInfo
 from ..system.records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
@@ -46,7 +47,6 @@ from .records import (
     JAM,
     LAST_STOP,
     LOOP_TYPE,
-    NO_STEP,
     REACHED,
     RUN_SIGNATURE,
     SAMPLE_SIGNATURE,

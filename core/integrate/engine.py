@@ -13,7 +13,7 @@ from ..compiled.jit import address_of
 from ..compiled.notices import compile_notices
 from ..contact import machine
 from ..contact.laws import ForceLaw
-from ..contact.modes import MODE, RATE_ROUNDING
+from ..contact.modes import MODE
 from ..contact.progress import Progress
 from ..description import Model
 from ..equations.system import EquationSystem
@@ -23,13 +23,16 @@ from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
 from ..methods.records import step_address
 from ..methods.registry import FINE_STARTER, Formula, get_formula
+from ..rounding import START_OVERLAP
 from ..stage import OUTER_LOOPS
 from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_residuals
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
 from ..system.redundancy import RedundantRow
+from ..system.scales import Scales, measure_scales
 from ..system.workspace import Workspace
+from ..tolerances import DEFAULT_ATOL
 from . import motions
 from .contact_side import ContactSide
 from .dense_output import query
@@ -70,7 +73,7 @@ class Engine(ContactSide):
         system: Any,
         method: str = "ebdf",
         rtol: float = 1e-6,
-        atol: float | Mapping[str, float] = 1e-9,
+        atol: float | Mapping[str, float] = DEFAULT_ATOL,
         *,
         step: float | None = None,
         max_step: float | None = None,
@@ -123,10 +126,14 @@ class Engine(ContactSide):
         self.fine_starter = step_address(FINE_STARTER)
         self.guard = Progress(float(t0))
         self.drive = Drive(self, self.guard)
-        set_control(self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays)
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
         with user_errors(self.assembly):
+            self._given_start()
+            self.scales: Scales = measure_scales(self.workspace)
+            set_control(
+                self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays, self.scales.rate
+            )
             self._start()
         make_ready(self)
 
@@ -153,18 +160,22 @@ class Engine(ContactSide):
         control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, float(name == "simple")
         self.workspace.arrays["rate"][FACTOR_AGE] = -1.0
 
-    def _start(self) -> None:
+    def _given_start(self) -> None:
+        """The workspace at the start as it is given, which may not meet the constraints yet."""
         arrays, a = self.workspace.arrays, self.assembly
         arrays["q"][: a.n] = a.q0
         arrays["v"][: a.n] = a.v0
         arrays["t"][0] = self.settings.t0
         motions.place(self.workspace, self.settings.t0)
+
+    def _start(self) -> None:
+        a = self.assembly
+        self._given_start()
         refuse = self.settings.redundant == "refuse"
         self.redundant = make_consistent(self.workspace, self.settings.start_tolerance, refuse)
-        gap_tolerance = 1e-9 * float(np.max(a.coordinate_scale, initial=1.0))
         touching = []
         for k, contact in enumerate(a.contacts):
-            gap = self.gap(k)
+            gap, gap_tolerance = self.gap(k), START_OVERLAP * float(self.gap_size([k])[0])
             if gap < -gap_tolerance and not isinstance(contact.law, ForceLaw):
                 raise ConsistencyError(
                     f"contact '{contact.name}' starts with the shapes overlapping by {-gap:.3g} m; "
@@ -172,11 +183,11 @@ class Engine(ContactSide):
                 )
             if gap > gap_tolerance:
                 continue
-            rate = self.gap_rate(k)
+            rate, still = self.gap_rate(k), float(self.rate_rounding([k])[0])
             if isinstance(contact.law, ForceLaw):
-                touches = gap < -gap_tolerance or rate < -RATE_ROUNDING or (rate <= RATE_ROUNDING and self.presses(k))
+                touches = gap < -gap_tolerance or rate < -still or (rate <= still and self.presses(k))
             else:
-                touches = rate <= self.rate_rounding()
+                touches = rate <= still
             if touches:
                 touching.append(k)
         self.use_modes()
@@ -197,7 +208,7 @@ class Engine(ContactSide):
         arrays, n, scale = self.workspace.arrays, self.assembly.n, self.assembly.coordinate_scale
         speed = float(np.max(np.abs(arrays["v"][:n]) / scale, initial=0.0))
         acceleration = float(np.max(np.abs(arrays["a"][:n]) / scale, initial=0.0))
-        guess = 0.1
+        guess = 0.1 * self.scales.time
         if speed > 0.0:
             guess = min(guess, 0.01 / speed)
         if acceleration > 0.0:

@@ -25,8 +25,10 @@ from ..methods.history import bridge_rows, history_time, recall, restart
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
+from ..rounding import FORCE_ROUNDING
 from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import evaluate_power, evaluate_residuals
+from ..system.levels import force_level
 from ..system.records import (
     COUNTERS_SIZE,
     FACTOR_AGE,
@@ -55,7 +57,7 @@ from .records import (
 )
 from .records import GOAL as GOAL_TIME
 from .sample import write_sample
-from .watch import no_force, remember
+from .watch import remember
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -115,11 +117,11 @@ def _unsettled(ws: Any) -> bool:
     """True if the mode of a closed contact may not fit the forces at the current point (`ContactSide.unsettled`)."""
     memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    none, static = no_force(ws), vec(ws.contact_sticking, ws.n_contacts)
+    work, static = FORCE_ROUNDING * force_level(ws), vec(ws.contact_sticking, ws.n_contacts)
     for k in range(ws.n_contacts):
         if memory[k, MODE] != CLOSED:
             continue
-        force = -lam[rows[k]]
+        force, none = -lam[rows[k]], work / vec(ws.row_scale, ws.m_ext)[rows[k]]
         if force < -none:
             return True
         if slides[k] >= 0 and memory[k, SLIDE] == STICKS and abs(lam[slides[k]]) > static[k] * force + none:

@@ -11,9 +11,10 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE, SLIP_EXCESS, STICKS
+from ..contact.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..methods.history import history_row, history_time
 from ..methods.multistep import rows_available
+from ..rounding import SLIP_EXCESS
 from ..system.records import OK
 from .certain import SHORTEST
 from .probe import BRACKET, HAPPENS, VIEW, between, look
@@ -119,9 +120,13 @@ def forces_may_vanish(ws: Any, ms: Any, lc: Any, h: float) -> bool:
 
 @internal
 def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
-    """True if one does, falling below -none (N), and comes back; then the lines of `brackets` say where the first
-    does."""
+    """True if one does, falling below zero by more than rounding, and comes back; then the lines of `brackets` say
+    where the first does.
+
+    none : the work of a force, along the scale of its contact's row, below which it is none, J.
+    """
     n = ws.n_contacts
+    rows, row_scale = ivec(ws.contact_rows, n), vec(ws.row_scale, ws.m_ext)
     memory, brackets = mat(ws.memory, n, MEMORY_SIZE), mat(lc.brackets, n, BRACKET)
     places, values = np.empty(DEPTH + 1), np.empty((DEPTH + 2, n, WANT))
     bends, left = np.full((DEPTH + 1, n, WANT), np.inf), values[DEPTH + 1]
@@ -144,14 +149,16 @@ def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
         right, long = values[depth - 1], places[depth - 1] - place
         doubtful, below = long * h > longest * (1.0 + 1e-9), False
         for k in range(n):
+            least_force = -none / row_scale[rows[k]]
             for j in range(WANT):
                 if not watched[k, j]:
                     continue
-                below = below or right[k, j] < -none
-                doubtful = doubtful or _least(left[k, j], right[k, j], bends[depth - 1, k, j]) < -none
+                below = below or right[k, j] < least_force
+                doubtful = doubtful or _least(left[k, j], right[k, j], bends[depth - 1, k, j]) < least_force
         if below:
             for k in range(n):
-                if (watched[k, 0] and right[k, 0] < -none) or (watched[k, 1] and right[k, 1] < -none):
+                least_force = -none / row_scale[rows[k]]
+                if (watched[k, 0] and right[k, 0] < least_force) or (watched[k, 1] and right[k, 1] < least_force):
                     brackets[k, 0], brackets[k, 1], brackets[k, 2] = place, places[depth - 1], places[depth - 1]
                     brackets[k, HAPPENS] = 1.0
             return True

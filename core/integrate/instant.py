@@ -20,18 +20,17 @@ from ..contact.modes import (
     MEMORY_SIZE,
     MODE,
     OPEN,
-    RATE_ROUNDING,
     RATIO,
     SLIDE,
     STICKS,
 )
 from ..contact.progress import AT_ONCE, COUNT, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
-from ..contact.settling import UNRESOLVED
 from ..contact.sweeps import one_contact
 from ..linalg import factor, lu_at, solve
 from ..methods.history import history_time, recall, restart
-from ..stage.inner import rounding_level
+from ..rounding import GAP_ROUNDING, RATE_ROUNDING, UNRESOLVED
 from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.levels import position_level, rate_level
 from ..system.records import FACTOR_AGE, OK, RATE_SIZE
 from .records import (
     COUNTS_SIZE,
@@ -47,7 +46,7 @@ from .records import (
     call_accelerations,
     call_sample,
 )
-from .watch import GAP_ROUNDING, remember
+from .watch import remember
 
 OTHER, UNTOUCHED, NEWTON, POISSON = range(4)
 """How the impact of a contact is solved: by Python; not at all (force laws, contacts at massless ends)."""
@@ -60,14 +59,14 @@ def _alone(dr: Any, ws: Any) -> int:
     """The contact that touches now, if it is one that is struck here and no other touches; else -1."""
     memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
     pending, rows = ivec(dr.pending, ws.n_contacts), ivec(ws.contact_rows, ws.n_contacts)
-    phi, level, found = vec(ws.phi, ws.m_ext), GAP_ROUNDING * rounding_level(ws, ws.q), -1
+    phi, level, found = vec(ws.phi, ws.m_ext), GAP_ROUNDING * position_level(ws), -1
     for k in range(ws.n_contacts):
         if memory[k, MODE] == CLOSED:
             return -1
         if law[k] == UNTOUCHED:
             if pending[k] != 0:
                 return -1
-        elif pending[k] != 0 or abs(phi[rows[k]]) <= level:
+        elif pending[k] != 0 or abs(phi[rows[k]]) <= level * vec(ws.row_scale, ws.m_ext)[rows[k]]:
             if found >= 0 or law[k] == OTHER:
                 return -1
             found = k
@@ -165,7 +164,10 @@ def settle(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
     memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(dr.law, ws.n_contacts)[k]
     mu, restitution = vec(dr.friction, ws.n_contacts)[k], vec(dr.restitution, ws.n_contacts)[k]
     v, velocities, phid = vec(ws.v, ws.n_ext), vec(dr.velocities, ws.n_ext), vec(ws.phid, ws.m_ext)
-    rounding = RATE_ROUNDING * rounding_level(ws, ws.v)
+    size = vec(ws.row_scale, ws.m_ext)[row]
+    if slide >= 0:
+        size = max(size, vec(ws.row_scale, ws.m_ext)[slide])
+    rounding = RATE_ROUNDING * rate_level(ws) * size
     approach, along, falls = -phid[row], phid[slide] if slide >= 0 else 0.0, -vec(ws.phidd, ws.m_ext)[row]
     along = along if abs(along) > rounding else 0.0
     if approach <= rounding or restitution == 0.0 or (law == POISSON and mu > 0.0):
@@ -238,7 +240,8 @@ def _strike(
         return False
     phid = vec(ws.phid, ws.m_ext)
     separation, after = phid[row], phid[slide] if slide >= 0 else 0.0
-    unresolved, falls_after = UNRESOLVED * rounding_level(ws, ws.q), -vec(ws.phidd, ws.m_ext)[row]
+    unresolved = UNRESOLVED * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+    falls_after = -vec(ws.phidd, ws.m_ext)[row]
     # what opens by less than can be told from zero comes to rest
     if separation <= max(rounding, np.sqrt(2.0 * unresolved * max(falls_after, 0.0))):
         return False

@@ -7,8 +7,10 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
 from ..methods.records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
-from ..stage.inner import STRAINED, rounding_level
+from ..rounding import CONTRADICTION, COORDINATE_DIFFERENCES, LARGEST, NO_STEP
+from ..stage.inner import STRAINED
 from ..stage.matrices import CHOICE_GROWTH
+from ..system.levels import position_level
 from ..system.records import (
     ATOL,
     CHOICE_CONDITION,
@@ -67,13 +69,9 @@ from .step_size import next_step, step_factor
 from .watch import remember
 
 LOG_SIZE = len(LOG_COLUMNS)
-# Rounding of a coordinate, relative to the largest, that differences over several steps make of 2e-16.
-ROUNDING = 2e-13
 AWAY = 8.0  # decrease of the condition after which a singular position is looked for anew
-LARGEST = 1e100
 STRAIN = 2.0  # growth of the dependent coordinates' sensitivity that calls for a new partition
 LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look at the sensitivity
-REDUNDANT_TOLERANCE = 1e-8  # violation of a redundant row that shows that it is not; absolute up to 1, then relative
 
 
 @internal
@@ -90,11 +88,14 @@ def set_weights(ws: Any, ms: Any) -> None:
         level_v = max(level_v, abs(row[ws.n_ext + i]) / scale[i])
     for i in range(ws.n):
         # a coordinate near zero has the rounding of the large ones that it is tied to by the constraints
-        weight_q[i] = max(atol_q[i], ROUNDING * level_q * scale[i]) + control[RTOL] * abs(row[i])
-        weight_v[i] = max(atol_v[i], ROUNDING * level_v * scale[i]) + control[RTOL] * abs(row[ws.n_ext + i])
-    # work accounts: relative to what they hold, or to 1 J (N s)
+        weight_q[i] = max(atol_q[i], COORDINATE_DIFFERENCES * level_q * scale[i]) + control[RTOL] * abs(row[i])
+        weight_v[i] = max(atol_v[i], COORDINATE_DIFFERENCES * level_v * scale[i]) + control[RTOL] * abs(
+            row[ws.n_ext + i]
+        )
+    # work accounts: relative to what they hold, or to the model's own energy (impulse)
+    work_scale = vec(ws.work_scale, ws.n_ext)
     for i in range(ws.n_ext - ws.n_work, ws.n_ext):
-        weight_v[i] = control[ATOL] + control[RTOL] * max(1.0, abs(row[ws.n_ext + i]))
+        weight_v[i] = control[ATOL] * work_scale[i] + control[RTOL] * max(work_scale[i], abs(row[ws.n_ext + i]))
 
 
 @compiled
@@ -204,9 +205,10 @@ def _leap(ws: Any, ms: Any, lc: Any) -> float:
 def violates_redundant(ws: Any, relaxed: float) -> bool:
     """True if the motion breaks a row that was taken for redundant."""
     phi, redundant = vec(ws.phi, ws.m_ext), ivec(ws.redundant, ws.n_redundant)
-    most = relaxed * REDUNDANT_TOLERANCE * rounding_level(ws, ws.q)
+    row_scale = vec(ws.row_scale, ws.m_ext)
+    most = relaxed * CONTRADICTION * position_level(ws)
     for i in range(ws.n_redundant):
-        if not abs(phi[redundant[i]]) <= most:
+        if not abs(phi[redundant[i]]) <= most * row_scale[redundant[i]]:
             return True
     return False
 
@@ -223,7 +225,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         t = history_time(ms, 0)
         stop = clock[STOP_TIME]
         remaining = stop - t
-        if t >= clock[TARGET_TIME] or remaining <= 4e-16 * abs(t):
+        if t >= clock[TARGET_TIME] or remaining <= NO_STEP * abs(t):
             return REACHED
         if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
             return FULL

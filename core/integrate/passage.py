@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..methods.history import recall
+from ..rounding import CONSTRAINT_NOISE
 from ..system.evaluate import evaluate_residuals
 from ..system.records import FACTOR_AGE, LEAST_CONDITION, LOOKED_CONDITION, MOST_CONDITION, OK, REANALYZE
 from ..system.redundancy import singular_directions
@@ -39,10 +40,10 @@ CLEARANCE = 0.2
 """Least distance of a stage from the position, in units of the step over the number of stages."""
 LENGTHS = (1.0, 1.5, 2.2, 3.3, 5.0)
 """Longer steps, with the position not in the middle, where rounding asks for them."""
+SHORTER = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
+"""Of what remains to a stop, where it leaves no room for the steps above: some of these have stages that keep clear."""
 FALLING = 0.3
 """Ratio of two differences between orders up to which truncation is what they show."""
-NOISE = 2e-15
-"""Rounding of a constraint, relative to the coordinates' scales."""
 UNDETERMINED = 1e-4
 """Least singular value of the scaled Phi_q up to which a point is not brought onto the constraints: rounding would move
 it by more than the error of the polynomial."""
@@ -106,8 +107,13 @@ def _plans(near: float, natural: float, remaining: float) -> list[tuple[float, t
         plans.append((2.0 * near, STAGES))
     least = 2.0 * max(abs(near), natural)
     lengths = [min(length * least, remaining) for length in LENGTHS]
-    plans += [(h, clear) for h in sorted(set(lengths)) if len(clear := _clear_stages(h, near)) > 1]
-    return plans
+    plans += _clear_plans(sorted(set(lengths)), near)
+    return plans or _clear_plans([length * remaining for length in SHORTER], near)
+
+
+def _clear_plans(sizes: list[float], near: float) -> list[tuple[float, tuple[int, ...]]]:
+    """Those sizes of steps for which there are numbers of stages that can be compared."""
+    return [(h, clear) for h in sizes if len(clear := _clear_stages(h, near)) > 1]
 
 
 def _clear_stages(h: float, near: float) -> tuple[int, ...]:
@@ -223,7 +229,7 @@ class _Over:
         values, directions = singular_directions(workspace)
         scale = self.sim.assembly.coordinate_scale
         level = max(1.0, float(np.max(np.abs(one.q[-1] / scale))))
-        noise_q = NOISE * level / np.maximum(values, 1e-300)
+        noise_q = CONSTRAINT_NOISE * level / np.maximum(values, 1e-300)
         noise_v = noise_q * float(np.max(np.abs(one.v[-1] / scale))) / np.maximum(values, 1e-300)
         ends = []
         for x, y, noise in ((one.q[-1], other.q[-1], noise_q), (one.v[-1], other.v[-1], noise_v)):

@@ -22,6 +22,7 @@ from ..methods.records import METHOD_TYPE
 from ..stage import OUTER_LOOPS
 from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import constraint_norm, evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.levels import force_level, position_level, rate_level
 from ..system.projection import least_correction
 from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
 from .dense_output import interpolate, query
@@ -59,6 +60,9 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (evaluate_power, (_WORKSPACE,)),
     (evaluate_energy, (_WORKSPACE,)),
     (constraint_norm, (_WORKSPACE, _WHOLE)),
+    (position_level, (_WORKSPACE,)),
+    (rate_level, (_WORKSPACE,)),
+    (force_level, (_WORKSPACE,)),
     (least_correction, (_WORKSPACE, _WHOLE, _WHOLE)),
     (evaluate_joints, (_WORKSPACE,)),
     (factor_joints, (_WORKSPACE,)),

@@ -49,8 +49,6 @@ call_accelerations = caller(ACCELERATIONS_SIGNATURE)
 
 WATCH = 5
 """Columns of `watch`: gap, rate and acceleration of a contact; rate and acceleration of its sliding distance."""
-NO_STEP = 4e-16
-"""Of the time: what is left before a stop or a breakpoint is rounding, and `run` makes no step of it."""
 
 # columns of `clock`
 STEP_SIZE = 0  # proposed next step

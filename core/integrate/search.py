@@ -11,21 +11,19 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, SLIDE
-from ..methods.history import recall
-from ..stage.inner import rounding_level
+from ..methods.history import history_time, recall
+from ..rounding import GAP_ROUNDING, NO_STEP, PRESSING
+from ..system.levels import position_level
 from ..system.records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
 from .locate import JUMP, MAX_TRIALS
 from .probe import BRACKET, HAPPENS, VIEW, look
 from .records import CLOCK_SIZE, FOUND_SIZE, TRIAL_STEP, WATCH, call_accept, call_find_events, call_trial
-from .watch import GAP_ROUNDING, friction_margin
+from .watch import friction_margin
 
 MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON = 40, 60, 6
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
-PRESSING = 1e-6
-"""Of the largest acceleration: with more, the gap of shapes that touch begins to close. The forces of many contacts
-leave less of it."""
 SAME = 1e-12
 """Of a step: events nearer than this are at one instant."""
 
@@ -203,12 +201,13 @@ def _begins_to_close(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, overl
     status, end = _value(dr, ws, ms, lc, k, OVERLAP, 1.0, overlap, h, h)
     if status != OK:
         return status, h
-    none, a = 0.0, vec(ws.a, ws.n)
+    none, a, scale = 0.0, vec(ws.a, ws.n), vec(ws.scale, ws.n)
     for i in range(ws.n):
-        none = max(none, abs(a[i]))
-    none *= PRESSING
+        none = max(none, abs(a[i]) / scale[i])
+    row = ivec(ws.contact_rows, ws.n_contacts)[k]
+    none *= PRESSING * vec(ws.row_scale, ws.m_ext)[row]
     before = mat(lc.watch, ws.n_contacts, WATCH)[k, 2]
-    if before > -none and vec(ws.phidd, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]] < -none:
+    if before > -none and vec(ws.phidd, ws.m_ext)[row] < -none:
         return _root(dr, ws, ms, lc, k, CLOSING, 1.0, none, 0.0, h, 0.0, h)
     if end <= 0.0:
         return _root(dr, ws, ms, lc, k, OVERLAP, 1.0, overlap, 0.0, h, 0.0, h)
@@ -225,7 +224,7 @@ def _event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: An
     if mode == CLOSED or (mode != OPEN and end <= 0.0 and high == h):
         return _by_force(dr, ws, ms, lc, k, 1.0 if mode == CLOSED or mode == ACTIVE else -1.0, low, high, h)
     sign = 1.0 if mode == OPEN else -1.0
-    size = rounding_level(ws, ws.q)
+    size = position_level(ws) * vec(ws.row_scale, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
     overlap = GAP_ROUNDING * size
     pulls = mode == ACTIVE and ivec(ws.contact_release, ws.n_contacts)[k] == 2
     start = mat(lc.watch, ws.n_contacts, WATCH)[k]
@@ -302,7 +301,7 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     vec(dr.last_trial, 1)[0] = -1.0
     for k in range(ws.n_contacts):
         found[k, STATE] = UNKNOWN
-    step = h
+    step, least = h, NO_STEP * abs(history_time(ms, 0))
     while call_find_events(lc.find_events, ws, ms, lc, step, True):
         late, first = False, step
         for k in range(ws.n_contacts):
@@ -318,18 +317,25 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
             found[k, STATE] = -1.0
         if not late:
             break
+        nearest = np.inf
         for k in range(ws.n_contacts):
             if found[k, STATE] == -1.0:
                 status, size, happens = _event_step(dr, ws, ms, lc, k, step, found[k, PLACES:])
                 if status != OK:
                     return status
-                found[k, SIZE], found[k, STATE] = size, HAPPENED if happens else SAFE
+                # where the motion has none up to next to no time, what was seen is rounding
+                found[k, SIZE] = size if happens or size > least else step
+                found[k, STATE] = HAPPENED if happens else SAFE
             if found[k, STATE] != UNKNOWN:
                 first = min(first, found[k, SIZE])
-        if ms.exact == 0 and first <= AT_ONCE * h:
+            if found[k, STATE] == HAPPENED:
+                nearest = min(nearest, found[k, SIZE])
+        # no time lies between: a step to there would be none
+        at_once = least if ms.exact != 0 else AT_ONCE * h
+        if (nearest if ms.exact != 0 else first) <= at_once:
             recall(ws, ms, 0)
             for k in range(ws.n_contacts):
-                pending[k] = 1 if found[k, STATE] == HAPPENED and found[k, SIZE] <= AT_ONCE * h else 0
+                pending[k] = 1 if found[k, STATE] == HAPPENED and found[k, SIZE] <= at_once else 0
             return OK
         step = first
         status = make_trial(dr, ws, ms, lc, step, h)

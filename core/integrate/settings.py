@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError
+from ..rounding import CONSTRAINT_TOLERANCES
 from ..stage import OUTER_LOOPS
 from ..stage.simple import MOST_DEPTH
 from ..system.assembly import Assembly
@@ -21,21 +22,19 @@ from ..system.records import (
     MAX_INNER,
     MOST_CONDITION,
     NEWTON_TOLERANCE,
-    PATIENCE,
     POSITION_TOLERANCE,
     RTOL,
     VELOCITY_TOLERANCE,
 )
+from ..tolerances import DEFAULT_ATOL, OfScales
 from .controllers import CONTROLLERS
 
 ACCELERATIONS = ("none", "aitken", "anderson")
 REDUNDANT = ("drop", "refuse")
 """What is done with constraints that repeat others."""
-CONSTRAINT_TOLERANCES = (1e-12, 1e-12, 1e-12)
-"""At position, velocity and acceleration level: absolute below 1, relative to the largest entry above."""
-CONSTRAINT_SHARE = 0.003
+CONSTRAINT_SHARE = 0.002
 """Of the finest absolute tolerance: what a violation of the constraints may be. The solution of the constraints and the
-level of the coordinates (`rounding_level`) enlarge it by ten and more."""
+level of the coordinates (`position_level`) enlarge it by ten and more."""
 KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
 FINEST = 1e-13
@@ -116,43 +115,57 @@ def _check_positive(name: str, value: Any, infinite: bool = False) -> None:
         raise ModelError(f"{name} must be finite, not {value!r}")
 
 
-DEFAULT_ATOL = 1e-9
-"""Of kinds that a mapping leaves out."""
+SPEEDS = 0.1
+"""Of the speeds that the model's time makes of its lengths: what its default tolerances are a part of. That time is
+that of the fastest of its motions and forces, and most of what moves is slower."""
+DEFAULT_NEWTON_TOLERANCE = 1e-10
+"""Of runs with fixed steps: a part of the lengths, and of all the speeds that the model's time makes of them, since
+what rounding leaves in stiff bodies is not far below."""
 
 
 def set_control(
-    settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]]
+    settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]], rate: float
 ) -> None:
     """Fill the workspace's absolute tolerances and its control numbers, but for those of the outer loop
-    (`Engine.use_outer_loop`); `newton_tolerance` is the formula's own."""
+    (`Engine.use_outer_loop`) and the model's own scales; `newton_tolerance` is the formula's own, `rate` the inverse
+    of the model's time, 1/s."""
     control, n = arrays["control"], assembly.n
+    # a tolerance as large as what it is for would let all pass
+    size_q, size_v = assembly.coordinate_scale, SPEEDS * assembly.coordinate_scale * rate
+    internal = assembly.is_internal
+    # the state is the velocity of such a coordinate, and a deflection: a length
+    size_v = np.where(internal, assembly.length, size_v)
     fixed = settings.step is not None
     if fixed:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
-        tolerance = settings.newton_tolerance or 1e-10
+        tolerance = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
         control[RTOL] = control[ATOL] = tolerance
         control[NEWTON_TOLERANCE] = 1.0
-        arrays["atol_q"][:] = arrays["atol_v"][:] = tolerance
+        given = settings.newton_tolerance is not None
+        arrays["atol_q"][:n] = tolerance * (np.ones(n) if given else size_q)
+        arrays["atol_v"][:n] = tolerance * (np.ones(n) if given else np.where(internal, size_v, size_v / SPEEDS))
     else:
         control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
             newton_tolerance, min(0.01, FINEST / settings.rtol)
         )
-        given = settings.atol if isinstance(settings.atol, Mapping) else dict.fromkeys(KINDS, settings.atol)
-        atol = {kind: float(given.get(kind, DEFAULT_ATOL)) for kind in KINDS}
-        control[ATOL] = min(atol.values())
         angles = assembly.is_angle
-        arrays["atol_q"][:n] = np.where(angles, atol["angle"], atol["length"])
-        arrays["atol_v"][:n] = np.where(angles, atol["angular_speed"], atol["speed"])
-        # the state is the velocity of such a coordinate, and a deflection: a length
-        arrays["atol_v"][:n][assembly.is_internal] = atol["length"]
+
+        def tolerances(kind: str, size: NDArray[np.float64]) -> NDArray[np.float64]:
+            atol = settings.atol.get(kind, DEFAULT_ATOL) if isinstance(settings.atol, Mapping) else settings.atol
+            return float(atol) * (size if isinstance(atol, OfScales) else np.ones(n))
+
+        arrays["atol_q"][:n] = np.where(angles, tolerances("angle", size_q), tolerances("length", size_q))
+        arrays["atol_v"][:n] = np.where(angles, tolerances("angular_speed", size_v), tolerances("speed", size_v))
+        arrays["atol_v"][:n][internal] = tolerances("length", size_v)[internal]
+        control[ATOL] = min(1.0, float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0)))
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     # differences over several steps see what the constraints leave open: it has to be small against the tolerances
-    finest = (settings.newton_tolerance or 1.0) if fixed else float(min(arrays["atol_q"][:n], default=1.0))
-    control[EXACTNESS] = min(1.0, max(1e-3, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
+    finest = (settings.newton_tolerance or 1.0) if fixed else float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0))
+    control[EXACTNESS] = min(1.0, max(1e-2, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
-    control[MAX_INNER] = 12.0
-    control[PATIENCE] = float(fixed)
+    # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
+    control[MAX_INNER] = 13.0
     control[LINEAR] = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
     control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

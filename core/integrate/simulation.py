@@ -36,8 +36,9 @@ class Simulation(Engine):
     ----------
     system : a Model or an EquationSystem.
     method : name of an integration method (`tlismni.core.methods.registry.METHODS`).
-    rtol, atol : tolerances of the error control, in the units of q and v; atol may be a mapping with any of
-        "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are 1e-9.
+    rtol, atol : tolerances of the error control. atol's default, `OfScales(1e-9)`, is a part of the model's own scales
+        (`scales`); a plain number counts as it stands, in the units of q and v; it may be a mapping with any of
+        "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are the default.
     step : fixed step in s; None: error-controlled steps.
     max_step, first_step : bounds of error-controlled steps, s.
     max_steps : most steps (and instants with events) between two times that are asked for, None for no limit: a
@@ -48,7 +49,7 @@ class Simulation(Engine):
     fallback : let newton take over if the outer loop fails; `fallbacks` says when and why, and a warning is logged.
     controller : "elementary", "pi" or "h211b", how one-step methods choose their next step.
     newton_tolerance : where the outer loop stops; with `step` an absolute and relative tolerance on q and v
-        (default 1e-10), else a fraction of the error weights (default 0.01, irk 0.001).
+        (default 2e-10 of the scales), else a fraction of the error weights (default 0.01, irk 0.0005).
     start_tolerance : how far q0 and v0 may be moved to meet the constraints (relative).
     redundant : "drop": constraints that repeat others are left out of the equations but checked, and listed in the
         attribute of this name; "refuse": they are an error.

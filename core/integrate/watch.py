@@ -11,21 +11,16 @@ from ..contact.modes import (
     MEMORY_SIZE,
     MODE,
     OPEN,
-    RATE_ROUNDING,
     RELEASED,
     SLIDE,
-    SLIP_EXCESS,
     STICKS,
 )
-from ..stage.inner import rounding_level
+from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
+from ..system.levels import force_level, position_level, rate_level
 from .certain import first_root, way_of_gap
 from .force_watch import forces_may_vanish, forces_vanish, sliding_turns
 from .probe import BRACKET, HAPPENS, set_travel
 from .records import WATCH
-
-# A contact force below this fraction of the largest multiplier (or of 1 N) is rounding.
-FORCE_ROUNDING = 1e-12
-GAP_ROUNDING = 1e-12  # of the largest coordinate (or of 1 m)
 
 
 @compiled
@@ -58,39 +53,42 @@ def friction_margin(ws: Any, k: int) -> float:
 
 
 @internal
-def no_force(ws: Any) -> float:
-    """Rounding of the multipliers, N."""
-    lam, largest = vec(ws.lam, ws.m_ext), 1.0
-    for i in range(ws.m_ext - 1):
-        largest = max(largest, abs(lam[i]))
-    return FORCE_ROUNDING * largest
+def _no_sliding(ws: Any, k: int) -> float:
+    """Rounding of the sliding velocity of contact k, m/s."""
+    row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    return RATE_ROUNDING * rate_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
 
 
 @internal
 def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
-    """True if the point at the end of a step shows that contact k has had an event; a force below `none` is none."""
+    """True if the point at the end of a step shows that contact k has had an event; a force whose work along the
+    scale of its row is below `none` (J) is none."""
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     row = ivec(ws.contact_rows, ws.n_contacts)[k]
     g, rate = vec(ws.phi, ws.m_ext)[row], vec(ws.phid, ws.m_ext)[row]
     force = vec(ws.monitor, ws.n_contacts)[k]
     release = ivec(ws.contact_release, ws.n_contacts)[k]
+    size = vec(ws.row_scale, ws.m_ext)[row]
     if mode == OPEN:
         if g >= 0.0:
             return False
         # shapes that touch and neither part nor press drift by rounding only; those that a method without position
         # constraints has let overlap before they opened may come apart
-        overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
-        return rate < -RATE_ROUNDING or (g < -overlap and mat(lc.watch, ws.n_contacts, WATCH)[k, 0] >= -overlap)
+        if rate < -RATE_ROUNDING * rate_level(ws) * size:
+            return True
+        overlap = GAP_ROUNDING * position_level(ws) * size
+        return g < -overlap and mat(lc.watch, ws.n_contacts, WATCH)[k, 0] >= -overlap
     if mode == CLOSED:
-        if force < -none:
+        no_force = none / size
+        if force < -no_force:
             return True
         if vec(ws.contact_sticking, ws.n_contacts)[k] == 0.0:
             return False
         sticks = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS
         if sticks:
             limit = vec(ws.contact_sticking, ws.n_contacts)[k] * force
-            return friction_margin(ws, k) < -max(none, SLIP_EXCESS * limit)
-        return friction_margin(ws, k) < -RATE_ROUNDING * rounding_level(ws, ws.v)
+            return friction_margin(ws, k) < -max(no_force, SLIP_EXCESS * limit)
+        return friction_margin(ws, k) < -_no_sliding(ws, k)
     if mode == ACTIVE:
         return g > 0.0 or (release == 2 and force < 0.0)
     if mode == RELEASED:
@@ -106,9 +104,10 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
     bracket, start = mat(lc.brackets, ws.n_contacts, BRACKET)[k], mat(lc.watch, ws.n_contacts, WATCH)[k]
     bracket[0], bracket[1], bracket[2] = 0.0, 1.0, 1.0
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
-    g = vec(ws.phi, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
+    row = ivec(ws.contact_rows, ws.n_contacts)[k]
+    g = vec(ws.phi, ws.m_ext)[row]
     if mode == CLOSED and not ended and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0:
-        return sliding_turns(ws, ms, lc, k, h, RATE_ROUNDING * rounding_level(ws, ws.v))
+        return sliding_turns(ws, ms, lc, k, h, _no_sliding(ws, k))
     if mode != OPEN and mode != ACTIVE:
         return ended
     sign = 1.0 if mode == OPEN else -1.0
@@ -117,7 +116,7 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
         return True
     if not ended and (sign * g < 0.0 or sign * (start[0] + g) > way_of_gap(ws, lc, k, 0)):
         return False
-    overlap = GAP_ROUNDING * rounding_level(ws, ws.q)
+    overlap = GAP_ROUNDING * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
     if sign * start[0] < -overlap:
         return ended
     slack = overlap if sign * start[0] <= overlap else 0.0
@@ -137,7 +136,7 @@ def find_events(ws: Any, ms: Any, lc: Any, h: float, everyone: bool) -> bool:
     if ws.n_contacts == 0:
         return False
     set_travel(ws, ms, lc, h)
-    brackets, found, none = mat(lc.brackets, ws.n_contacts, BRACKET), False, no_force(ws)
+    brackets, found, none = mat(lc.brackets, ws.n_contacts, BRACKET), False, FORCE_ROUNDING * force_level(ws)
     for k in range(ws.n_contacts):
         inside = _event_inside(ws, ms, lc, k, h, none)
         if inside and not everyone:

@@ -24,7 +24,7 @@ def dense_factor(lu: Any, values_address: int) -> int:
     nnz = lu.nnz
     a = vec(lu.values, n * n + n)
     inverse = n * n
-    row_at = ivec(lu.pivots, n)
+    row_at, unit = ivec(lu.pivots, n), vec(lu.row_unit, n)
     source = vec(values_address, 1)
     entry_to = uvec(lu.entry_to, nnz)
     entry_from = uvec(lu.entry_from, nnz)
@@ -42,9 +42,9 @@ def dense_factor(lu: Any, values_address: int) -> int:
         row_at[i] = i
     for k in range(n):
         at = k
-        largest = abs(a[k * n + k])
+        largest = abs(a[k * n + k]) * unit[row_at[k]]
         for i in range(k + 1, n):
-            size = abs(a[i * n + k])
+            size = abs(a[i * n + k]) * unit[row_at[i]]
             if size > largest:
                 largest = size
                 at = i
@@ -52,7 +52,7 @@ def dense_factor(lu: Any, values_address: int) -> int:
             for j in range(n):
                 a[k * n + j], a[at * n + j] = a[at * n + j], a[k * n + j]
             row_at[k], row_at[at] = row_at[at], row_at[k]
-        top = 0.0
+        top, largest = 0.0, abs(a[k * n + k])
         for m in range(k):
             top = max(top, abs(a[k * n + m] * a[m * n + k]))
         if not (largest > PIVOT_NOISE * top):

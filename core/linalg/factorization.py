@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled.records import Record
 from .errors import SingularMatrixError
-from .ordering import choose_pivots, singular_place
+from .ordering import balancing_scales, choose_pivots, singular_place
 from .record import GROWTH, LU, OK
 from .solve import factor, functions_of, solve
 from .symbolic import Operations, count_operations, fill_pattern, operation_list
@@ -77,12 +77,14 @@ class Factorization:
         """What to hand to a compiled function."""
         self.arrays: dict[str, NDArray] = {}
         self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
+        self.col_unit = np.ones(self.n)
         self._set(
             n=self.n,
             nnz=len(self.rows),
             **self._functions("unready"),
             entry_from=self.slots.astype(np.uint32),
             work=np.zeros(self.n),
+            row_unit=np.ones(self.n),
         )
         if self.dense:
             self._set(
@@ -112,6 +114,11 @@ class Factorization:
         """Number of stored entries of L and U, diagonal included."""
         return self.n * self.n if self.dense else self.record["nl"] + self.record["nu"] + self.n
 
+    def use_units(self, rows: Floats, columns: Floats) -> None:
+        """Choose pivots as if the rows were multiplied by `rows` (n,) and the columns by `columns` (n,)."""
+        self.arrays["row_unit"][:] = rows
+        self.col_unit = columns
+
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense."""
         return self._permutations
@@ -132,14 +139,20 @@ class Factorization:
                 f"entry ({self.rows[e]}, {self.cols[e]}) of the {self.n} x {self.n} matrix is {entries[e]}"
             )
         if not self.dense:
+            row_unit = self.arrays["row_unit"]
+            entries = entries * row_unit[self.rows] * self.col_unit[self.cols]
             self.analyze_with(*choose_pivots(self.n, self.rows, self.cols, entries))
         if factor(self.record, values.ctypes.data) != OK:
             place = singular_place(self.n, self.rows, self.cols, entries)
             raise SingularMatrixError(f"the {self.n} x {self.n} matrix is singular: {place}")
         if not self.dense:
-            largest = np.ones(self.n)
-            nl = self.record["nl"]
-            np.maximum.at(largest, self.arrays["l_col"], np.abs(self.lu_values[:nl]))
+            nl, column, row = self.record["nl"], self.arrays["l_col"], self.arrays["l_row"]
+            # an entry of L that is 1 once the rows are balanced: units of the rows do not count as growth
+            balance = row_unit * balancing_scales(self.n, self.rows, self.cols, entries)[0]
+            balance = balance[self.arrays["row_at"]]
+            largest = np.zeros(self.n)
+            np.maximum.at(largest, column, balance[column] / balance[row])
+            np.maximum.at(largest, column, np.abs(self.lu_values[:nl]))
             self._growth_limits()[:] = GROWTH * largest
 
     def analyze_with(self, perm_r: ArrayLike, perm_c: ArrayLike) -> None:

@@ -13,7 +13,8 @@ REANALYSE = 2  # the pivots fit the values no longer (or `analyze` was never cal
 
 # A pivot that is this much smaller than a term of its own sum holds nothing but rounding.
 PIVOT_NOISE = 1e-14
-# An entry of L may grow by this factor over the largest of its column at analysis (at least over 1).
+# An entry of L may grow by this factor over the largest of its column at analysis, at least over what is 1 once the
+# rows are balanced.
 GROWTH = 1e5
 
 LU = np.dtype(
@@ -27,6 +28,7 @@ LU = np.dtype(
             "values",      # dense: (n, n) rows, then (n,) 1/pivot
                            # sparse: (nl,) L, (nu,) U, (n,) 1/pivot, (n,) largest |L| allowed in the column
             "work",        # (n,) float64
+            "row_unit",    # (n,) float64: what brings the rows to one unit, for the choice of dense pivots
             "pivots",      # (n,) int64, dense: row of the matrix at each pivot
             # sparse: L (unit diagonal) and U by columns; U is stored divided by the pivot of its column
             "nl", "nu",

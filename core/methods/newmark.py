@@ -4,9 +4,8 @@ a^ = (1 + alpha) a_{n+1} - alpha a_n  (alpha = 0: Newmark; a is the true acceler
 q_{n+1} = q_n + h v_n + h^2 [(1/2 - beta) a^_n + beta a^_{n+1}],  v_{n+1} = v_n + h [(1 - gamma) a^_n + gamma a^_{n+1}]
 a^_n stands for t_n + alpha h: before a step of another size its distance to a_n is scaled with the step, else each
 change of the step by d adds alpha d h a' to the velocities, of first order.
-Error estimate of positions: (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n)  (Negrut et al. 2007); of work
-accounts: `velocity_error.py`. Velocities do not count: those of stiff components, whose accelerations ring, would hold
-the steps at their period.
+Error estimate of positions: (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n)  (Negrut et al. 2007); of velocities and
+work accounts: `velocity_error.py`. The larger of both norms counts, as with the multistep formulas.
 """
 
 from typing import Any
@@ -15,12 +14,13 @@ from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
 from ..system.evaluate import evaluate_power
-from ..system.records import CONTROL_SIZE, OK, PATIENCE, call_stage
+from ..system.records import OK, call_stage
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import rows_available
 from .one_stage import MOST_GROWTH
-from .velocity_error import work_error
+from .records import ESTIMATE
+from .velocity_error import filtered_velocity_error
 
 ALPHA, BETA, GAMMA = 0, 1, 2
 MOST_ROWS = 3
@@ -113,7 +113,7 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
     else:
         _predict_by_accelerations(ws, ms, extrapolation)
     status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
-    if status != OK and not noisy and vec(ws.control, CONTROL_SIZE)[PATIENCE] > 0.0:
+    if status != OK and not noisy:
         _predict_by_positions(ws, ms, h, c_q)
         status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
     if status != OK:
@@ -129,6 +129,8 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
     for i in range(ws.n):
         error[i] = factor * (a[i] - row[2 * n + i])
     norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
-    vec(ms.error, 2)[0] = max(norm, work_error(ws, ms, h))
+    if parameters[ESTIMATE] != 0.0:
+        norm = filtered_velocity_error(ws, ms, h, norm)
+    vec(ms.error, 2)[0] = norm
     vec(ms.error, 2)[1] = 2.0 if abs(gamma + alpha - 0.5) < 1e-12 else 1.0
     return OK

@@ -49,7 +49,8 @@ def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: t
     return Formula(step, first, (*parameters, 1.0, float(most)), first + 1, stages, select=select_k)
 
 
-# errors of the stages of one-step formulas add up over many more steps than those of multistep ones
+# errors of the stages of one-step formulas add up over many more steps than those of multistep ones, and nothing
+# smooths their forces
 FINE = 1e-3
 
 

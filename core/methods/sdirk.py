@@ -28,6 +28,11 @@ B_EMBEDDED = np.array([59 / 48, -17 / 96, 225 / 32, -85 / 12, 0])
 C = np.array([1 / 4, 3 / 4, 11 / 20, 1 / 2, 1])
 STAGES = 5
 
+EQUAL_PARTS = 128
+"""More parts of a step than this are not made equal."""
+LEAST_PART = 1e-6
+"""Of a step: shorter parts are taken as they are."""
+
 
 @internal
 def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
@@ -104,10 +109,39 @@ def sdirk_step(ws: Any, ms: Any, h: float) -> int:
 
 
 @internal
+def _take_over(ws: Any) -> None:
+    """The point reached is where the next part begins."""
+    n = ws.n_ext
+    q, v, base_q, base_v = vec(ws.q, n), vec(ws.v, n), vec(ws.base_q, n), vec(ws.base_v, n)
+    for i in range(n):
+        base_q[i] = q[i]
+        base_v[i] = v[i]
+
+
+@internal
+def _in_unequal_parts(ws: Any, t: float, h: float) -> int:
+    """A step over a jump, from the base: parts that keep the embedded error below one are short only about there."""
+    done, size, least = 0.0, h / EQUAL_PARTS, LEAST_PART * h
+    while done < h:
+        last = size >= h - done
+        part = h - done if last else size
+        status, norm = sdirk_from_base(ws, t + done, part)
+        if status != OK:
+            return status
+        if norm > 1.0 and part > least:
+            size = 0.25 * part
+            continue
+        _take_over(ws)
+        done = h if last else done + part
+        if norm < 0.01:
+            size = 2.0 * part
+    return OK
+
+
+@internal
 def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
     """One grid step in as many equal parts as keep the embedded error of each below one: starting values that
-    do not spoil the order of a fixed-step multistep method."""
-    n = ws.n_ext
+    do not spoil the order of a fixed-step multistep method. Where that takes very many, something jumps inside."""
     parts = 1
     while True:
         base_from_row(ws, ms)
@@ -119,16 +153,18 @@ def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
             if status != OK:
                 return status
             worst = max(worst, norm)
-            if worst > 1.0 and parts < 4096:
+            if worst > 1.0:
                 break
-            q, v = vec(ws.q, n), vec(ws.v, n)
-            base_q, base_v = vec(ws.base_q, n), vec(ws.base_v, n)
-            for i in range(n):
-                base_q[i] = q[i]
-                base_v[i] = v[i]
-        if worst <= 1.0 or parts >= 4096:
+            _take_over(ws)
+        if worst <= 1.0:
             break
-        parts = min(4096, max(2 * parts, int(parts * min(worst, 1e8) ** 0.25) + 1))
+        parts = max(2 * parts, int(parts * min(worst, 1e8) ** 0.25) + 1)
+        if parts > EQUAL_PARTS:
+            base_from_row(ws, ms)
+            status = _in_unequal_parts(ws, t, h)
+            if status != OK:
+                return status
+            break
     vec(ws.t, 1)[0] = history_time(ms, 0) + h
     vec(ms.error, 2)[0] = 0.0
     vec(ms.error, 2)[1] = 3.0

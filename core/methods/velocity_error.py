@@ -20,11 +20,13 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..system.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
 from ..system.records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
 from .history import history_row, history_time
 from .multistep import rows_available
 
+SETTLED = 3
+"""Rows of the history from which on a component that rings is taken for stiff: a start may step over a vibration."""
 START_CURVATURE = 0.5
 """Without a third point: of the change of the acceleration over the step, as if it had been constant before."""
 
@@ -104,9 +106,50 @@ def velocity_error(ws: Any, ms: Any, h: float) -> float:
 
 
 @internal
-def work_error(ws: Any, ms: Any, h: float) -> float:
-    """The largest local error of the work accounts alone, in units of their weights."""
-    return _find_error(ws, ms, h, 0.0)
+def _filter(ws: Any, h: float, times: int) -> None:
+    """Velocities in `rhs`, multiplied `times` times by [M + c_v D + c_q K, Phi_q^T; Phi_q, 0]^-1 M, the factors of the
+    stage whose solution the workspace holds."""
+    n = ws.n
+    # what the formula kept in q* and v* is no longer needed
+    a, r, rhs = vec(ws.a, n), vec(ws.r, n), vec(ws.rhs, n + ws.m_act)
+    kept, left = vec(ws.q_star, n), vec(ws.v_star, n)
+    evaluate_residuals(ws)
+    for i in range(n):
+        # what is left of r belongs to the rounding of the constraints, too much where forces are stiff
+        kept[i], left[i] = a[i], r[i]
+    for _ in range(times):
+        # r is linear in a
+        for i in range(n):
+            a[i] = kept[i] + rhs[i] / h
+        evaluate_residuals(ws)
+        for i in range(n):
+            rhs[i] = h * (r[i] - left[i])
+        for i in range(ws.m_act):
+            rhs[n + i] = 0.0
+        solve(lu_at(ws.kkt), ws.rhs)
+    for i in range(n):
+        a[i] = kept[i]
+    evaluate_constraints(ws)
+
+
+@internal
+def filtered_velocity_error(ws: Any, ms: Any, h: float, norm: float) -> float:
+    """The larger of `norm` and the weighted norm of the local error of velocities and work accounts, without what stiff
+    components ring.
+
+    Accelerations of a component of frequency w that rings with velocities e, w h > 1, are w e: their parabola makes of
+    it w h e/3, the more the larger the step. The filter (Hairer and Wanner, Solving ordinary differential equations II,
+    IV.8) divides by 1 + (w h/2)^2 and leaves alone what a step resolves. Once that leaves 4 e/(3 w h), less for larger
+    steps: after one rejected step the smaller ones would be rejected too, down to the component's period. So it is
+    done twice; then what rings counts most where w h is about 1, which holds a vibration that has been resolved. In the
+    first steps, which may be too large for one that is there, it is done once.
+    """
+    norm = max(norm, _find_error(ws, ms, h, 0.0))
+    rhs, weight_v = vec(ws.rhs, ws.n), vec(ws.weight_v, ws.n_ext)
+    if weighted_norm(rhs, weight_v, ws.n) <= norm:
+        return norm
+    _filter(ws, h, 1 if rows_available(ms) < SETTLED else 2)
+    return max(norm, weighted_norm(rhs, weight_v, ws.n))
 
 
 @internal

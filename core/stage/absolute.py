@@ -16,7 +16,9 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
+from ..rounding import ONLY_ROUNDING
 from ..system.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
+from ..system.levels import position_level, rate_level
 from ..system.records import (
     CONTROL_SIZE,
     CORRECTION,
@@ -41,7 +43,6 @@ from ..system.records import (
     STAGE_BETA,
     VELOCITY_TOLERANCE,
 )
-from .inner import rounding_level
 from .solver import (
     LEAST_RATE,
     MOST_OUTER,
@@ -54,9 +55,8 @@ from .solver import (
     weighted_norm,
 )
 
-CONSTRAINT_SLACK = 100.0
+CONSTRAINT_SLACK = 1000.0
 """The constraints that Newton solves hold to this many times the tolerances of TLISMNI's inner loop: to 1e-10."""
-_ROUNDING = 8.0 * np.finfo(float).eps
 _USED = 1.0  # age of a factorisation that has been used; there is no partition whose strain would call for a new one
 
 
@@ -135,21 +135,21 @@ def _holds(ws: Any, index: int) -> bool:
     if index == 1 or ws.m_act == 0:
         return True
     control = vec(ws.control, CONTROL_SIZE)
-    bound = CONSTRAINT_SLACK * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
+    bound = CONSTRAINT_SLACK * control[POSITION_TOLERANCE] * position_level(ws)
     if not constraint_norm(ws, ws.phi) <= bound:
         return False
-    bound = CONSTRAINT_SLACK * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
+    bound = CONSTRAINT_SLACK * control[VELOCITY_TOLERANCE] * rate_level(ws)
     return index == 3 or constraint_norm(ws, ws.phid) <= bound
 
 
 @inlined
 def _only_rounding(ws: Any, c_q: float) -> bool:
     """True if the increment in `rhs` moves q by rounding only: c_v da, which is larger by 2/h, need not vanish then."""
-    rhs = vec(ws.rhs, ws.n)
+    rhs, scale = vec(ws.rhs, ws.n), vec(ws.scale, ws.n)
     largest = 0.0
     for i in range(ws.n):
-        largest = max(largest, abs(c_q * rhs[i]))
-    return largest <= _ROUNDING * rounding_level(ws, ws.q)
+        largest = max(largest, abs(c_q * rhs[i]) / scale[i])
+    return largest <= ONLY_ROUNDING * position_level(ws)
 
 
 @internal

@@ -7,19 +7,21 @@ import numpy as np
 from ..compiled.jit import compiled_unlocked, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at
+from ..rounding import ACCELERATIONS_LOST, ACCELERATIONS_SOLVED, COORDINATE_NOISE
 from ..system.evaluate import evaluate_residuals, evaluate_tangent
-from ..system.records import OK, OUTER_SLOW, REANALYZE
+from ..system.levels import acceleration_level
+from ..system.records import CONTROL_SIZE, OK, OUTER_SLOW, REANALYZE, STIFFNESS_SCALE
 from .solver import solve_increment
 
 
 @internal
-def _largest(x: Any, n: int) -> float:
-    """Largest magnitude of the first n entries; infinity if one is not a number."""
-    largest = 0.0
-    for i in range(n):
+def _largest(ws: Any, x: Any) -> float:
+    """Largest of the entries, one for each coordinate, in parts of their scales; infinity if one is not a number."""
+    largest, scale = 0.0, vec(ws.scale, ws.n)
+    for i in range(ws.n):
         if np.isnan(x[i]):
             return np.inf
-        largest = max(largest, abs(x[i]))
+        largest = max(largest, abs(x[i]) / scale[i])
     return largest
 
 
@@ -41,9 +43,11 @@ def solve_accelerations(ws: Any) -> int:
             a[i] += increment[i]
         for i in range(ws.m_act):
             lam[active[i]] += increment[n + i]
-        norm, size = _largest(increment, n), _largest(a, n)
-        if norm <= 1e-14 * (1.0 + size) or norm >= previous:
+        norm, size = _largest(ws, increment), acceleration_level(ws)
+        if norm <= ACCELERATIONS_SOLVED * size or norm >= previous:
             break
         previous = norm
     evaluate_residuals(ws)
-    return OK if norm <= 1e-8 * (1.0 + size) < np.inf else OUTER_SLOW
+    # in stiff bodies, coordinates that are nearly equal make large forces that cancel each other
+    noise = COORDINATE_NOISE * vec(ws.control, CONTROL_SIZE)[STIFFNESS_SCALE] * _largest(ws, vec(ws.q, ws.n))
+    return OK if norm <= max(ACCELERATIONS_LOST * size, noise) < np.inf else OUTER_SLOW

@@ -11,6 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
 from ..system.evaluate import constraint_norm, evaluate_constraints, evaluate_residuals
+from ..system.levels import acceleration_level, position_level, rate_level
 from ..system.records import (
     ACCELERATION_TOLERANCE,
     CONDITION,
@@ -46,25 +47,13 @@ def correct_dependent(ws: Any, lu_address: int, residual_address: int, x_address
 
 
 @internal
-def rounding_level(ws: Any, x_address: int) -> float:
-    """What rounding leaves in a constraint whose terms are as large as the entries of x."""
-    x = vec(x_address, ws.n)
-    largest = 1.0
-    for i in range(ws.n):
-        if abs(x[i]) > largest:
-            largest = abs(x[i])
-    return largest
-
-
-@internal
 def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float, part: bool = False) -> int:
     """Correct q_d, v_d, a_d until the constraints hold to the tolerances times `slack`.
 
     `acceleration_slack` is that of a_d: infinite while the outer loop still moves the accelerations.
 
     Expects the residuals of the current point, or if `part` only what `evaluate_constraints` leaves; leaves the
-    residuals of the corrected one. The tolerances are absolute for quantities up to 1 and relative to the largest
-    entry of q, v, a beyond.
+    residuals of the corrected one. The tolerances are parts of the levels of q, v, a (`system/levels.py`).
     """
     before = ivec(ws.counters, COUNTERS_SIZE)[INNER]
     status = OK if ws.m_act == 0 else _meet(ws, lu_address, slack, acceleration_slack)
@@ -78,9 +67,9 @@ def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> 
     """The corrections; leaves what `evaluate_constraints` does."""
     control = vec(ws.control, CONTROL_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
-    enough_p = slack * control[POSITION_TOLERANCE] * rounding_level(ws, ws.q)
-    enough_v = slack * control[VELOCITY_TOLERANCE] * rounding_level(ws, ws.v)
-    enough_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * rounding_level(ws, ws.a)
+    enough_p = slack * control[POSITION_TOLERANCE] * position_level(ws)
+    enough_v = slack * control[VELOCITY_TOLERANCE] * rate_level(ws)
+    enough_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * acceleration_level(ws)
     # near a singular position a violation of Phi moves q by condition, v by condition^2 times as much: there the
     # constraints are solved down to rounding, whatever the units
     rate = vec(ws.rate, RATE_SIZE)

@@ -8,10 +8,10 @@ from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..linalg import factor, lu_at
 from ..system.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..system.levels import position_level, rate_level
 from ..system.projection import correct_least
 from ..system.records import CONTROL_SIZE, INNER_DIVERGED, OK, POSITION_TOLERANCE, REANALYZE, VELOCITY_TOLERANCE
 from .accelerations import solve_accelerations
-from .inner import rounding_level
 
 
 @internal
@@ -23,7 +23,8 @@ def _project_level(ws: Any, residual_address: int, x_address: int, tolerance: fl
     previous = np.inf
     for _ in range(12):
         norm = constraint_norm(ws, residual_address)
-        if norm <= tolerance * rounding_level(ws, x_address):
+        level = position_level(ws) if x_address == ws.q else rate_level(ws)
+        if norm <= tolerance * level:
             return OK
         if not norm < 0.5 * previous:
             return INNER_DIVERGED
@@ -41,10 +42,10 @@ def project(ws: Any) -> int:
         evaluate_tangent(ws, 0.0, 0.0)
         if factor(lu_at(ws.kkt_query), ws.values) != 0:
             return REANALYZE
-        status = _project_level(ws, ws.phi, ws.q, 0.1 * control[POSITION_TOLERANCE])
+        status = _project_level(ws, ws.phi, ws.q, control[POSITION_TOLERANCE])
         if status != OK:
             return status
-        status = _project_level(ws, ws.phid, ws.v, 0.1 * control[VELOCITY_TOLERANCE])
+        status = _project_level(ws, ws.phid, ws.v, control[VELOCITY_TOLERANCE])
         if status != OK:
             return status
     status = solve_accelerations(ws)

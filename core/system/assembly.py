@@ -89,6 +89,10 @@ class Assembly:
     """(body, coordinate, index)."""
     coordinate_scale: NDArray[np.float64]
     """Typical magnitude of each coordinate, so that units do not choose the partition."""
+    length: float = 1.0
+    """Size of the mechanism, m."""
+    row_scale: NDArray[np.float64] | None = None
+    """How large each row of Phi typically is, (m,); None: as far as the coordinates' scales move it."""
     longest_step: float = np.inf
     """Step beyond which error control could miss what a time function does, s."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
@@ -252,7 +256,8 @@ def assemble(model: Model) -> Assembly:
         breakpoints=sorted({t for e in model.elements() for s in e.signals() for t in s.breakpoints()}),
         multiplier_channels=multipliers,
         body_columns=columns,
-        coordinate_scale=_coordinate_scale(model, columns, len(internal)),
+        coordinate_scale=_coordinate_scale(numbering.length, columns, len(internal)),
+        length=numbering.length,
         replaced_rows=_replaced_rows(model, massless, batches),
         markers=tuple(MarkerPlace(o.name, o.marker, numbering.place(o.marker.body)) for o in model.outputs),
         motions=tuple(numbering.motions),
@@ -297,12 +302,9 @@ def _internal_batch(internal: NDArray[np.int64]) -> Batch:
 
 
 def _coordinate_scale(
-    model: Model, columns: Sequence[tuple[str, Coordinate, int]], n_internal: int
+    length: float, columns: Sequence[tuple[str, Coordinate, int]], n_internal: int
 ) -> NDArray[np.float64]:
     """What the coordinates say, 1 for angles; for translations of planar bodies the size of the mechanism, so that m
     and mm give the same partition. Internal coordinates change no size: they have that of the mechanism."""
-    points = [point for body in model.bodies for point in body.extent()]
-    points += [marker.point for e in model.elements() for marker in e.markers()]
-    size = max((max(abs(x), abs(y)) for x, y in points), default=0.0) or 1.0
-    scales = [size if coordinate.scale is None else coordinate.scale for _, coordinate, _ in columns]
-    return np.array([*scales, *(size,) * n_internal])
+    scales = [length if coordinate.scale is None else coordinate.scale for _, coordinate, _ in columns]
+    return np.array([*scales, *(length,) * n_internal])

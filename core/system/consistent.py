@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError
 from .assembly import Assembly
 from .evaluate import evaluate_residuals
+from .levels import rate_level
 from .partition import prepare
 from .projection import bring_to_rest
 from .redundancy import RedundantRow, check_rates, find_redundant
@@ -37,7 +38,7 @@ def make_consistent(
     prepare(workspace)
     evaluate_residuals(ws)
     given = _violations(assembly, workspace.structure.active, arrays["phi"])
-    scale_v = np.maximum(assembly.coordinate_scale, np.max(np.abs(arrays["v"][:n]), initial=0.0))
+    scale_v = assembly.coordinate_scale * rate_level(ws)
     for level, residual, x, scale in (
         ("positions q0", "phi", "q", assembly.coordinate_scale),
         ("velocities v0", "phid", "v", scale_v),

@@ -77,11 +77,11 @@ def evaluate_energy(ws: Any) -> None:
 @internal
 def recorded_norm(ws: Any, address: int) -> float:
     """Largest magnitude among the active and the redundant rows of phi, phid or phidd; NaN counts as infinite."""
-    largest = constraint_norm(ws, address)
+    largest = 0.0
     x = vec(address, ws.m_ext)
-    redundant = ivec(ws.redundant, ws.n_redundant)
-    for i in range(ws.n_redundant):
-        y = abs(x[redundant[i]])
+    active, redundant = ivec(ws.active, ws.m_act), ivec(ws.redundant, ws.n_redundant)
+    for i in range(ws.m_act + ws.n_redundant):
+        y = abs(x[active[i]] if i < ws.m_act else x[redundant[i - ws.m_act]])
         if not y <= largest:
             largest = y if y > largest else np.inf
     return largest
@@ -89,12 +89,13 @@ def recorded_norm(ws: Any, address: int) -> float:
 
 @compiled
 def constraint_norm(ws: Any, address: int) -> float:
-    """Largest magnitude among the active rows of phi, phid or phidd; NaN counts as infinite."""
-    x = vec(address, ws.m_ext)
+    """Largest magnitude among the active rows of phi, phid or phidd, in parts of their scales; NaN counts as
+    infinite."""
+    x, row_scale = vec(address, ws.m_ext), vec(ws.row_scale, ws.m_ext)
     active = ivec(ws.active, ws.m_act)
     largest = 0.0
     for i in range(ws.m_act):
-        y = abs(x[active[i]])
+        y = abs(x[active[i]]) / row_scale[active[i]]
         if y > largest:
             largest = y
         elif y != y:

@@ -18,6 +18,7 @@ class ModelNumbering:
 
     def __init__(self, model: Model) -> None:
         self.gravity = model.gravity
+        self.length = _length(model)
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
         self.index: dict[str, tuple[int, ...]] = {}
         self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
@@ -97,3 +98,12 @@ class ModelNumbering:
         if name not in self.work_names:
             self.work_names.append(name)
         return self.n + GROUND_SLOTS + self.work_names.index(name)
+
+
+def _length(model: Model) -> float:
+    """Size of the mechanism, m: how far its points reach; of one whose points are all at the origin, its longest rod or
+    largest disk. 1 if it says none."""
+    points = [point for body in model.bodies for point in body.extent()]
+    points += [point for e in model.elements() for point in e.reach()]
+    size = max((max(abs(x), abs(y)) for x, y in points), default=0.0)
+    return size or max((x for e in model.elements() for x in e.lengths()), default=0.0) or 1.0

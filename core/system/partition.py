@@ -5,15 +5,14 @@ from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
 from ..linalg import RowPivots, SingularMatrixError, pivot_rows
-from .assembly import Assembly
+from ..rounding import CONTRADICTION
 from .evaluate import evaluate_residuals, evaluate_tangent
+from .levels import position_level
 from .records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
 from .workspace import Workspace
 
 RANK_TOLERANCE = 1e-9
 """A constraint row whose remainder after elimination is smaller than this (relative) repeats others."""
-CONTRADICTION = 1e-8
-"""Violation of a redundant row that makes it a contradiction; absolute for coordinates up to 1, else relative."""
 
 
 def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPivots:
@@ -28,14 +27,16 @@ def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPiv
     return pivot_rows(len(active), assembly.n, indptr, cols[order], values[order], assembly.coordinate_scale, tolerance)
 
 
-def what_repeats(assembly: Assembly, active: NDArray[np.int64], pivots: RowPivots, phi: NDArray[np.float64]) -> str:
+def what_repeats(workspace: Workspace, pivots: RowPivots) -> str:
     """Each redundant row, and what it repeats or contradicts."""
-    lines = []
+    assembly, active = workspace.assembly, workspace.structure.active
+    phi, row_scale = workspace.arrays["phi"], workspace.arrays["row_scale"]
+    most, lines = CONTRADICTION * position_level(workspace.record), []
     for row, others in zip(pivots.redundant, pivots.depends_on, strict=True):
         name = assembly.row_names[active[row]]
         repeated = sorted({assembly.row_names[active[k]] for k in others})
         because = f"repeats what {', '.join(repeated)} say" if repeated else "constrains nothing"
-        violated = abs(phi[active[row]]) > CONTRADICTION
+        violated = abs(phi[active[row]]) > most * row_scale[active[row]]
         lines.append(
             f"'{name}' contradicts {', '.join(repeated)} (violation {phi[active[row]]:.3g})"
             if violated and repeated
@@ -44,13 +45,11 @@ def what_repeats(assembly: Assembly, active: NDArray[np.int64], pivots: RowPivot
     return "; ".join(dict.fromkeys(lines))
 
 
-def redundancy_error(
-    assembly: Assembly, active: NDArray[np.int64], pivots: RowPivots, phi: NDArray[np.float64]
-) -> ConsistencyError:
+def redundancy_error(workspace: Workspace, pivots: RowPivots) -> ConsistencyError:
     """The refusal of rows that repeat or contradict others."""
     return ConsistencyError(
-        f"the {len(active)} constraint equations have rank {pivots.rank} in this configuration: "
-        + what_repeats(assembly, active, pivots, phi)
+        f"the {len(workspace.structure.active)} constraint equations have rank {pivots.rank} in this configuration: "
+        + what_repeats(workspace, pivots)
         + ". Remove the redundant joint or free it in the repeated direction, or start elsewhere if the "
         "position is singular."
     )
@@ -65,7 +64,7 @@ def choose_dependent(workspace: Workspace) -> NDArray[np.int64]:
     """
     pivots = pivots_of(workspace)
     if len(pivots.redundant):
-        raise redundancy_error(workspace.assembly, workspace.structure.active, pivots, workspace.arrays["phi"])
+        raise redundancy_error(workspace, pivots)
     return np.asarray(pivots.pivot_column, dtype=np.int64)
 
 

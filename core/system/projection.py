@@ -7,7 +7,9 @@ import numpy as np
 from ..compiled.jit import compiled, inlined
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
+from ..rounding import MET, NEARLY_MET
 from .evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
+from .levels import position_level, rate_level
 from .workspace import Workspace
 
 
@@ -40,13 +42,13 @@ def least_correction(ws: Any, residual_address: int, x_address: int) -> int:
 
 def bring_to_rest(workspace: Workspace, residual: str, x: str) -> bool:
     """Newton on one level; True when it holds to rounding."""
-    ws, arrays = workspace.record, workspace.arrays
+    ws = workspace.record
     table = workspace._record.table
     previous = np.inf
     for _ in range(25):
         norm = constraint_norm(ws, int(table[residual][0]))
-        size = max(1.0, float(np.max(np.abs(arrays[x][: workspace.assembly.n]), initial=0.0)))
-        if norm <= 1e-15 * size or (norm >= 0.5 * previous and norm <= 1e-11 * size):
+        size = position_level(ws) if x == "q" else rate_level(ws)
+        if norm <= MET * size or (norm >= 0.5 * previous and norm <= NEARLY_MET * size):
             return True
         if not np.isfinite(norm) or norm > 1e3 * previous:
             return False

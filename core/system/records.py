@@ -26,6 +26,8 @@ WORKSPACE = np.dtype(
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "stage_rows", "rhs",
             "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
+            # sizes of rows of Phi, of work accounts, and of coordinates for levels: (m_ext,), (n_ext,), (n,)
+            "row_scale", "work_scale", "level_scale",
             # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
             "basis", "n_basis",
             # 1: the constraints are so much cheaper to evaluate than the residuals that it is done without these
@@ -55,15 +57,17 @@ MAX_OUTER = 4
 MAX_INNER = 5
 ACCELERATION = 6  # of the simple iteration: 0 none, 1 Aitken, m + 1 Anderson of depth m
 RTOL = 7
-ATOL = 8  # of the work accounts
+ATOL = 8  # of the work accounts, relative to their scales
 STAGE_ALPHA = 9  # parameters of the stage functions of comparison methods
 STAGE_BETA = 10
 OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, for formulas that solve coupled stages themselves
 MOST_CONDITION = 12  # growth of the condition of the constraints beyond which a position counts as nearly singular
 EXACTNESS = 13  # at most 1: how much more exactly than they must the constraints are solved, if rounding allows it
-PATIENCE = 14  # 1: steps are fixed, so that one that fails is tried once more from another guess
-LINEAR = 15  # 1: the equations are linear, so that one iteration with their own matrices solves them
-CONTROL_SIZE = 16
+LINEAR = 14  # 1: the equations are linear, so that one iteration with their own matrices solves them
+RATE_SCALE = 15  # inverse of the model's own time, 1/s
+ENERGY_SCALE = 16  # work of its forces along its lengths, J
+STIFFNESS_SCALE = 17  # square of the rate of its fastest vibration, 1/s^2
+CONTROL_SIZE = 18
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0

@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
+from ..rounding import CONTRADICTION
 from .evaluate import evaluate_residuals, evaluate_tangent
-from .partition import CONTRADICTION, pivots_of, prepare, redundancy_error
+from .levels import position_level, rate_level
+from .partition import pivots_of, prepare, redundancy_error
 from .projection import bring_to_rest
 from .records import FACTOR_AGE, LEAST_CONDITION
 from .workspace import Workspace
@@ -80,14 +82,15 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
         pivots = pivots_of(workspace, START_RANK)
         if len(pivots.redundant) == 0:
             return ()
-        residual = np.abs(arrays["phi"][active[pivots.redundant]])
-        if np.any(residual > CONTRADICTION * max(1.0, float(np.max(np.abs(arrays["q"][:n]))))):
-            raise redundancy_error(workspace.assembly, active, pivots, arrays["phi"])
+        rows = active[pivots.redundant]
+        most = CONTRADICTION * position_level(workspace.record)
+        if np.any(np.abs(arrays["phi"][rows]) > most * arrays["row_scale"][rows]):
+            raise redundancy_error(workspace, pivots)
         singular = _only_here(workspace, pivots.redundant)
         if singular:
             raise ConsistencyError(_singular_text(workspace, singular))
         if any(len(others) == 0 for others in pivots.depends_on):
-            raise redundancy_error(workspace.assembly, active, pivots, arrays["phi"])
+            raise redundancy_error(workspace, pivots)
         workspace.drop(frozenset(int(row) for row in active[pivots.redundant]))
         choose_rows(workspace)
         found = describe(workspace)
@@ -105,9 +108,9 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
 def check_rates(workspace: Workspace, redundant: tuple[RedundantRow, ...]) -> None:
     """Redundant rows must hold at velocity level too. Raises ConsistencyError: names those that do not."""
     arrays = workspace.arrays
-    most = CONTRADICTION * max(1.0, float(np.max(np.abs(arrays["v"]), initial=0.0)))
+    most = CONTRADICTION * rate_level(workspace.record)
     for row, found in zip(workspace.structure.redundant, redundant, strict=True):
-        if not abs(arrays["phid"][row]) <= most:
+        if not abs(arrays["phid"][row]) <= most * arrays["row_scale"][row]:
             raise ConsistencyError(
                 f"'{found.constraint}' contradicts {', '.join(found.repeats)} at velocity level (violation "
                 f"{arrays['phid'][row]:.3g}): drivers that hold the same coordinate must move alike"

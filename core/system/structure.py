@@ -45,6 +45,21 @@ class Structure:
     free: tuple[NDArray[np.int64], ...] = ()
     """Row, column and slot of the entries of Phi_q in independent columns."""
 
+    units: NDArray[np.float64] | None = None
+    """What brings coordinates and all rows of Phi to one unit; `use_units` changes it."""
+
+    def use_units(self, units: NDArray[np.float64], n: int) -> None:
+        """Let pivots be chosen with rows and columns in one unit: `units` (n + m + 1,) of coordinates and rows."""
+        self.units = units
+        both = np.concatenate([units[:n], units[n + self.active]])
+        for factorization in (self.kkt, self.kkt_query):
+            factorization.use_units(both, both)
+        self._units_of_partition(n)
+
+    def _units_of_partition(self, n: int) -> None:
+        if self.units is not None and self.lu_d is not None and self.dependent is not None:
+            self.lu_d.use_units(self.units[n + self.active], self.units[self.dependent])
+
     @property
     def nnz(self) -> int:
         """Number of entries of the matrix."""
@@ -69,6 +84,7 @@ class Structure:
         rows, cols = self.rows[slots] - n, position[self.cols[slots]]
         self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
         self.lu_d = Factorization(len(self.active), rows, cols, slots, source_size=self.n_values)
+        self._units_of_partition(n)
 
 
 def build_structure(

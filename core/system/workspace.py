@@ -12,6 +12,7 @@ from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
 from ..model.motion import input_rows
 from ..model.signals import INPUT_SIZE
+from ..rounding import ANGLES
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .records import (
@@ -86,6 +87,9 @@ class Workspace:
             "stage_rows": np.zeros(COUPLED_STAGES * row_length),
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),
+            "row_scale": np.ones(m_ext),
+            "work_scale": np.ones(n_ext),
+            "level_scale": np.where(a.is_angle, a.coordinate_scale / ANGLES, a.coordinate_scale),
             "scratch": np.zeros(64),
             "basis": np.zeros((1, n_ext)),
             "atol_q": np.zeros(n_ext),
@@ -97,6 +101,8 @@ class Workspace:
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
         self._structures: dict[tuple[frozenset[int], ...], Structure] = {}
+        self.units = np.ones(a.n + m_ext)
+        """What brings coordinates (with forces) and rows of Phi (with multipliers) to one unit."""
         self.dropped: frozenset[int] = frozenset()
         self.arrays = arrays
         self._batches = [self._batch(k) for k in range(len(a.batches))]
@@ -199,12 +205,19 @@ class Workspace:
         if structure.dependent is not None:
             self._use_partition()
 
+    def use_units(self, units: NDArray[np.float64]) -> None:
+        """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
+        self.units = units
+        self.engage(*self.key)
+
     def structure_of(self, *key: frozenset[int]) -> Structure:
         """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
         structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
         while len(self._structures) >= MOST_STRUCTURES:
             del self._structures[next(iter(self._structures))]
         self._structures[key] = structure
+        if structure.units is not self.units:
+            structure.use_units(self.units, self.assembly.n)
         return structure
 
     def drop(self, rows: frozenset[int]) -> None:

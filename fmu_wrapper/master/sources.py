@@ -10,6 +10,7 @@ from ..slave import Slave
 from .description import InstanceRecord
 from .errors import MasterError
 from .instance import Abilities, Fmi2Instance, Fmi3Instance, Instance
+from .listening import instantiate
 from .variable import of_description, of_slave
 
 INSTANCES: dict[str, type[Instance]] = {"2.0": Fmi2Instance, "3.0": Fmi3Instance}
@@ -26,7 +27,7 @@ def make_instance(
     ----------
     folder : paths in the record start here.
     unzip_into : an FMU is unzipped into a folder of its own in here, which the caller removes after the run.
-    load_scenario : for a record with `scenario`: `tlismni.models.load`, which this package does not import.
+    load_scenario : for a record with `scenario`: `tlismni.models.load`.
 
     Raises
     ------
@@ -78,7 +79,6 @@ def of_source(name: str, source: Any, fmi: str = "3.0", **solver: Any) -> Instan
 def of_fmu(name: str, path: Path, unzipped: Path, in_process: bool = False) -> Instance:
     """An instance of an FMU, which is unzipped into the folder `unzipped`; see `make_instance`."""
     import fmpy
-    from fmpy.simulation import instantiate_fmu
 
     if not path.is_file():
         raise MasterError(f"instance '{name}': there is no FMU '{path}'")
@@ -95,8 +95,8 @@ def of_fmu(name: str, path: Path, unzipped: Path, in_process: bool = False) -> I
         )
     messages: list[str] = []
 
-    def listen(*arguments: Any) -> None:
-        messages[:] = [arguments[-1].decode(errors="replace")]  # the message comes last in both versions
+    def listen(message: str) -> None:
+        messages[:] = [message]
 
     def last() -> str:
         return messages[-1] if messages else ""
@@ -109,7 +109,7 @@ def of_fmu(name: str, path: Path, unzipped: Path, in_process: bool = False) -> I
             fmu = (InProcess if version == "2.0" else InProcess3).of(unzipped, name=name, on_log=_nowhere)
             last = _last_problem(fmu)
         else:
-            fmu = instantiate_fmu(str(unzipped), description, "CoSimulation", logger=listen)
+            fmu = instantiate(str(unzipped), description, listen)
     except Exception as error:
         raise MasterError(f"instance '{name}': '{path.name}' cannot be instantiated: {last() or error}") from error
     return INSTANCES[version](

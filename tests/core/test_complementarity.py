@@ -78,3 +78,33 @@ def test_least_friction_forces_of_a_block_on_two_feet():
 def test_independent_directions_come_normals_first():
     a = Delassus(np.array([[2.0, 0.5], [0.5, 2.0]]), np.zeros((2, 2)), np.ones((2, 2)))
     assert independent(a, np.array([0, 1]), np.array([0, 1])) == ([0, 1], [0])
+
+
+@pytest.mark.parametrize("push", [0.0, 2.0, 5.0])
+def test_a_block_on_many_feet(push):
+    """Weight and push of a block that stands on twenty feet: what they bear together is known, and nothing moves until
+    the push is more than friction; then each foot has the same share of its friction."""
+    weight, mu = 9.81, 0.3
+    x = np.linspace(-1.0, 1.0, 20)
+    feet = (
+        np.column_stack([np.zeros(20), np.ones(20), x]),
+        np.column_stack([np.ones(20), np.zeros(20), np.full(20, 0.1)]),
+    )
+    inverse_mass, load = np.diag([1.0, 1.0, 3.0]), np.array([push, -weight, 0.1 * push])
+    normal, tangential = feet
+    a = Delassus(normal @ inverse_mass @ normal.T, normal @ inverse_mass @ tangential.T,
+                 tangential @ inverse_mass @ tangential.T)  # fmt: skip
+    free = inverse_mass @ load
+    found = solve_contacts(a, normal @ free, tangential @ free, np.full(20, mu), np.zeros(20))
+    assert np.min(found.normal) >= 0.0
+    assert np.sum(found.normal) == pytest.approx(weight, rel=1e-12)
+    held = min(push, mu * weight)
+    assert np.sum(found.tangential) == pytest.approx(-held, rel=1e-12)
+    assert np.sum(found.normal * x) == pytest.approx(0.1 * (held - push), abs=1e-11)
+    share = found.tangential + held / weight * found.normal
+    assert np.max(np.abs(share)) < 1e-11
+    assert np.max(np.abs(found.normal_motion)) < 1e-11
+    assert np.max(np.abs(found.tangential_motion - (push - held))) < 1e-11
+    assert found.sticks == (push < mu * weight)
+    # no more feet than it takes bear the block
+    assert np.sum(found.normal > 1e-12 * weight) <= 2

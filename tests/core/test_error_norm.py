@@ -1,4 +1,4 @@
-"""Methods control coordinates and velocities in the same norm: no tolerance is met by positions alone."""
+"""All methods control coordinates and velocities in the same norm: no tolerance is met by positions alone."""
 
 import numpy as np
 import pytest
@@ -11,6 +11,9 @@ HEAVY, LIGHT, FREQUENCY, LENGTH, SPEED = 1.0, 0.01, 2000.0, 1.0, 1.0
 AMPLITUDE = 2e-8
 """m: of the order of the tolerance of positions; the velocities that belong to it are 4000 times that of velocities."""
 METHODS = {
+    "newmark": ("newmark", {}),
+    "hht": ("hht", {}),
+    "hht damped": ("hht", {"alpha": -0.3}),
     "trapezoidal": ("trapezoidal", {}),
     "park": ("park", {}),
     "bdf": ("bdf", {}),

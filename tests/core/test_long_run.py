@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from helpers import on
 from tlismni.core import Model, Revolute2D, RigidBody2D, simulate
-from tlismni.core.integrate.settings import CONSTRAINT_TOLERANCES
+from tlismni.core.rounding import CONSTRAINT_TOLERANCES
 from tlismni.models import load
 
 STEPS = 100_000
@@ -72,8 +72,9 @@ def test_constraints_hold_without_drift_over_a_hundred_thousand_steps(build, mov
         residual = result[f"residual.{level}"]
         assert residual.max() < 1e-10, level
         first, last = tenths(residual / size if level == "position" else residual)
-        # a violation that the solver is content with is no drift: once it is passed, it is corrected
-        assert last < max(2.0 * first, CONSTRAINT_TOLERANCES[0]), level
+        # a violation that the solver is content with (1e-12 here: rows are as large as the mechanism, and rates and
+        # accelerations count by its own) is no drift: once it is passed, it is corrected
+        assert last < max(2.0 * first, 10.0 * CONSTRAINT_TOLERANCES[0]), level
 
 
 def test_energy_does_not_drift_either():

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from tlismni.core import Model, simulate
-from tlismni.core.contact.bristle2d import LEAST_DEFLECTION
 from tlismni.core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.core.contact.friction import LuGreFriction
 from tlismni.core.contact.laws import KelvinVoigt
 from tlismni.core.elements import RigidBody2D
 from tlismni.core.model.markers import Marker2D
+from tlismni.core.rounding import LEAST_DEFLECTION
 
 MASS, INERTIA, RADIUS, FALL, GRAVITY = 1.0, 0.004, 0.1, 0.05, 9.81
 STIFFNESS, DAMPING = 1e5, 100.0
@@ -22,7 +22,8 @@ def spin_after(s0: float, s1: float, s2: float, speed: float, spin: float) -> fl
     """Spin (rad/s) after one bounce: no friction while the damper pulls, and below the least normal force friction and
     slip of the bristles in proportion to it."""
     fall = math.sqrt(2.0 * GRAVITY * FALL)
-    least = LEAST_DEFLECTION * s0 / KINETIC
+    size = RADIUS + FALL  # how far the model's points reach
+    least = LEAST_DEFLECTION * size * s0 / KINETIC
 
     def normal(y: np.ndarray) -> float:
         return STIFFNESS * y[0] + DAMPING * y[1]

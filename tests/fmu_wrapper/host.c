@@ -2,28 +2,14 @@
  *
  * Steps an instance, rolls it back to the middle and steps on, writes the values (hex), and stores its state in
  * <out>; with `-` for <steps> it starts from the state in <out> instead. A second thread does the second half. */
-#include <dlfcn.h>
 #include <pthread.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "fmi2Functions.h"
-
-#define LOAD(name) name##TYPE *name = (name##TYPE *)find(#name)
-#define CHECK(call) do { if ((call) != fmi2OK) { fprintf(stderr, "failed: %s\n", #call); exit(3); } } while (0)
+#include "host.h"
 
 static void *library;
-
-static void *find(const char *name) {
-    void *function = dlsym(library, name);
-    if (!function) {
-        fprintf(stderr, "%s\n", dlerror());
-        exit(2);
-    }
-    return function;
-}
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
                    fmi2String message, ...) {

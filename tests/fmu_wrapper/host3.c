@@ -2,25 +2,11 @@
  *
  * Steps an instance with event mode and early return, twice from one stored state, and writes how each step ended, the
  * time and the value (hex). */
-#include <dlfcn.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "fmi3Functions.h"
-
-#define LOAD(name) name##TYPE *name = (name##TYPE *)find(#name)
-#define CHECK(call) do { if ((call) != fmi3OK) { fprintf(stderr, "failed: %s\n", #call); exit(3); } } while (0)
+#include "host.h"
 
 static void *library;
-
-static void *find(const char *name) {
-    void *function = dlsym(library, name);
-    if (!function) {
-        fprintf(stderr, "%s\n", dlerror());
-        exit(2);
-    }
-    return function;
-}
 
 static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message) {
     printf("log %d %s %s%s\n", status, category, message, environment ? " (another's environment)" : "");

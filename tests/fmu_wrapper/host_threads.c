@@ -3,17 +3,12 @@
  *
  * The threads take the FMUs in turn. Each makes an instance and, with <steps> above 0, steps it once all are ready. A line
  * for each: number of the FMU, its last value (hex), wall-clock time of its steps, s. */
-#include <dlfcn.h>
 #include <pthread.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <time.h>
 
 #include "fmi2Functions.h"
-
-#define LOAD(name) name##TYPE *name = (name##TYPE *)find(part->library, #name)
-#define CHECK(call) do { if ((call) != fmi2OK) { fprintf(stderr, "failed: %s\n", #call); exit(3); } } while (0)
+#include "host.h"
 
 enum { MOST = 64 };
 
@@ -28,15 +23,6 @@ typedef struct {
     pthread_t thread;
     double value, seconds;
 } Part;
-
-static void *find(void *library, const char *name) {
-    void *function = dlsym(library, name);
-    if (!function) {
-        fprintf(stderr, "%s\n", dlerror());
-        exit(2);
-    }
-    return function;
-}
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
                    fmi2String message, ...) {
@@ -59,6 +45,7 @@ static void *allocate(size_t count, size_t size) { return calloc(count, size); }
 static void *run(void *argument) {
     static const fmi2CallbackFunctions callbacks = {logger, allocate, free, NULL, NULL};
     Part *part = argument;
+    void *library = part->library;
     LOAD(fmi2Instantiate);
     LOAD(fmi2SetupExperiment);
     LOAD(fmi2EnterInitializationMode);

@@ -53,7 +53,7 @@ class Exported:
             modelIdentifier=self.description.coSimulation.modelIdentifier,
         )  # fmt: skip
         if self.kind is FMU2Slave:
-            # a logger of its own: the default one is whichever some FMU of this process was given last
+            # a logger of its own: the default one is, for all FMUs of the process, what fmpy was given last
             arguments.setdefault("callbacks", self.quiet)
         fmu.instantiate(**arguments)
         return fmu

@@ -20,6 +20,7 @@ from tlismni.validation import Row, crosscheck
 from tlismni.validation.comparisons.common import Touch
 from tlismni.validation.comparisons.contact_count import contact_count
 from tlismni.validation.comparisons.penalty_limit import LONGEST, PenaltyRun, Sides, duration, softest_stiffness
+from tlismni.validation.comparisons.persistent_contact import Limits, _confirmed
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.exudyn_run import ExudynResult
 from tlismni.validation.metrics import ContactInterval
@@ -64,6 +65,16 @@ def test_another_restitution_on_a_heavy_mass_is_a_difference_of_the_models() -> 
     assert row(found, "approach speed").verdict == "agree"
 
 
+@needs_exudyn
+@pytest.mark.parametrize("restitution, verdict", [(0.7, "agree"), (0.74, "differ")])
+def test_whole_runs_of_a_heavy_mass_are_compared_with_stiffnesses_that_suit_it(
+    restitution: float, verdict: str
+) -> None:
+    scenario, theirs = (stopped_mass(2000.0, NewtonImpact(restitution=e)) for e in (0.7, restitution))
+    found = crosscheck(scenario, t_end=0.25, whole=True, exudyn_model=theirs)
+    assert row(found, "m.vy up to").verdict == verdict
+
+
 @pytest.mark.parametrize("mass", [1e-6, 1.0, 1e3, 1e7])
 @pytest.mark.parametrize("speed", [1e-2, 1.0, 30.0])
 def test_the_softest_contact_takes_a_small_part_of_the_time_to_the_next_impact(mass: float, speed: float) -> None:
@@ -95,6 +106,28 @@ def test_a_limit_that_moves_with_the_next_stiffness_is_not_exact() -> None:
     assert bar[0] < 1e-9 and limit[0] == pytest.approx(1.0)
     confirmed, (limit, bar) = sides(values, times, [IMPACT])
     assert confirmed.confirmed and bar[0] >= abs(limit[0] - 1.0) > 0.5
+
+
+@pytest.mark.parametrize("theirs, verdict", [([1.0, 1.0, 1.0, 1.0], "differ"), ([1.0, 1.0, 1.0, 2.0], "undecided")])
+def test_a_limit_of_short_contacts_can_differ_only_when_it_has_been_found_twice(
+    theirs: list[float], verdict: str
+) -> None:
+    """Values of exudyn for each T; ours is 0, and far from what they tend to or within what the limit moves."""
+    t = np.linspace(0.0, 1.0, 3)
+
+    def run(time: float, factor: float = 1.0) -> ExudynResult:
+        value = theirs[round(-math.log2(time))]
+        return ExudynResult(t, {"x": np.full(3, value)}, factor * time, 0.0, 0, "none")
+
+    def compared(limits: Limits) -> list[Row]:
+        limit, bar = limits.of("x", t)
+        return [Row("x", "m", 0.0, float(limit[0]), 1e-3, "relative", float(bar[0]))]
+
+    times = [1.0, 0.5, 0.25]
+    first = Limits(times, [run(time) for time in times], [run(time, 2.0) for time in times])
+    limits, (found,) = _confirmed(first, compared, run)
+    assert found.verdict == verdict and bool(found.doubt) == (verdict == "undecided")
+    assert limits.times == [1.0, 0.5, 0.25, 0.125]
 
 
 @pytest.mark.parametrize(

@@ -42,6 +42,7 @@ from .penalty_limit import (
     impact_quantities,
     softest_stiffness,
     stiffer,
+    sure,
     with_stiffness,
 )
 from .toggled import toggled_rows
@@ -52,8 +53,6 @@ MOST_STIFFER = 3
 """Stiffnesses beyond the first three, each ten times the one before."""
 MOST_STEPS = 400_000
 """Of exudyn in the run with the stiffest contact."""
-SURE = 3.0
-"""Times both error bars and the tolerance: a larger difference from a confirmed limit is one of the models."""
 RELATIVE = 1e-3
 """Tolerance of every quantity against the extrapolated limit."""
 SAMPLES = 2001
@@ -119,7 +118,7 @@ def _confirmed(sides: Sides, rows: list[Row], t_end: float) -> tuple[Sides, list
     for _ in range(MOST_STIFFER):
         differing = any(row.verdict == "differ" for row in rows)
         settled = sides.task.settled(rows) and not sides.doubts()
-        if all(row.verdict == "agree" for row in rows) or (sides.confirmed and any(_sure(row) for row in rows)):
+        if all(row.verdict == "agree" for row in rows) or (sides.confirmed and any(sure(row) for row in rows)):
             break
         if not differing and (not sides.task.refine or settled):
             break
@@ -132,13 +131,8 @@ def _confirmed(sides: Sides, rows: list[Row], t_end: float) -> tuple[Sides, list
     doubts = sides.doubts()
     if doubts:
         return sides, [replace(row, doubt="; ".join(doubts)) for row in rows]
-    decided = [row.verdict == "agree" or (sides.confirmed and _sure(row)) for row in rows]
+    decided = [row.verdict == "agree" or (sides.confirmed and sure(row)) for row in rows]
     return sides, [r if known else replace(r, doubt=_open_limit(sides)) for r, known in zip(rows, decided, strict=True)]
-
-
-def _sure(row: Row) -> bool:
-    """Whether a difference is far beyond what the two sides do not know."""
-    return row.verdict == "differ" and row.difference > SURE * (row.uncertainty + row.ours_uncertainty + row.allowed)
 
 
 def _open_limit(sides: Sides) -> str:

@@ -13,7 +13,8 @@ stiffnesses, how far the limit has moved with the last of them.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from ...core.description import Model
 from ..errors import NotTranslatable
 from ..exudyn_run import ExudynResult
 from ..metrics import ContactInterval, contact_intervals, impulse, power_limit, speeds
-from .common import Task, Touch
+from .common import Row, Task, Touch
 
 SOFTEST = 1e6
 """N/m^1.5: of the first run, where its contact then takes a small part of the time that there is."""
@@ -32,6 +33,8 @@ DECADE = 10.0
 RUNS = 3
 EXPONENT = 1.5
 STEPS_IN_CONTACT = 100
+SURE = 3.0
+"""Times both error bars and the tolerance: a larger difference from a confirmed limit is one of the models."""
 LOWEST_RESTITUTION = 0.05
 SAME_BLOW = 1e-9
 """Of the run: touches nearer than this are one blow."""
@@ -82,13 +85,8 @@ class Sides:
 
     def limit(self, values: list[np.ndarray], doubled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(the limit, its error bar) of values, one for each run."""
-        x = np.array([r.x for r in self.runs])
-        found, open_ = power_limit(x[-RUNS:], np.array(values[-RUNS:]))
-        bar = open_ + np.abs(values[0] - doubled)
-        if self.confirmed:
-            before, _ = power_limit(x[-RUNS - 1 : -1], np.array(values[-RUNS - 1 : -1]))
-            bar = bar + np.abs(found - before)
-        return found, bar
+        found, open_ = latest_limit(np.array([r.x for r in self.runs]), np.array(values))
+        return found, open_ + np.abs(values[0] - doubled)
 
     def doubts(self) -> list[str]:
         """Why the contacts of the last three runs are not that impact of ours."""
@@ -121,6 +119,27 @@ class Sides:
         if pieces and not mates:
             return f"{stiffness} the contact '{first.contact}' comes in pieces, where ours is one impact"
         return ""
+
+
+def latest_limit(x: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(limit, what it leaves open) of the last three of a row of runs; with more of them that it moves with the last
+    counts too: then it has been found twice."""
+    found, open_ = power_limit(x[-RUNS:], values[-RUNS:])
+    if len(x) > RUNS:
+        open_ = open_ + np.abs(found - power_limit(x[-RUNS - 1 : -1], values[-RUNS - 1 : -1])[0])
+    return found, open_
+
+
+def sure(row: Row) -> bool:
+    """Whether a difference is far beyond what the two sides do not know."""
+    return row.verdict == "differ" and row.difference > SURE * (row.uncertainty + row.ours_uncertainty + row.allowed)
+
+
+def unless_sure(rows: Sequence[Row], confirmed: bool, doubt: str) -> list[Row]:
+    """`rows` with `doubt` where a difference is not one of the models: the limit has been found once only, or lies too
+    near to ours."""
+    decided = [row.verdict != "differ" or (confirmed and sure(row)) for row in rows]
+    return [row if known else replace(row, doubt=doubt) for row, known in zip(rows, decided, strict=True)]
 
 
 def stiffer(stiffness: float, times: int) -> float:

@@ -5,10 +5,12 @@ and gives back r T of its speed: it tends to an impact without rebound and to th
 shrinks (it must not pull: a corner that another one lifts off would be held back by an impulse that does not shrink).
 Coulomb's friction sticks by a critically damped spring of the frequency 1/T and slides as it is. So every quantity is
 a + b T + c T^2 + ..., and a is what the constraint must give. Contacts with restitution get Gonthier's law with a
-duration in proportion to T.
+duration in proportion to T. What differs is asked again with half the last T, and only a limit that has been found
+twice can differ.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,7 @@ from ...core.contact.laws import Gonthier, ImpactLaw, KelvinVoigt
 from ...core.description import Model
 from ...core.elements import FlexibleBody
 from ..exudyn_run import ExudynResult, run_exudyn, settings_for
-from ..metrics import power_limit, trajectory_difference
+from ..metrics import trajectory_difference
 from ..translation.formulas import StickingCoulomb
 from .common import (
     Comparison,
@@ -39,6 +41,7 @@ from .common import (
     unit_of,
 )
 from .events import away_from
+from .penalty_limit import latest_limit, unless_sure
 from .reversal import first_reversal
 
 TIMES = (1.0, 0.5, 0.25)
@@ -78,8 +81,8 @@ class Scale:
 
 @dataclass(frozen=True)
 class Limits:
-    """exudyn's runs with three times T (s), and one or all of them with twice the step: all in a run without blows.
-    What a step changes is then regular, and most of it leaves with T."""
+    """exudyn's runs with three or four times T (s), and the last or all of them with twice the step: all in a run
+    without blows. What a step changes is then regular, and most of it leaves with T."""
 
     times: list[float]
     runs: list[ExudynResult]
@@ -90,9 +93,9 @@ class Limits:
         values, coarse = (
             np.array([at_times(r.t, r.channels, channel, t) for r in runs]) for runs in (self.runs, self.coarse)
         )
-        limit, moved = power_limit(np.array(self.times), values)
+        limit, moved = latest_limit(np.array(self.times), values)
         if len(coarse) == len(values):
-            return limit, moved + np.abs(power_limit(np.array(self.times), coarse)[0] - limit)
+            return limit, moved + np.abs(latest_limit(np.array(self.times), coarse)[0] - limit)
         return limit, moved + WEIGHTS * np.abs(coarse[-1] - values[-1])
 
 
@@ -121,36 +124,23 @@ def compare_persistent(task: Task) -> Comparison:
     events = [e for e in first_run.events if e.kind != "graze"]
     blows = any(e.impulse > 0.0 for e in events)
     times = [share * longest for share in TIMES]
-    again = [(time, 2.0) for time in (times[-1:] if blows else times)]
-    done: list[ExudynResult] = []
-    for time, factor in (*((time, 1.0) for time in times), *again):
+
+    def run(time: float, factor: float = 1.0) -> ExudynResult:
         model = with_time(task.exudyn_model, scales, time, rate)
         step = factor * time / steps_in_time
         task.progress(f"exudyn, T = {time:.1e} s, step {step:.1e} s")
-        done.append(run_exudyn(model, scenario.t_end, step, settings_for(model)))
-    runs = done[: len(times)]
-    limits = Limits(times, runs, done[len(times) :])
-    away = away_from(ours.t, events, runs, 3.0 * DURATION * longest if flexible else DURATION * longest)
-    rows: list[Row] = []
-    turned = first_reversal(scenario.model, first_run)
-    until = scenario.t_end if turned is None else turned.t
-    reason = "" if turned is None else turned.text()
-    channels = [c for c in scenario.compare if not is_contact_channel(task, c) and c in runs[0].channels]
+        return run_exudyn(model, scenario.t_end, step, settings_for(model))
+
+    limits = Limits(times, [run(time) for time in times], [run(time, 2.0) for time in (times[-1:] if blows else times)])
+    channels = [c for c in scenario.compare if not is_contact_channel(task, c) and c in limits.runs[0].channels]
     error = our_error(task, ours, [*channels, *(f"{c.name}.impulse" for c in scenario.model.contacts)])
-    for channel in channels:
-        rows += _channel_rows(channel, ours, away & (ours.t < until), limits, error.get(channel), "")
-        if reason:
-            later = away & (ours.t > until)
-            rows += _channel_rows(channel, ours, later, limits, error.get(channel), reason)
-    for contact in scenario.model.contacts:
-        channel = f"{contact.name}.impulse"
-        limit, moved = limits.of(channel, ours.t[-1:])
-        own = error.get(channel)
-        rows.append(
-            Row(f"{contact.name}: impulse of the whole run", unit_of(ours, channel), float(ours[channel][-1]),
-                float(limit[0]), STATE, "relative", float(moved[0]), required=not reason, reason=reason,
-                ours_uncertainty=0.0 if own is None else own[-1])
-        )  # fmt: skip
+    margin = 3.0 * DURATION * longest if flexible else DURATION * longest
+
+    def compared(limits: Limits) -> list[Row]:
+        return _rows(task, first_run, ours, limits, away_from(ours.t, events, limits.runs, margin), channels, error)
+
+    limits, rows = _confirmed(limits, compared, run)
+    times, runs = limits.times, limits.runs
     stepped = (
         f"what twice the step changes in the last run, {WEIGHTS:g} times for the three T (a blow begins anywhere in a "
         "step: irregular and of first order)"
@@ -161,7 +151,8 @@ def compare_persistent(task: Task) -> Comparison:
         "the constraint is compared with the limit of a damper with a weak spring that does not pull (restitution "
         f"below {LOWEST_RESTITUTION:g}), of Gonthier's law (else) and of sticking by a stiff spring, extrapolated in "
         f"the time T that a contact takes: {', '.join(f'{x:.1e}' for x in times)} s. exudyn's "
-        f"uncertainty is the difference of the quadratic and the linear extrapolation, and {stepped}",
+        f"uncertainty is the difference of the quadratic and the linear extrapolation, and {stepped}"
+        + (", and how far the limit of the last three T has moved with the last of them" if len(times) > 3 else ""),
         *runs[-1].notes,
     )
     panels = _panels(task, ours, runs, times, channels)
@@ -177,6 +168,53 @@ def compare_persistent(task: Task) -> Comparison:
         events=tuple(first_run.events),
         result=ours,
     )
+
+
+def _rows(
+    task: Task,
+    first_run: Result,
+    ours: Result,
+    limits: Limits,
+    away: np.ndarray,
+    channels: list[str],
+    error: dict[str, np.ndarray],
+) -> list[Row]:
+    """All that is compared; what comes after a reversal of friction cannot be."""
+    model, rows = task.scenario.model, []
+    turned = first_reversal(model, first_run)
+    until = task.scenario.t_end if turned is None else turned.t
+    reason = "" if turned is None else turned.text()
+    for channel in channels:
+        rows += _channel_rows(channel, ours, away & (ours.t < until), limits, error.get(channel), "")
+        if reason:
+            rows += _channel_rows(channel, ours, away & (ours.t > until), limits, error.get(channel), reason)
+    for contact in model.contacts:
+        channel = f"{contact.name}.impulse"
+        limit, moved = limits.of(channel, ours.t[-1:])
+        own = error.get(channel)
+        rows.append(
+            Row(f"{contact.name}: impulse of the whole run", unit_of(ours, channel), float(ours[channel][-1]),
+                float(limit[0]), STATE, "relative", float(moved[0]), required=not reason, reason=reason,
+                ours_uncertainty=0.0 if own is None else own[-1])
+        )  # fmt: skip
+    return rows
+
+
+def _confirmed(
+    limits: Limits, compared: Callable[[Limits], list[Row]], run: Callable[..., ExudynResult]
+) -> tuple[Limits, list[Row]]:
+    """The rows; where one differs with a fourth T, and with the reason where that leaves it open."""
+    rows = compared(limits)
+    if not any(row.verdict == "differ" for row in rows):
+        return limits, rows
+    time = 0.5 * limits.times[-1]
+    coarse = [*(limits.coarse if len(limits.coarse) > 1 else []), run(time, 2.0)]
+    limits = replace(limits, times=[*limits.times, time], runs=[*limits.runs, run(time)], coarse=coarse)
+    doubt = (
+        f"the limit of short contacts is not reached: T goes down to {time:.1e} s, and the limit still moves, or lies "
+        "too near to ours, to call a difference one of the models"
+    )
+    return limits, unless_sure(compared(limits), True, doubt)
 
 
 def with_time(model: Model, scales: dict[str, Scale], time: float, rate: float) -> Model:

@@ -12,7 +12,7 @@ from .mechanism import Blow, Course, Law
 def law_of(law: ContactLaw, friction: Any = None) -> Law:
     """The law with formulas of its own; `friction` is a regularised one, or none."""
     if isinstance(law, ForceLaw):
-        force, least = normal_force(law), law.minimum_approach_speed
+        force, least = normal_force(law), law.least_approach_speed()
         rubs = None if friction is None else friction_force(friction)
         return Law(force=lambda d, dd, v0: force(d, dd, max(v0, least)), release=law.release, friction=rubs)
     if isinstance(law, ImpactLaw):

@@ -48,10 +48,10 @@ def contact_parameters(law: object, contact: str) -> dict[str, float | int]:
         )
     # a subclass may have a formula of its own: only the family's members are known by more than their type
     if type(law) is KelvinVoigt:
-        fields = _fields(law.stiffness, 1.0, 0, 1.0, law.minimum_approach_speed)
+        fields = _fields(law.stiffness, 1.0, 0, 1.0, law.least_approach_speed())
         return {**fields, "contactDamping": law.damping}
     if type(law) is Hertz:
-        return _fields(law.stiffness, law.exponent, 0, 1.0, law.minimum_approach_speed)
+        return _fields(law.stiffness, law.exponent, 0, 1.0, law.least_approach_speed())
     if not isinstance(law, HuntCrossleyFamily) or type(law).formula is not HuntCrossleyFamily.formula:
         raise NotTranslatable(f"contact '{contact}' has law {type(law).__name__}, which exudyn has no form of")
     if type(law) is HuntCrossley and law.restitution > 0.0:
@@ -60,7 +60,7 @@ def contact_parameters(law: object, contact: str) -> dict[str, float | int]:
         model, e = 2, min(law.restitution, _NEARLY_ELASTIC)
     else:
         model, e = 2, restitution_for(law.damping_factor())
-    return _fields(law.stiffness, law.exponent, model, e, law.minimum_approach_speed)
+    return _fields(law.stiffness, law.exponent, model, e, law.least_approach_speed())
 
 
 def restitution_for(damping_factor: float) -> float:

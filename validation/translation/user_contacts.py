@@ -86,7 +86,7 @@ class Force:
     def __init__(self, record: Any, gap: UserGap) -> None:
         self.gap = gap
         self.law, self.release = normal_force(record.law), record.law.release
-        self.memory = Memory(record.law.minimum_approach_speed)
+        self.memory = Memory(record.law.least_approach_speed())
         bristle = isinstance(record.friction, LuGreFriction)
         self.bristles = lugre(record.friction) if bristle else None
         self.rubs = record.friction is not None

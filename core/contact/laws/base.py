@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 from numba import types
 
 from ...compiled.jit import caller
+from ...rounding import LEAST_APPROACH
 from ..formula import FormulaRecord, formula_address
 
 LAW_RESULT = types.UniTuple(types.float64, 5)
@@ -29,8 +30,14 @@ class ForceLaw(FormulaRecord):
     parameter_count: ClassVar[int] = 4
     shared_fields: ClassVar[tuple[str, ...]] = ("minimum_approach_speed",)
 
-    minimum_approach_speed: float = 1e-6
-    """m/s; a contact that closes more slowly than this is given this approach speed (laws divide by it)."""
+    minimum_approach_speed: float | None = None
+    """m/s; a contact that closes more slowly than this is given this approach speed (laws divide by it). Left out: a
+    millionth of the model's speeds."""
+
+    def least_approach_speed(self, speed: float = 1.0) -> float:
+        """The `minimum_approach_speed` in a model whose speeds are of the size `speed`, m/s."""
+        given = self.minimum_approach_speed
+        return LEAST_APPROACH * speed if given is None else given
 
     @property
     def release(self) -> Release:
