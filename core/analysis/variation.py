@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from ..contact.laws import ImpactLaw
 from ..errors import ModelError, SimulationError
-from ..integrate.advance import aim
 from ..integrate.engine import user_errors
 from ..integrate.records import CHUNK, EVENT, REACHED
 from ..integrate.simulation import Simulation
@@ -153,7 +152,7 @@ class Variation:
 
     def _fly(self, t_end: float, until: float) -> int:
         sim, layout = self.sim, self._layouts.now()
-        aim(sim, until, t_end)
+        sim.aim(until, t_end)
         work, room = self._room(layout)
         growth, totals = np.zeros(len(self.exponents)), np.array([self._frequency, 0.0])
         places = layout.rows, layout.cols, layout.colours, layout.dependent, layout.independent

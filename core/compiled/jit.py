@@ -4,9 +4,11 @@ NaN, which the step control sees, instead of an exception in the middle of a ste
 from collections.abc import Callable
 from types import FunctionType
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from numba import njit, types
 from numba.core import cgutils
+from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
 from .kept import KeptCode
@@ -49,6 +51,9 @@ def interpreted(function: Any, *helpers: Any) -> Any:
     return FunctionType(source.__code__, names, source.__name__, source.__defaults__)
 
 
+_addresses: WeakKeyDictionary[Any, dict[Any, int]] = WeakKeyDictionary()
+
+
 def address_of(function: Any, signature: Any) -> int:
     """Machine address of a numba function, compiled for `signature`.
 
@@ -56,6 +61,14 @@ def address_of(function: Any, signature: Any) -> int:
     ------
     TypeError : if it is not a numba function, or returns something else.
     """
+    # to ask numba takes 0.1 ms, and a run asks for twenty
+    known = _addresses.setdefault(function, {}) if isinstance(function, Dispatcher) else {}
+    if signature not in known:
+        known[signature] = _find_address(function, signature)
+    return known[signature]
+
+
+def _find_address(function: Any, signature: Any) -> int:
     if not hasattr(function, "get_compile_result"):
         raise TypeError(f"{function!r} must be a numba function: decorate it with @compiled")
     function.compile(signature)

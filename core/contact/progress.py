@@ -1,5 +1,7 @@
 """Guard against runs that events keep from going on: so many at one instant, or so many in next to no time."""
 
+import numpy as np
+
 from ..errors import SimulationError
 
 AT_ONCE = 50
@@ -9,12 +11,21 @@ IN_A_ROW, STANDSTILL = 1000, 1e-7
 rule before that: with a restitution of 0.999 their last thousand take 2e-6 of it."""
 
 
+START, SINCE, COUNT = range(3)
+"""Of the guard's numbers: when the run began, since when its events are counted, and how many there were."""
+GUARD_SIZE = 3
+
+
 class Progress:
-    """Counts events in time. It decides nothing but when to give up, so a restored run may begin it anew."""
+    """Counts events in time. It decides nothing but when to give up, so a restored run may begin it anew.
+
+    Attributes
+    ----------
+    numbers : (GUARD_SIZE,), which compiled code counts on too.
+    """
 
     def __init__(self, start: float) -> None:
-        self._start = self._since = start
-        self._count = 0
+        self.numbers = np.array([start, start, 0.0])
 
     def note(self, t: float, here: int, contacts: list[str]) -> None:
         """Events of `contacts` (names) at time t, s, the `here`-th time at this instant.
@@ -25,13 +36,14 @@ class Progress:
         """
         if here > AT_ONCE:
             raise _chatters(f"{here} events of contacts {contacts} at t = {t:.9g} s without progress in time", t)
-        self._count += 1
-        if self._count <= IN_A_ROW:
+        start, since, count = self.numbers.tolist()
+        self.numbers[COUNT] = count + 1.0
+        if count < IN_A_ROW:
             return
-        if not abs(t - self._since) > STANDSTILL * abs(t - self._start):
-            span = f"{t - self._since:.3g} s up to t = {t:.9g} s"
-            raise _chatters(f"{self._count} events within {span}, of contacts {contacts} and others", t)
-        self._since, self._count = t, 0
+        if not abs(t - since) > STANDSTILL * abs(t - start):
+            span = f"{t - since:.3g} s up to t = {t:.9g} s"
+            raise _chatters(f"{count + 1:.0f} events within {span}, of contacts {contacts} and others", t)
+        self.numbers[SINCE], self.numbers[COUNT] = t, 0.0
 
 
 def _chatters(what: str, t: float) -> SimulationError:

@@ -8,7 +8,7 @@ from ..compiled.jit import compiled, internal
 
 
 @internal
-def _alone(a: float, b: float, c: float, w_n: float, w_t: float, mu: float, direction: float, least: float) -> Any:
+def one_contact(a: float, b: float, c: float, w_n: float, w_t: float, mu: float, direction: float, least: float) -> Any:
     """(N, T) of one contact whose motion without forces of its own is (w_n, w_t); N >= least. NaN if there are none."""
     if mu == 0.0:
         return max(least, -w_n / a), 0.0
@@ -66,7 +66,7 @@ def sweep(
                 if j != i:
                     w_n += nn[i, j] * normal[j] + nt[i, j] * friction[j]
                     w_t += nt[j, i] * normal[j] + tt[i, j] * friction[j]
-            alone = _alone(nn[i, i], nt[i, i], tt[i, i], w_n, w_t, mu[i], direction[i], base[i])
+            alone = one_contact(nn[i, i], nt[i, i], tt[i, i], w_n, w_t, mu[i], direction[i], base[i])
             if not np.isfinite(alone[0]):
                 return False
             normal[i], friction[i] = alone

@@ -32,27 +32,29 @@ from ..system.records import (
     WORST_CONDITION,
 )
 from .locate import find_root
-from .loop import accept, run, trial_step
+from .loop import accept, trial_step
 from .near_singular import STRAINED
 from .passage import pass_singular
 from .probe import HAPPENS
 from .records import (
-    BREAK_TIME,
     CHUNK,
+    DUE,
     EVENT,
     FIXED_STEP,
     FULL,
+    JAM,
     NEAR_SINGULAR,
     REACHED,
     REPARTITION,
+    SETTLE,
     STEP_SIZE,
     STEP_TOO_SMALL,
-    STOP_TIME,
-    TARGET_TIME,
     TRIAL_STEP,
+    UNLOCATED,
     VIOLATED,
 )
 from .repair import repair
+from .search import AT_ONCE, MOST_HALVINGS
 from .singular_position import near_singular
 from .step_budget import step_count, steps_left
 from .watch import find_events, friction_margin
@@ -64,10 +66,6 @@ logger = logging.getLogger(__name__)
 
 CHUNK_STEPS = 20_000
 """Steps between two reports of progress, of systems with up to 100 coordinates; larger ones report more often."""
-MOST_HALVINGS = 40
-AT_ONCE = 1e-6
-"""Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
-in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
 _REASONS = {
     OUTER_DIVERGED: ("outer", "the outer loop diverged"),
     OUTER_SLOW: ("outer", "the outer loop did not converge"),
@@ -91,12 +89,10 @@ def advance_to(
     sim: "Simulation", t: float, stop: float, hold: bool = False, came: tuple[int, int] | None = None
 ) -> None:
     """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending.
-    `came`: the step count at the beginning, and what `run`, aimed at `t`, has returned a moment ago."""
+    `came`: the step count at the beginning, and what `drive_on` has returned a moment ago."""
     first, code = (step_count(sim), None) if came is None else came
-    ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     repaired_at = math.nan
     chunk = steps_at_once(sim.assembly.n)
-    sliding: list[int] = []
     while True:
         now = sim.t_internal
         if code is None:
@@ -105,31 +101,24 @@ def advance_to(
                     return
                 sim._handle_pending()
                 continue
-            if now >= t:
-                return
-            if (due := due_break(sim)) is not None:
-                # only now: until the run goes on from here, samples before this time need the history
-                restart_at(sim, due)
-                continue
-            if t - now <= NO_STEP * abs(t):
-                return
-            aim(sim, t, stop)
-            if sim.clock[STOP_TIME] - now <= NO_STEP * abs(now):
-                return
-            # while a contact slides, each step is looked at
-            sliding = sliding_contacts(sim)
-            left = steps_left(sim, first, t)
-            code = run(ws, ms, lc, 1 if sliding else min(chunk, left))
+            left = min(chunk, steps_left(sim, first, t))
+            code = sim.drive.go(t, stop, left, hold or not sim.compiled_events)
+            sim.take_events()
         returned, code = code, None
         sim.flush()
-        if sliding and returned == CHUNK and sim.t_internal > now:
-            refuse_passed_jam(sim, sliding)
         if returned in (CHUNK, FULL):
             sim.report_progress(sim.t_internal)
         elif returned == REACHED:
-            continue
-        elif returned == EVENT:
-            _locate(sim)
+            return
+        elif returned == DUE:
+            # only now: until the run goes on from here, samples before this time need the history
+            restart_at(sim, min(b for b in sim.assembly.breakpoints if b > sim.t_internal))
+        elif returned == SETTLE:
+            sim.pending = sim.drive.take_pending()
+        elif returned == UNLOCATED:
+            _locate_again(sim)
+        elif returned == JAM:
+            refuse_passed_jam(sim, sliding_contacts(sim))
         elif returned == REPARTITION:
             repair(sim)
         elif returned in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":
@@ -162,14 +151,6 @@ def due_break(sim: "Simulation") -> float | None:
     """The breakpoint that the newest step ended just before, if it did: no step fits between."""
     now, ahead = sim.t_internal, _next_break(sim)
     return ahead if math.nextafter(ahead, -math.inf) - now <= NO_STEP * abs(now) else None
-
-
-def aim(sim: "Simulation", t: float, stop: float) -> None:
-    """Set the loop's clock: steps until `t` is reached, none beyond `stop`."""
-    # steps end just before a breakpoint, so that they see what holds to the left of it
-    sim.clock[BREAK_TIME] = _next_break(sim)
-    sim.clock[STOP_TIME] = min(stop, math.nextafter(sim.clock[BREAK_TIME], -math.inf))
-    sim.clock[TARGET_TIME] = t
 
 
 def _shrink(sim: "Simulation") -> bool:
@@ -285,6 +266,19 @@ def _locate(sim: "Simulation") -> None:
         if sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim):
             _fail(sim, status)
         recall(sim.workspace.record, sim._method.record, 0)
+        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+
+
+def _locate_again(sim: "Simulation") -> None:
+    """Locate in the newest step what could not be located because a trial failed: with other pivots, or shorter."""
+    recall(sim.workspace.record, sim._method.record, 0)
+    ws, ms, lc, h = sim.workspace.record, sim._method.record, sim._loop.record, float(sim.clock[TRIAL_STEP])
+    if trial_step(ws, ms, lc, h) == OK and find_events(ws, ms, lc, h, False):
+        _locate(sim)
+    elif sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim):
+        _fail(sim, OUTER_SLOW)
+    else:
+        recall(ws, ms, 0)
         sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
 
 

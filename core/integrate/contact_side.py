@@ -25,7 +25,8 @@ from ..system.records import OK
 from ..system.redundancy import RedundantRow, choose_rows, describe
 from ..system.scales import Scales
 from ..system.workspace import Workspace
-from .records import MAX_STEP, STEP_SIZE
+from .drive import Drive
+from .records import HANDLED, HERE, MAX_STEP, STEP_SIZE
 from .settings import Settings
 
 logger = logging.getLogger(__name__)
@@ -42,8 +43,8 @@ class ContactSide:
     redundant: tuple[RedundantRow, ...]
     method_arrays: dict[str, NDArray[Any]]
     clock: NDArray[np.float64]
+    drive: Drive
     scales: Scales
-    _times_handled: tuple[float, int]
 
     @property
     def memory(self) -> NDArray[np.float64]:
@@ -237,7 +238,12 @@ class ContactSide:
     @property
     def events_here(self) -> int:
         """How often events have been handled at the present instant, without progress in time."""
-        return self._times_handled[1]
+        return int(self.drive.counts[HERE])
+
+    @property
+    def events_handled(self) -> int:
+        """Instants with events so far."""
+        return int(self.drive.counts[HANDLED])
 
     def meet_constraints(self) -> None:
         """Bring positions and velocities onto the constraints of the present structure, by rounding's worth."""

@@ -36,10 +36,11 @@ from ..tolerances import DEFAULT_ATOL
 from . import motions
 from .contact_side import ContactSide
 from .dense_output import query
+from .drive import Drive
 from .near_singular import smooth_query, strained
 from .output import ChannelTable
 from .ready import make_ready
-from .records import MAX_STEP, STEP_SIZE
+from .records import HANDLED, HANDLED_AT, HERE, MAX_STEP, STEP_SIZE
 from .sample import write_sample
 from .settings import Settings, set_control
 from .setup import build_loop, build_method
@@ -111,8 +112,6 @@ class Engine(ContactSide):
         self.long_step: Any = None
         self.t = float(t0)
         self.redundant: tuple[RedundantRow, ...] = ()
-        self._times_handled = (math.nan, 0)
-        self.guard, self.events_handled = Progress(float(t0)), 0
         self.input_times = (float(t0), math.inf)
         self.start_open = True
         self.fallbacks: list[Fallback] = []
@@ -125,6 +124,8 @@ class Engine(ContactSide):
         self.buffer, self.cursor = self._loop.arrays["samples"], self._loop.arrays["cursor"]
         self.log_buffer, self.log_cursor = self._loop.arrays["log"], self._loop.arrays["log_cursor"]
         self.fine_starter = step_address(FINE_STARTER)
+        self.guard = Progress(float(t0))
+        self.drive = Drive(self, self.guard)
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
         with user_errors(self.assembly):
@@ -222,10 +223,15 @@ class Engine(ContactSide):
             self._new_history()
             return
         pending, self.pending = self.pending, []
+        if self.compiled_events and self.method_arrays["ring"][1]:
+            self.flush()
+            if self.drive.settle(pending):
+                self.take_events()
+                return
         t = self.t_internal if self.method_arrays["ring"][1] else self.settings.t0
-        count = self._times_handled[1] + 1 if t == self._times_handled[0] else 1
-        self._times_handled = (t, count)
-        self.events_handled += 1
+        count = self.events_here + 1 if t == self.drive.goals[HANDLED_AT] else 1
+        self.drive.goals[HANDLED_AT], self.drive.counts[HERE] = t, count
+        self.drive.counts[HANDLED] += 1
         self.guard.note(t, count, [self.assembly.contacts[k].name for k in pending])
         if self.method_arrays["ring"][1]:
             # samples may have been asked for since the step that ended here
@@ -236,6 +242,16 @@ class Engine(ContactSide):
         self._new_history()
         self.pending = self.unsettled_since(was)
         self._sample_now()
+
+    @property
+    def compiled_events(self) -> bool:
+        """True if events may be settled without Python."""
+        return type(self).handle_contacts is Engine.handle_contacts
+
+    def take_events(self) -> None:
+        """Record the events of compiled code."""
+        for event in self.drive.take_events():
+            self.add_event(event)
 
     def handle_contacts(self, pending: list[int]) -> None:
         """Let the state machine act on contacts with events. Studies of other treatments override this."""

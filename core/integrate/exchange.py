@@ -1,8 +1,8 @@
 """Inputs in, time on, channels out, in one crossing into compiled code: what a slave does at every step.
 
 Whoever calls `set_inputs`, `advance` and `values` crosses a dozen times, with Python between that takes as long as the
-solver. Here stands the way that almost every step goes: no contact is closed, nothing happens at events. Where a run
-leaves it, Python goes on from there; where it cannot go it, nothing has happened.
+solver. Here stands the way that almost every step goes (`drive.py`). Where a run leaves it, Python goes on from there;
+where it cannot go it, nothing has happened.
 """
 
 import math
@@ -18,16 +18,17 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of, caller, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
+from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..description import Model
 from ..errors import ModelError
 from ..methods.history import bridge_rows, history_time, recall, restart
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
-from ..rounding import NO_STEP
+from ..rounding import FORCE_ROUNDING
 from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import evaluate_power, evaluate_residuals
+from ..system.levels import force_level
 from ..system.records import (
     COUNTERS_SIZE,
     FACTOR_AGE,
@@ -40,20 +41,21 @@ from ..system.records import (
 )
 from . import advance
 from .dense_output import query
+from .drive import drive_on, loop_at, method_at, workspace_at
 from .inputs import PUNCTUAL
-from .loop import run
 from .near_singular import STRAINED
 from .records import (
     ACCELERATIONS_SIGNATURE,
-    BREAK_TIME,
-    CHUNK,
-    CLOCK_SIZE,
-    LOOP_TYPE,
+    BUDGET,
+    COUNTS_SIZE,
+    DRIVE_TYPE,
+    GOALS_SIZE,
+    HANDLED,
+    LAST_STOP,
     REACHED,
-    STOP_TIME,
-    TARGET_TIME,
     call_accelerations,
 )
+from .records import GOAL as GOAL_TIME
 from .sample import write_sample
 from .watch import remember
 
@@ -65,10 +67,11 @@ EXCHANGE = np.dtype(
         (name, np.int64)
         for name in (
             "workspace", "method", "loop",                         # addresses of the records
-            "query", "accelerations", "run",                       # addresses of functions
+            "drive",                                               # and of that of `drive`
+            "query", "accelerations",                              # addresses of functions
             "times",                                               # (TIMES_SIZE,) float64
             "inputs", "before", "n_inputs",                        # wanted; (n_inputs, INPUT_SIZE): what they were
-            "breakpoints", "n_breakpoints", "chunk", "read",
+            "chunk", "read",
             "sample", "sample_length", "channels", "n_channels",   # one row, and what it gives
             "places", "summed", "n_sums", "number", "column", "signs", "n_terms", "flags", "flag_columns", "n_flags",
             "balance",
@@ -81,7 +84,7 @@ NOW = 0
 GOAL = 1
 LAST_CHANGE, INTERVAL = 2, 3  # of inputs
 INITIAL_ENERGY = 4  # J
-FIRST_STEP = 5  # steps made before
+FIRST_STEP = 5  # steps made, and instants with events, before
 TIMES_SIZE = 6
 
 # what `exchange` returns, besides what `run` does
@@ -92,9 +95,8 @@ ARRIVED = 201
 READ = 202
 
 QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
-RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)
-call_query, call_run = map(caller, (QUERY_SIGNATURE, RUN_SIGNATURE))
-workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
+call_query = caller(QUERY_SIGNATURE)
+drive_at = record_view(DRIVE_TYPE)
 
 
 @internal
@@ -108,6 +110,23 @@ def _input_changes(ex: Any, ws: Any) -> int:
         if wanted[k] != rows[k, 0]:
             count += 1
     return count
+
+
+@internal
+def _unsettled(ws: Any) -> bool:
+    """True if the mode of a closed contact may not fit the forces at the current point (`ContactSide.unsettled`)."""
+    memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
+    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
+    work, static = FORCE_ROUNDING * force_level(ws), vec(ws.contact_sticking, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if memory[k, MODE] != CLOSED:
+            continue
+        force, none = -lam[rows[k]], work / vec(ws.row_scale, ws.m_ext)[rows[k]]
+        if force < -none:
+            return True
+        if slides[k] >= 0 and memory[k, SLIDE] == STICKS and abs(lam[slides[k]]) > static[k] * force + none:
+            return True
+    return False
 
 
 @internal
@@ -131,7 +150,7 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any) -> bool:
         vec(ws.t, 1)[0] = t
     if status == OK:
         status = call_accelerations(ex.accelerations, ws)
-    if status != OK:
+    if status != OK or _unsettled(ws):
         for k in range(n):
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]
@@ -156,34 +175,6 @@ def _stop(times: Any) -> float:
     if not times[NOW] < expected < np.inf:
         return np.inf
     return times[GOAL] if expected <= times[GOAL] + PUNCTUAL * times[INTERVAL] else expected
-
-
-@internal
-def _advance(ex: Any, ws: Any, ms: Any, lc: Any) -> int:
-    """`advance_to` as long as nothing happens: REACHED, what else `run` returned, CHUNK where a breakpoint is due."""
-    times, clock = vec(ex.times, TIMES_SIZE), vec(lc.clock, CLOCK_SIZE)
-    breakpoints = vec(ex.breakpoints, ex.n_breakpoints)
-    times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS]
-    goal, stop = times[GOAL], _stop(times)
-    while True:
-        now = history_time(ms, 0)
-        if now >= goal:
-            return REACHED
-        ahead = np.inf
-        for i in range(ex.n_breakpoints):
-            if now < breakpoints[i] < ahead:
-                ahead = breakpoints[i]
-        last = np.nextafter(ahead, -np.inf)
-        if last - now <= NO_STEP * abs(now):
-            return CHUNK
-        if goal - now <= NO_STEP * abs(goal):
-            return REACHED
-        clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(stop, last), goal
-        if clock[STOP_TIME] - now <= NO_STEP * abs(now):
-            return REACHED
-        code = call_run(ex.run, ws, ms, lc, ex.chunk)
-        if code != REACHED:
-            return code
 
 
 @internal
@@ -227,14 +218,14 @@ def _read(ex: Any, ws: Any, ms: Any) -> bool:
 def exchange(ex: Any) -> int:
     """Set the inputs, go to the goal, read the channels."""
     ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
-    for k in range(ws.n_contacts):
-        if memory[k, MODE] == CLOSED:
-            return DECLINED
     changes = _input_changes(ex, ws)
     if changes < 0 or (changes > 0 and not _change_inputs(ex, ws, ms, lc)):
         return DECLINED
-    code = _advance(ex, ws, ms, lc)
+    dr, times = drive_at(ex.drive), vec(ex.times, TIMES_SIZE)
+    goals, counts = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE)
+    goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[GOAL], _stop(times), ex.chunk
+    times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]
+    code = drive_on(dr, ws, ms, lc, False)
     if code != REACHED:
         return code
     return READ if ex.read != 0 and _read(ex, ws, ms) else ARRIVED
@@ -254,14 +245,13 @@ class Exchange:
             EXCHANGE,
             {
                 "times": self.times, "inputs": self.wanted, "before": np.zeros((inputs, INPUT_SIZE)),
-                "breakpoints": np.array(assembly.breakpoints, dtype=np.float64),
                 "sample": self.sample, "channels": self.channels, **formulas,
             },
             {
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": loop.address,
-                "query": address_of(query, QUERY_SIGNATURE), "run": address_of(run, RUN_SIGNATURE),
+                "drive": sim.drive.address, "query": address_of(query, QUERY_SIGNATURE),
                 "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
-                "n_inputs": inputs, "n_breakpoints": len(assembly.breakpoints), "chunk": chunk, "read": 0,
+                "n_inputs": inputs, "chunk": chunk, "read": 0,
                 "sample_length": length, "n_channels": channels, "n_sums": len(formulas["summed"]),
                 "n_terms": len(formulas["number"]), "n_flags": len(formulas["flags"]), "balance": table.balance,
             },
@@ -280,7 +270,7 @@ class Exchange:
 def possible(sim: "Simulation") -> bool:
     """Whether steps of this run can be made in one crossing at all."""
     recorded = sim._loop.table["capacity"][0] or sim._loop.table["log_capacity"][0]
-    return isinstance(sim.system, Model) and not (sim.assembly.motions or recorded)
+    return isinstance(sim.system, Model) and sim.compiled_events and not (sim.assembly.motions or recorded)
 
 
 def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: bool) -> NDArray[np.float64] | None:
@@ -299,10 +289,11 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     if code == DECLINED:
         _at_length(sim, inputs, t)
         return None
+    sim.take_events()
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
     if code < DECLINED:
-        sim.go_on(t, int(clock[FIRST_STEP]) + sim.events_handled, code)
+        sim.go_on(t, int(clock[FIRST_STEP]), code)
     sim.t = float(t)
     if code != READ:
         return None

@@ -4,6 +4,7 @@ Kernels, formulas and methods are there once the run is built, since tables hold
 called from Python, at steps and at events; a test looks whether any of it is missing here (`test_compiled_before.py`).
 """
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from numba import types
@@ -25,8 +26,9 @@ from ..system.levels import force_level, position_level, rate_level
 from ..system.projection import least_correction
 from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
 from .dense_output import interpolate, query
-from .loop import accept, run, set_weights_at, trial_step, violates_redundant
-from .records import FIND_EVENTS_SIGNATURE, LOOP_TYPE
+from .drive import aim_now, drive, settle_now
+from .loop import accept, set_weights_at, trial_step, violates_redundant
+from .records import DRIVE_TYPE, FIND_EVENTS_SIGNATURE, LOOP_TYPE
 from .sample import write_sample
 from .watch import find_events, friction_margin, remember
 
@@ -38,7 +40,9 @@ _REAL, _WHOLE = types.float64, types.int64
 _VECTOR = types.Array(_REAL, 1, "C")
 
 _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
-    (run, (_WORKSPACE, _METHOD, _LOOP, _WHOLE)),
+    (drive, (DRIVE_TYPE, types.boolean)),
+    (settle_now, (DRIVE_TYPE,)),
+    (aim_now, (DRIVE_TYPE,)),
     (query, (_WORKSPACE, _METHOD, _REAL)),
     (interpolate, (_WORKSPACE, _METHOD, _REAL)),
     (write_sample, (_WORKSPACE, _VECTOR)),
@@ -69,21 +73,35 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
 """Called by every run, with the types of their arguments."""
 
 
-def make_ready(sim: "Engine") -> None:
-    """Compile what the run of `sim` may call from now on, so far as it is not there yet."""
+@cache
+def _compile_called() -> None:
     for function, arguments in _CALLED:
         function.compile(arguments)
+
+
+@cache
+def _compile_for_contacts(several: bool, sparse: bool, many_entries: bool) -> None:
+    friction_margin.compile((_WORKSPACE, _WHOLE))
+    if several:
+        sweep.compile((types.Array(_REAL, 2, "C"),) * 3 + (_VECTOR,) * 7 + (_WHOLE,))
+    # closed contacts make the matrices larger, and open ones make them smaller than they are now
+    functions_of("dense")
+    if sparse:
+        make_sparse_ready()
+    if many_entries:
+        make_elimination_ready()
+
+
+def make_ready(sim: "Engine") -> None:
+    """Compile what the run of `sim` may call from now on, so far as it is not there yet."""
+    _compile_called()
     if sim.settings.fallback:
         address_of(OUTER_LOOPS["newton"].stage, STAGE_SIGNATURE)
     assembly = sim.assembly
     if not assembly.contacts:
         return
-    friction_margin.compile((_WORKSPACE, _WHOLE))
-    if len(assembly.contacts) > 1:
-        sweep.compile((types.Array(_REAL, 2, "C"),) * 3 + (_VECTOR,) * 7 + (_WHOLE,))
-    # closed contacts make the matrices larger, and open ones make them smaller than they are now
-    functions_of("dense")
-    if assembly.n + assembly.m > DENSE_LIMIT:
-        make_sparse_ready()
-    if sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches) > FEW_ENTRIES:
-        make_elimination_ready()
+    _compile_for_contacts(
+        len(assembly.contacts) > 1,
+        assembly.n + assembly.m > DENSE_LIMIT,
+        sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches) > FEW_ENTRIES,
+    )

@@ -13,6 +13,7 @@ LOOP = np.dtype(
         (name, np.int64)
         for name in (
             "step", "starter", "rows",          # addresses of the step functions, rows that `step` needs
+            "fine_starter",                     # address of the one-step function of trial steps
             "find_events", "accelerations",     # addresses of the watch over contacts and of `solve_accelerations`
             "select",                           # address of the function that chooses the order; 0: none
             "clock",                            # (CLOCK_SIZE,) float64
@@ -36,6 +37,13 @@ FIND_EVENTS_SIGNATURE = types.boolean(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, ty
 call_find_events = caller(FIND_EVENTS_SIGNATURE)
 """call_find_events(address, ws, ms, lc, h, all of them)."""
 
+TRIAL_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64)
+ACCEPT_SIGNATURE = types.void(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE)
+RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)
+SAMPLE_SIGNATURE = types.void(WORKSPACE_TYPE, types.Array(types.float64, 1, "C"))
+call_trial, call_accept, call_run, call_sample = map(
+    caller, (TRIAL_SIGNATURE, ACCEPT_SIGNATURE, RUN_SIGNATURE, SAMPLE_SIGNATURE)
+)
 ACCELERATIONS_SIGNATURE = types.int64(WORKSPACE_TYPE)
 call_accelerations = caller(ACCELERATIONS_SIGNATURE)
 
@@ -72,3 +80,50 @@ STEP_TOO_SMALL = 104
 REPARTITION = 105
 NEAR_SINGULAR = 106
 VIOLATED = 107
+UNLOCATED = 108  # events have been found whose times Python has to locate
+DUE = 109  # a breakpoint is due
+SETTLE = 110  # pending events are for Python to settle
+JAM = 111  # a sliding contact may have jammed
+
+DRIVE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "workspace", "method", "loop",            # addresses of the records
+            "run", "trial", "accept", "write_sample", "accelerations",  # addresses of functions
+            "goals",                                  # (GOALS_SIZE,) float64: where to go
+            "counts",                                 # (COUNTS_SIZE,) int64
+            "guard",                                  # (GUARD_SIZE,) float64: of `Progress`
+            "breakpoints", "n_breakpoints",
+            "input_account",                          # index in v of the work of driven constraints; -1: there is none
+            # of each contact
+            "law",                                    # (n_contacts,) int64: how an impact is solved
+            "restitution", "rest_ratio", "friction",  # (n_contacts,) float64
+            "pending",                                # (n_contacts,) int64: 1 where an event has to be handled
+            "found",                                  # (n_contacts, FOUND_SIZE) float64: of the location of events
+            "velocities", "gradient", "response", "sideways",  # (n_ext,) float64
+            "joint_rates",                            # (m_ext,) float64
+            "events",                                 # (EVENT_ROWS, EVENT_SIZE) float64: a ring that Python empties
+            "last_trial",                             # (1,) float64: size of the step that ends at the current point
+        )
+    ]
+)  # fmt: skip
+DRIVE_TYPE = nb.from_dtype(DRIVE)
+
+# columns of `goals`, s
+GOAL, LAST_STOP, HANDLED_AT = range(3)
+GOALS_SIZE = 3
+# columns of `counts`
+BUDGET = 0  # steps and instants with events that `drive` may take
+HANDLED = 1  # instants with events so far
+HERE = 2  # of these at the time HANDLED_AT
+EVENTS = 3  # events in the ring
+COUNTS_SIZE = 4
+
+FOUND_SIZE = 7
+# columns of an event
+EVENT_ROWS = 1024
+EVENT_SIZE = 9
+"""Time, kind, contact, and the numbers of `Event` in their order."""
+IMPACT, GRAZE = range(2)
+EVENT_KINDS = ("impact", "graze")

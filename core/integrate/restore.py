@@ -13,6 +13,7 @@ from ..stage.accelerations import solve_accelerations
 from ..state import State
 from ..system.records import FACTOR_AGE, OK
 from .dense_output import query
+from .records import HANDLED_AT, HERE
 from .state_check import check_state
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def get_state(sim: "Simulation") -> State:
         "sticking": sorted(sticking),
         "pending": list(sim.pending),
         "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
-        "handled": [repr(sim._times_handled[0]), sim._times_handled[1]],
+        "handled": [repr(float(sim.drive.goals[HANDLED_AT])), sim.events_here],
         "outer": sim.outer,
         "start_open": sim.start_open,
         "input_times": [repr(x) for x in sim.input_times],
@@ -124,7 +125,7 @@ def _take(sim: "Simulation", state: State) -> None:
     sim.start_open = bool(facts["start_open"])
     sim.input_times = (float(facts["input_times"][0]), float(facts["input_times"][1]))
     sim.table.initial_energy = float(facts["initial_energy"])
-    sim._times_handled = (float(facts["handled"][0]), int(facts["handled"][1]))
+    sim.drive.goals[HANDLED_AT], sim.drive.counts[HERE] = float(facts["handled"][0]), int(facts["handled"][1])
     sim.events, sim.stored_events = list(state.events), state.events
 
 

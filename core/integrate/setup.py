@@ -109,6 +109,7 @@ def build_loop(
             "log_capacity": log_capacity,
             "step": step_address(formula.step),
             "starter": step_address(STARTER if settings.step is None else FINE_STARTER),
+            "fine_starter": step_address(FINE_STARTER),
             "rows": formula.rows,
             "capacity": capacity,
             "stride": max(int(record), 1),

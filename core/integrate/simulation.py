@@ -207,6 +207,11 @@ class Simulation(Engine):
         """True if the newest step ended just before a time at which a force or a driver's rate jumps."""
         return advance.due_break(self) is not None
 
+    def aim(self, t: float, stop: float) -> None:
+        """Set the clock of the time loop for whoever makes steps of its own (`tlismni.core.analysis`): until `t` is
+        reached, none beyond `stop` (both s) or a breakpoint."""
+        self.drive.aim(t, stop)
+
     def _advance_to(self, target: float, stop: float) -> None:
         with self._failures():
             advance.advance_to(self, target, stop)

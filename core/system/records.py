@@ -21,6 +21,8 @@ WORKSPACE = np.dtype(
             # structure (changes with the set of engaged contacts)
             "active", "redundant", "n_redundant", "probe",
             "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
+            # gradients of contacts that are no constraints now, by row of Phi; the block of the mass matrix
+            "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "mass_slot", "n_mass",
             # stage solver
             "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "stage_rows", "rhs",
             "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",

@@ -28,7 +28,14 @@ class Structure:
     slot_s: list[NDArray[np.int64]]
     slot_j: list[NDArray[np.int64]]
     slot_jt: list[NDArray[np.int64]]
-    """Slot tables of the batches; `nnz` is the slot of what belongs nowhere."""
+    """Slot tables of the batches; `n_values - 1` is the slot of what belongs nowhere."""
+    gradient_start: NDArray[np.int64]
+    gradient_col: NDArray[np.int64]
+    gradient_slot: NDArray[np.int64]
+    """Entries of Phi_q in rows of contacts that are no constraints now, row by row of Phi: their places in `values`
+    come after those of the matrix. An impact needs them, and changes no pattern for it."""
+    mass_slot: NDArray[np.int64]
+    """Slots of the block S."""
     kkt: Factorization
     kkt_query: Factorization
     lu_d: Factorization | None = None
@@ -55,8 +62,13 @@ class Structure:
 
     @property
     def nnz(self) -> int:
-        """Number of entries."""
+        """Number of entries of the matrix."""
         return len(self.rows)
+
+    @property
+    def n_values(self) -> int:
+        """Number of values: those of the matrix, the gradients of contacts, and one for what belongs nowhere."""
+        return len(self.rows) + len(self.gradient_slot) + 1
 
     def partition(self, dependent: NDArray[np.int64]) -> None:
         """Choose the dependent coordinates (m_act,): builds the factorisations of Phi_qd."""
@@ -71,7 +83,7 @@ class Structure:
         self.free = tuple(np.ascontiguousarray(x) for x in (self.rows[free] - n, self.cols[free], free))
         rows, cols = self.rows[slots] - n, position[self.cols[slots]]
         self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
-        self.lu_d = Factorization(len(self.active), rows, cols, slots, source_size=self.nnz + 1)
+        self.lu_d = Factorization(len(self.active), rows, cols, slots, source_size=self.n_values)
         self._units_of_partition(n)
 
 
@@ -91,19 +103,25 @@ def build_structure(
         [row for row in range(assembly.m) if (row < assembly.m_joints and row not in left_out) or row in closed_rows],
         dtype=np.int64,
     )
+    size = n + len(active)
+    contact_rows = np.array([r for c in assembly.contacts for r in (c.row, c.slide_row) if r >= 0], dtype=np.int64)
+    # rows of the matrix, and below it those that are watched only
     matrix_row = np.full(assembly.m + 1, -1, dtype=np.int64)
+    watched = np.setdiff1d(contact_rows, active)
+    matrix_row[watched] = size + watched
     matrix_row[active] = n + np.arange(len(active))
     entries: list[tuple[NDArray[np.int64], NDArray[np.int64]]] = [(np.arange(n), np.arange(n))]
     placed: list[list[tuple[NDArray[np.int64], Any]]] = []
     for batch in assembly.batches:
-        placed.append(_places(batch, ground, matrix_row, engaged))
+        placed.append(_places(batch, ground, matrix_row, size, engaged))
         for places in placed[-1]:
             keep = places[0] >= 0
             entries.append((places[0][keep], places[1][keep]))
-    size = n + len(active)
     keys = np.concatenate([row * size + col for row, col in entries])
     unique = np.unique(keys)
-    rows, cols = unique // size, unique % size
+    count = int(np.searchsorted(unique, size * size))
+    rows, cols = unique[:count] // size, unique[:count] % size
+    gradient_row, gradient_col = unique[count:] // size - size, unique[count:] % size
 
     def slots(places: Any) -> NDArray[np.int64]:
         row, col = places
@@ -111,23 +129,26 @@ def build_structure(
         return np.ascontiguousarray(np.where(row >= 0, found, len(unique)))
 
     tables = [[slots(places) for places in batch] for batch in placed]
-    everything = np.arange(len(unique))
+    everything = np.arange(count)
     kkt, kkt_query = (Factorization(size, rows, cols, everything, source_size=len(unique) + 1) for _ in range(2))
-    redundant = np.array(sorted(dropped), dtype=np.int64)
     return Structure(
         active,
-        redundant,
-        rows,
-        cols,
-        [t[0] for t in tables],
-        [t[1] for t in tables],
-        [t[2] for t in tables],
-        kkt,
-        kkt_query,
+        redundant=np.array(sorted(dropped), dtype=np.int64),
+        rows=rows,
+        cols=cols,
+        slot_s=[t[0] for t in tables],
+        slot_j=[t[1] for t in tables],
+        slot_jt=[t[2] for t in tables],
+        gradient_start=np.searchsorted(gradient_row, np.arange(assembly.m + 1)),
+        gradient_col=np.ascontiguousarray(gradient_col),
+        gradient_slot=np.arange(count, len(unique)),
+        mass_slot=np.flatnonzero((rows < n) & (cols < n)),
+        kkt=kkt,
+        kkt_query=kkt_query,
     )
 
 
-def _places(batch: Batch, ground: int, matrix_row: NDArray[np.int64], engaged: frozenset[int]) -> Any:
+def _places(batch: Batch, ground: int, matrix_row: NDArray[np.int64], size: int, engaged: frozenset[int]) -> Any:
     """(row, col) of every local entry of S, Phi_q and Phi_q^T, each (count, entries); -1: belongs nowhere."""
     count, width = batch.coord.shape
     rows = batch.row.shape[1] if batch.row.size else 0
@@ -146,4 +167,6 @@ def _places(batch: Batch, ground: int, matrix_row: NDArray[np.int64], engaged: f
         here = (where >= 0) & (batch.coord[:, j] < ground)
         j_row[here, k * width + j] = where[here]
         j_col[here, k * width + j] = batch.coord[here, j]
-    return (s_row, s_col), (j_row, j_col), (j_col, j_row)
+    # of rows below the matrix there is no transpose
+    above = np.where(j_row < size, j_col, -1)
+    return (s_row, s_col), (j_row, j_col), (above, j_row)

@@ -31,6 +31,8 @@ _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
 )  # fmt: skip
 
+_OF_STRUCTURE = ("gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "mass_slot")
+
 CHEAP = 0.5
 """Share of the entries of all elements up to which evaluating those with constraint rows counts as cheap."""
 MOST_STRUCTURES = 32
@@ -79,7 +81,7 @@ class Workspace:
             "redundant": np.zeros(0, dtype=np.int64),
             "probe": np.zeros(0),
             "dependent": np.zeros(0, dtype=np.int64),
-            **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot")},
+            **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot", *_OF_STRUCTURE)},
             "stage_v": np.zeros(MOST_STAGES * n_ext),
             "stage_a": np.zeros(MOST_STAGES * n_ext + m_ext),
             "stage_rows": np.zeros(COUPLED_STAGES * row_length),
@@ -110,7 +112,7 @@ class Workspace:
             WORKSPACE,
             record_arrays,
             {
-                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0,
+                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0, "n_mass": 0,
                 "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
                 "n_work": len(a.work_names), "row_length": row_length, "part_first": int(_constraints_are_cheap(a)),
                 "stage_function": 0,
@@ -177,7 +179,7 @@ class Workspace:
         a place in the matrix."""
         self.key = (closed, closed | engaged, sticking)
         self.structure = structure = self.structure_of(*self.key, self.dropped)
-        values = np.zeros(structure.nnz + 1)
+        values = np.zeros(structure.n_values)
         self._set("values", values, n_values=len(values))
         self._set("active", structure.active, m_act=len(structure.active))
         self._set("redundant", structure.redundant, n_redundant=len(structure.redundant))
@@ -191,6 +193,11 @@ class Workspace:
                 batch.set_array(name, table)
             batch.set_array("values", values)
             batch.table["n_values"] = len(values)
+        self._set("entry_row", structure.rows)
+        self._set("entry_col", structure.cols)
+        self._set("mass_slot", structure.mass_slot, n_mass=len(structure.mass_slot))
+        for name in ("gradient_start", "gradient_col", "gradient_slot"):
+            self._set(name, getattr(structure, name))
         self._record.table["kkt"] = structure.kkt.address
         self._record.table["kkt_query"] = structure.kkt_query.address
         self.arrays["rate"][FACTOR_AGE] = -1.0
