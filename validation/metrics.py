@@ -169,6 +169,11 @@ class Difference:
         return self.maximum / self.scale if self.scale > 0.0 else self.maximum
 
 
+CONSTANT = 1e-5
+"""Of its size: amplitude below which a channel counts as constant. With a relative tolerance of 1e-4 that asks for
+1e-9 of the value, what runs with rtol = 1e-10 hold."""
+
+
 def trajectory_difference(t: Array, y: Array, reference: Array, mask: Array | None = None) -> Difference:
     """Largest and root-mean-square difference of two trajectories on one grid, where `mask` is true.
 
@@ -179,9 +184,10 @@ def trajectory_difference(t: Array, y: Array, reference: Array, mask: Array | No
         raise ValueError("there is no time left at which the trajectories could be compared")
     gap = np.abs(y[keep] - reference[keep])
     k = int(np.argmax(gap))
-    # a channel that stays constant has no amplitude: then its own size is the scale, not the rounding of it
+    # a channel that stays constant has no amplitude: then its own size is the scale, not what rounding and the steps'
+    # tolerances make of it
     values = reference[keep]
-    scale = max(0.5 * float(np.ptp(values)), 1e-6 * float(np.max(np.abs(values))))
+    scale = max(0.5 * float(np.ptp(values)), CONSTANT * float(np.max(np.abs(values))))
     return Difference(float(gap[k]), float(t[keep][k]), float(np.sqrt(np.mean(gap**2))), scale)
 
 

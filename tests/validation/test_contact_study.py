@@ -30,6 +30,9 @@ def test_reference_of_the_pendulum_is_its_closed_form() -> None:
     assert EXACT[PLASTIC.label].released > 0.5
 
 
+AT_VELOCITY_LEVEL = ("hht_ggl", "generalized_alpha")
+
+
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.label)
 @pytest.mark.parametrize("setting", SETTINGS, ids=lambda s: s.label)
 def test_every_method_is_reasonable_with_the_velocity_jump_and_fixed_steps(problem, setting: Setting) -> None:  # type: ignore[no-untyped-def]
@@ -44,7 +47,11 @@ def test_no_method_is_reasonable_without_the_velocity_jump(problem, setting: Set
     row = measure(problem, setting, False, 1e-3, EXACT[problem.label])
     assert row.faults
     if row.found is not None:
-        assert "impulse" in row.faults and "energy" in row.faults
+        assert "impulse" in row.faults
+        # what meets the velocity constraint is stopped by it, as by an inelastic impact: that takes the right energy
+        inelastic = problem.parameters["restitution"] == 0.0 and setting.method in AT_VELOCITY_LEVEL
+        stopped = inelastic and setting.options.get("form") != "index3"
+        assert stopped or "energy" in row.faults
         assert row.found.velocity > 1.0
 
 
