@@ -21,17 +21,15 @@ from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..description import Model
 from ..errors import ModelError
-from ..methods.history import bridge_rows, history_time, recall, restart
+from ..methods.history import bridge_rows, history_time, recall
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
 from ..rounding import FORCE_ROUNDING
 from ..stage.accelerations import solve_accelerations
-from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.levels import force_level
 from ..system.records import (
     COUNTERS_SIZE,
-    FACTOR_AGE,
     LEAST_CONDITION,
     OK,
     RATE_SIZE,
@@ -43,6 +41,7 @@ from . import advance
 from .dense_output import query
 from .drive import drive_on, loop_at, method_at, workspace_at
 from .inputs import PUNCTUAL
+from .instant import begin_anew
 from .near_singular import STRAINED
 from .records import (
     ACCELERATIONS_SIGNATURE,
@@ -57,7 +56,6 @@ from .records import (
 )
 from .records import GOAL as GOAL_TIME
 from .sample import write_sample
-from .watch import remember
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -155,14 +153,7 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any) -> bool:
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]
         return False
-    evaluate_power(ws)
-    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
-    for i in range(ws.n_ext):
-        aux[i] = a[i]
-    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
-    evaluate_residuals(ws)
-    restart(ws, ms)
-    remember(ws, lc)
+    begin_anew(ws, ms, lc)
     if t > times[LAST_CHANGE]:
         times[LAST_CHANGE], times[INTERVAL] = t, t - times[LAST_CHANGE]
     return True

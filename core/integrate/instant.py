@@ -147,6 +147,19 @@ def _report(
 
 
 @internal
+def begin_anew(ws: Any, ms: Any, lc: Any) -> None:
+    """A history that begins at the current point, whose accelerations are known."""
+    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
+    evaluate_power(ws)
+    for i in range(ws.n_ext):
+        aux[i] = a[i]
+    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    evaluate_residuals(ws)
+    restart(ws, ms)
+    remember(ws, lc)
+
+
+@internal
 def settle(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
     """Let the pending events happen at the newest row, if that is the impact of one contact that bounces back; False,
     with nothing changed, if it is anything else."""
@@ -175,7 +188,7 @@ def settle(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
     active, joint_rates = ivec(ws.active, ws.m_act), vec(dr.joint_rates, ws.m_act)
     for i in range(ws.m_act):
         joint_rates[i] = phid[active[i]]
-    if not _strike(dr, ws, ms, k, row, slide, law, mu, restitution, approach, along, falls, rounding):
+    if not _strike(dr, ws, ms, k, row, slide, mu, restitution, approach, along, falls, rounding):
         for i in range(ws.n_ext):
             v[i] = velocities[i]
         memory[MODE] = OPEN
@@ -183,14 +196,8 @@ def settle(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
         evaluate_residuals(ws)
         return False
     _count(dr, t)
-    a, aux, pending = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext), ivec(dr.pending, ws.n_contacts)
-    evaluate_power(ws)
-    for i in range(ws.n_ext):
-        aux[i] = a[i]
-    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
-    evaluate_residuals(ws)
-    restart(ws, ms)
-    remember(ws, lc)
+    begin_anew(ws, ms, lc)
+    pending = ivec(dr.pending, ws.n_contacts)
     for i in range(ws.n_contacts):
         pending[i] = 0
     if lc.capacity > 0:
@@ -202,7 +209,7 @@ def settle(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
 
 @internal
 def _strike(
-    dr: Any, ws: Any, ms: Any, k: int, row: int, slide: int, law: int, mu: float, restitution: float, approach: float,
+    dr: Any, ws: Any, ms: Any, k: int, row: int, slide: int, mu: float, restitution: float, approach: float,
     along: float, falls: float, rounding: float,
 ) -> bool:  # fmt: skip
     """The impact of contact k, with the accelerations after it; False if it is not one that bounces back."""
@@ -249,8 +256,7 @@ def _strike(
     lowest = max(vec(dr.rest_ratio, ws.n_contacts)[k] * largest, np.sqrt(2.0 * unresolved * max(falls, 0.0)))
     if separation <= lowest:
         return False
-    before_along = along if slide >= 0 else 0.0
-    loss = -0.5 * (normal * (separation - approach) + tangential * (before_along + after))
+    loss = -0.5 * (normal * (separation - approach) + tangential * (along + after))
     if loss < -GAIN * max(kinetic, 1e-300):
         return False
     evaluate_energy(ws)

@@ -173,6 +173,23 @@ def _by_rate(
 
 
 @internal
+def _go_back(
+    dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, low: float, high: float, h: float
+) -> Any:
+    """(status, low, high): where the motion is ahead of its interpolant, back to where it is still on the safe side."""
+    for _ in range(MOST_HALVINGS):
+        if low == 0.0:
+            break
+        status, f = _value(dr, ws, ms, lc, k, what, sign, 0.0, low, h)
+        if status != OK:
+            return status, low, high
+        if f > 0.0:
+            break
+        low, high = 0.5 * low, low
+    return OK, low, high
+
+
+@internal
 def _by_force(dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: float, high: float, h: float) -> Any:
     """(status, size, whether it happens) of an event at which a force or what friction can still hold ends."""
     if high < h:
@@ -181,15 +198,9 @@ def _by_force(dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: floa
             return status, high, False
         if f > 0.0:
             return OK, high if high > AT_ONCE * h else h, False
-    for _ in range(MOST_HALVINGS):
-        if low == 0.0:
-            break
-        status, f = _value(dr, ws, ms, lc, k, FORCE, sign, 0.0, low, h)
-        if status != OK:
-            return status, low, False
-        if f > 0.0:
-            break
-        low, high = 0.5 * low, low
+    status, low, high = _go_back(dr, ws, ms, lc, k, FORCE, sign, low, high, h)
+    if status != OK:
+        return status, low, False
     status, size = _root(dr, ws, ms, lc, k, FORCE, sign, 0.0, low, high, 0.0, h)
     return status, size, True
 
@@ -252,16 +263,9 @@ def _event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: An
             else:
                 # what the dense output has shown is its own error; the very start of the step is no place to stop at
                 return OK, max(low, deepest) if low > AT_ONCE * h else h, False
-    for _ in range(MOST_HALVINGS):
-        # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
-        if low == 0.0:
-            break
-        status, g = _value(dr, ws, ms, lc, k, GAP, sign, 0.0, low, h)
-        if status != OK:
-            return status, low, False
-        if g > 0.0:
-            break
-        low, high = 0.5 * low, low
+    status, low, high = _go_back(dr, ws, ms, lc, k, GAP, sign, low, high, h)
+    if status != OK:
+        return status, low, False
     if mode == OPEN and abs(mat(lc.watch, ws.n_contacts, WATCH)[k, 0]) <= overlap:
         status, g = OK, mat(lc.watch, ws.n_contacts, WATCH)[k, 0]
         if low > 0.0:
