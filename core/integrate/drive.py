@@ -58,7 +58,7 @@ from .records import (
     call_run,
 )
 from .sample import write_sample
-from .search import locate
+from .search import NEAREST, locate
 from .sliding import any_slides, may_have_jammed
 
 if TYPE_CHECKING:
@@ -175,6 +175,7 @@ class Drive:
                 "rest_ratio": np.array([law.rest_ratio if law else 0.0 for law in impacts]),
                 "friction": np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in contacts]),
                 "found": np.zeros((count, FOUND_SIZE)), "events": self.events, "last_trial": np.zeros(1),
+                "nearest": np.zeros(NEAREST),
                 **{name: np.zeros(n_ext) for name in ("velocities", "gradient", "response", "sideways")},
                 "joint_rates": np.zeros(assembly.m + 1),
             },

@@ -105,6 +105,7 @@ DRIVE = np.dtype(
             "joint_rates",                            # (m_ext,) float64
             "events",                                 # (EVENT_ROWS, EVENT_SIZE) float64: a ring that Python empties
             "last_trial",                             # (1,) float64: size of the step that ends at the current point
+            "nearest",                                # (NEAREST,) float64: the last event searched for (`search.py`)
         )
     ]
 )  # fmt: skip

@@ -27,6 +27,9 @@ in the limit of small steps: an event located this near to it lies at the row it
 SAME = 1e-12
 """Of a step: events nearer than this are at one instant."""
 
+NEAREST = 3
+"""Sizes of steps before and beyond the last event that was searched for, and the size that ends there."""
+
 # what is searched for a root
 GAP, FORCE, OVERLAP, CLOSING = range(4)
 # columns of `found`
@@ -80,23 +83,37 @@ def _root(
     dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack: float,
     low: float, high: float, floor: float, full: float,
 ) -> Any:  # fmt: skip
-    """(status, size) of the step that ends at the root of what is positive at `low` and negative at `high`; that step
-    is the current point. As `locate.find_root`."""
+    """(status, size, whether it happens) of the step that ends at the root of what is positive at `low` and negative at
+    `high`; that step is the current point. As `locate.find_root`. Not: up to that size there is none, and another
+    contact has its event before it."""
     x_low, x_high, f_low, f_high, largest = low, high, np.nan, np.nan, 0.0
-    x, last_x, last_f = 0.5 * (low + high), np.nan, np.nan
+    # what ends one force often ends others
+    nearest = vec(dr.nearest, NEAREST)
+    if low <= nearest[0] < high:
+        x_high = min(nearest[1], high)
+        status, f_high = _value(dr, ws, ms, lc, k, what, sign, slack, x_high, full)
+        if status != OK or f_high > 0.0:
+            return status, x_high, False
+        if nearest[0] > low:
+            status, f_low = _value(dr, ws, ms, lc, k, what, sign, slack, nearest[0], full)
+        if status != OK or nearest[0] == low or f_low > 0.0:
+            return status, nearest[2], True
+        x_high, f_high, f_low = nearest[0], f_low, np.nan
+    resolved = NO_STEP * abs(history_time(ms, 0))
+    x, last_x, last_f = 0.5 * (x_low + x_high), np.nan, np.nan
     # widths of the bracket three, two and one trials ago
-    third, second, first, trials = np.inf, np.inf, high - low, 1
+    third, second, first, trials = np.inf, np.inf, x_high - x_low, 1
     for _ in range(MAX_TRIALS):
         status, f = _value(dr, ws, ms, lc, k, what, sign, slack, x, full)
         if status != OK or abs(f) <= floor:
-            return status, x
+            return status, x, True
         largest = max(largest, abs(f))
         if f > 0.0:
             x_low, f_low = x, f
         else:
             x_high, f_high = x, f
-        width = x_high - x_low
-        if width <= 2e-16 * abs(x_high):
+        width, least = x_high - x_low, max(2e-16 * abs(x_high), resolved)
+        if width <= least:
             break
         slow = trials >= 3 and width > 0.5 * third
         third, second, first = second, first, width
@@ -109,6 +126,9 @@ def _root(
             proposal = 0.5 * (x_low + x_high)
         if slow or not x_low < proposal < x_high:
             proposal = 0.5 * (x_low + x_high)
+        elif abs(proposal - x) < 0.5 * least:
+            # at the root: look just beyond it, so that it is between two places (Brent 1973)
+            proposal = x + (0.5 * least if f > 0.0 else -0.5 * least)
         last_x, last_f = x, f
         x = proposal
     if f_low > JUMP * largest and not np.isnan(f_high):
@@ -116,7 +136,8 @@ def _root(
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low
-    return make_trial(dr, ws, ms, lc, x, full), x
+    nearest[0], nearest[1], nearest[2] = x_low * (1.0 - SAME), x_high * (1.0 + SAME), x
+    return make_trial(dr, ws, ms, lc, x, full), x, True
 
 
 @internal
@@ -201,17 +222,17 @@ def _by_force(dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: floa
     status, low, high = _go_back(dr, ws, ms, lc, k, FORCE, sign, low, high, h)
     if status != OK:
         return status, low, False
-    status, size = _root(dr, ws, ms, lc, k, FORCE, sign, 0.0, low, high, 0.0, h)
-    return status, size, True
+    return _root(dr, ws, ms, lc, k, FORCE, sign, 0.0, low, high, 0.0, h)
 
 
 @internal
 def _begins_to_close(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, overlap: float) -> Any:
-    """(status, size) at which shapes that touch without force begin to close: their gap, zero by rounding, says so
-    late, its acceleration says it at once, and where that jumps (a corner is passed) just behind."""
+    """(status, size, whether it happens) of the step at which shapes that touch without force begin to close: their
+    gap, zero by rounding, says so late, its acceleration says it at once, and where that jumps (a corner is passed)
+    just behind."""
     status, end = _value(dr, ws, ms, lc, k, OVERLAP, 1.0, overlap, h, h)
     if status != OK:
-        return status, h
+        return status, h, True
     none, a, scale = 0.0, vec(ws.a, ws.n), vec(ws.scale, ws.n)
     for i in range(ws.n):
         none = max(none, abs(a[i]) / scale[i])
@@ -222,7 +243,7 @@ def _begins_to_close(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, overl
         return _root(dr, ws, ms, lc, k, CLOSING, 1.0, none, 0.0, h, 0.0, h)
     if end <= 0.0:
         return _root(dr, ws, ms, lc, k, OVERLAP, 1.0, overlap, 0.0, h, 0.0, h)
-    return OK, h
+    return OK, h, True
 
 
 @internal
@@ -273,13 +294,12 @@ def _event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: An
         if status != OK:
             return status, low, False
         if g <= overlap:
-            status, found = _begins_to_close(dr, ws, ms, lc, k, h, overlap)
-            return status, found, True
-    status, opened = _root(dr, ws, ms, lc, k, GAP, sign, 0.0, low, high, 2e-16 * size, h)
-    if status == OK and pulls and vec(ws.monitor, ws.n_contacts)[k] < 0.0:
+            return _begins_to_close(dr, ws, ms, lc, k, h, overlap)
+    status, opened, happens = _root(dr, ws, ms, lc, k, GAP, sign, 0.0, low, high, 2e-16 * size, h)
+    if status == OK and happens and pulls and vec(ws.monitor, ws.n_contacts)[k] < 0.0:
         # the gap opens within this step, but the force has become tensile before
-        status, opened = _root(dr, ws, ms, lc, k, FORCE, 1.0, 0.0, 0.0, opened, 0.0, h)
-    return status, opened, True
+        return _root(dr, ws, ms, lc, k, FORCE, 1.0, 0.0, 0.0, opened, 0.0, h)
+    return status, opened, happens
 
 
 @internal
@@ -302,7 +322,7 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     h = vec(lc.clock, CLOCK_SIZE)[TRIAL_STEP]
     found, pending = mat(dr.found, ws.n_contacts, FOUND_SIZE), ivec(dr.pending, ws.n_contacts)
     brackets = mat(lc.brackets, ws.n_contacts, BRACKET)
-    vec(dr.last_trial, 1)[0] = -1.0
+    vec(dr.last_trial, 1)[0] = vec(dr.nearest, NEAREST)[0] = -1.0
     for k in range(ws.n_contacts):
         found[k, STATE] = UNKNOWN
     step, least = h, NO_STEP * abs(history_time(ms, 0))

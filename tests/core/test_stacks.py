@@ -71,7 +71,10 @@ def test_corners_are_passed_without_a_blow():
 
 
 def test_ten_blocks():
-    check_energies(simulate(stack(10, 5, 300.0), 0.25), 1e-6)
+    result = simulate(stack(10, 5, 300.0), 0.3)
+    check_energies(result, 1e-6)
+    # a corner that is passed changes the forces of all contacts at one instant: they share one search for it
+    assert result.stats["stages"] < 30_000
 
 
 @pytest.mark.full
@@ -79,7 +82,15 @@ def test_ten_blocks():
 @pytest.mark.parametrize("method", METHODS)
 def test_a_tall_stack(method, blocks, pulled):
     options, ends = METHODS[method], 0.4 if blocks > 10 else 0.6
-    check_energies(simulate(stack(blocks, pulled, 300.0), ends, method, **options), options.get("rtol", 1e-6))
+    result = simulate(stack(blocks, pulled, 300.0), ends, method, **options)
+    check_energies(result, options.get("rtol", 1e-6))
+    if method != "irk":
+        # contacts that repeat each other make the motion sensitive to rounding, but not before this
+        t = np.linspace(0.0, 0.2, 101)
+        here, there = (
+            simulate(stack(blocks, pulled, 300.0), 0.2, name, t_eval=t, **METHODS[name]) for name in (method, "irk")
+        )
+        assert np.max(np.abs(here.q - there.q)) < 1e-4
 
 
 def test_a_run_that_does_not_get_on_is_bounded_by_its_steps():
