@@ -213,8 +213,11 @@ def _with_limits(
     return z[:n], tangential
 
 
-def independent(a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.intp]) -> tuple[list[int], list[int]]:
-    """Those of the directions that do not repeat earlier ones, normals first: positions in the given lists."""
+def independent(
+    a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.intp], rank: float = RANK
+) -> tuple[list[int], list[int]]:
+    """Those of the directions that do not repeat earlier ones, normals first: positions in the given lists. `rank`: the
+    part of a direction's inverse mass that must be left of it."""
     some = np.concatenate([normal, len(a.nn) + tangential]).astype(np.intp)
     left, moves = (x.copy() for x in a.vectors(some))
     size = np.einsum("ij,ij->i", left, moves)
@@ -227,7 +230,7 @@ def independent(a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.in
             part = base_moves[:k] @ x
             x, moved = x - part @ base[:k], moved - part @ base_moves[:k]
         rest = float(x @ moved)
-        if rest > RANK * size[i]:
+        if rest > rank * size[i]:
             root = np.sqrt(rest)
             base[k], base_moves[k] = x / root, moved / root
             kept.append(i)

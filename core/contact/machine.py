@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..events import Event
-from ..rounding import FORCE_ROUNDING
+from ..rounding import FORCE_ROUNDING, GAP_ROUNDING
 from .force_contact import handle_force
 from .impact import EndlessImpact, Impact, strike
 from .laws import ForceLaw, ImpactLaw
@@ -17,6 +17,7 @@ from .massless import settle_massless
 from .modes import (
     APPROACH_SPEED,
     CLOSED,
+    GAP_START,
     IMPULSE_JUMP,
     LARGEST_APPROACH,
     LOSS_JUMP,
@@ -63,7 +64,7 @@ def settle(sim: "Engine", pending: list[int]) -> None:
     now = read(sim, contacts, pending)
     scale = sim.assembly.coordinate_scale
     accelerations = float(np.max(np.abs(sim.workspace.arrays["a"][: sim.assembly.n]) / scale, initial=0.0))
-    slide_values = sim.slide_values(contacts)
+    slide_values, gaps = sim.slide_values(contacts), sim.gap_values(contacts)
     touching = Touching(sim, contacts, sim.held())
     rounding = sim.rate_rounding(contacts)
     gap_rate, _ = touching.rates()
@@ -72,7 +73,7 @@ def settle(sim: "Engine", pending: list[int]) -> None:
         rounding = rounding * max(1.0, 2.0 * _impact(sim, touching, now, rounding))
         accelerations = 0.0
     chosen = Resting(sim, touching, now, rounding, accelerations).choose()
-    _take(sim, now, chosen, slide_values)
+    _take(sim, now, chosen, slide_values, gaps)
     _report(sim, now, pending)
 
 
@@ -154,16 +155,26 @@ def _strike(
 # ---- taking and reporting -------------------------------------------------------------------------------------------
 
 
-def _take(sim: "Engine", now: Settling, chosen: dict[int, tuple[float, float]], slide_values: dict[int, float]) -> None:
-    """Set the modes, bring gaps and rates of new constraints to zero, and solve for the accelerations."""
-    memory = sim.memory
+def _take(
+    sim: "Engine",
+    now: Settling,
+    chosen: dict[int, tuple[float, float]],
+    slide_values: dict[int, float],
+    gaps: NDArray[np.float64],
+) -> None:
+    """Set the modes, bring gaps that are more than rounding and all rates of new constraints to zero, and solve for the
+    accelerations."""
+    memory, none = sim.memory, GAP_ROUNDING * sim.gap_size(now.contacts)
     changed = False
     for i, k in enumerate(now.contacts):
         memory[k, MODE] = CLOSED if k in chosen else OPEN
         slide, memory[k, RATIO] = chosen.get(k, (STICKS, 0.0))
         memory[k, SLIDE] = slide
         if k not in chosen:
+            memory[k, GAP_START] = 0.0
             continue
+        if now.was[i] != CLOSED:
+            memory[k, GAP_START] = gaps[i] if abs(gaps[i]) <= none[i] else 0.0
         kept = now.was[i] == CLOSED and now.slid[i] == slide
         changed |= not kept
         if slide == STICKS and not kept and k in slide_values:

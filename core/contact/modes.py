@@ -20,4 +20,5 @@ LOSS_JUMP = 4  # sum of energy lost at impacts and releases, J
 SLIDE = 5  # STICKS, IDLE, +1 or -1
 SLIDE_START = 6  # sliding distance at which the contact began to stick, m
 RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slides
-MEMORY_SIZE = 8
+GAP_START = 8  # gap at which a contact constraint holds, next to nothing, m
+MEMORY_SIZE = 9

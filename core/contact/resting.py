@@ -30,6 +30,8 @@ NEARLY_SINGULAR = 1e-6
 SPARE = 1e-6
 """Part of its limit that a new distribution of sticking friction must leave to each contact."""
 
+LOOSEST_RANK = 1e-4
+"""Part of an inverse mass: directions that differ by less may be taken for one."""
 AHEAD, FARTHEST_AHEAD = 1e-9, 1e-6
 """How far the mechanism is moved, of its size, to see what holds a moment later: at the second event of an instant, and
 ten times farther at each of the following ones, but not beyond."""
@@ -298,7 +300,7 @@ class Resting:
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]
-        kept_n, kept_t = independent(self.touching.a, normals, sticking)
+        kept_n, kept_t = independent(self.touching.a, normals, sticking, self._rank())
         sticks = {int(sticking[j]) for j in kept_t}
         chosen: dict[int, tuple[float, float]] = {}
         for i in (int(normals[j]) for j in kept_n):
@@ -310,6 +312,11 @@ class Resting:
                 slide, ratio = IDLE, found.tangential[i] / found.normal[i] if found.normal[i] > 0.0 else 0.0
             chosen[now.contacts[i]] = float(slide), float(ratio)
         return chosen
+
+    def _rank(self) -> float:
+        """Contacts that repeat each other nearly need large forces against each other to move as constraints say. Where
+        an instant does not settle, more and more of them count as one."""
+        return min(RANK * 100.0 ** max(self.sim.events_here - 2, 0), LOOSEST_RANK)
 
     # ---- refusals ---------------------------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, SLIDE, SLIDE_START, STICKS
+from ..contact.modes import ACTIVE, CLOSED, GAP_START, LOSS_JUMP, MODE, SLIDE, SLIDE_START, STICKS
 from ..contact.settling import comes_back
 from ..contact.touching import Touching
 from ..errors import ConsistencyError, SimulationError
@@ -207,6 +207,12 @@ class ContactSide:
                 sticks = memory[MODE] == CLOSED and memory[SLIDE] == STICKS
                 found[k] = float(self.workspace.arrays["phi"][row] + (memory[SLIDE_START] if sticks else 0.0))
         return found
+
+    def gap_values(self, contacts: list[int]) -> NDArray[np.float64]:
+        """Gaps of those contacts, (contacts,), m: of closed ones what rounding has left them."""
+        memory = self.memory[contacts]
+        held = np.where(memory[:, MODE] == CLOSED, memory[:, GAP_START], 0.0)
+        return np.asarray(self.workspace.arrays["phi"][[self.assembly.contacts[k].row for k in contacts]] + held)
 
     def gap_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
         """What the gaps of these contacts are small or large against at the workspace's point, (contacts,), m."""

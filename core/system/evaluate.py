@@ -6,8 +6,23 @@ import numpy as np
 
 from ..compiled.jit import compiled, internal
 from ..compiled.kernels import CONSTRAINTS, ENERGY, POWER, RESIDUAL, TANGENT, batch_at, call_kernel
-from ..compiled.views import ivec, vec
+from ..compiled.views import ivec, mat, vec
+from ..contact.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE
 from .records import COUNTERS_SIZE, EVALUATIONS, call_evaluate
+
+
+@internal
+def _hold_gaps(ws: Any) -> None:
+    """Closed contacts hold their gaps where they have closed: none touches without rounding, and where contacts repeat
+    each other nearly, to bring all of these gaps to zero would take motions of many times their size."""
+    memory, rows, phi = (
+        mat(ws.memory, ws.n_contacts, MEMORY_SIZE),
+        ivec(ws.contact_rows, ws.n_contacts),
+        vec(ws.phi, ws.m_ext),
+    )
+    for k in range(ws.n_contacts):
+        if memory[k, MODE] == CLOSED:
+            phi[rows[k]] -= memory[k, GAP_START]
 
 
 @internal
@@ -22,6 +37,8 @@ def all_kernels(ws: Any, job: int) -> None:
             call_kernel(kernels[k], job, t, batch)
         elif batch.nrow > 0:
             call_kernel(kernels[k], RESIDUAL, t, batch)
+    if job == RESIDUAL or job == CONSTRAINTS:
+        _hold_gaps(ws)
 
 
 @compiled
