@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..events import Event
-from ..rounding import FORCE_ROUNDING, GAP_ROUNDING
+from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, UNSOLVED
+from .complementarity import MANY
 from .force_contact import handle_force
 from .impact import EndlessImpact, Impact, strike
 from .laws import ForceLaw, ImpactLaw
@@ -67,7 +68,12 @@ def settle(sim: "Engine", pending: list[int]) -> None:
     slide_values, gaps = sim.slide_values(contacts), sim.gap_values(contacts)
     touching = Touching(sim, contacts, sim.held())
     rounding = sim.rate_rounding(contacts)
-    gap_rate, _ = touching.rates()
+    gap_rate, slide_rate = touching.rates()
+    if len(contacts) > MANY:
+        # what an impact of many has left is no reason for another: only an event of the contact itself is
+        left = UNSOLVED * float(max(np.max(np.abs(gap_rate)), np.max(np.abs(slide_rate))))
+        bystander = (gap_rate < -rounding) & (gap_rate >= -left) & ~np.isin(contacts, pending)
+        rounding = np.where(bystander, 2.0 * np.abs(gap_rate), rounding)
     approaching = (gap_rate < -rounding) & ((now.was == OPEN) | sim.formula.exact)
     if np.any(approaching):
         rounding = rounding * max(1.0, 2.0 * _impact(sim, touching, now, rounding))
