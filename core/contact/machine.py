@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import SimulationError
+from ..errors import ConsistencyError, SimulationError
 from ..events import Event
 from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, UNSOLVED
-from .complementarity import MANY
+from .complementarity import MANY, RANK
 from .force_contact import handle_force
 from .impact import EndlessImpact, Impact, strike
 from .laws import ForceLaw, ImpactLaw
@@ -29,7 +29,7 @@ from .modes import (
     SLIDE_START,
     STICKS,
 )
-from .resting import Resting
+from .resting import LOOSEST_RANK, Resting
 from .settling import Settling, read, unresolved_speed
 from .touching import Touching
 
@@ -70,16 +70,25 @@ def settle(sim: "Engine", pending: list[int]) -> None:
     rounding = sim.rate_rounding(contacts)
     gap_rate, slide_rate = touching.rates()
     if len(contacts) > MANY:
-        # what an impact of many has left is no reason for another: only an event of the contact itself is
+        # what an impact of many leaves is no reason for another
         left = UNSOLVED * float(max(np.max(np.abs(gap_rate)), np.max(np.abs(slide_rate))))
-        bystander = (gap_rate < -rounding) & (gap_rate >= -left) & ~np.isin(contacts, pending)
-        rounding = np.where(bystander, 2.0 * np.abs(gap_rate), rounding)
+        rounding = np.where((gap_rate < -rounding) & (gap_rate >= -left), 2.0 * np.abs(gap_rate), rounding)
     approaching = (gap_rate < -rounding) & ((now.was == OPEN) | sim.formula.exact)
     if np.any(approaching):
         rounding = rounding * max(1.0, 2.0 * _impact(sim, touching, now, rounding))
         accelerations = 0.0
-    chosen = Resting(sim, touching, now, rounding, accelerations).choose()
-    _take(sim, now, chosen, slide_values, gaps)
+    resting = Resting(sim, touching, now, rounding, accelerations)
+    chosen, rank = resting.choose(), RANK
+    while True:
+        try:
+            _take(sim, now, chosen, slide_values, gaps)
+            break
+        except ConsistencyError:
+            # contacts that each can be told from any other repeat each other together
+            rank *= 100.0
+            if not chosen or rank > LOOSEST_RANK:
+                raise
+            chosen = resting.keep(rank)
     _report(sim, now, pending)
 
 

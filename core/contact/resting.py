@@ -72,8 +72,11 @@ class Resting:
         self.known: Vector = np.where(np.abs(self.slide_rate) > self.rounding, np.sign(self.slide_rate), 0.0)
         if not now.struck:
             closed = now.was == CLOSED
-            slides = closed & (np.abs(now.slid) == 1.0) & ~now.stops
-            self.known[closed] = np.where(slides, now.slid, 0.0)[closed]
+            # one that did not slide by itself, since others held it, may already go the other way by a little
+            turned = self.sim.formula.exact & (now.slid * self.slide_rate < -self.rounding)
+            slides = closed & (np.abs(now.slid) == 1.0) & (turned | ~now.stops)
+            ways = np.where(turned, np.sign(self.slide_rate), now.slid)
+            self.known[closed] = np.where(slides, ways, 0.0)[closed]
 
     def _soon_back(self, motion: Vector) -> Flags:
         """Gaps that open but, with these accelerations, less than could be told from zero."""
@@ -297,10 +300,18 @@ class Resting:
             closed |= idle & (
                 again | comes_back(self.sim, now.contacts, self.touching.free_jerks(), found.normal_motion)
             )
+        self._found, self._closed = found, closed
+        return self.keep(min(RANK * 100.0 ** max(self.sim.events_here - 2, 0), LOOSEST_RANK))
+
+    def keep(self, rank: float) -> dict[int, tuple[float, float]]:
+        """Those that `choose` has found which do not repeat each other, to `rank`. Contacts that do so nearly need
+        large forces against each other to move as constraints say: where an instant does not settle, more and more of
+        them count as one."""
+        now, found, closed = self.now, self._found, self._closed
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]
-        kept_n, kept_t = independent(self.touching.a, normals, sticking, self._rank())
+        kept_n, kept_t = independent(self.touching.a, normals, sticking, rank)
         sticks = {int(sticking[j]) for j in kept_t}
         chosen: dict[int, tuple[float, float]] = {}
         for i in (int(normals[j]) for j in kept_n):
@@ -312,11 +323,6 @@ class Resting:
                 slide, ratio = IDLE, found.tangential[i] / found.normal[i] if found.normal[i] > 0.0 else 0.0
             chosen[now.contacts[i]] = float(slide), float(ratio)
         return chosen
-
-    def _rank(self) -> float:
-        """Contacts that repeat each other nearly need large forces against each other to move as constraints say. Where
-        an instant does not settle, more and more of them count as one."""
-        return min(RANK * 100.0 ** max(self.sim.events_here - 2, 0), LOOSEST_RANK)
 
     # ---- refusals ---------------------------------------------------------------------------------------------------
 
