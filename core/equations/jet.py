@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .elementary import UNARY_NAMES, power, power_derivatives, quotient, unary
+from .jet_numpy import NumpyFunctions, pair, plain
 
 _REMEDY = (
     "{what} of a Jet would lose its derivatives. Jets are the numbers with which a user's function is "
@@ -17,7 +18,7 @@ _REMEDY = (
 )
 
 
-class Jet:
+class Jet(NumpyFunctions):
     """A number with its derivatives with respect to k variables.
 
     Parameters
@@ -183,7 +184,7 @@ class Jet:
 
     def arctan2(self, other: Any) -> "Jet":
         """Angle of the point (other, self), rad."""
-        y, x = _pair(self, other)
+        y, x = pair(self, other)
         r2 = x.value * x.value + y.value * y.value
         a, b = quotient(x.value, r2), quotient(y.value, r2)
         second = (-2.0 * a * b, (b - a) * (b + a), 2.0 * a * b)
@@ -191,7 +192,7 @@ class Jet:
 
     def hypot(self, other: Any) -> "Jet":
         """Length of the vector (self, other)."""
-        x, y = _pair(self, other)
+        x, y = pair(self, other)
         r = math.hypot(x.value, y.value)
         a, b = quotient(x.value, r), quotient(y.value, r)
         return x._chain2(y, r, (a, b), (quotient(b * b, r), quotient(-a * b, r), quotient(a * a, r)))
@@ -201,22 +202,22 @@ class Jet:
         return self
 
     def __lt__(self, other: Any) -> Any:
-        return self.value < _plain(other) if isinstance(other, REALS) else NotImplemented
+        return self.value < plain(other) if isinstance(other, REALS) else NotImplemented
 
     def __le__(self, other: Any) -> Any:
-        return self.value <= _plain(other) if isinstance(other, REALS) else NotImplemented
+        return self.value <= plain(other) if isinstance(other, REALS) else NotImplemented
 
     def __gt__(self, other: Any) -> Any:
-        return self.value > _plain(other) if isinstance(other, REALS) else NotImplemented
+        return self.value > plain(other) if isinstance(other, REALS) else NotImplemented
 
     def __ge__(self, other: Any) -> Any:
-        return self.value >= _plain(other) if isinstance(other, REALS) else NotImplemented
+        return self.value >= plain(other) if isinstance(other, REALS) else NotImplemented
 
     def __eq__(self, other: Any) -> Any:
-        return self.value == _plain(other) if isinstance(other, REALS) else NotImplemented
+        return self.value == plain(other) if isinstance(other, REALS) else NotImplemented
 
     def __ne__(self, other: Any) -> Any:
-        return self.value != _plain(other) if isinstance(other, REALS) else NotImplemented
+        return self.value != plain(other) if isinstance(other, REALS) else NotImplemented
 
     def __bool__(self) -> bool:
         return self.value != 0.0
@@ -232,12 +233,6 @@ class Jet:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.value!r}, gradient={self.gradient!r}, hessian={self.hessian!r})"
-
-    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
-        """numpy functions of a Jet, also together with plain numbers and arrays."""
-        from .jet_numpy import apply_ufunc
-
-        return apply_ufunc(ufunc, method, inputs, options)
 
 
 class LineJet(Jet):
@@ -259,17 +254,6 @@ class LineJet(Jet):
 
 NUMBERS = (float, int, np.floating, np.integer, np.bool_)
 REALS = (*NUMBERS, Jet)
-
-
-def _plain(x: Any) -> float:
-    return x.value if isinstance(x, Jet) else float(x)
-
-
-def _pair(x: Any, y: Any) -> tuple[Jet, Jet]:
-    """Both as Jets; one of them is."""
-    if isinstance(x, Jet):
-        return x, y if isinstance(y, Jet) else x._constant(float(y))
-    return y._constant(float(x)), y
 
 
 def _unary_method(name: str) -> Any:

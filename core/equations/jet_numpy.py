@@ -8,45 +8,65 @@ from typing import Any
 import numpy as np
 
 from .elementary import UNARY_NAMES
-from .jet import Jet, _pair, _plain
+
+
+class NumpyFunctions:
+    """What lets numpy's functions take jets, also together with plain numbers and arrays: `Jet` is one of these."""
+
+    __slots__ = ()
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
+        return apply_ufunc(ufunc, method, inputs, options)
+
+
+def plain(x: Any) -> float:
+    """The value of a jet or number."""
+    return float(x.value) if isinstance(x, NumpyFunctions) else float(x)
+
+
+def pair(x: Any, y: Any) -> tuple[Any, Any]:
+    """Both as jets; one of them is."""
+    if isinstance(x, NumpyFunctions):
+        return x, y if isinstance(y, NumpyFunctions) else x._constant(float(y))
+    return y._constant(float(x)), y
 
 
 def _unary(name: str) -> Callable[[Any], Any]:
     ufunc = getattr(np, name)
 
     def apply(x: Any) -> Any:
-        return getattr(x, name)() if isinstance(x, Jet) else float(ufunc(x))
+        return getattr(x, name)() if isinstance(x, NumpyFunctions) else float(ufunc(x))
 
     return apply
 
 
 def arctan2(y: Any, x: Any) -> Any:
     """numpy.arctan2 of numbers and jets."""
-    if isinstance(x, Jet) or isinstance(y, Jet):
-        first, second = _pair(y, x)
+    if isinstance(x, NumpyFunctions) or isinstance(y, NumpyFunctions):
+        first, second = pair(y, x)
         return first.arctan2(second)
     return math.atan2(y, x)
 
 
 def hypot(x: Any, y: Any) -> Any:
     """numpy.hypot of numbers and jets."""
-    if isinstance(x, Jet) or isinstance(y, Jet):
-        first, second = _pair(x, y)
+    if isinstance(x, NumpyFunctions) or isinstance(y, NumpyFunctions):
+        first, second = pair(x, y)
         return first.hypot(second)
     return math.hypot(x, y)
 
 
 def _maximum(x: Any, y: Any) -> Any:
-    return x if _plain(x) >= _plain(y) or math.isnan(_plain(x)) else y
+    return x if plain(x) >= plain(y) or math.isnan(plain(x)) else y
 
 
 def _minimum(x: Any, y: Any) -> Any:
-    return x if _plain(x) <= _plain(y) or math.isnan(_plain(x)) else y
+    return x if plain(x) <= plain(y) or math.isnan(plain(x)) else y
 
 
 def _of_value(ufunc: np.ufunc) -> Callable[[Any], Any]:
     """Functions that are constant almost everywhere, and tests."""
-    return lambda x: ufunc(_plain(x)).item()
+    return lambda x: ufunc(plain(x)).item()
 
 
 # By ufunc: the function of scalars, jets and plain numbers mixed.
@@ -89,7 +109,7 @@ ELEMENTWISE = {f: np.frompyfunc(SCALAR[f], f.nin, 1) for f in (*_BY_METHOD, *_BY
 
 def object_array(x: Any) -> Any:
     """A jet as a 0-d object array, anything else unchanged."""
-    if not isinstance(x, Jet):
+    if not isinstance(x, NumpyFunctions):
         return x
     array = np.empty((), dtype=object)
     array[()] = x

@@ -11,7 +11,6 @@ from ..compiled.kernels import kernel_address
 from ..contact.friction import CoulombFriction, Friction
 from ..contact.geometry_kinds import EQUATIONS, kind_of
 from ..contact.laws import ForceLaw, ImpactLaw
-from ..description import Model
 from ..elements.base import Coordinate, Element, Form, Row
 from ..elements.internal import internal_coordinates_kernel
 from ..errors import ModelError
@@ -19,6 +18,7 @@ from ..model.channels import Channel
 from ..model.motion import InputMotion
 from ..model.outputs import MarkerPlace
 from .numbering import GROUND_SLOTS, ModelNumbering
+from .parts import Parts
 
 
 @dataclass
@@ -159,7 +159,7 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
     return np.ascontiguousarray(np.array(rows, dtype=dtype).reshape(len(rows), -1))
 
 
-def assemble(model: Model) -> Assembly:
+def assemble(model: Parts) -> Assembly:
     """The model as flat tables. Raises ModelError without bodies, and for a contact of a body with itself."""
     if not model.bodies:
         raise ModelError(f"model '{model.name}' has no bodies, so nothing can move: give it at least one in `bodies`")
@@ -268,7 +268,7 @@ def assemble(model: Model) -> Assembly:
     )
 
 
-def _replaced_rows(model: Model, massless: Mapping[int, int], batches: Sequence[Batch]) -> dict[int, frozenset[int]]:
+def _replaced_rows(model: Parts, massless: Mapping[int, int], batches: Sequence[Batch]) -> dict[int, frozenset[int]]:
     """Each massless end's row with the contacts that move its coordinate. Raises ModelError for contacts that need a
     mass there."""
     found = {}

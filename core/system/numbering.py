@@ -2,12 +2,12 @@
 
 from ..contact.friction import FrictionLaw, friction_address
 from ..contact.laws import ForceLaw, law_address
-from ..description import Model
 from ..elements.base import BodyElement
 from ..elements.planar_body import PlanarFrame
 from ..model.markers import GROUND
 from ..model.motion import InputMotion
 from ..model.signals import InputSignal, Signal
+from .parts import Parts
 
 GROUND_SLOTS = 3
 """Extended vectors end in the ground's (x, y, angle), which stay zero, and the work accounts."""
@@ -16,7 +16,7 @@ GROUND_SLOTS = 3
 class ModelNumbering:
     """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Parts) -> None:
         self.gravity = model.gravity
         self.length = _length(model)
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
@@ -100,7 +100,7 @@ class ModelNumbering:
         return self.n + GROUND_SLOTS + self.work_names.index(name)
 
 
-def _length(model: Model) -> float:
+def _length(model: Parts) -> float:
     """Size of the mechanism, m: how far its points reach; of one whose points are all at the origin, its longest rod or
     largest disk. 1 if it says none."""
     points = [point for body in model.bodies for point in body.extent()]

@@ -1,0 +1,72 @@
+"""No file imports one that imports it, on whatever way round, also where an import waits inside a function."""
+
+import ast
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("core", "models", "fmu_wrapper", "validation", "cli")
+
+
+def modules(package):
+    """Every module of the package with its file."""
+    for path in sorted((ROOT / package).rglob("*.py")):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        yield ".".join(parts[:-1] if parts[-1] == "__init__" else parts), path
+
+
+def statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """All statements, those for the type checker alone left out."""
+    for node in body:
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            yield from statements(node.orelse)
+            continue
+        yield node
+        for _, inner in ast.iter_fields(node):
+            if isinstance(inner, list):
+                yield from statements([x for x in inner if isinstance(x, ast.stmt)])
+                for handler in (x for x in inner if isinstance(x, ast.ExceptHandler | ast.match_case)):
+                    yield from statements(handler.body)
+
+
+def imports(name, path, known):
+    """The modules among `known` that a module imports."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    for node in statements(ast.parse(path.read_text(encoding="utf-8")).body):
+        if isinstance(node, ast.ImportFrom):
+            above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            base = ".".join([*above, *(node.module.split(".") if node.module else [])]).removeprefix("tlismni.")
+            names = [f"{base}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            base, names = "", [alias.name.removeprefix("tlismni.") for alias in node.names]
+        else:
+            continue
+        yield from (found if found in known else base for found in names if found in known or base in known)
+
+
+@pytest.fixture(scope="module")
+def graph():
+    known = {name: path for package in PACKAGES for name, path in modules(package)}
+    return {name: set(imports(name, path, known)) - {name} for name, path in known.items()}
+
+
+def circle(graph):
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return error.args[1]
+    return None
+
+
+def test_no_circle_of_imports(graph):
+    assert circle(graph) is None
+
+
+def test_it_would_be_found(graph):
+    """Imports inside functions count, and those of the real files are seen."""
+    assert "core.system.assembly" in graph["core.description"]
+    assert "core.integrate.simulation" in graph["core.simulate"]
+    assert circle({**graph, "core.errors": {"core.simulate"}}) is not None
