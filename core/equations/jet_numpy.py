@@ -14,6 +14,11 @@ class NumpyFunctions:
     """What lets numpy's functions take jets, also together with plain numbers and arrays: `Jet` is one of these."""
 
     __slots__ = ()
+    value: float
+
+    def _constant(self, value: float) -> Any:
+        """A jet with the same variables and no derivatives."""
+        raise NotImplementedError
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
         return apply_ufunc(ufunc, method, inputs, options)
