@@ -8,6 +8,8 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from .image import Take
+
 
 @cache
 def _type_of(dtype: np.dtype) -> Any:
@@ -72,7 +74,15 @@ class ArrayRecord:
         if not array.flags.c_contiguous:
             raise TypeError(f"array '{name}' must be C-contiguous")
         self.arrays[name] = array
-        self.table[name] = array.ctypes.data
+        self.table[name] = array.__array_interface__["data"][0]  # a third of the time of `array.ctypes.data`
+
+    def moved(self, take: Take) -> "ArrayRecord":
+        """The same record in a copy of its memory (`image.py`)."""
+        new = object.__new__(ArrayRecord)
+        new.table = take(self.table)
+        new.record = Record(new.table)
+        new.arrays = {name: take(array) for name, array in self.arrays.items()}
+        return new
 
     @property
     def address(self) -> int:

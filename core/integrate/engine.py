@@ -117,25 +117,38 @@ class Engine(ContactSide):
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
         self._method = build_method(self.formula, self.settings, self.workspace.row_length)
-        self.method_arrays: dict[str, NDArray[Any]] = self._method.arrays
         self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
-        self.clock, self.watch = self._loop.arrays["clock"], self._loop.arrays["watch"]
-        self.brackets = self._loop.arrays["brackets"]
-        self.buffer, self.cursor = self._loop.arrays["samples"], self._loop.arrays["cursor"]
-        self.log_buffer, self.log_cursor = self._loop.arrays["log"], self._loop.arrays["log_cursor"]
+        self.name_arrays()
         self.fine_starter = step_address(FINE_STARTER)
         self.guard = Progress(float(t0))
         self.drive = Drive(self, self.guard)
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
+        self.scales: Scales
+        if self._begins:
+            self.begin()
+        make_ready(self)
+
+    _begins = True
+    """Whether a run begins as soon as it is built."""
+
+    def begin(self) -> None:
+        """Measure the model's scales and make a consistent start."""
         with user_errors(self.assembly):
             self._given_start()
-            self.scales: Scales = measure_scales(self.workspace)
+            self.scales = measure_scales(self.workspace)
             set_control(
                 self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays, self.scales.rate
             )
             self._start()
-        make_ready(self)
+
+    def name_arrays(self) -> None:
+        """Names for arrays of the records."""
+        loop = self._loop.arrays
+        self.method_arrays = self._method.arrays
+        self.clock, self.watch, self.brackets = loop["clock"], loop["watch"], loop["brackets"]
+        self.buffer, self.cursor = loop["samples"], loop["cursor"]
+        self.log_buffer, self.log_cursor = loop["log"], loop["log_cursor"]
 
     # ---- set-up -------------------------------------------------------------------------------------------------
 

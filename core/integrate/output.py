@@ -1,6 +1,7 @@
 """Channels: named columns computed from recorded samples."""
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,6 +101,14 @@ class ChannelTable:
         self.index = {channel.name: k for k, channel in enumerate(self.channels)}
         self.balance = self.index["energy.balance"]
         self._prepare_values()
+
+    def moved(self, assembly: Assembly) -> "ChannelTable":
+        """The table of another run, of an assembly that differs in its numbers only."""
+        new = copy(self)
+        if assembly.markers:
+            layout = self.layout
+            new._markers = MarkerChannels(assembly.markers, (layout.q.start, layout.v.start, layout.a.start))
+        return new
 
     def _prepare_values(self) -> None:
         """The formulas as index arrays, for one sample at a time."""

@@ -1,10 +1,12 @@
 """The Python side of the linear solver: analysis, storage, and what restores a solver's state."""
 
+from copy import copy
 from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..compiled.image import Take
 from ..compiled.records import Record
 from .errors import SingularMatrixError
 from .ordering import balancing_scales, choose_pivots, singular_place
@@ -24,6 +26,8 @@ DENSE_LIMIT = 8
 PROGRAM_LIMIT = 4
 # Indices are unsigned 32-bit.
 _LARGEST_INDEX = 2**32 - 1
+_OWN = ("work", "row_unit", "values", "pivots")
+"""Arrays that are not of the pattern."""
 
 
 @cache
@@ -93,6 +97,21 @@ class Factorization:
                 values=np.zeros(self.n * (self.n + 1)),
                 pivots=np.arange(self.n),
             )
+
+    def memory(self) -> tuple[list[NDArray], list[NDArray]]:
+        """Own arrays and records; all others never change, and factorisations of the same pattern share them."""
+        return [self.arrays[name] for name in _OWN if name in self.arrays], [self._table]
+
+    def moved(self, take: Take) -> "Factorization":
+        """The same factorisation in a copy of its memory (`compiled/image.py`)."""
+        new = copy(self)
+        new._table = take(self._table)
+        new.record = Record(new._table)
+        new.arrays = self.arrays.copy()
+        for name in _OWN:
+            if name in new.arrays:
+                new.arrays[name] = take(new.arrays[name])
+        return new
 
     @property
     def address(self) -> int:

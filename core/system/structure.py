@@ -4,12 +4,14 @@ An engaged contact is one whose entries belong to the matrix: closed (its row is
 force (its stiffness is in K).
 """
 
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.image import Take
 from ..linalg import Factorization
 from .assembly import Assembly, Batch
 
@@ -59,6 +61,22 @@ class Structure:
     def _units_of_partition(self, n: int) -> None:
         if self.units is not None and self.lu_d is not None and self.dependent is not None:
             self.lu_d.use_units(self.units[n + self.active], self.units[self.dependent])
+
+    def _factorizations(self) -> dict[str, Factorization]:
+        found = {"kkt": self.kkt, "kkt_query": self.kkt_query, "lu_d": self.lu_d}
+        return {name: factorization for name, factorization in found.items() if factorization is not None}
+
+    def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
+        """Own arrays and records: those of the factorisations. All others never change."""
+        parts = [factorization.memory() for factorization in self._factorizations().values()]
+        return [x for arrays, _ in parts for x in arrays], [x for _, tables in parts for x in tables]
+
+    def moved(self, take: Take) -> "Structure":
+        """The same structure in a copy of its memory (`compiled/image.py`)."""
+        new = copy(self)
+        for name, factorization in self._factorizations().items():
+            setattr(new, name, factorization.moved(take))
+        return new
 
     @property
     def nnz(self) -> int:

@@ -1,20 +1,21 @@
 """Workspace: the arrays of one running system and the record through which compiled code reaches them."""
 
+from copy import copy
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.image import Take
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record
-from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
 from ..model.motion import input_rows
 from ..model.signals import INPUT_SIZE
-from ..rounding import ANGLES
 from .assembly import Assembly
 from .evaluate import all_kernels
+from .numbers import constraints_are_cheap, level_scale, release, sticking
 from .records import (
     CONDITIONS,
     CONTROL_SIZE,
@@ -32,9 +33,12 @@ _SHARED = (
 )  # fmt: skip
 
 _OF_STRUCTURE = ("gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "mass_slot")
+_NEVER_CHANGES = (
+    *_OF_STRUCTURE, "active", "redundant", "probe", "dependent", "free_row", "free_col", "free_slot", "kernels",
+    "contact_rows", "contact_slide_rows",
+)  # fmt: skip
+"""Arrays that runs may share: others take their place, but nobody writes into them."""
 
-CHEAP = 0.5
-"""Share of the entries of all elements up to which evaluating those with constraint rows counts as cheap."""
 MOST_STRUCTURES = 32
 """Kept, for as many sets of closed contacts: with a contact at every node there are endless many."""
 MOST_STAGES = 13
@@ -75,8 +79,8 @@ class Workspace:
             "batches": np.zeros(len(a.batches), dtype=np.int64),
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
-            "contact_sticking": np.array([c.coulomb.sticking_coefficient if c.coulomb else 0.0 for c in a.contacts]),
-            "contact_release": np.array([_release(c.law) for c in a.contacts], dtype=np.int64),
+            "contact_sticking": sticking(a),
+            "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
             "active": np.zeros(0, dtype=np.int64),
             "redundant": np.zeros(0, dtype=np.int64),
             "probe": np.zeros(0),
@@ -89,7 +93,7 @@ class Workspace:
             "scale": a.coordinate_scale.copy(),
             "row_scale": np.ones(m_ext),
             "work_scale": np.ones(n_ext),
-            "level_scale": np.where(a.is_angle, a.coordinate_scale / ANGLES, a.coordinate_scale),
+            "level_scale": level_scale(a),
             "scratch": np.zeros(64),
             "basis": np.zeros((1, n_ext)),
             "atol_q": np.zeros(n_ext),
@@ -114,7 +118,7 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0, "n_mass": 0,
                 "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
-                "n_work": len(a.work_names), "row_length": row_length, "part_first": int(_constraints_are_cheap(a)),
+                "n_work": len(a.work_names), "row_length": row_length, "part_first": int(constraints_are_cheap(a)),
                 "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
@@ -123,6 +127,37 @@ class Workspace:
         self.engage(frozenset(), frozenset())
         if assembly.bind is not None:
             assembly.bind(self)
+
+    def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
+        """Own arrays, and records of addresses: of the workspace and of its present structure."""
+        own = [x for name, x in self.arrays.items() if name not in _NEVER_CHANGES and name != "batches"]
+        for batch in self._batches:
+            own.append(batch.arrays["par"])
+        arrays, tables = self.structure.memory()
+        records = [self._record.table, *(batch.table for batch in self._batches), self.arrays["batches"]]
+        return [*own, *arrays], [*records, *tables]
+
+    def moved(self, take: Take) -> "Workspace":
+        """The same workspace in a copy of its memory (`compiled/image.py`)."""
+        new = copy(self)
+        new._record = self._record.moved(take)
+        new._batches = [batch.moved(take) for batch in self._batches]
+        new.arrays = {**new._record.arrays, "signals": take(self.arrays["signals"])}
+        new.structure = self.structure.moved(take)
+        new._structures = {(*self.key, self.dropped): new.structure}
+        return new
+
+    def take_numbers(self, assembly: Assembly) -> None:
+        """Go on with another assembly of the same tables but for their numbers; before the run starts."""
+        self.assembly, arrays = assembly, self.arrays
+        for own, batch in zip(self._batches, assembly.batches, strict=True):
+            own.arrays["par"][...] = batch.par
+        arrays["signals"][:] = assembly.signals
+        arrays["contact_sticking"][:] = sticking(assembly)
+        arrays["contact_release"][:] = [release(contact.law) for contact in assembly.contacts]
+        arrays["scale"][:] = assembly.coordinate_scale
+        arrays["level_scale"][:] = level_scale(assembly)
+        arrays["inputs"][: len(assembly.input_start), 0] = assembly.input_start
 
     @property
     def record(self) -> Record:
@@ -261,16 +296,3 @@ class Workspace:
         structure, n = self.structure, self.assembly.n
         here = np.flatnonzero((structure.rows >= n) & (structure.cols < n))
         return structure.rows[here] - n, structure.cols[here], self.arrays["values"][here]
-
-
-def _constraints_are_cheap(assembly: Assembly) -> bool:
-    sizes = np.array([batch.coord.shape[0] * batch.coord.shape[1] ** 2 for batch in assembly.batches], dtype=float)
-    bound = np.array([batch.row.size > 0 for batch in assembly.batches], dtype=bool)
-    return bool(sizes[bound].sum() < CHEAP * sizes.sum())
-
-
-def _release(law: Any) -> int:
-    """0: constraint contact; 1: force, released at zero gap; 2: force, released at zero force."""
-    if not isinstance(law, ForceLaw):
-        return 0
-    return 2 if law.release == "force" else 1

@@ -1,0 +1,75 @@
+"""Image: arrays and records that point to each other, as one block of memory that can be had again and again.
+
+A new block is a copy of the bytes in which addresses of what is in the block are moved along; addresses of anything
+else (index arrays, compiled functions) stay, so that all blocks share that.
+"""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+Take = Callable[[Array], Array]
+"""What stands in a new block for an array of the original; the array itself if all share it."""
+
+_ALIGNED = 64
+
+
+class Image:
+    """The memory of one run.
+
+    Parameters
+    ----------
+    arrays : own arrays, C-contiguous; each is copied.
+    tables : records of addresses (or arrays of them), copied too.
+    blank : own arrays of which only the room is wanted, not the content.
+    """
+
+    def __init__(self, arrays: Iterable[Array], tables: Iterable[Array], blank: Iterable[Array] = ()) -> None:
+        self._kept = {id(x): x for x in (*arrays, *tables, *blank)}  # alive, so that no id is used again
+        empty = {id(x) for x in blank}
+        own = [x for x in self._kept.values() if x.nbytes]
+        own.sort(key=lambda x: id(x) in empty)
+        self._places: list[tuple[int, tuple[int, ...], np.dtype, int]] = []
+        at, copied = 0, 0
+        for x in own:
+            self._places.append((id(x), x.shape, x.dtype, at))
+            at += -(-x.nbytes // _ALIGNED) * _ALIGNED
+            if id(x) not in empty:
+                copied = at
+        self._size = at
+        self._bytes = np.zeros(copied, dtype=np.uint8)
+        for (key, _, _, start), x in zip(self._places, own, strict=True):
+            if key not in empty:
+                self._bytes[start : start + x.nbytes] = x.reshape(-1).view(np.uint8)
+        self._pointers = self._relative(own, [x for x in tables if x.nbytes])
+
+    def _relative(self, own: list[Array], tables: list[Array]) -> NDArray[np.intp]:
+        """Make the addresses in `tables` relative to the block; returns where in the image they are, in words."""
+        begin = np.array([x.ctypes.data for x in own], dtype=np.int64)
+        end = begin + [x.nbytes for x in own]
+        offset = np.array([start for *_, start in self._places], dtype=np.int64)
+        order = np.argsort(begin)
+        begin, end, offset = begin[order], end[order], offset[order]
+        words, where = self._bytes.view(np.int64), {key: start for key, _, _, start in self._places}
+        found = []
+        for table in tables:
+            first = where[id(table)] // 8
+            values = words[first : first + table.nbytes // 8]
+            owner = np.searchsorted(begin, values, side="right") - 1
+            inside = np.flatnonzero((owner >= 0) & (values < end[owner]))
+            values[inside] += offset[owner[inside]] - begin[owner[inside]]
+            found.append(first + inside)
+        return np.concatenate(found) if found else np.zeros(0, dtype=np.intp)
+
+    def take(self) -> Take:
+        """A new block, as the function that gives its arrays for those of the original."""
+        block = np.empty(self._size, dtype=np.uint8)
+        block[: len(self._bytes)] = self._bytes
+        block[: len(self._bytes)].view(np.int64)[self._pointers] += block.ctypes.data
+        views: dict[int, Array] = {
+            key: np.ndarray(shape, dtype, block, start) for key, shape, dtype, start in self._places
+        }
+        return lambda array: views.get(id(array), array)
