@@ -31,7 +31,7 @@ def constraints_are_cheap(assembly: Assembly) -> bool:
 
 
 def release(law: Any) -> int:
-    """How contacts with this law end. 0: a constraint does; 1: force, released at zero gap; 2: force, released at zero force."""
+    """0: constraint contact; 1: force, released at zero gap; 2: force, released at zero force."""
     if not isinstance(law, ForceLaw):
         return 0
     return 2 if law.release == "force" else 1
