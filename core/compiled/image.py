@@ -22,7 +22,7 @@ class Image:
 
     Parameters
     ----------
-    arrays : own arrays, C-contiguous; each is copied.
+    arrays : own arrays, C-contiguous; each is copied. Those that are parts of others stay parts of them.
     tables : records of addresses (or arrays of them), copied too.
     blank : own arrays of which only the room is wanted, not the content.
     """
@@ -30,27 +30,33 @@ class Image:
     def __init__(self, arrays: Iterable[Array], tables: Iterable[Array], blank: Iterable[Array] = ()) -> None:
         self._kept = {id(x): x for x in (*arrays, *tables, *blank)}  # alive, so that no id is used again
         empty = {id(x) for x in blank}
-        own = [x for x in self._kept.values() if x.nbytes]
-        own.sort(key=lambda x: id(x) in empty)
+        # larger ones first: parts come after what they are parts of
+        own = sorted((x for x in self._kept.values() if x.nbytes), key=lambda x: (id(x) in empty, -x.nbytes))
         self._places: list[tuple[int, tuple[int, ...], np.dtype, int]] = []
+        whole: list[tuple[Array, int]] = []
         at, copied = 0, 0
         for x in own:
+            outer = next(((y, start) for y, start in whole if _begin(y) <= _begin(x) < _begin(y) + y.nbytes), None)
+            if outer is not None:
+                self._places.append((id(x), x.shape, x.dtype, outer[1] + _begin(x) - _begin(outer[0])))
+                continue
             self._places.append((id(x), x.shape, x.dtype, at))
+            whole.append((x, at))
             at += -(-x.nbytes // _ALIGNED) * _ALIGNED
             if id(x) not in empty:
                 copied = at
         self._size = at
         self._bytes = np.zeros(copied, dtype=np.uint8)
-        for (key, _, _, start), x in zip(self._places, own, strict=True):
-            if key not in empty:
+        for x, start in whole:
+            if id(x) not in empty:
                 self._bytes[start : start + x.nbytes] = x.reshape(-1).view(np.uint8)
-        self._pointers = self._relative(own, [x for x in tables if x.nbytes])
+        self._pointers = self._relative(whole, [x for x in tables if x.nbytes])
 
-    def _relative(self, own: list[Array], tables: list[Array]) -> NDArray[np.intp]:
+    def _relative(self, whole: list[tuple[Array, int]], tables: list[Array]) -> NDArray[np.intp]:
         """Make the addresses in `tables` relative to the block; returns where in the image they are, in words."""
-        begin = np.array([x.ctypes.data for x in own], dtype=np.int64)
-        end = begin + [x.nbytes for x in own]
-        offset = np.array([start for *_, start in self._places], dtype=np.int64)
+        begin = np.array([_begin(x) for x, _ in whole], dtype=np.int64)
+        end = begin + [x.nbytes for x, _ in whole]
+        offset = np.array([start for _, start in whole], dtype=np.int64)
         order = np.argsort(begin)
         begin, end, offset = begin[order], end[order], offset[order]
         words, where = self._bytes.view(np.int64), {key: start for key, _, _, start in self._places}
@@ -73,3 +79,7 @@ class Image:
             key: np.ndarray(shape, dtype, block, start) for key, shape, dtype, start in self._places
         }
         return lambda array: views.get(id(array), array)
+
+
+def _begin(array: Array) -> int:
+    return int(array.__array_interface__["data"][0])

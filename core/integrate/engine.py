@@ -43,7 +43,7 @@ from .ready import make_ready
 from .records import HANDLED, HANDLED_AT, HERE, MAX_STEP, STEP_SIZE
 from .sample import write_sample
 from .settings import Settings, set_control
-from .setup import build_loop, build_method
+from .setup import build_loop, build_method, state_fields
 from .watch import remember
 
 logger = logging.getLogger(__name__)
@@ -103,7 +103,7 @@ class Engine(ContactSide):
             raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
         self.system = system
         self.assembly: Assembly = system.assemble()
-        self.workspace = Workspace(self.assembly)
+        self.workspace = Workspace(self.assembly, state_fields(self.assembly))
         self.table = ChannelTable(system, self.assembly)
         self.events: list[Event] = []
         self.progress: Callable[[float], None] | None = None
@@ -116,7 +116,7 @@ class Engine(ContactSide):
         self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
-        self._method = build_method(self.formula, self.settings, self.workspace.row_length)
+        self._method = build_method(self.formula, self.settings, self.workspace.state)
         self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
         self.name_arrays()
         self.fine_starter = step_address(FINE_STARTER)

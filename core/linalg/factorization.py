@@ -28,6 +28,7 @@ PROGRAM_LIMIT = 4
 _LARGEST_INDEX = 2**32 - 1
 _OWN = ("work", "row_unit", "values", "pivots")
 """Arrays that are not of the pattern."""
+_NO_VALUES, _NO_PIVOTS = np.empty(0), np.empty(0, np.int64)
 
 
 @cache
@@ -121,12 +122,12 @@ class Factorization:
     @property
     def lu_values(self) -> Floats:
         """The numeric factors and the limits on the growth of L as one array, to be copied out and back."""
-        return self.arrays.get("values", np.empty(0))
+        return self.arrays.get("values", _NO_VALUES)
 
     @property
     def pivots(self) -> Ints:
         """Dense: (n,) row of the matrix at each pivot; belongs to the numeric state. Sparse: empty."""
-        return self.arrays.get("pivots", np.empty(0, np.int64))
+        return self.arrays.get("pivots", _NO_PIVOTS)
 
     @property
     def fill(self) -> int:

@@ -1,5 +1,6 @@
 """Workspace: the arrays of one running system and the record through which compiled code reaches them."""
 
+from collections.abc import Sequence
 from copy import copy
 from typing import Any
 
@@ -10,22 +11,18 @@ from ..compiled.image import Take
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record
-from ..contact.modes import MEMORY_SIZE
-from ..model.motion import input_rows
-from ..model.signals import INPUT_SIZE
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
 from .records import (
     CONDITIONS,
     CONTROL_SIZE,
-    COUNTERS_SIZE,
     COUPLED_STAGES,
     EVALUATE_SIGNATURE,
     FACTOR_AGE,
-    RATE_SIZE,
     WORKSPACE,
 )
+from .state_fields import STATE, Field, row_length, state_fields
 from .structure import Structure, build_structure
 
 _SHARED = (
@@ -54,26 +51,29 @@ class Workspace:
     arrays : the arrays by name; `record` is what compiled functions get.
     dropped : redundant rows that are left out of the equations; `drop` changes it.
     structure : the present structure; `engage` changes it.
+    state : (1,) one buffer, the arrays that decide the future: those of `state_fields` and `also`, in this order.
+
+    Parameters
+    ----------
+    also : name, type and shape of what else decides the future: its place is `state[name][0]`.
     """
 
-    def __init__(self, assembly: Assembly) -> None:
+    def __init__(self, assembly: Assembly, also: Sequence[Field] = ()) -> None:
         self.assembly = assembly
         a = assembly
         n_ext, m_ext, contacts = a.n_extended, a.m + 1, len(a.contacts)
-        row_length = 4 * n_ext + m_ext
-        arrays: dict[str, NDArray[Any]] = {name: np.zeros(n_ext) for name in (
-            "q", "v", "a", "aux", "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v",
-            "offset",
+        self.state = np.zeros(1, [*state_fields(a), *also])
+        self.state_bytes = self.state.view(np.uint8)  # to copy in one go: numpy copies records field by field
+        arrays: dict[str, NDArray[Any]] = {name: self.state[name][0] for name in STATE}
+        arrays |= {name: np.zeros(n_ext) for name in (
+            "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v", "offset",
         )}  # fmt: skip
-        arrays |= {name: np.zeros(m_ext) for name in ("lam", "phi", "phid", "phidd")}
+        arrays |= {name: np.zeros(m_ext) for name in ("phi", "phid", "phidd")}
         arrays |= {
-            "t": np.zeros(1),
             "values": np.zeros(1),
             "coef": np.zeros(2),
             "energy": np.zeros(3),
             "monitor": np.zeros(2 * max(contacts, 1)),
-            "memory": np.zeros((max(contacts, 1), MEMORY_SIZE)),
-            "inputs": np.zeros((input_rows(len(a.input_names), len(a.motions)), INPUT_SIZE)),
             "signals": a.signals.copy(),
             "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
             "batches": np.zeros(len(a.batches), dtype=np.int64),
@@ -88,7 +88,7 @@ class Workspace:
             **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot", *_OF_STRUCTURE)},
             "stage_v": np.zeros(MOST_STAGES * n_ext),
             "stage_a": np.zeros(MOST_STAGES * n_ext + m_ext),
-            "stage_rows": np.zeros(COUPLED_STAGES * row_length),
+            "stage_rows": np.zeros(COUPLED_STAGES * row_length(a)),
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),
             "row_scale": np.ones(m_ext),
@@ -99,8 +99,6 @@ class Workspace:
             "atol_q": np.zeros(n_ext),
             "atol_v": np.zeros(n_ext),
             "control": np.zeros(CONTROL_SIZE),
-            "counters": np.zeros(COUNTERS_SIZE, dtype=np.int64),
-            "rate": np.zeros(RATE_SIZE),
         }
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
@@ -118,7 +116,7 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0, "n_mass": 0,
                 "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
-                "n_work": len(a.work_names), "row_length": row_length, "part_first": int(constraints_are_cheap(a)),
+                "n_work": len(a.work_names), "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
                 "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
@@ -130,7 +128,11 @@ class Workspace:
 
     def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
         """Own arrays, and records of addresses: of the workspace and of its present structure."""
-        own = [x for name, x in self.arrays.items() if name not in _NEVER_CHANGES and name != "batches"]
+        own = [
+            self.state,
+            self.state_bytes,
+            *(x for name, x in self.arrays.items() if name not in (*_NEVER_CHANGES, "batches")),
+        ]
         for batch in self._batches:
             own.append(batch.arrays["par"])
         arrays, tables = self.structure.memory()
@@ -140,6 +142,7 @@ class Workspace:
     def moved(self, take: Take) -> "Workspace":
         """The same workspace in a copy of its memory (`compiled/image.py`)."""
         new = copy(self)
+        new.state, new.state_bytes = take(self.state), take(self.state_bytes)
         new._record = self._record.moved(take)
         new._batches = [batch.moved(take) for batch in self._batches]
         new.arrays = {**new._record.arrays, "signals": take(self.arrays["signals"])}
@@ -176,11 +179,6 @@ class Workspace:
     def make_basis(self, count: int) -> None:
         """Room for `count` vectors of an accelerated or Krylov outer loop."""
         self._set("basis", np.zeros((count, self.assembly.n_extended)), n_basis=count)
-
-    @property
-    def row_length(self) -> int:
-        """Length of a row of history: q, v, a, aux (each n_ext), lam (m_ext)."""
-        return int(self._record.table["row_length"][0])
 
     def _batch(self, k: int) -> ArrayRecord:
         batch, a = self.assembly.batches[k], self.arrays
