@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from copy import copy
 from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .compiled.image import twin
 from .compiled.notices import compile_notices
 from .description import Model
 from .errors import ModelError
@@ -132,7 +132,7 @@ class CompiledModel:
     def _with_start(self, assembly: Assembly, start: Numbers) -> Assembly:
         if not start:
             return assembly
-        assembly = copy(assembly)
+        assembly = twin(assembly)
         assembly.q0, assembly.v0 = assembly.q0.copy(), assembly.v0.copy()
         values: tuple[NDArray[np.float64], ...] = (assembly.q0, assembly.v0)
         for name, value in start.items():

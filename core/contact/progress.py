@@ -1,10 +1,8 @@
 """Guard against runs that events keep from going on: so many at one instant, or so many in next to no time."""
 
-from copy import copy
-
 import numpy as np
 
-from ..compiled.image import Take
+from ..compiled.image import Take, twin
 from ..errors import SimulationError
 
 AT_ONCE = 50
@@ -32,7 +30,7 @@ class Progress:
 
     def moved(self, take: Take) -> "Progress":
         """The same in a copy of its memory (`compiled/image.py`)."""
-        new = copy(self)
+        new = twin(self)
         new.numbers = take(self.numbers)
         return new
 

@@ -29,7 +29,7 @@ class Unstarted(Simulation):
 
 
 class Blueprint:
-    """Simulations in the state of `sim`, as many as wanted. `sim` itself is left as it is, and is not needed later.
+    """Simulations in the state of `sim`, as many as wanted. `sim` goes on as it did.
 
     Raises
     ------
@@ -41,6 +41,8 @@ class Blueprint:
             raise ModelError(f"a run of a {type(sim.system).__name__} cannot be copied: build another one")
         sim.flush()
         self._sim = sim
+        if sim.workspace.patterns is None:
+            sim.workspace.share_patterns()
         arrays, tables = sim.workspace.memory()
         for record in _records(sim):
             arrays += [x for name, x in record.arrays.items() if name not in (*_BLANK, "probes")]

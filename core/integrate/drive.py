@@ -5,13 +5,12 @@ something comes up that Python has to do.
 of `records` that says what it is.
 """
 
-from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.image import Take
+from ..compiled.image import Take, twin
 from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, vec
@@ -212,7 +211,7 @@ class Drive:
 
     def moved(self, take: Take) -> "Drive":
         """The same in a copy of its memory (`compiled/image.py`)."""
-        new = copy(self)
+        new = twin(self)
         new._record = self._record.moved(take)
         new.goals, new.counts, new.pending, new.events = map(
             new._record.arrays.__getitem__, ("goals", "counts", "pending", "events")

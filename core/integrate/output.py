@@ -1,13 +1,13 @@
 """Channels: named columns computed from recorded samples."""
 
 from collections.abc import Sequence
-from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.image import twin
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel, Enumeration
 from ..model.units import conjugate, per_second, times_second
@@ -104,7 +104,7 @@ class ChannelTable:
 
     def moved(self, assembly: Assembly) -> "ChannelTable":
         """The table of another run, of an assembly that differs in its numbers only."""
-        new = copy(self)
+        new = twin(self)
         if assembly.markers:
             layout = self.layout
             new._markers = MarkerChannels(assembly.markers, (layout.q.start, layout.v.start, layout.a.start))

@@ -1,12 +1,12 @@
 """The Python side of the linear solver: analysis, storage, and what restores a solver's state."""
 
-from copy import copy
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled.image import Take
+from ..compiled.image import Take, twin
 from ..compiled.records import Record
 from .errors import SingularMatrixError
 from .ordering import balancing_scales, choose_pivots, singular_place
@@ -28,6 +28,10 @@ PROGRAM_LIMIT = 4
 _LARGEST_INDEX = 2**32 - 1
 _OWN = ("work", "row_unit", "values", "pivots")
 """Arrays that are not of the pattern."""
+Analyses = dict[bytes, tuple[str, int, dict[str, Any]]]
+"""By permutations."""
+MOST_ANALYSES = 32
+"""Kept for one pattern."""
 _NO_VALUES, _NO_PIVOTS = np.empty(0), np.empty(0, np.int64)
 
 
@@ -55,6 +59,7 @@ class Factorization:
     record : the LU record for `factor` and `solve`. Its memory stays; `analyze` changes its content.
     address : of the record, for `lu_at`.
     arrays : what the addresses in the record point to.
+    analyses : analyses that others of the same pattern have made, to be shared; None: each makes its own.
 
     Raises
     ------
@@ -82,6 +87,7 @@ class Factorization:
         """What to hand to a compiled function."""
         self.arrays: dict[str, NDArray] = {}
         self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
+        self.analyses: Analyses | None = None
         self.col_unit = np.ones(self.n)
         self._set(
             n=self.n,
@@ -103,9 +109,18 @@ class Factorization:
         """Own arrays and records; all others never change, and factorisations of the same pattern share them."""
         return [self.arrays[name] for name in _OWN if name in self.arrays], [self._table]
 
+    def fresh(self) -> "Factorization":
+        """One of the same pattern, in the same state, with memory of its own."""
+        new = twin(self)
+        new._table = self._table.copy()
+        new.record = Record(new._table)
+        new.arrays = self.arrays.copy()
+        new._set(**{name: self.arrays[name].copy() for name in _OWN if name in self.arrays})
+        return new
+
     def moved(self, take: Take) -> "Factorization":
         """The same factorisation in a copy of its memory (`compiled/image.py`)."""
-        new = copy(self)
+        new = twin(self)
         new._table = take(self._table)
         new.record = Record(new._table)
         new.arrays = self.arrays.copy()
@@ -189,6 +204,19 @@ class Factorization:
         for name, p in (("perm_r", perm_r), ("perm_c", perm_c)):
             if not np.array_equal(np.sort(p), np.arange(self.n)):
                 raise ValueError(f"{name} must be a permutation of 0..{self.n - 1}")
+        key = perm_r.tobytes() + perm_c.tobytes()
+        known = None if self.analyses is None else self.analyses.get(key)
+        if known is None:
+            known = self._analysis_of(perm_r, perm_c)
+            if self.analyses is not None and len(self.analyses) < MOST_ANALYSES:
+                self.analyses[key] = known
+        kind, count, fields = known
+        self._set(**self._functions(kind), values=np.zeros(count), **fields)
+        self._growth_limits()[:] = np.inf
+        self._permutations = (perm_r, perm_c)
+
+    def _analysis_of(self, perm_r: Ints, perm_c: Ints) -> tuple[str, int, dict[str, Any]]:
+        """Kind of the factorisation, number of stored values, and the fields of its pattern."""
         n = self.n
         row, col = perm_r[self.rows], perm_c[self.cols]
         l, u = fill_pattern(n, row, col)
@@ -215,17 +243,9 @@ class Factorization:
             **dict(zip(("sum_left", "sum_right"), operations.sums, strict=True)),
             **{f"{name}_{field}": value for name, t in (("l", l), ("u", u)) for field, value in t._asdict().items()},
         }
-        self._set(
-            **self._functions(kind),
-            nl=nl,
-            nu=nu,
-            n_steps=operations.steps.shape[1],
-            n_sums=operations.sums.shape[1],
-            values=np.zeros(nl + nu + 2 * n),
-            **{name: array.astype(np.uint32) for name, array in indices.items()},
-        )
-        self._growth_limits()[:] = np.inf
-        self._permutations = (perm_r, perm_c)
+        fields: dict[str, Any] = {name: np.ascontiguousarray(x, dtype=np.uint32) for name, x in indices.items()}
+        fields |= {"nl": nl, "nu": nu, "n_steps": operations.steps.shape[1], "n_sums": operations.sums.shape[1]}
+        return kind, nl + nu + 2 * n, fields
 
     def _functions(self, kind: str) -> dict[str, int]:
         self.kind = kind
@@ -278,6 +298,6 @@ class Factorization:
         for name, value in fields.items():
             if isinstance(value, np.ndarray):
                 self.arrays[name] = value = np.ascontiguousarray(value)
-                self._table[name] = value.ctypes.data
+                self._table[name] = value.__array_interface__["data"][0]
             else:
                 self._table[name] = value

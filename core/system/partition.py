@@ -21,10 +21,12 @@ def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPiv
     Columns are scaled by the size of their coordinates, so that units do not choose.
     """
     assembly, active = workspace.assembly, workspace.structure.active
+    if len(active) == 0:
+        none = np.zeros(0, dtype=np.int64)
+        return RowPivots(none, 0, none, [])
     rows, cols, values = workspace.jacobian()
-    order = np.lexsort((cols, rows))
-    indptr = np.searchsorted(rows[order], np.arange(len(active) + 1))
-    return pivot_rows(len(active), assembly.n, indptr, cols[order], values[order], assembly.coordinate_scale, tolerance)
+    indptr = np.searchsorted(rows, np.arange(len(active) + 1))
+    return pivot_rows(len(active), assembly.n, indptr, cols, values, assembly.coordinate_scale, tolerance)
 
 
 def what_repeats(workspace: Workspace, pivots: RowPivots) -> str:
@@ -101,6 +103,8 @@ def prepare(workspace: Workspace) -> None:
 def _probe(workspace: Workspace) -> NDArray[np.float64]:
     """A violation of every row (m_act,) that a coordinate moved by its scale would cause, with weights from 1/2 to 3/2
     and signs in no simple order."""
+    if not len(workspace.structure.active):
+        return np.zeros(0)
     rows, cols, values = workspace.jacobian()
     size = np.zeros(len(workspace.structure.active))
     np.maximum.at(size, rows, np.abs(values) * workspace.assembly.coordinate_scale[cols])

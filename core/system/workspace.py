@@ -1,13 +1,12 @@
 """Workspace: the arrays of one running system and the record through which compiled code reaches them."""
 
 from collections.abc import Sequence
-from copy import copy
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.image import Take
+from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record
@@ -36,6 +35,7 @@ _NEVER_CHANGES = (
 )  # fmt: skip
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
+_CONDITIONS = [*CONDITIONS]
 MOST_STRUCTURES = 32
 """Kept, for as many sets of closed contacts: with a contact at every node there are endless many."""
 MOST_STAGES = 13
@@ -103,6 +103,7 @@ class Workspace:
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
         self._structures: dict[tuple[frozenset[int], ...], Structure] = {}
+        self.patterns: dict[tuple[frozenset[int], ...], Structure] | None = None
         self.units = np.ones(a.n + m_ext)
         """What brings coordinates (with forces) and rows of Phi (with multipliers) to one unit."""
         self.dropped: frozenset[int] = frozenset()
@@ -141,7 +142,7 @@ class Workspace:
 
     def moved(self, take: Take) -> "Workspace":
         """The same workspace in a copy of its memory (`compiled/image.py`)."""
-        new = copy(self)
+        new = twin(self)
         new.state, new.state_bytes = take(self.state), take(self.state_bytes)
         new._record = self._record.moved(take)
         new._batches = [batch.moved(take) for batch in self._batches]
@@ -225,7 +226,7 @@ class Workspace:
             ):
                 batch.set_array(name, table)
             batch.set_array("values", values)
-            batch.table["n_values"] = len(values)
+            batch.set_size("n_values", len(values))
         self._set("entry_row", structure.rows)
         self._set("entry_col", structure.cols)
         self._set("mass_slot", structure.mass_slot, n_mass=len(structure.mass_slot))
@@ -233,25 +234,47 @@ class Workspace:
             self._set(name, getattr(structure, name))
         self._record.table["kkt"] = structure.kkt.address
         self._record.table["kkt_query"] = structure.kkt_query.address
-        self.arrays["rate"][FACTOR_AGE] = -1.0
-        self.arrays["rate"][[*CONDITIONS]] = 0.0
+        self._forget()
         if structure.dependent is not None:
             self._use_partition()
+
+    def _forget(self) -> None:
+        """What is known of the matrices' factors and conditions holds no more."""
+        self.arrays["rate"][FACTOR_AGE] = -1.0
+        self.arrays["rate"][_CONDITIONS] = 0.0
 
     def use_units(self, units: NDArray[np.float64]) -> None:
         """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
         self.units = units
-        self.engage(*self.key)
+        self.structure.use_units(units, self.assembly.n)
+        self.arrays["values"][:] = 0.0
+        self._forget()
 
     def structure_of(self, *key: frozenset[int]) -> Structure:
         """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
-        structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
+        structure = self._structures.pop(key, None) or self._new_structure(*key)
         while len(self._structures) >= MOST_STRUCTURES:
             del self._structures[next(iter(self._structures))]
         self._structures[key] = structure
         if structure.units is not self.units:
             structure.use_units(self.units, self.assembly.n)
         return structure
+
+    def _new_structure(self, *key: frozenset[int]) -> Structure:
+        if self.patterns is None:
+            return build_structure(self.assembly, *key)
+        known = self.patterns.get(key)
+        if known is None:
+            known = build_structure(self.assembly, *key)
+            known.share()
+            if len(self.patterns) < MOST_STRUCTURES:
+                self.patterns[key] = known
+        return known.fresh()
+
+    def share_patterns(self) -> None:
+        """Let copies of this workspace share the patterns that any of them meets."""
+        self.patterns = {}
+        self.structure.share()
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
@@ -287,10 +310,9 @@ class Workspace:
         self.arrays[name] = array
         self._record.set_array(name, array)
         for size, value in sizes.items():
-            self._record.table[size] = value
+            self._record.set_size(size, value)
 
     def jacobian(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
         """Rows (of the active constraints), columns and values of Phi_q as last evaluated."""
-        structure, n = self.structure, self.assembly.n
-        here = np.flatnonzero((structure.rows >= n) & (structure.cols < n))
-        return structure.rows[here] - n, structure.cols[here], self.arrays["values"][here]
+        structure = self.structure
+        return structure.jacobian_row, structure.jacobian_col, self.arrays["values"][structure.jacobian_slot]
