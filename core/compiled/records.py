@@ -16,7 +16,7 @@ _KINDS = frozenset((np.dtype(np.float64).char, np.dtype(np.int64).char))
 @cache
 def _words_of(dtype: np.dtype) -> dict[str, int]:
     """Place of each field among the 8-byte words of the record."""
-    return {name: offset // 8 for name, (_, offset) in dtype.fields.items()} if dtype.fields else {}
+    return {name: field[1] // 8 for name, field in (dtype.fields or {}).items()}
 
 
 @cache

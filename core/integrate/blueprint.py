@@ -41,8 +41,8 @@ class Blueprint:
             raise ModelError(f"a run of a {type(sim.system).__name__} cannot be copied: build another one")
         sim.flush()
         self._sim = sim
-        if sim.workspace.patterns is None:
-            sim.workspace.share_patterns()
+        if not sim.workspace.patterns.shares:
+            sim.workspace.patterns.share(sim.workspace.structure)
         arrays, tables = sim.workspace.memory()
         for record in _records(sim):
             arrays += [x for name, x in record.arrays.items() if name not in (*_BLANK, "probes")]

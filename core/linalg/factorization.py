@@ -26,12 +26,9 @@ DENSE_LIMIT = 8
 PROGRAM_LIMIT = 4
 # Indices are unsigned 32-bit.
 _LARGEST_INDEX = 2**32 - 1
-_OWN = ("work", "row_unit", "values", "pivots")
-"""Arrays that are not of the pattern."""
-Analyses = dict[bytes, tuple[str, int, dict[str, Any]]]
-"""By permutations."""
-MOST_ANALYSES = 32
-"""Kept for one pattern."""
+_OWN = ("work", "row_unit", "values", "pivots")  # arrays that are not of the pattern
+Analyses = dict[bytes, tuple[str, int, dict[str, Any]]]  # by permutations
+MOST_ANALYSES = 32  # kept for one pattern
 _NO_VALUES, _NO_PIVOTS = np.empty(0), np.empty(0, np.int64)
 
 

@@ -12,8 +12,8 @@ PROBES = 4
 
 SQUARE, WORK, HEAVIEST, STIFFEST = range(4)
 MEASURED = 4
-"""Of `measure_motion`: the largest square of a rate (1/s^2) and the largest work (J), 0 where there is none; the largest
-mass (kg m^2), and how stiff what holds the masses is (1/s^2)."""
+"""Of `measure_motion`: the largest square of a rate (1/s^2) and the largest work (J), 0 where there is none; the
+largest mass (kg m^2), and how stiff what holds the masses is (1/s^2)."""
 
 
 @internal

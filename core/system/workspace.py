@@ -13,6 +13,7 @@ from ..compiled.records import ArrayRecord, Record
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
+from .patterns import Patterns
 from .records import (
     CONDITIONS,
     CONTROL_SIZE,
@@ -22,7 +23,7 @@ from .records import (
     WORKSPACE,
 )
 from .state_fields import STATE, Field, row_length, state_fields
-from .structure import Structure, build_structure
+from .structure import Structure
 
 _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
@@ -36,8 +37,6 @@ _NEVER_CHANGES = (
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
 _CONDITIONS = [*CONDITIONS]
-MOST_STRUCTURES = 32
-"""Kept, for as many sets of closed contacts: with a contact at every node there are endless many."""
 MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
 
@@ -102,8 +101,7 @@ class Workspace:
         }
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
-        self._structures: dict[tuple[frozenset[int], ...], Structure] = {}
-        self.patterns: dict[tuple[frozenset[int], ...], Structure] | None = None
+        self.patterns = Patterns()
         self.units = np.ones(a.n + m_ext)
         """What brings coordinates (with forces) and rows of Phi (with multipliers) to one unit."""
         self.dropped: frozenset[int] = frozenset()
@@ -148,7 +146,7 @@ class Workspace:
         new._batches = [batch.moved(take) for batch in self._batches]
         new.arrays = {**new._record.arrays, "signals": take(self.arrays["signals"])}
         new.structure = self.structure.moved(take)
-        new._structures = {(*self.key, self.dropped): new.structure}
+        new.patterns = self.patterns.of_copy((*self.key, self.dropped), new.structure)
         return new
 
     def take_numbers(self, assembly: Assembly) -> None:
@@ -252,29 +250,10 @@ class Workspace:
 
     def structure_of(self, *key: frozenset[int]) -> Structure:
         """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
-        structure = self._structures.pop(key, None) or self._new_structure(*key)
-        while len(self._structures) >= MOST_STRUCTURES:
-            del self._structures[next(iter(self._structures))]
-        self._structures[key] = structure
+        structure = self.patterns.get(self.assembly, key)
         if structure.units is not self.units:
             structure.use_units(self.units, self.assembly.n)
         return structure
-
-    def _new_structure(self, *key: frozenset[int]) -> Structure:
-        if self.patterns is None:
-            return build_structure(self.assembly, *key)
-        known = self.patterns.get(key)
-        if known is None:
-            known = build_structure(self.assembly, *key)
-            known.share()
-            if len(self.patterns) < MOST_STRUCTURES:
-                self.patterns[key] = known
-        return known.fresh()
-
-    def share_patterns(self) -> None:
-        """Let copies of this workspace share the patterns that any of them meets."""
-        self.patterns = {}
-        self.structure.share()
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
