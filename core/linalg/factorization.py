@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled.image import Take, twin
 from ..compiled.records import Record
+from .check_pattern import LARGEST_INDEX, check_pattern
 from .errors import SingularMatrixError
 from .ordering import balancing_scales, choose_pivots, singular_place
 from .record import GROWTH, LU, OK
@@ -24,8 +25,6 @@ DENSE_LIMIT = 8
 # The list of operations is written down while it is at most this many times the fill. Measured: 1.2-1.5 times
 # faster than by columns for chains (1.1 operations an entry), 1.2-1.7 times slower for spring grids (10-30).
 PROGRAM_LIMIT = 4
-# Indices are unsigned 32-bit.
-_LARGEST_INDEX = 2**32 - 1
 _OWN = ("work", "row_unit", "values", "pivots")  # arrays that are not of the pattern
 Analyses = dict[bytes, tuple[str, int, dict[str, Any]]]  # by permutations
 MOST_ANALYSES = 32  # kept for one pattern
@@ -78,13 +77,14 @@ class Factorization:
             source_size = int(self.slots.max(initial=-1)) + 1
         self.source_size = int(source_size)
         self.dense = self.n <= DENSE_LIMIT if dense is None else bool(dense)
-        self._check()
+        check_pattern(self.n, self.rows, self.cols, self.slots, self.source_size)
         self._table = np.zeros(1, LU)
         self.record = Record(self._table)
         """What to hand to a compiled function."""
         self.arrays: dict[str, NDArray] = {}
         self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
         self.analyses: Analyses | None = None
+        self.kind = "unready"
         self.col_unit = np.ones(self.n)
         self._set(
             n=self.n,
@@ -109,7 +109,7 @@ class Factorization:
     def fresh(self) -> "Factorization":
         """One of the same pattern, in the same state, with memory of its own."""
         new = twin(self)
-        new._table = self._table.copy()
+        new._table = self._table.view(np.uint8).copy().view(LU)  # not field by field
         new.record = Record(new._table)
         new.arrays = self.arrays.copy()
         new._set(**{name: self.arrays[name].copy() for name in _OWN if name in self.arrays})
@@ -187,6 +187,17 @@ class Factorization:
             np.maximum.at(largest, column, np.abs(self.lu_values[:nl]))
             self._growth_limits()[:] = GROWTH * largest
 
+    def follow(self, other: "Factorization") -> None:
+        """Take pattern and factors of `other`, which has the same entries, slots and units."""
+        if self.dense:
+            self.pivots[:] = other.pivots
+            self.lu_values[:] = other.lu_values
+            return
+        own = {name: self.arrays[name] for name in ("work", "row_unit")}
+        self._table.view(np.uint8)[:] = other._table.view(np.uint8)
+        self.arrays, self.kind, self._permutations = other.arrays.copy(), other.kind, other._permutations
+        self._set(values=other.lu_values.copy(), **own)
+
     def analyze_with(self, perm_r: ArrayLike, perm_c: ArrayLike) -> None:
         """Rebuild pattern and storage from the permutations of an earlier `analysis()`, without values.
 
@@ -218,7 +229,7 @@ class Factorization:
         row, col = perm_r[self.rows], perm_c[self.cols]
         l, u = fill_pattern(n, row, col)
         nl, nu = len(l.row), len(u.row)
-        if nl + nu + 2 * n > _LARGEST_INDEX:
+        if nl + nu + 2 * n > LARGEST_INDEX:
             raise ValueError(f"{nl + nu + 2 * n} stored values are more than 32-bit indices can reach")
         if count_operations(l, u) <= PROGRAM_LIMIT * (nl + nu + n):
             kind, operations = "program", operation_list(n, l, u)
@@ -263,27 +274,6 @@ class Factorization:
 
     def _growth_limits(self) -> Floats:
         return self.lu_values[len(self.lu_values) - self.n :]
-
-    def _check(self) -> None:
-        if self.n < 0:
-            raise ValueError(f"n = {self.n} must not be negative")
-        lengths = [a.shape for a in (self.rows, self.cols, self.slots)]
-        if len(set(lengths)) != 1 or len(lengths[0]) != 1:
-            raise ValueError(f"rows, cols and slots must be vectors of one length, not of shapes {lengths}")
-        limits = (
-            ("rows", self.rows, self.n),
-            ("cols", self.cols, self.n),
-            ("slots", self.slots, self.source_size),
-        )
-        for name, array, limit in limits:
-            if len(array) and (array.min() < 0 or array.max() >= limit):
-                raise ValueError(f"{name} must be in 0..{limit - 1}, they range from {array.min()} to {array.max()}")
-        if self.source_size > _LARGEST_INDEX:
-            raise ValueError(f"a source array of {self.source_size} is more than 32-bit indices can reach")
-        place, count = np.unique(self.rows * self.n + self.cols, return_counts=True)
-        if np.any(count > 1):
-            twice = int(place[np.argmax(count > 1)])
-            raise ValueError(f"entry ({twice // self.n}, {twice % self.n}) is given more than once")
 
     def _source(self, values: Floats) -> Floats:
         values = np.ascontiguousarray(values, dtype=np.float64)

@@ -26,7 +26,9 @@ def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPiv
         return RowPivots(none, 0, none, [])
     rows, cols, values = workspace.jacobian()
     indptr = np.searchsorted(rows, np.arange(len(active) + 1))
-    return pivot_rows(len(active), assembly.n, indptr, cols, values, assembly.coordinate_scale, tolerance)
+    check = not np.isfinite(values).all()  # which says what is wrong; all else holds by itself
+    scale = assembly.coordinate_scale
+    return pivot_rows(len(active), assembly.n, indptr, cols, values, scale, tolerance, check)
 
 
 def what_repeats(workspace: Workspace, pivots: RowPivots) -> str:
@@ -84,7 +86,7 @@ def prepare(workspace: Workspace) -> None:
     counters = workspace.arrays["counters"]
     counters[PARTITIONS] += 1
     counters[ANALYSES] += 1
-    for factorization in (structure.kkt, structure.kkt_query, structure.lu_d):
+    for factorization in (structure.kkt, structure.lu_d):
         if factorization is None or factorization.n == 0:
             continue
         try:
@@ -94,6 +96,7 @@ def prepare(workspace: Workspace) -> None:
                 f"the system matrix is singular in this configuration ({error}): some coordinate has neither mass "
                 "nor a constraint, or a value is not finite"
             ) from error
+    structure.kkt_query.follow(structure.kkt)
     workspace.set_probe(_probe(workspace))
     workspace.arrays["rate"][FACTOR_AGE] = -1.0
     workspace.arrays["rate"][SENSITIVITY] = 0.0
