@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .compiled_model import CompiledModel, compile_model
-from .errors import ModelError, SimulationError, TlismniError
+from .errors import ModelError, SimulationError
 from .runs import Runs
 from .simulate import check_end, check_times
 
@@ -109,7 +109,7 @@ def _run(
         sim.run_to(t_end)
         if times is None:
             found.put(row, 0, sim.values()[place])
-    except TlismniError as error:
+    except Exception as error:  # of own functions too: the other runs go on
         reached = error.t if isinstance(error, SimulationError) else compiled.t0
         found.close(row, reached, sim, error)
     else:

@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from tlismni.core import ModelError, compile_model, simulate, simulate_many
+from tlismni.core import EquationSystem, ModelError, compile_model, simulate, simulate_many
 from tlismni.models import load
 
 RESTITUTION = np.linspace(0.2, 0.9, 12)
@@ -75,6 +75,19 @@ def test_failures_are_rows_with_their_cause():
     assert "overlapping by 0.5 m" in str(found.failures[1])
     assert "overlapping" in found.table["cause"][1]
     assert np.isnan(found["ball.y"][1]) and found["ball.y"][2] == pytest.approx(2.0 - 0.5 * 9.81 * 0.09, abs=1e-8)
+
+
+def test_an_error_of_an_own_function_is_the_cause_of_its_row():
+    def force(t, q, v):
+        if t > 0.1 and v[0] > 1.0:
+            raise ArithmeticError("too fast")
+        return np.array([0.0])
+
+    system = EquationSystem(mass=lambda t, q: np.array([[1.0]]), force=force, q0=[0.0], v0=[0.0])
+    name, rate = compile_model(system).channels[:2]
+    found = simulate_many(system, None, 0.5, start={rate: [0.5, 2.0, 0.25]}, threads=2)
+    assert [type(error) for error in found.failures.values()] == [ArithmeticError] and found.failed[1]
+    assert found[name][[0, 2]] == pytest.approx([0.25, 0.125])
 
 
 def test_a_run_that_fails_on_its_way_tells_how_far_it_came():
