@@ -1,5 +1,6 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
 
+from .compiled_model import CompiledModel, compile_model
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
 from .contact.disk_on_cable import DiskOnCable2D
@@ -80,7 +81,9 @@ from .model.markers import Marker2D
 from .model.outputs import MarkerOutput2D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
 from .result import Result
+from .runs import Runs
 from .simulate import simulate
+from .simulate_many import simulate_many
 from .state import State
 from .system.redundancy import RedundantRow
 from .tolerances import OfScales
@@ -98,6 +101,7 @@ __all__ = [
     "CarvalhoMartins",
     "Channel",
     "Clamp2D",
+    "CompiledModel",
     "ConsistencyError",
     "Constant",
     "CoordinateContact",
@@ -156,6 +160,7 @@ __all__ = [
     "Result",
     "Revolute2D",
     "RigidBody2D",
+    "Runs",
     "Segment2D",
     "Simulation",
     "SimulationError",
@@ -174,11 +179,13 @@ __all__ = [
     "axial_strain",
     "bending_moment",
     "bending_stress",
+    "compile_model",
     "curvature",
     "deformed_shape",
     "force_formula",
     "section",
     "simulate",
+    "simulate_many",
     "sphere_on_plane",
     "sphere_on_sphere",
     "stress",

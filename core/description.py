@@ -151,8 +151,18 @@ class Model(Record):
                 return parameter
         raise ModelError(f"model '{self.name}' has no parameter '{name}'; it has {[p.name for p in self.parameters]}")
 
+    def _place(self, target: str) -> Parameter:
+        """What stands for the number at `target`."""
+        parameter = Parameter.model_construct(name=target, targets=(target,))
+        try:
+            self._number_at(parameter, target)
+        except ValueError as error:
+            raise ModelError(str(error)) from None
+        return parameter
+
     def with_parameters(self, values: Mapping[str, float]) -> "Model":
-        """The same model with other parameter values.
+        """The same model with other parameter values. Numbers that no parameter stands for go by their place, as in
+        `Parameter.targets` ("ball.mass").
 
         Raises
         ------
@@ -161,7 +171,7 @@ class Model(Record):
         data = self.model_dump(mode="json")
         elements = {e["name"]: e for kind in ("bodies", "joints", "forces", "contacts") for e in data[kind]}
         for name, value in values.items():
-            parameter = self._parameter(name)
+            parameter = self._place(name) if "." in name else self._parameter(name)
             if isinstance(value, bool) or not isinstance(value, Real):
                 raise ModelError(f"parameter '{name}' = {value!r}: a number is needed")
             try:

@@ -61,17 +61,13 @@ def simulate(
     ------
     ModelError : for bad arguments. ConsistencyError : for a start that does not meet the constraints.
     """
-    for name, value in (("t0", t0), ("t_end", t_end)):
-        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-            raise ModelError(f"{name} must be a finite number, not {value!r}")
+    check_end(t0, t_end)
     t0, t_end = float(t0), float(t_end)
-    if t_end < t0:
-        raise ModelError(f"t_end = {t_end!r} lies before t0 = {t0!r}")
     if isinstance(step, Real) and step > 0.0 and (t_end - t0) / step > MOST_STEPS:
         raise ModelError(
             f"step = {step!r} would take {(t_end - t0) / step:.3g} steps from t0 to t_end: use a larger one"
         )
-    times = None if t_eval is None else _check_times(t_eval, t0, t_end)
+    times = None if t_eval is None else check_times(t_eval, t0, t_end)
     sim = Simulation(
         system, method, rtol, atol, step=step, t0=t0, record=_check_stride(record) if times is None else 0, **options
     )
@@ -117,7 +113,17 @@ def _check_stride(record: bool | int) -> int:
     return int(record)
 
 
-def _check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:
+def check_end(t0: float, t_end: float) -> None:
+    """Raise ModelError for times that are not finite, or an end before the start."""
+    for name, value in (("t0", t0), ("t_end", t_end)):
+        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+            raise ModelError(f"{name} must be a finite number, not {value!r}")
+    if t_end < t0:
+        raise ModelError(f"t_end = {float(t_end)!r} lies before t0 = {float(t0)!r}")
+
+
+def check_times(t_eval: ArrayLike, t0: float, t_end: float) -> np.ndarray:
+    """`t_eval` as an array (times,). Raises ModelError unless it ascends within [t0, t_end]."""
     try:
         times = np.asarray(t_eval, dtype=float)
     except (TypeError, ValueError):

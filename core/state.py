@@ -8,7 +8,7 @@ import hashlib
 import json
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,23 @@ class State:
     events: tuple[Event, ...] = ()
     foreign: bool = field(default=False, compare=False)
     """Made from bytes, which anybody may have written: what it holds is looked at before it is used."""
+
+    parts: ClassVar[Any] = None
+    """As a simulation took it (`integrate/snapshot.py`): arrays and facts are made of this when they are asked for."""
+
+    @classmethod
+    def of_parts(cls, parts: Any, model_hash: str, events: tuple[Event, ...]) -> "State":
+        """The state that a simulation hands out."""
+        state = object.__new__(cls)
+        state.__dict__.update(parts=parts, model_hash=model_hash, events=events, foreign=False)
+        return state
+
+    def __getattr__(self, name: str) -> Any:
+        if self.parts is None or name not in ("arrays", "facts"):
+            raise AttributeError(f"a State has no attribute '{name}'")
+        value = getattr(self.parts, name)()
+        self.__dict__[name] = value
+        return value
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, State):

@@ -8,6 +8,16 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from .image import Take
+
+_KINDS = frozenset((np.dtype(np.float64).char, np.dtype(np.int64).char))
+
+
+@cache
+def _words_of(dtype: np.dtype) -> dict[str, int]:
+    """Place of each field among the 8-byte words of the record."""
+    return {name: field[1] // 8 for name, field in (dtype.fields or {}).items()}
+
 
 @cache
 def _type_of(dtype: np.dtype) -> Any:
@@ -57,22 +67,37 @@ class ArrayRecord:
                 f"the fields of the record are {sorted(names)}: missing {sorted(names - given)}, "
                 f"unknown {sorted(given - names)}"
             )
-        self.table = table
-        self.record = Record(table)
-        """What to hand to a compiled function."""
+        self._use(table)
         for name, array in arrays.items():
             self.set_array(name, array)
         for name, size in sizes.items():
             table[name] = size
 
+    def _use(self, table: NDArray[Any]) -> None:
+        self.table, self._words, self._place = table, table.view(np.int64), _words_of(table.dtype)
+        self.record = Record(table)
+        """What to hand to a compiled function."""
+
     def set_array(self, name: str, array: NDArray) -> None:
         """Let field `name` point to `array`."""
-        if not isinstance(array, np.ndarray) or array.dtype not in (np.float64, np.int64):
+        if not isinstance(array, np.ndarray) or array.dtype.char not in _KINDS:
             raise TypeError(f"array '{name}' must be float64 or int64, not {getattr(array, 'dtype', type(array))}")
         if not array.flags.c_contiguous:
             raise TypeError(f"array '{name}' must be C-contiguous")
         self.arrays[name] = array
-        self.table[name] = array.ctypes.data
+        # a word takes a tenth of the time of a field, this a third of that of `array.ctypes.data`
+        self._words[self._place[name]] = array.__array_interface__["data"][0]
+
+    def set_size(self, name: str, size: int) -> None:
+        """Let field `name` be `size`."""
+        self._words[self._place[name]] = size
+
+    def moved(self, take: Take) -> "ArrayRecord":
+        """The same record in a copy of its memory (`image.py`)."""
+        new = object.__new__(ArrayRecord)
+        new._use(take(self.table))
+        new.arrays = {name: take(array) for name, array in self.arrays.items()}
+        return new
 
     @property
     def address(self) -> int:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..compiled.image import Take, twin
 from ..errors import SimulationError
 
 AT_ONCE = 50
@@ -26,6 +27,12 @@ class Progress:
 
     def __init__(self, start: float) -> None:
         self.numbers = np.array([start, start, 0.0])
+
+    def moved(self, take: Take) -> "Progress":
+        """The same in a copy of its memory (`compiled/image.py`)."""
+        new = twin(self)
+        new.numbers = take(self.numbers)
+        return new
 
     def note(self, t: float, here: int, contacts: list[str]) -> None:
         """Events of `contacts` (names) at time t, s, the `here`-th time at this instant.

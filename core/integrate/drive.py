@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.image import Take, twin
 from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, vec
@@ -148,6 +149,19 @@ def _law(assembly: Assembly, k: int, contact: ContactInfo) -> int:
     return POISSON if isinstance(contact.law, PoissonImpact) else OTHER
 
 
+def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
+    """What the record takes from the model."""
+    contacts = assembly.contacts
+    impacts = [c.law if isinstance(c.law, ImpactLaw) else None for c in contacts]
+    return {
+        "breakpoints": np.array(assembly.breakpoints, dtype=np.float64),
+        "law": np.array([_law(assembly, k, c) for k, c in enumerate(contacts)], dtype=np.int64),
+        "restitution": np.array([law.restitution if law else 0.0 for law in impacts], dtype=np.float64),
+        "rest_ratio": np.array([law.rest_ratio if law else 0.0 for law in impacts], dtype=np.float64),
+        "friction": np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in contacts], dtype=np.float64),
+    }
+
+
 class Drive:
     """What `drive` of one run works with.
 
@@ -164,16 +178,11 @@ class Drive:
         self.goals[HANDLED_AT] = np.nan
         self.pending = np.zeros(count, dtype=np.int64)
         self.events = np.zeros((EVENT_ROWS if contacts else 1, EVENT_SIZE))
-        impacts = [c.law if isinstance(c.law, ImpactLaw) else None for c in contacts]
         self._record = ArrayRecord(
             DRIVE,
             {
                 "goals": self.goals, "counts": self.counts, "guard": guard.numbers, "pending": self.pending,
-                "breakpoints": np.array(assembly.breakpoints, dtype=np.float64),
-                "law": np.array([_law(assembly, k, c) for k, c in enumerate(contacts)], dtype=np.int64),
-                "restitution": np.array([law.restitution if law else 0.0 for law in impacts]),
-                "rest_ratio": np.array([law.rest_ratio if law else 0.0 for law in impacts]),
-                "friction": np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in contacts]),
+                **_numbers_of(assembly),
                 "found": np.zeros((count, FOUND_SIZE)), "events": self.events, "last_trial": np.zeros(1),
                 "nearest": np.zeros(NEAREST),
                 **{name: np.zeros(n_ext) for name in ("velocities", "gradient", "response", "sideways")},
@@ -194,6 +203,25 @@ class Drive:
     def address(self) -> int:
         """Address of the record."""
         return self._record.address
+
+    @property
+    def record(self) -> ArrayRecord:
+        """The record and its arrays."""
+        return self._record
+
+    def moved(self, take: Take) -> "Drive":
+        """The same in a copy of its memory (`compiled/image.py`)."""
+        new = twin(self)
+        new._record = self._record.moved(take)
+        new.goals, new.counts, new.pending, new.events = map(
+            new._record.arrays.__getitem__, ("goals", "counts", "pending", "events")
+        )
+        return new
+
+    def take_numbers(self, assembly: Assembly) -> None:
+        """Go on with another assembly of the same tables but for their numbers."""
+        for name, numbers in _numbers_of(assembly).items():
+            self._record.arrays[name][:] = numbers
 
     def go(self, t: float, stop: float, budget: int, hold: bool) -> int:
         """`drive` to `t` (s); no step goes beyond `stop`."""

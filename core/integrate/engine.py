@@ -43,7 +43,7 @@ from .ready import make_ready
 from .records import HANDLED, HANDLED_AT, HERE, MAX_STEP, STEP_SIZE
 from .sample import write_sample
 from .settings import Settings, set_control
-from .setup import build_loop, build_method
+from .setup import build_loop, build_method, state_fields
 from .watch import remember
 
 logger = logging.getLogger(__name__)
@@ -103,7 +103,7 @@ class Engine(ContactSide):
             raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
         self.system = system
         self.assembly: Assembly = system.assemble()
-        self.workspace = Workspace(self.assembly)
+        self.workspace = Workspace(self.assembly, state_fields(self.assembly))
         self.table = ChannelTable(system, self.assembly)
         self.events: list[Event] = []
         self.progress: Callable[[float], None] | None = None
@@ -116,26 +116,39 @@ class Engine(ContactSide):
         self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
-        self._method = build_method(self.formula, self.settings, self.workspace.row_length)
-        self.method_arrays: dict[str, NDArray[Any]] = self._method.arrays
+        self._method = build_method(self.formula, self.settings, self.workspace.state)
         self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
-        self.clock, self.watch = self._loop.arrays["clock"], self._loop.arrays["watch"]
-        self.brackets = self._loop.arrays["brackets"]
-        self.buffer, self.cursor = self._loop.arrays["samples"], self._loop.arrays["cursor"]
-        self.log_buffer, self.log_cursor = self._loop.arrays["log"], self._loop.arrays["log_cursor"]
+        self.name_arrays()
         self.fine_starter = step_address(FINE_STARTER)
         self.guard = Progress(float(t0))
         self.drive = Drive(self, self.guard)
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
+        self.scales: Scales
+        if self._begins:
+            self.begin()
+        make_ready(self)
+
+    _begins = True
+    """Whether a run begins as soon as it is built."""
+
+    def begin(self) -> None:
+        """Measure the model's scales and make a consistent start."""
         with user_errors(self.assembly):
             self._given_start()
-            self.scales: Scales = measure_scales(self.workspace)
+            self.scales = measure_scales(self.workspace)
             set_control(
                 self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays, self.scales.rate
             )
             self._start()
-        make_ready(self)
+
+    def name_arrays(self) -> None:
+        """Names for arrays of the records."""
+        loop = self._loop.arrays
+        self.method_arrays = self._method.arrays
+        self.clock, self.watch, self.brackets = loop["clock"], loop["watch"], loop["brackets"]
+        self.buffer, self.cursor = loop["samples"], loop["cursor"]
+        self.log_buffer, self.log_cursor = loop["log"], loop["log_cursor"]
 
     # ---- set-up -------------------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.image import twin
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel, Enumeration
 from ..model.units import conjugate, per_second, times_second
@@ -100,6 +101,14 @@ class ChannelTable:
         self.index = {channel.name: k for k, channel in enumerate(self.channels)}
         self.balance = self.index["energy.balance"]
         self._prepare_values()
+
+    def moved(self, assembly: Assembly) -> "ChannelTable":
+        """The table of another run, of an assembly that differs in its numbers only."""
+        new = twin(self)
+        if assembly.markers:
+            layout = self.layout
+            new._markers = MarkerChannels(assembly.markers, (layout.q.start, layout.v.start, layout.a.start))
+        return new
 
     def _prepare_values(self) -> None:
         """The formulas as index arrays, for one sample at a time."""

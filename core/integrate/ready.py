@@ -23,6 +23,7 @@ from ..stage import OUTER_LOOPS
 from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import constraint_norm, evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..system.levels import force_level, position_level, rate_level
+from ..system.measure import measure_motion, measure_rows
 from ..system.projection import least_correction
 from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
 from .dense_output import interpolate, query
@@ -60,6 +61,8 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (evaluate_power, (_WORKSPACE,)),
     (evaluate_energy, (_WORKSPACE,)),
     (constraint_norm, (_WORKSPACE, _WHOLE)),
+    (measure_rows, (_WORKSPACE, _VECTOR, _VECTOR)),
+    (measure_motion, (_WORKSPACE, *(_VECTOR,) * 3, _WHOLE, _VECTOR, _VECTOR)),
     (position_level, (_WORKSPACE,)),
     (rate_level, (_WORKSPACE,)),
     (force_level, (_WORKSPACE,)),

@@ -5,21 +5,21 @@ import json
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
-from ..events import Fallback
+from ..events import Event, Fallback
 from ..methods.history import recall
 from ..stage.accelerations import solve_accelerations
 from ..state import State
 from ..system.records import FACTOR_AGE, OK
 from .dense_output import query
 from .records import HANDLED_AT, HERE
+from .snapshot import Snapshot, snapshot_of, take_snapshot
 from .state_check import check_state
 
 if TYPE_CHECKING:
     from .simulation import Simulation
-
-_WORKSPACE = ("memory", "inputs", "counters", "rate", "t", "q", "v", "a", "aux", "lam")
 
 
 def model_hash(sim: "Simulation") -> str:
@@ -30,39 +30,9 @@ def model_hash(sim: "Simulation") -> str:
 
 def get_state(sim: "Simulation") -> State:
     """Copy everything that decides the future."""
-    workspace, structure = sim.workspace, sim.workspace.structure
-    arrays = {name: workspace.arrays[name].copy() for name in _WORKSPACE}
-    arrays |= {f"method_{name}": x.copy() for name, x in sim.method_arrays.items()}
-    arrays["clock"], arrays["watch"] = sim.clock.copy(), sim.watch.copy()
-    if structure.dependent is None or structure.lu_d is None:
-        raise RuntimeError("a simulation always has a partition once it is built")
-    arrays["dependent"] = structure.dependent.copy()
-    arrays["probe"] = workspace.arrays["probe"].copy()
-    for name in ("kkt", "lu_d", "kkt_query"):
-        factorization = getattr(structure, name)
-        perm_r, perm_c = factorization.analysis()
-        arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"] = perm_r.copy(), perm_c.copy()
-        arrays[f"{name}_values"] = factorization.lu_values.copy()
-        arrays[f"{name}_pivots"] = factorization.pivots.copy()
-    closed, engaged, sticking = workspace.key
     if len(sim.stored_events) != len(sim.events):
         sim.stored_events = tuple(sim.events)
-    facts = {
-        "t": sim.t,
-        "closed": sorted(closed),
-        "dropped": sorted(workspace.dropped),
-        "engaged": sorted(engaged),
-        "sticking": sorted(sticking),
-        "pending": list(sim.pending),
-        "open_accounts": {str(k): list(v) for k, v in sim.open_accounts.items()},
-        "handled": [repr(float(sim.drive.goals[HANDLED_AT])), sim.events_here],
-        "outer": sim.outer,
-        "start_open": sim.start_open,
-        "input_times": [repr(x) for x in sim.input_times],
-        "initial_energy": repr(sim.table.initial_energy),
-        "fallbacks": [[f.t, f.outer, f.reason] for f in sim.fallbacks],
-    }
-    return State(arrays, facts, sim.model_hash, sim.stored_events)
+    return State.of_parts(take_snapshot(sim), sim.model_hash, sim.stored_events)
 
 
 def set_state(sim: "Simulation", state: State) -> None:
@@ -75,58 +45,56 @@ def set_state(sim: "Simulation", state: State) -> None:
             f"the state belongs to another model, method or tolerance (hash {state.model_hash[:12]}, this simulation "
             f"has {expected[:12]}): restore it into a simulation built the same way"
         )
-    if not state.foreign:
-        _take(sim, state)
+    if state.parts is not None:
+        _take(sim, state.parts, state.events)
         return
     own = get_state(sim)
     check_state(sim, state, own)
     try:
-        _take(sim, state)
+        _take(sim, snapshot_of(state.arrays, state.facts, sim.workspace.state.dtype, Fallback), state.events)
     except BaseException as error:  # what is left may be half of each
-        _take(sim, own)
+        _take(sim, own.parts, own.events)
         if isinstance(error, ValueError):
             raise ModelError(f"the solver state does not fit this simulation: {error}") from error
         raise
 
 
-def _take(sim: "Simulation", state: State) -> None:
-    workspace, facts, arrays = sim.workspace, state.facts, state.arrays
-    if sim.outer != facts["outer"]:
-        sim.use_outer_loop(facts["outer"])
-    sim.fallbacks = [Fallback(*entry) for entry in facts["fallbacks"]]
-    key = (frozenset(facts["closed"]), frozenset(facts["engaged"]), frozenset(facts["sticking"]))
-    dropped = frozenset(facts["dropped"])
-    if workspace.key != key or workspace.dropped != dropped:
-        workspace.drop(dropped)
-        workspace.engage(*key)
-    structure, dependent = workspace.structure, arrays["dependent"]
+def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None:
+    workspace = sim.workspace
+    if sim.outer != parts.outer:
+        sim.use_outer_loop(parts.outer)
+    sim.fallbacks = list(parts.fallbacks)
+    if workspace.key != parts.key or workspace.dropped != parts.dropped:
+        workspace.drop(parts.dropped)
+        workspace.engage(*parts.key)
+    structure = workspace.structure
     # most ways back are short, and patterns are dear: what fits is kept
-    analysed = structure.dependent is not None and np.array_equal(structure.dependent, dependent)
+    analysed = structure.dependent is not None and _same(structure.dependent, parts.dependent)
     if not analysed:
-        workspace.set_partition(dependent)
-    workspace.set_probe(arrays["probe"].copy())
-    for name in ("kkt", "lu_d", "kkt_query"):
-        factorization = getattr(structure, name)
-        wanted = arrays[f"{name}_perm_r"], arrays[f"{name}_perm_c"]
-        if not (analysed and all(map(np.array_equal, factorization.analysis(), wanted))):
-            factorization.analyze_with(*wanted)
-        for own, stored in ((factorization.lu_values, "values"), (factorization.pivots, "pivots")):
-            if own.shape != arrays[f"{name}_{stored}"].shape:
-                raise ModelError(f"'{name}_{stored}' of the solver state has not {len(own)} entries")
-            own[:] = arrays[f"{name}_{stored}"]
-    for name in _WORKSPACE:
-        workspace.arrays[name][...] = arrays[name]
-    for name, x in sim.method_arrays.items():
-        x[...] = arrays[f"method_{name}"]
-    sim.clock[:], sim.watch[:] = arrays["clock"], arrays["watch"]
-    sim.t = float(facts["t"])
-    sim.pending = [int(k) for k in facts["pending"]]
-    sim.open_accounts = {int(k): (v[0], v[1]) for k, v in facts["open_accounts"].items()}
-    sim.start_open = bool(facts["start_open"])
-    sim.input_times = (float(facts["input_times"][0]), float(facts["input_times"][1]))
-    sim.table.initial_energy = float(facts["initial_energy"])
-    sim.drive.goals[HANDLED_AT], sim.drive.counts[HERE] = float(facts["handled"][0]), int(facts["handled"][1])
-    sim.events, sim.stored_events = list(state.events), state.events
+        workspace.set_partition(parts.dependent)
+    if structure.probe is not parts.probe:
+        workspace.set_probe(parts.probe)
+    for factorization, factors in zip((structure.kkt, structure.lu_d, structure.kkt_query), parts.factors, strict=True):
+        if factorization is None:
+            raise RuntimeError("a structure with a partition has factorisations")
+        perm_r, perm_c = factorization.analysis()
+        if not (analysed and _same(perm_r, factors.perm_r) and _same(perm_c, factors.perm_c)):
+            factorization.analyze_with(factors.perm_r, factors.perm_c)
+        for own, stored in ((factorization.lu_values, factors.values), (factorization.pivots, factors.pivots)):
+            if own.shape != stored.shape:
+                raise ModelError(f"the factors of the solver state are not {len(own)} numbers but {len(stored)}")
+            own[:] = stored
+    workspace.state_bytes[:] = parts.buffer
+    sim.t, sim.pending, sim.open_accounts = parts.t, list(parts.pending), parts.open_accounts.copy()
+    sim.start_open, sim.input_times = parts.start_open, parts.input_times
+    sim.table.initial_energy = parts.initial_energy
+    sim.drive.goals[HANDLED_AT], sim.drive.counts[HERE] = parts.handled
+    if sim.stored_events is not events or len(sim.events) != len(events):  # events are only ever added
+        sim.events, sim.stored_events = list(events), events
+
+
+def _same(a: NDArray[np.int64], b: NDArray[np.int64]) -> bool:
+    return a is b or np.array_equal(a, b)
 
 
 def restart_here(sim: "Simulation") -> None:

@@ -1,6 +1,7 @@
 """The records of one run: what its formula remembers, and what its time loop works with."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,8 @@ from ..compiled.records import ArrayRecord
 from ..methods.records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
 from ..methods.registry import FINE_STARTER, STARTER, Formula
 from ..stage.accelerations import solve_accelerations
+from ..system.assembly import Assembly
+from ..system.state_fields import Field, row_length
 from ..system.workspace import Workspace
 from .controllers import CONTROLLERS
 from .probe import build_probes
@@ -41,34 +44,37 @@ _LARGEST_BUFFER = 4_000_000
 _LOG_ROWS = 4096
 
 
-def build_method(formula: Formula, settings: Settings, row_length: int) -> ArrayRecord:
-    """The METHOD record of a formula: its coefficients and an empty history of rows of `row_length` numbers."""
-    parameters = np.zeros(8)
+def state_fields(assembly: Assembly) -> list[Field]:
+    """The fields of the state that belong to formula and time loop: history of accepted rows and its ring, error norm
+    and choice of the order (`methods/records.py`), clock and watch over contacts (`records.py`)."""
+    return [
+        ("method_history", np.float64, (HISTORY_ROWS, row_length(assembly))),
+        ("method_times", np.float64, (HISTORY_ROWS,)),
+        ("method_ring", np.int64, (RING_SIZE,)),
+        ("method_parameters", np.float64, (8,)),
+        ("method_weights", np.float64, (8, MAX_NODES)),
+        ("method_error", np.float64, (2,)),
+        ("method_choice", np.float64, (CHOICE_SIZE,)),
+        ("clock", np.float64, (CLOCK_SIZE,)),
+        ("watch", np.float64, (max(len(assembly.contacts), 1), WATCH)),
+    ]
+
+
+def build_method(formula: Formula, settings: Settings, state: NDArray[Any]) -> ArrayRecord:
+    """The METHOD record of a formula: its coefficients and an empty history, in the state's buffer (1,)."""
+    names = ("history", "times", "ring", "parameters", "weights", "error", "choice")
+    arrays = {name: state[f"method_{name}"][0] for name in names}
+    parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
     parameters[ESTIMATE] = 1.0 if settings.step is None else 0.0
-    weights = np.zeros((8, MAX_NODES))
     for row, values in zip(weights, formula.weights, strict=False):
         row[: len(values)] = values
-    choice = np.zeros(CHOICE_SIZE)
-    choice[K] = formula.k
-    return ArrayRecord(
-        METHOD,
-        {
-            "history": np.zeros((HISTORY_ROWS, row_length)),
-            "times": np.zeros(HISTORY_ROWS),
-            "ring": np.zeros(RING_SIZE, dtype=np.int64),
-            "parameters": parameters,
-            "weights": weights,
-            "error": np.zeros(2),
-            "choice": choice,
-        },
-        {"capacity": HISTORY_ROWS, "exact": int(formula.exact)},
-    )
+    arrays["choice"][K] = formula.k
+    return ArrayRecord(METHOD, arrays, {"capacity": HISTORY_ROWS, "exact": int(formula.exact)})
 
 
-def _clock(formula: Formula, settings: Settings, longest_step: float) -> NDArray[np.float64]:
+def _set_clock(clock: NDArray[np.float64], formula: Formula, settings: Settings, longest_step: float) -> None:
     """What the time loop knows about steps before the first one (`records.py`)."""
-    clock = np.zeros(CLOCK_SIZE)
     clock[FIXED_STEP] = settings.step or 0.0
     clock[GROWTH], clock[HOLD] = formula.growth, float(formula.rows)
     controller = CONTROLLERS[settings.controller]
@@ -76,7 +82,6 @@ def _clock(formula: Formula, settings: Settings, longest_step: float) -> NDArray
     clock[EAGER] = float(settings.fallback)
     clock[MAX_STEP] = min(settings.max_step or math.inf, longest_step)
     clock[STOP_TIME] = clock[BREAK_TIME] = math.inf
-    return clock
 
 
 def build_loop(
@@ -90,11 +95,13 @@ def build_loop(
     length = sample_length(assembly.n, assembly.m, len(assembly.contacts), len(assembly.work_names))
     capacity = max(16, min(4096, _LARGEST_BUFFER // length)) if record else 0
     log_capacity = _LOG_ROWS if step_records else 0
+    clock, watch = workspace.state["clock"][0], workspace.state["watch"][0]
+    _set_clock(clock, formula, settings, assembly.longest_step)
     return ArrayRecord(
         LOOP,
         {
-            "clock": _clock(formula, settings, assembly.longest_step),
-            "watch": np.zeros((max(len(assembly.contacts), 1), WATCH)),
+            "clock": clock,
+            "watch": watch,
             "leap": assembly.leap,
             **build_probes(workspace),
             "samples": empty_buffer(max(capacity, 1), length),

@@ -1,11 +1,14 @@
 """The Python side of the linear solver: analysis, storage, and what restores a solver's state."""
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..compiled.image import Take, twin
 from ..compiled.records import Record
+from .check_pattern import LARGEST_INDEX, check_pattern
 from .errors import SingularMatrixError
 from .ordering import balancing_scales, choose_pivots, singular_place
 from .record import GROWTH, LU, OK
@@ -22,8 +25,10 @@ DENSE_LIMIT = 8
 # The list of operations is written down while it is at most this many times the fill. Measured: 1.2-1.5 times
 # faster than by columns for chains (1.1 operations an entry), 1.2-1.7 times slower for spring grids (10-30).
 PROGRAM_LIMIT = 4
-# Indices are unsigned 32-bit.
-_LARGEST_INDEX = 2**32 - 1
+_OWN = ("work", "row_unit", "values", "pivots")  # arrays that are not of the pattern
+Analyses = dict[bytes, tuple[str, int, dict[str, Any]]]  # by permutations
+MOST_ANALYSES = 32  # kept for one pattern
+_NO_VALUES, _NO_PIVOTS = np.empty(0), np.empty(0, np.int64)
 
 
 @cache
@@ -50,6 +55,7 @@ class Factorization:
     record : the LU record for `factor` and `solve`. Its memory stays; `analyze` changes its content.
     address : of the record, for `lu_at`.
     arrays : what the addresses in the record point to.
+    analyses : analyses that others of the same pattern have made, to be shared; None: each makes its own.
 
     Raises
     ------
@@ -71,12 +77,14 @@ class Factorization:
             source_size = int(self.slots.max(initial=-1)) + 1
         self.source_size = int(source_size)
         self.dense = self.n <= DENSE_LIMIT if dense is None else bool(dense)
-        self._check()
+        check_pattern(self.n, self.rows, self.cols, self.slots, self.source_size)
         self._table = np.zeros(1, LU)
         self.record = Record(self._table)
         """What to hand to a compiled function."""
         self.arrays: dict[str, NDArray] = {}
         self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
+        self.analyses: Analyses | None = None
+        self.kind = "unready"
         self.col_unit = np.ones(self.n)
         self._set(
             n=self.n,
@@ -94,6 +102,30 @@ class Factorization:
                 pivots=np.arange(self.n),
             )
 
+    def memory(self) -> tuple[list[NDArray], list[NDArray]]:
+        """Own arrays and records; all others never change, and factorisations of the same pattern share them."""
+        return [self.arrays[name] for name in _OWN if name in self.arrays], [self._table]
+
+    def fresh(self) -> "Factorization":
+        """One of the same pattern, in the same state, with memory of its own."""
+        new = twin(self)
+        new._table = self._table.view(np.uint8).copy().view(LU)  # not field by field
+        new.record = Record(new._table)
+        new.arrays = self.arrays.copy()
+        new._set(**{name: self.arrays[name].copy() for name in _OWN if name in self.arrays})
+        return new
+
+    def moved(self, take: Take) -> "Factorization":
+        """The same factorisation in a copy of its memory (`compiled/image.py`)."""
+        new = twin(self)
+        new._table = take(self._table)
+        new.record = Record(new._table)
+        new.arrays = self.arrays.copy()
+        for name in _OWN:
+            if name in new.arrays:
+                new.arrays[name] = take(new.arrays[name])
+        return new
+
     @property
     def address(self) -> int:
         """Address of the record, to be stored in another record."""
@@ -102,12 +134,12 @@ class Factorization:
     @property
     def lu_values(self) -> Floats:
         """The numeric factors and the limits on the growth of L as one array, to be copied out and back."""
-        return self.arrays.get("values", np.empty(0))
+        return self.arrays.get("values", _NO_VALUES)
 
     @property
     def pivots(self) -> Ints:
         """Dense: (n,) row of the matrix at each pivot; belongs to the numeric state. Sparse: empty."""
-        return self.arrays.get("pivots", np.empty(0, np.int64))
+        return self.arrays.get("pivots", _NO_PIVOTS)
 
     @property
     def fill(self) -> int:
@@ -155,6 +187,17 @@ class Factorization:
             np.maximum.at(largest, column, np.abs(self.lu_values[:nl]))
             self._growth_limits()[:] = GROWTH * largest
 
+    def follow(self, other: "Factorization") -> None:
+        """Take pattern and factors of `other`, which has the same entries, slots and units."""
+        if self.dense:
+            self.pivots[:] = other.pivots
+            self.lu_values[:] = other.lu_values
+            return
+        own = {name: self.arrays[name] for name in ("work", "row_unit")}
+        self._table.view(np.uint8)[:] = other._table.view(np.uint8)
+        self.arrays, self.kind, self._permutations = other.arrays.copy(), other.kind, other._permutations
+        self._set(values=other.lu_values.copy(), **own)
+
     def analyze_with(self, perm_r: ArrayLike, perm_c: ArrayLike) -> None:
         """Rebuild pattern and storage from the permutations of an earlier `analysis()`, without values.
 
@@ -169,11 +212,24 @@ class Factorization:
         for name, p in (("perm_r", perm_r), ("perm_c", perm_c)):
             if not np.array_equal(np.sort(p), np.arange(self.n)):
                 raise ValueError(f"{name} must be a permutation of 0..{self.n - 1}")
+        key = perm_r.tobytes() + perm_c.tobytes()
+        known = None if self.analyses is None else self.analyses.get(key)
+        if known is None:
+            known = self._analysis_of(perm_r, perm_c)
+            if self.analyses is not None and len(self.analyses) < MOST_ANALYSES:
+                self.analyses[key] = known
+        kind, count, fields = known
+        self._set(**self._functions(kind), values=np.zeros(count), **fields)
+        self._growth_limits()[:] = np.inf
+        self._permutations = (perm_r, perm_c)
+
+    def _analysis_of(self, perm_r: Ints, perm_c: Ints) -> tuple[str, int, dict[str, Any]]:
+        """Kind of the factorisation, number of stored values, and the fields of its pattern."""
         n = self.n
         row, col = perm_r[self.rows], perm_c[self.cols]
         l, u = fill_pattern(n, row, col)
         nl, nu = len(l.row), len(u.row)
-        if nl + nu + 2 * n > _LARGEST_INDEX:
+        if nl + nu + 2 * n > LARGEST_INDEX:
             raise ValueError(f"{nl + nu + 2 * n} stored values are more than 32-bit indices can reach")
         if count_operations(l, u) <= PROGRAM_LIMIT * (nl + nu + n):
             kind, operations = "program", operation_list(n, l, u)
@@ -195,17 +251,9 @@ class Factorization:
             **dict(zip(("sum_left", "sum_right"), operations.sums, strict=True)),
             **{f"{name}_{field}": value for name, t in (("l", l), ("u", u)) for field, value in t._asdict().items()},
         }
-        self._set(
-            **self._functions(kind),
-            nl=nl,
-            nu=nu,
-            n_steps=operations.steps.shape[1],
-            n_sums=operations.sums.shape[1],
-            values=np.zeros(nl + nu + 2 * n),
-            **{name: array.astype(np.uint32) for name, array in indices.items()},
-        )
-        self._growth_limits()[:] = np.inf
-        self._permutations = (perm_r, perm_c)
+        fields: dict[str, Any] = {name: np.ascontiguousarray(x, dtype=np.uint32) for name, x in indices.items()}
+        fields |= {"nl": nl, "nu": nu, "n_steps": operations.steps.shape[1], "n_sums": operations.sums.shape[1]}
+        return kind, nl + nu + 2 * n, fields
 
     def _functions(self, kind: str) -> dict[str, int]:
         self.kind = kind
@@ -227,27 +275,6 @@ class Factorization:
     def _growth_limits(self) -> Floats:
         return self.lu_values[len(self.lu_values) - self.n :]
 
-    def _check(self) -> None:
-        if self.n < 0:
-            raise ValueError(f"n = {self.n} must not be negative")
-        lengths = [a.shape for a in (self.rows, self.cols, self.slots)]
-        if len(set(lengths)) != 1 or len(lengths[0]) != 1:
-            raise ValueError(f"rows, cols and slots must be vectors of one length, not of shapes {lengths}")
-        limits = (
-            ("rows", self.rows, self.n),
-            ("cols", self.cols, self.n),
-            ("slots", self.slots, self.source_size),
-        )
-        for name, array, limit in limits:
-            if len(array) and (array.min() < 0 or array.max() >= limit):
-                raise ValueError(f"{name} must be in 0..{limit - 1}, they range from {array.min()} to {array.max()}")
-        if self.source_size > _LARGEST_INDEX:
-            raise ValueError(f"a source array of {self.source_size} is more than 32-bit indices can reach")
-        place, count = np.unique(self.rows * self.n + self.cols, return_counts=True)
-        if np.any(count > 1):
-            twice = int(place[np.argmax(count > 1)])
-            raise ValueError(f"entry ({twice // self.n}, {twice % self.n}) is given more than once")
-
     def _source(self, values: Floats) -> Floats:
         values = np.ascontiguousarray(values, dtype=np.float64)
         if values.ndim != 1 or len(values) < self.source_size:
@@ -258,6 +285,6 @@ class Factorization:
         for name, value in fields.items():
             if isinstance(value, np.ndarray):
                 self.arrays[name] = value = np.ascontiguousarray(value)
-                self._table[name] = value.ctypes.data
+                self._table[name] = value.__array_interface__["data"][0]
             else:
                 self._table[name] = value

@@ -203,8 +203,9 @@ def pivot_rows(
     data: ArrayLike,
     column_scale: ArrayLike | None = None,
     tol: float = 1e-10,
+    check: bool = True,
 ) -> RowPivots:
-    """`independent_columns` with checks, and the rows that each redundant row repeats.
+    """`independent_columns` with checks (unless told not to), and the rows that each redundant row repeats.
 
     Raises
     ------
@@ -213,6 +214,22 @@ def pivot_rows(
     start, index = (np.ascontiguousarray(a, dtype=np.int64) for a in (indptr, indices))
     value = np.ascontiguousarray(data, dtype=np.float64)
     scale = np.ones(n) if column_scale is None else np.ascontiguousarray(column_scale, dtype=np.float64)
+    if check:
+        _check_matrix(m, n, start, index, value, scale, tol)
+    pivot_column, rank, f_start, f_row, f = eliminate_rows(m, n, start, index, value, scale, float(tol))
+    redundant = np.flatnonzero(pivot_column < 0)
+    if not len(redundant):
+        return RowPivots(pivot_column, int(rank), redundant, [])
+    norms = np.sqrt(np.bincount(np.repeat(np.arange(m), np.diff(start)), value**2, m))
+    return RowPivots(
+        pivot_column,
+        int(rank),
+        redundant,
+        [_repeated_rows(int(row), norms, f_start, f_row, f) for row in redundant],
+    )
+
+
+def _check_matrix(m: int, n: int, start: Ints, index: Ints, value: Floats, scale: Floats, tol: float) -> None:
     if start.shape != (m + 1,) or start[0] != 0 or np.any(np.diff(start) < 0):
         raise ValueError(f"indptr must have {m + 1} ascending values from 0, it has shape {start.shape}")
     if index.shape != (start[-1],) or value.shape != (start[-1],):
@@ -226,15 +243,6 @@ def pivot_rows(
         raise ValueError(f"row {row} has a value that is not finite")
     if not 0 < tol < 1:
         raise ValueError(f"tol must be between 0 and 1, not {tol}")
-    pivot_column, rank, f_start, f_row, f = eliminate_rows(m, n, start, index, value, scale, float(tol))
-    redundant = np.flatnonzero(pivot_column < 0)
-    norms = np.sqrt(np.bincount(np.repeat(np.arange(m), np.diff(start)), value**2, m))
-    return RowPivots(
-        pivot_column,
-        int(rank),
-        redundant,
-        [_repeated_rows(int(row), norms, f_start, f_row, f) for row in redundant],
-    )
 
 
 def _repeated_rows(

@@ -21,10 +21,14 @@ def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPiv
     Columns are scaled by the size of their coordinates, so that units do not choose.
     """
     assembly, active = workspace.assembly, workspace.structure.active
+    if len(active) == 0:
+        none = np.zeros(0, dtype=np.int64)
+        return RowPivots(none, 0, none, [])
     rows, cols, values = workspace.jacobian()
-    order = np.lexsort((cols, rows))
-    indptr = np.searchsorted(rows[order], np.arange(len(active) + 1))
-    return pivot_rows(len(active), assembly.n, indptr, cols[order], values[order], assembly.coordinate_scale, tolerance)
+    indptr = np.searchsorted(rows, np.arange(len(active) + 1))
+    check = not np.isfinite(values).all()  # which says what is wrong; all else holds by itself
+    scale = assembly.coordinate_scale
+    return pivot_rows(len(active), assembly.n, indptr, cols, values, scale, tolerance, check)
 
 
 def what_repeats(workspace: Workspace, pivots: RowPivots) -> str:
@@ -82,7 +86,7 @@ def prepare(workspace: Workspace) -> None:
     counters = workspace.arrays["counters"]
     counters[PARTITIONS] += 1
     counters[ANALYSES] += 1
-    for factorization in (structure.kkt, structure.kkt_query, structure.lu_d):
+    for factorization in (structure.kkt, structure.lu_d):
         if factorization is None or factorization.n == 0:
             continue
         try:
@@ -92,6 +96,7 @@ def prepare(workspace: Workspace) -> None:
                 f"the system matrix is singular in this configuration ({error}): some coordinate has neither mass "
                 "nor a constraint, or a value is not finite"
             ) from error
+    structure.kkt_query.follow(structure.kkt)
     workspace.set_probe(_probe(workspace))
     workspace.arrays["rate"][FACTOR_AGE] = -1.0
     workspace.arrays["rate"][SENSITIVITY] = 0.0
@@ -101,6 +106,8 @@ def prepare(workspace: Workspace) -> None:
 def _probe(workspace: Workspace) -> NDArray[np.float64]:
     """A violation of every row (m_act,) that a coordinate moved by its scale would cause, with weights from 1/2 to 3/2
     and signs in no simple order."""
+    if not len(workspace.structure.active):
+        return np.zeros(0)
     rows, cols, values = workspace.jacobian()
     size = np.zeros(len(workspace.structure.active))
     np.maximum.at(size, rows, np.abs(values) * workspace.assembly.coordinate_scale[cols])

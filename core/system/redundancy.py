@@ -63,7 +63,10 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
     """
     arrays, n = workspace.arrays, workspace.assembly.n
     _evaluate(workspace)
-    phi, active = arrays["phi"][workspace.structure.active], workspace.structure.active
+    active = workspace.structure.active
+    if len(active) == 0:
+        return ()
+    phi = arrays["phi"][active]
     scaled = _Scaled(workspace)
     violation = float(np.max(np.abs(phi) / scaled.row_size, initial=0.0))
     # off the constraints, rows that repeat others seem to be independent, by about as much as they are violated

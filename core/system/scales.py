@@ -7,17 +7,17 @@ else fast. The energy is that of the masses at their speeds and the work of the 
 are none that of the masses at the model's speeds.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .evaluate import evaluate_residuals, evaluate_tangent
+from .evaluate import evaluate_residuals
+from .measure import MEASURED, measure_motion, measure_rows
 from .records import ENERGY_SCALE, RATE_SCALE, STIFFNESS_SCALE
 from .workspace import Workspace
 
-PROBES = 4
-"""Pseudo-random motions from which the sizes of rows are taken."""
 WORK = 0.1
 """Of the model's energy: work accounts below this are held to what it is worth, others relatively."""
 MOST_TIMES = 40
@@ -77,23 +77,13 @@ def measure_scales(workspace: Workspace) -> Scales:
 
 def _row_scale(workspace: Workspace) -> NDArray[np.float64]:
     """How far rows of Phi move when the coordinates move by their scales, (m,)."""
-    arrays, assembly = workspace.arrays, workspace.assembly
-    n, m = assembly.n, assembly.m
-    if assembly.row_scale is not None:
-        sizes = assembly.row_scale.copy()
-    else:
-        # Phi' = Phi_q v + Phi_t for motions of all coordinates at once, with signs in no simple order
-        index = np.arange(n)
-        arrays["v"][:] = 0.0
-        evaluate_residuals(workspace.record)
-        still, sizes = arrays["phid"][:m].copy(), np.zeros(m)
-        for k in range(PROBES):
-            golden = np.modf(0.6180339887498949 * (index + 1.0) * (2 * k + 1))[0]
-            arrays["v"][:n] = np.where(golden < 0.5, 1.0, -1.0) * assembly.coordinate_scale
-            evaluate_residuals(workspace.record)
-            np.maximum(sizes, np.abs(arrays["phid"][:m] - still), out=sizes)
+    assembly = workspace.assembly
+    if assembly.row_scale is None:
+        sizes = np.empty(assembly.m)
+        measure_rows(workspace.record, assembly.coordinate_scale, sizes)
+        return sizes
+    sizes = assembly.row_scale.copy()
     sizes[~np.isfinite(sizes)] = 0.0
-    # one that nothing moves now: as large as the largest of the others
     sizes[sizes == 0.0] = np.max(sizes, initial=0.0) or 1.0
     return sizes
 
@@ -101,53 +91,16 @@ def _row_scale(workspace: Workspace) -> NDArray[np.float64]:
 def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float, float]:
     """Inverse of the model's time (1/s), the energy of its masses (J), the largest of these (kg m^2), and how stiff
     what holds them is (1/s^2)."""
-    arrays, assembly = workspace.arrays, workspace.assembly
-    n, m, scale = assembly.n, assembly.m, assembly.coordinate_scale
-    q, v, t = arrays["q"].copy(), assembly.v0, float(arrays["t"][0])
-    structure = workspace.structure
-    diagonal = np.flatnonzero((structure.rows == structure.cols) & (structure.rows < n))
-
-    def diagonals(c_q: float) -> NDArray[np.float64]:
-        evaluate_tangent(workspace.record, c_q, 0.0)
-        found = np.zeros(n)
-        found[structure.rows[diagonal]] = np.abs(arrays["values"][diagonal])
-        return found
-
-    reach = arrays["level_scale"]
-    squares = [np.max((v / reach) ** 2, initial=0.0)]
-    arrays["a"][:], arrays["lam"][:] = 0.0, 0.0
-    mass, works = np.zeros(n), []
-    for later in (0.0, *_later_times(workspace, t)):
-        arrays["t"][0] = t + later
-        arrays["q"][:] = q
-        for moving in (False, True):
-            arrays["v"][:n] = v if moving else 0.0
-            evaluate_residuals(workspace.record)
-            if not later and not moving:
-                mass = diagonals(0.0)
-                evaluate_residuals(workspace.record)
-            has_mass = mass > 0.0
-            force = np.abs(arrays["r"][:n][has_mass])
-            squares.append(np.max(force / (mass[has_mass] * reach[has_mass]), initial=0.0))
-            works.append(np.max(force * scale[has_mass], initial=0.0))
-            joints = slice(0, assembly.m_joints)
-            sizes = arrays["row_scale"][:m][joints]
-            squares.append(np.max(np.abs(arrays["phidd"][joints]) / sizes, initial=0.0))
-            if not moving:
-                squares.append(np.max((arrays["phid"][joints] / sizes) ** 2, initial=0.0))
-    squares = [float(x) for x in squares if np.isfinite(x) and x > 0.0]
-    arrays["t"][0], arrays["q"][:], arrays["v"][:] = t, q, 0.0
-    evaluate_residuals(workspace.record)
-    stiffness = np.abs(diagonals(1.0) - mass)
-    here = (mass > 0.0) & (stiffness > 1e-12 * mass) & np.isfinite(stiffness)
-    stiffest = float(np.max(stiffness[here] / mass[here], initial=0.0))
+    assembly, found = workspace.assembly, np.zeros(MEASURED)
+    later = np.array([0.0, *_later_times(workspace, float(workspace.arrays["t"][0]))])
+    mass = np.zeros(assembly.n)
+    scale, v0 = assembly.coordinate_scale, assembly.v0
+    measure_motion(workspace.record, scale, v0, later, assembly.m_joints, mass, found)
+    square, work, heaviest, stiffest = found.tolist()
     # all at rest without loads: what vibrates gives the time
-    squares = squares or [stiffest]
-    rate = float(np.sqrt(max(squares))) or 1.0
-    heaviest = float(np.max(mass * scale**2, initial=0.0)) or 1.0
-    # each mass with its own speed: a heavy one need not move as fast as the fastest
-    works = [float(x) for x in (*works, np.max(mass * v**2, initial=0.0)) if np.isfinite(x) and x > 0.0]
-    return rate, max(works, default=heaviest * rate**2), heaviest, stiffest
+    rate = math.sqrt(square or stiffest) or 1.0
+    heaviest = heaviest or 1.0
+    return rate, work or heaviest * rate**2, heaviest, stiffest
 
 
 def _later_times(workspace: Workspace, t: float) -> list[float]:

@@ -10,8 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.image import Take, twin
 from ..linalg import Factorization
 from .assembly import Assembly, Batch
+
+MOST_PARTITIONS = 32
+"""Kept for runs that share a pattern."""
 
 
 @dataclass
@@ -36,6 +40,10 @@ class Structure:
     come after those of the matrix. An impact needs them, and changes no pattern for it."""
     mass_slot: NDArray[np.int64]
     """Slots of the block S."""
+    jacobian_row: NDArray[np.int64]
+    jacobian_col: NDArray[np.int64]
+    jacobian_slot: NDArray[np.int64]
+    """Entries of Phi_q: rows of the active constraints in ascending order, columns ascending within each, and slots."""
     kkt: Factorization
     kkt_query: Factorization
     lu_d: Factorization | None = None
@@ -44,6 +52,9 @@ class Structure:
     """Right-hand side (m_act,) with which the condition of the constraints is measured."""
     free: tuple[NDArray[np.int64], ...] = ()
     """Row, column and slot of the entries of Phi_q in independent columns."""
+
+    partitions: dict[bytes, tuple[Any, Factorization]] | None = None
+    """Of runs that share this pattern: `free` and an unused factorisation for each choice of dependent coordinates."""
 
     units: NDArray[np.float64] | None = None
     """What brings coordinates and all rows of Phi to one unit; `use_units` changes it."""
@@ -60,6 +71,22 @@ class Structure:
         if self.units is not None and self.lu_d is not None and self.dependent is not None:
             self.lu_d.use_units(self.units[n + self.active], self.units[self.dependent])
 
+    def _factorizations(self) -> dict[str, Factorization]:
+        found = {"kkt": self.kkt, "kkt_query": self.kkt_query, "lu_d": self.lu_d}
+        return {name: factorization for name, factorization in found.items() if factorization is not None}
+
+    def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
+        """Own arrays and records: those of the factorisations. All others never change."""
+        parts = [factorization.memory() for factorization in self._factorizations().values()]
+        return [x for arrays, _ in parts for x in arrays], [x for _, tables in parts for x in tables]
+
+    def moved(self, take: Take) -> "Structure":
+        """The same structure in a copy of its memory (`compiled/image.py`)."""
+        new = twin(self)
+        for name, factorization in self._factorizations().items():
+            setattr(new, name, factorization.moved(take))
+        return new
+
     @property
     def nnz(self) -> int:
         """Number of entries of the matrix."""
@@ -75,16 +102,38 @@ class Structure:
         if self.dependent is not None and np.array_equal(self.dependent, dependent):
             return  # most impacts come back to the same partition
         n = int(self.kkt.n) - len(self.active)
+        key = dependent.tobytes()
+        known = None if self.partitions is None else self.partitions.get(key)
+        if known is None:
+            known = self._partition_of(n, dependent)
+            if self.partitions is not None and len(self.partitions) < MOST_PARTITIONS:
+                known[1].analyses = {}
+                self.partitions[key] = known
+        self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
+        self.free, self.lu_d = known[0], known[1] if self.partitions is None else known[1].fresh()
+        self._units_of_partition(n)
+
+    def _partition_of(self, n: int, dependent: NDArray[np.int64]) -> tuple[Any, Factorization]:
         position = np.full(n, -1, dtype=np.int64)
         position[dependent] = np.arange(len(dependent))
-        entries = np.flatnonzero((self.rows >= n) & (self.cols < n))
-        is_dependent = position[self.cols[entries]] >= 0
-        free, slots = entries[~is_dependent], entries[is_dependent]
-        self.free = tuple(np.ascontiguousarray(x) for x in (self.rows[free] - n, self.cols[free], free))
-        rows, cols = self.rows[slots] - n, position[self.cols[slots]]
-        self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
-        self.lu_d = Factorization(len(self.active), rows, cols, slots, source_size=self.n_values)
-        self._units_of_partition(n)
+        is_dependent = position[self.jacobian_col] >= 0
+        free, bound = np.flatnonzero(~is_dependent), np.flatnonzero(is_dependent)
+        parts = tuple(np.ascontiguousarray(x[free]) for x in (self.jacobian_row, self.jacobian_col, self.jacobian_slot))
+        rows, cols = self.jacobian_row[bound], position[self.jacobian_col[bound]]
+        slots = self.jacobian_slot[bound]
+        return parts, Factorization(len(self.active), rows, cols, slots, source_size=self.n_values)
+
+    def share(self) -> None:
+        """Let structures made of this one by `fresh` and `moved` share their analyses from now on."""
+        self.partitions = {}
+        self.kkt.analyses = self.kkt_query.analyses = {}
+
+    def fresh(self) -> "Structure":
+        """One of the same pattern with memory of its own."""
+        new = twin(self)
+        for name, factorization in self._factorizations().items():
+            setattr(new, name, factorization.fresh())
+        return new
 
 
 def build_structure(
@@ -130,6 +179,7 @@ def build_structure(
 
     tables = [[slots(places) for places in batch] for batch in placed]
     everything = np.arange(count)
+    jacobian = np.flatnonzero((rows >= n) & (cols < n))
     kkt, kkt_query = (Factorization(size, rows, cols, everything, source_size=len(unique) + 1) for _ in range(2))
     return Structure(
         active,
@@ -143,6 +193,9 @@ def build_structure(
         gradient_col=np.ascontiguousarray(gradient_col),
         gradient_slot=np.arange(count, len(unique)),
         mass_slot=np.flatnonzero((rows < n) & (cols < n)),
+        jacobian_row=rows[jacobian] - n,
+        jacobian_col=cols[jacobian],
+        jacobian_slot=jacobian,
         kkt=kkt,
         kkt_query=kkt_query,
     )

@@ -1,42 +1,42 @@
 """Workspace: the arrays of one running system and the record through which compiled code reaches them."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record
-from ..contact.laws import ForceLaw
-from ..contact.modes import MEMORY_SIZE
-from ..model.motion import input_rows
-from ..model.signals import INPUT_SIZE
-from ..rounding import ANGLES
 from .assembly import Assembly
 from .evaluate import all_kernels
+from .numbers import constraints_are_cheap, level_scale, release, sticking
+from .patterns import Patterns
 from .records import (
     CONDITIONS,
     CONTROL_SIZE,
-    COUNTERS_SIZE,
     COUPLED_STAGES,
     EVALUATE_SIGNATURE,
     FACTOR_AGE,
-    RATE_SIZE,
     WORKSPACE,
 )
-from .structure import Structure, build_structure
+from .state_fields import STATE, Field, row_length, state_fields
+from .structure import Structure
 
 _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
 )  # fmt: skip
 
 _OF_STRUCTURE = ("gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "mass_slot")
+_NEVER_CHANGES = (
+    *_OF_STRUCTURE, "active", "redundant", "probe", "dependent", "free_row", "free_col", "free_slot", "kernels",
+    "contact_rows", "contact_slide_rows",
+)  # fmt: skip
+"""Arrays that runs may share: others take their place, but nobody writes into them."""
 
-CHEAP = 0.5
-"""Share of the entries of all elements up to which evaluating those with constraint rows counts as cheap."""
-MOST_STRUCTURES = 32
-"""Kept, for as many sets of closed contacts: with a contact at every node there are endless many."""
+_CONDITIONS = [*CONDITIONS]
 MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
 
@@ -50,33 +50,36 @@ class Workspace:
     arrays : the arrays by name; `record` is what compiled functions get.
     dropped : redundant rows that are left out of the equations; `drop` changes it.
     structure : the present structure; `engage` changes it.
+    state : (1,) one buffer, the arrays that decide the future: those of `state_fields` and `also`, in this order.
+
+    Parameters
+    ----------
+    also : name, type and shape of what else decides the future: its place is `state[name][0]`.
     """
 
-    def __init__(self, assembly: Assembly) -> None:
+    def __init__(self, assembly: Assembly, also: Sequence[Field] = ()) -> None:
         self.assembly = assembly
         a = assembly
         n_ext, m_ext, contacts = a.n_extended, a.m + 1, len(a.contacts)
-        row_length = 4 * n_ext + m_ext
-        arrays: dict[str, NDArray[Any]] = {name: np.zeros(n_ext) for name in (
-            "q", "v", "a", "aux", "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v",
-            "offset",
+        self.state = np.zeros(1, [*state_fields(a), *also])
+        self.state_bytes = self.state.view(np.uint8)  # to copy in one go: numpy copies records field by field
+        arrays: dict[str, NDArray[Any]] = {name: self.state[name][0] for name in STATE}
+        arrays |= {name: np.zeros(n_ext) for name in (
+            "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v", "offset",
         )}  # fmt: skip
-        arrays |= {name: np.zeros(m_ext) for name in ("lam", "phi", "phid", "phidd")}
+        arrays |= {name: np.zeros(m_ext) for name in ("phi", "phid", "phidd")}
         arrays |= {
-            "t": np.zeros(1),
             "values": np.zeros(1),
             "coef": np.zeros(2),
             "energy": np.zeros(3),
             "monitor": np.zeros(2 * max(contacts, 1)),
-            "memory": np.zeros((max(contacts, 1), MEMORY_SIZE)),
-            "inputs": np.zeros((input_rows(len(a.input_names), len(a.motions)), INPUT_SIZE)),
             "signals": a.signals.copy(),
             "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
             "batches": np.zeros(len(a.batches), dtype=np.int64),
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
-            "contact_sticking": np.array([c.coulomb.sticking_coefficient if c.coulomb else 0.0 for c in a.contacts]),
-            "contact_release": np.array([_release(c.law) for c in a.contacts], dtype=np.int64),
+            "contact_sticking": sticking(a),
+            "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
             "active": np.zeros(0, dtype=np.int64),
             "redundant": np.zeros(0, dtype=np.int64),
             "probe": np.zeros(0),
@@ -84,23 +87,21 @@ class Workspace:
             **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot", *_OF_STRUCTURE)},
             "stage_v": np.zeros(MOST_STAGES * n_ext),
             "stage_a": np.zeros(MOST_STAGES * n_ext + m_ext),
-            "stage_rows": np.zeros(COUPLED_STAGES * row_length),
+            "stage_rows": np.zeros(COUPLED_STAGES * row_length(a)),
             "rhs": np.zeros(a.n + a.m),
             "scale": a.coordinate_scale.copy(),
             "row_scale": np.ones(m_ext),
             "work_scale": np.ones(n_ext),
-            "level_scale": np.where(a.is_angle, a.coordinate_scale / ANGLES, a.coordinate_scale),
+            "level_scale": level_scale(a),
             "scratch": np.zeros(64),
             "basis": np.zeros((1, n_ext)),
             "atol_q": np.zeros(n_ext),
             "atol_v": np.zeros(n_ext),
             "control": np.zeros(CONTROL_SIZE),
-            "counters": np.zeros(COUNTERS_SIZE, dtype=np.int64),
-            "rate": np.zeros(RATE_SIZE),
         }
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
-        self._structures: dict[tuple[frozenset[int], ...], Structure] = {}
+        self.patterns = Patterns()
         self.units = np.ones(a.n + m_ext)
         """What brings coordinates (with forces) and rows of Phi (with multipliers) to one unit."""
         self.dropped: frozenset[int] = frozenset()
@@ -114,7 +115,7 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0, "n_mass": 0,
                 "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
-                "n_work": len(a.work_names), "row_length": row_length, "part_first": int(_constraints_are_cheap(a)),
+                "n_work": len(a.work_names), "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
                 "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
@@ -123,6 +124,42 @@ class Workspace:
         self.engage(frozenset(), frozenset())
         if assembly.bind is not None:
             assembly.bind(self)
+
+    def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
+        """Own arrays, and records of addresses: of the workspace and of its present structure."""
+        own = [
+            self.state,
+            self.state_bytes,
+            *(x for name, x in self.arrays.items() if name not in (*_NEVER_CHANGES, "batches")),
+        ]
+        for batch in self._batches:
+            own.append(batch.arrays["par"])
+        arrays, tables = self.structure.memory()
+        records = [self._record.table, *(batch.table for batch in self._batches), self.arrays["batches"]]
+        return [*own, *arrays], [*records, *tables]
+
+    def moved(self, take: Take) -> "Workspace":
+        """The same workspace in a copy of its memory (`compiled/image.py`)."""
+        new = twin(self)
+        new.state, new.state_bytes = take(self.state), take(self.state_bytes)
+        new._record = self._record.moved(take)
+        new._batches = [batch.moved(take) for batch in self._batches]
+        new.arrays = {**new._record.arrays, "signals": take(self.arrays["signals"])}
+        new.structure = self.structure.moved(take)
+        new.patterns = self.patterns.of_copy((*self.key, self.dropped), new.structure)
+        return new
+
+    def take_numbers(self, assembly: Assembly) -> None:
+        """Go on with another assembly of the same tables but for their numbers; before the run starts."""
+        self.assembly, arrays = assembly, self.arrays
+        for own, batch in zip(self._batches, assembly.batches, strict=True):
+            own.arrays["par"][...] = batch.par
+        arrays["signals"][:] = assembly.signals
+        arrays["contact_sticking"][:] = sticking(assembly)
+        arrays["contact_release"][:] = [release(contact.law) for contact in assembly.contacts]
+        arrays["scale"][:] = assembly.coordinate_scale
+        arrays["level_scale"][:] = level_scale(assembly)
+        arrays["inputs"][: len(assembly.input_start), 0] = assembly.input_start
 
     @property
     def record(self) -> Record:
@@ -141,11 +178,6 @@ class Workspace:
     def make_basis(self, count: int) -> None:
         """Room for `count` vectors of an accelerated or Krylov outer loop."""
         self._set("basis", np.zeros((count, self.assembly.n_extended)), n_basis=count)
-
-    @property
-    def row_length(self) -> int:
-        """Length of a row of history: q, v, a, aux (each n_ext), lam (m_ext)."""
-        return int(self._record.table["row_length"][0])
 
     def _batch(self, k: int) -> ArrayRecord:
         batch, a = self.assembly.batches[k], self.arrays
@@ -192,7 +224,7 @@ class Workspace:
             ):
                 batch.set_array(name, table)
             batch.set_array("values", values)
-            batch.table["n_values"] = len(values)
+            batch.set_size("n_values", len(values))
         self._set("entry_row", structure.rows)
         self._set("entry_col", structure.cols)
         self._set("mass_slot", structure.mass_slot, n_mass=len(structure.mass_slot))
@@ -200,22 +232,25 @@ class Workspace:
             self._set(name, getattr(structure, name))
         self._record.table["kkt"] = structure.kkt.address
         self._record.table["kkt_query"] = structure.kkt_query.address
-        self.arrays["rate"][FACTOR_AGE] = -1.0
-        self.arrays["rate"][[*CONDITIONS]] = 0.0
+        self._forget()
         if structure.dependent is not None:
             self._use_partition()
+
+    def _forget(self) -> None:
+        """What is known of the matrices' factors and conditions holds no more."""
+        self.arrays["rate"][FACTOR_AGE] = -1.0
+        self.arrays["rate"][_CONDITIONS] = 0.0
 
     def use_units(self, units: NDArray[np.float64]) -> None:
         """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
         self.units = units
-        self.engage(*self.key)
+        self.structure.use_units(units, self.assembly.n)
+        self.arrays["values"][:] = 0.0
+        self._forget()
 
     def structure_of(self, *key: frozenset[int]) -> Structure:
         """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
-        structure = self._structures.pop(key, None) or build_structure(self.assembly, *key)
-        while len(self._structures) >= MOST_STRUCTURES:
-            del self._structures[next(iter(self._structures))]
-        self._structures[key] = structure
+        structure = self.patterns.get(self.assembly, key)
         if structure.units is not self.units:
             structure.use_units(self.units, self.assembly.n)
         return structure
@@ -254,23 +289,9 @@ class Workspace:
         self.arrays[name] = array
         self._record.set_array(name, array)
         for size, value in sizes.items():
-            self._record.table[size] = value
+            self._record.set_size(size, value)
 
     def jacobian(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
         """Rows (of the active constraints), columns and values of Phi_q as last evaluated."""
-        structure, n = self.structure, self.assembly.n
-        here = np.flatnonzero((structure.rows >= n) & (structure.cols < n))
-        return structure.rows[here] - n, structure.cols[here], self.arrays["values"][here]
-
-
-def _constraints_are_cheap(assembly: Assembly) -> bool:
-    sizes = np.array([batch.coord.shape[0] * batch.coord.shape[1] ** 2 for batch in assembly.batches], dtype=float)
-    bound = np.array([batch.row.size > 0 for batch in assembly.batches], dtype=bool)
-    return bool(sizes[bound].sum() < CHEAP * sizes.sum())
-
-
-def _release(law: Any) -> int:
-    """0: constraint contact; 1: force, released at zero gap; 2: force, released at zero force."""
-    if not isinstance(law, ForceLaw):
-        return 0
-    return 2 if law.release == "force" else 1
+        structure = self.structure
+        return structure.jacobian_row, structure.jacobian_col, self.arrays["values"][structure.jacobian_slot]

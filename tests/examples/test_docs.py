@@ -32,6 +32,19 @@ def test_the_quickstart_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert (tmp_path / "ball.json").is_file()
 
 
+def test_the_page_of_many_runs_works() -> None:
+    first, second = blocks("many-runs.md", "python")
+    names: dict[str, Any] = {}
+    exec(first, names)
+    runs = names["runs"]
+    assert len(runs) == 200 and not runs.failures
+    assert runs["ball.y"][names["highest"]] == max(runs["ball.y"])
+    exec(second, names)
+    run = names["run"]
+    # thrown up at 1 m/s, it is above the floor still
+    assert run.values()[run.table.index["ball.y"]] == pytest.approx(1.5 - 0.125 * 9.81)
+
+
 def test_the_readme_runs_and_its_figures_are_those_that_come_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
