@@ -33,6 +33,7 @@ from .contact.laws import (
     ZhiyingQishao,
     force_formula,
 )
+from .contact.scalar_contact2d import ScalarContact2D, scalar_contact
 from .contact.segment2d import DiskOnSegment2D, Segment2D
 from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .description import Model
@@ -41,6 +42,7 @@ from .elements import (
     AppliedTorque2D,
     Attachment,
     AxialRod,
+    BodyElement,
     Bushing2D,
     Cable2D,
     Clamp2D,
@@ -48,6 +50,10 @@ from .elements import (
     CoordinateLoad,
     Distance2D,
     FloatingBeam2D,
+    ForceElement,
+    Frame2D,
+    Gear2D,
+    JointElement,
     LinearSystem,
     MaterialPoint2D,
     MovingFrame2D,
@@ -57,7 +63,11 @@ from .elements import (
     ReducedPoint,
     Revolute2D,
     RigidBody2D,
+    ScalarForce2D,
+    ScalarJoint2D,
     SpringDamper2D,
+    scalar_constraint,
+    scalar_force,
 )
 from .equations.errors import EquationError
 from .equations.system import EquationSystem, GapContact
@@ -92,6 +102,7 @@ __all__ = [
     "AppliedTorque2D",
     "Attachment",
     "AxialRod",
+    "BodyElement",
     "BrownMcPheeFriction",
     "Bushing2D",
     "Cable2D",
@@ -117,9 +128,12 @@ __all__ = [
     "Event",
     "FloatingBeam2D",
     "Flores",
+    "ForceElement",
     "ForceLaw",
+    "Frame2D",
     "FrictionLaw",
     "GapContact",
+    "Gear2D",
     "Gonthier",
     "HalfPlane2D",
     "HerbertMcWhannell",
@@ -128,6 +142,7 @@ __all__ = [
     "HuntCrossley",
     "Input",
     "InputSignal",
+    "JointElement",
     "KelvinVoigt",
     "KuwabaraKono",
     "LankaraniNikravesh",
@@ -156,6 +171,9 @@ __all__ = [
     "Result",
     "Revolute2D",
     "RigidBody2D",
+    "ScalarContact2D",
+    "ScalarForce2D",
+    "ScalarJoint2D",
     "Segment2D",
     "Simulation",
     "SimulationError",
@@ -177,6 +195,9 @@ __all__ = [
     "curvature",
     "deformed_shape",
     "force_formula",
+    "scalar_constraint",
+    "scalar_contact",
+    "scalar_force",
     "section",
     "simulate",
     "sphere_on_plane",

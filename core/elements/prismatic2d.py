@@ -11,7 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
-from .base import Numbering, PairElement2D, Row
+from .base import JointElement, Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, constrain, height_over_line
 
 
@@ -47,7 +47,7 @@ def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
             values[slot_jt[e, 11]] += 1.0
 
 
-class Prismatic2D(PairElement2D):
+class Prismatic2D(PairElement2D, JointElement):
     """Marker `b` slides along the first axis of marker `a` and keeps the relative angle of the bodies.
 
     Its channels are the normal force and the torque on body a's side of the constraint (multipliers with the
