@@ -8,7 +8,6 @@ compiled in every process anew.
 
 import hashlib
 import inspect
-import marshal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
@@ -29,14 +28,15 @@ class _Unknown(Exception):
 class FormulaCode(KeptCode):
     """Kept code of `made`: a formula itself, or a kernel made from `formulas` with the `layout` of its tables."""
 
-    def __init__(self, made: Callable[..., Any], formulas: tuple[Callable[..., Any], ...], layout: Any) -> None:
+    def __init__(self, made: Callable[..., Any], formulas: tuple[Callable[..., Any], ...], layout: Any = None) -> None:
         super().__init__(made)
+        factory = _source_stamp(self._source)
         self._source = Path(inspect.getfile(formulas[0]))
         names = ", ".join(f"{formula.__module__}.{formula.__qualname__}" for formula in formulas)
         self._name = names if made is formulas[0] else f"{self._name} of {names}"
         self._first = formulas[0]
         try:
-            self._content: str | None = f"{_digest(formulas)} {layout!r}"
+            self._content: str | None = f"{_digest(formulas)} {layout!r} {factory}"
         except _Unknown:
             self._content = None
 
@@ -81,7 +81,7 @@ def _pieces(value: Any, seen: set[int]) -> Iterator[bytes]:
         if id(value) in seen:
             return
         seen.add(id(value))
-        yield marshal.dumps(value.__code__)
+        yield _code_text(value.__code__).encode()
         yield repr(value.__defaults__).encode()
         for cell in value.__closure__ or ():
             yield from _pieces(cell.cell_contents, seen)
@@ -99,6 +99,15 @@ def _named(value: Any) -> bytes:
     if isinstance(value, np.ufunc) or (module is not None and module.__name__.split(".")[0] == "numpy"):
         return f"{value!r}".encode()
     raise _Unknown
+
+
+def _code_text(code: CodeType) -> str:
+    """What a function does, as text (marshal's bytes depend on how often its strings are used elsewhere)."""
+    constants = [
+        _code_text(c) if isinstance(c, CodeType) else repr(sorted(map(repr, c)) if isinstance(c, frozenset) else c)
+        for c in code.co_consts
+    ]
+    return repr((code.co_code, constants, code.co_names, code.co_varnames, code.co_freevars, code.co_argcount))
 
 
 def _names(code: CodeType) -> set[str]:
