@@ -18,6 +18,7 @@ from numba import njit
 
 from .kept import KeptCode, _source_stamp
 
+_LIBRARY = Path(inspect.__file__).parent  # Python's own
 _PLAIN = (bool, int, float, complex, str, type(None), np.generic)
 
 
@@ -73,10 +74,9 @@ def _pieces(value: Any, seen: set[int]) -> Iterator[bytes]:
     if isinstance(value, _PLAIN) or (isinstance(value, tuple) and all(isinstance(x, _PLAIN) for x in value)):
         yield repr(value).encode()
     elif isinstance(value, ModuleType):
-        file = Path(getattr(value, "__file__", None) or "")
         yield f"{value.__name__} {getattr(value, '__version__', '')}".encode()
-        if file.suffix == ".py" and "site-packages" not in file.parts:
-            yield _source_stamp(file).encode()
+        if _is_users(value):
+            yield _source_stamp(Path(str(value.__file__))).encode()
     elif isinstance(value, FunctionType):
         if id(value) in seen:
             return
@@ -85,13 +85,24 @@ def _pieces(value: Any, seen: set[int]) -> Iterator[bytes]:
         yield repr(value.__defaults__).encode()
         for cell in value.__closure__ or ():
             yield from _pieces(cell.cell_contents, seen)
-        for name in sorted(_names(value.__code__) & value.__globals__.keys()):
+        names = _names(value.__code__)
+        for name in sorted(names & value.__globals__.keys()):
+            found = value.__globals__[name]
             yield name.encode()
-            yield from _pieces(value.__globals__[name], seen)
+            yield from _pieces(found, seen)
+            if isinstance(found, ModuleType) and _is_users(found):
+                for each in sorted(names & vars(found).keys()):
+                    yield from _pieces(vars(found)[each], seen)
     elif not callable(value) or inspect.getmodule(value) is None:
         raise _Unknown
     else:  # a builtin function of math or numpy
         yield f"{value!r}".encode() if inspect.isbuiltin(value) else _named(value)
+
+
+def _is_users(module: ModuleType) -> bool:
+    """Whether a module is a file that a user may change from run to run."""
+    file = Path(getattr(module, "__file__", None) or "")
+    return file.suffix == ".py" and "site-packages" not in file.parts and not file.is_relative_to(_LIBRARY)
 
 
 def _named(value: Any) -> bytes:

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from numba import njit, types
@@ -23,7 +24,7 @@ from .base import Numbering
 
 MARKER_COLUMNS = 5
 """Of each marker in the table of parameters: point (2), angle, its cosine and sine."""
-NO_NUMBERS: Mapping[str, float] = {}
+NO_NUMBERS: Mapping[str, float] = MappingProxyType({})
 
 
 class Frame2D(NamedTuple):
@@ -206,11 +207,11 @@ def caller_of(formula: Callable[..., Any], arguments: Arguments, first: int) -> 
     """Numba function call(q, coord, par) -> jet of an element with its coordinates and parameters, the columns of
     `arguments` beginning at `first`."""
     count, lines = len(arguments.markers), []
-    names: dict[str, Any] = {"formula": _function(formula), "_turned": _turned}
+    names: dict[str, Any] = {"formula": _function(formula), "turned": _turned}
     for k, name in enumerate(arguments.markers):
         names[f"place{k}"] = _placing(count, k)[0]
         columns = ", ".join(f"par[{first + MARKER_COLUMNS * k + i}]" for i in range(MARKER_COLUMNS))
-        lines.append(f"c, s = _turned(q[coord[{3 * k + 2}]])")
+        lines.append(f"c, s = turned(q[coord[{3 * k + 2}]])")
         where = f"q[coord[{3 * k}]], q[coord[{3 * k + 1}]], q[coord[{3 * k + 2}]], c, s"
         lines.append(f"_{name} = place{k}({where}, {columns})")
     begin = first + MARKER_COLUMNS * count

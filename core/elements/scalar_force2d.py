@@ -80,10 +80,11 @@ def _kernel(law: ScalarForce, arguments: Arguments) -> Any:
 
     call, force = caller_of(law.measure, arguments, 0), _caller_of_law(law.force, 2, arguments)
     energy = _caller_of_law(law.energy or _nothing, 1, arguments)
+    n = arguments.size  # known to the compiler
 
     def scalar_force2d_kernel(job: int, t: float, b: Any) -> None:
-        par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord)
-        q, v, n = vec(b.q, b.n_extended), vec(b.v, b.n_extended), b.ncoord
+        par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, n)
+        q, v = vec(b.q, b.n_extended), vec(b.v, b.n_extended)
         for e in range(b.count):
             g = call(q, coord[e], par[e])
             x, gradient, hessian = value_of(g), gradient_of(g), hessian_of(g)

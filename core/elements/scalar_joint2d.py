@@ -50,12 +50,12 @@ def scalar_constraint(formula: Callable[..., Any]) -> ScalarConstraint:
 def _kernel(formula: Callable[..., Any], arguments: Arguments) -> Any:
     from ..compiled.jet_functions import gradient_of, hessian_of, value_of
 
-    call = caller_of(formula, arguments, 0)
+    call, n = caller_of(formula, arguments, 0), arguments.size
 
     def scalar_joint2d_kernel(job: int, t: float, b: Any) -> None:
         if job != RESIDUAL and job != TANGENT:
             return
-        par, coord, row = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), imat(b.row, b.count, 1)
+        par, coord, row = mat(b.par, b.count, b.npar), imat(b.coord, b.count, n), imat(b.row, b.count, 1)
         q = vec(b.q, b.n_extended)
         for e in range(b.count):
             g = call(q, coord[e], par[e])

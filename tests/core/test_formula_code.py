@@ -61,6 +61,17 @@ def test_what_a_formula_reaches_in_other_files_changes_its_key(tmp_path, change)
     assert [x != y for x, y in zip(before, after, strict=True)] == [True, True, False, False]
 
 
+def test_a_module_s_function_is_followed_to_what_it_calls(tmp_path):
+    helper = (
+        "import some_base\nfrom some_base import halved\nFACTOR = 3.0\ndef doubled(x):\n    return 4.0 * halved(x)\n"
+    )
+    found = []
+    for factor in ("0.5", "0.6"):
+        (tmp_path / "some_base.py").write_text(f"def halved(x):\n    return {factor} * x\n")
+        found.append(contents(tmp_path, helper=helper))
+    assert [x != y for x, y in zip(*found, strict=True)] == [True, True, False, False]
+
+
 def test_its_own_file_changes_the_key(tmp_path):
     before, after = contents(tmp_path), contents(tmp_path, MODULE.replace("math.sin", "math.cos"))
     assert before[0] != after[0]
