@@ -32,7 +32,7 @@ def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
     slot_jt = imat(b.slot_jt, b.count, 12)
     for e in range(b.count):
         g, gradient, hessian = height_over_line(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4])
-        constrain(b, job, e, row[e, 0], 0, 1.0, g, gradient, hessian)
+        constrain(b, job, e, row[e, 0], 0, g, gradient, hessian)
         ta, tb, k = coord[e, 2], coord[e, 5], row[e, 1]
         if job == RESIDUAL:
             vec(b.phi, b.m_extended)[k] = q[tb] - q[ta] - par[e, 5]

@@ -59,7 +59,7 @@ def _kernel(formula: Callable[..., Any], arguments: Arguments) -> Any:
         q = vec(b.q, b.n_extended)
         for e in range(b.count):
             g = call(q, coord[e], par[e])
-            constrain(b, job, e, row[e, 0], 0, 1.0, value_of(g), gradient_of(g), hessian_of(g))
+            constrain(b, job, e, row[e, 0], 0, value_of(g), gradient_of(g), hessian_of(g))
 
     return formula_internal(scalar_joint2d_kernel, (formula,), arguments)
 
