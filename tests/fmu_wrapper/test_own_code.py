@@ -198,7 +198,7 @@ def test_bundled_fmu_joins_its_package_and_its_modules(model, tmp_path):
     unzipped = fmpy.extract(str(path), unzipdir=str(tmp_path / "fmu"))
     token = json.loads(Path(unzipped, "resources/settings.json").read_text())["token"]
     script = f"""
-import runpy, sys, importlib.abc
+import fmpy, runpy, sys, importlib, importlib.abc
 class NoPackage(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
         if name == "tlismni" or name.startswith("tlismni."):
@@ -208,10 +208,17 @@ resources = {str(unzipped)!r} + "/resources"
 boot = runpy.run_path(resources + "/boot.py")
 calls = boot["create"](2, "it", {token!r}, resources, 0, print, 0, 0, 0, None, b"")
 joint = calls.slave.model.joints[0]
-print(type(joint).__module__, type(joint).__mro__[1].__module__)
+base = type(joint).__mro__[1].__module__
+package = base.partition(".")[0]
+direct = importlib.import_module(package + ".fmu_wrapper.in_process").InProcess(calls.slave)
+found = fmpy.simulate_fmu({str(unzipped)!r}, fmu_instance=direct, fmi_type="CoSimulation", stop_time=0.3,
+                          start_values={{"curvature": 1.3}}, output_interval=0.1, output=["bead.x"])
+print(type(joint).__module__, base, found["bead.x"][-1])
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, cwd="/", timeout=600)
     assert done.returncode == 0, done.stderr[-3000:]
-    own, base = done.stdout.split()
+    own, base, x = done.stdout.split()
     package = base.partition(".")[0]
     assert package.startswith("tlismni_") and own.startswith(f"{package}_own_") and own.endswith(".own_kit.joints")
+    expected = simulate(model.with_parameters({"curvature": 1.3}), 0.3)["bead.x"][-1]
+    assert float(x) == pytest.approx(expected, abs=1e-6)
