@@ -34,6 +34,7 @@ from .contact.laws import (
     ZhiyingQishao,
     force_formula,
 )
+from .contact.scalar_contact2d import ScalarContact2D, scalar_contact
 from .contact.segment2d import DiskOnSegment2D, Segment2D
 from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .description import Model
@@ -42,6 +43,7 @@ from .elements import (
     AppliedTorque2D,
     Attachment,
     AxialRod,
+    BodyElement,
     Bushing2D,
     Cable2D,
     Clamp2D,
@@ -49,6 +51,10 @@ from .elements import (
     CoordinateLoad,
     Distance2D,
     FloatingBeam2D,
+    ForceElement,
+    Frame2D,
+    Gear2D,
+    JointElement,
     LinearSystem,
     MaterialPoint2D,
     MovingFrame2D,
@@ -58,7 +64,11 @@ from .elements import (
     ReducedPoint,
     Revolute2D,
     RigidBody2D,
+    ScalarForce2D,
+    ScalarJoint2D,
     SpringDamper2D,
+    scalar_constraint,
+    scalar_force,
 )
 from .equations.errors import EquationError
 from .equations.system import EquationSystem, GapContact
@@ -95,6 +105,7 @@ __all__ = [
     "AppliedTorque2D",
     "Attachment",
     "AxialRod",
+    "BodyElement",
     "BrownMcPheeFriction",
     "Bushing2D",
     "Cable2D",
@@ -121,9 +132,12 @@ __all__ = [
     "Event",
     "FloatingBeam2D",
     "Flores",
+    "ForceElement",
     "ForceLaw",
+    "Frame2D",
     "FrictionLaw",
     "GapContact",
+    "Gear2D",
     "Gonthier",
     "HalfPlane2D",
     "HerbertMcWhannell",
@@ -132,6 +146,7 @@ __all__ = [
     "HuntCrossley",
     "Input",
     "InputSignal",
+    "JointElement",
     "KelvinVoigt",
     "KuwabaraKono",
     "LankaraniNikravesh",
@@ -161,6 +176,9 @@ __all__ = [
     "Revolute2D",
     "RigidBody2D",
     "Runs",
+    "ScalarContact2D",
+    "ScalarForce2D",
+    "ScalarJoint2D",
     "Segment2D",
     "Simulation",
     "SimulationError",
@@ -183,6 +201,9 @@ __all__ = [
     "curvature",
     "deformed_shape",
     "force_formula",
+    "scalar_constraint",
+    "scalar_contact",
+    "scalar_force",
     "section",
     "simulate",
     "simulate_many",

@@ -2,12 +2,12 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from numbers import Real
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import model_validator
+from pydantic import ConfigDict, model_validator
 
 from .contact import Contact
 from .elements import Body, BodyElement, Element, Force, Joint, PlanarFrame, PointMass2D
@@ -15,8 +15,18 @@ from .errors import ModelError
 from .model.base import Record, Vector2
 from .model.channels import Input, Parameter
 from .model.markers import GROUND, Marker2D
+from .model.open_union import meaning
 from .model.outputs import MarkerOutput2D
+from .model.own_types import find_classes, import_paths, own_classes
 from .model.signals import InputSignal
+
+
+def _with_imports(schema: dict[str, Any]) -> None:
+    schema["properties"]["imports"] = {
+        "type": "object",
+        "additionalProperties": {"type": "string"},
+        "description": "Where own classes of the model can be imported from: type to 'module:Class'",
+    }
 
 
 class Model(Record):
@@ -29,6 +39,8 @@ class Model(Record):
     >>> Model.from_json(ball.to_json()) == ball
     True
     """
+
+    model_config = ConfigDict(json_schema_extra=_with_imports)
 
     format: Literal["tlismni-model-1"] = "tlismni-model-1"
     name: str = "model"
@@ -184,36 +196,52 @@ class Model(Record):
                 for field in path:
                     record = record[field]
                 record[last] = float(value)
-        return Model(**data)
+        with meaning(own_classes(self)):
+            return Model(**data)
 
     def to_json(self) -> str:
-        """The model as JSON text."""
-        return self.model_dump_json(indent=2)
+        """The model as JSON text. Own classes are named under `imports`, where they can be imported from."""
+        text, imports = self.model_dump_json(indent=2), import_paths(self)
+        if not imports:
+            return text
+        return f'{{\n  "imports": {json.dumps(imports)},{text[1:]}'
 
     @classmethod
-    def from_json(cls, text: str | bytes) -> "Model":
-        """The model in a JSON text. Raises ModelError with the place and the cause if it is not one."""
+    def from_json(cls, text: str | bytes, *, allow_imports: bool | Collection[str] = False) -> "Model":
+        """The model in a JSON text.
+
+        Parameters
+        ----------
+        allow_imports : names of modules that may be imported for own classes in it, with all that is in these
+            packages; True for any. To import a module runs its code.
+
+        Raises
+        ------
+        ModelError : with the place and the cause if it is none, or needs what may not be imported.
+        """
         try:
             data = json.loads(text)
         except (ValueError, UnicodeDecodeError) as error:
             raise ModelError(f"this is not JSON: {error}") from None
         if not isinstance(data, dict):
             raise ModelError(f"a model file holds one JSON object, not {type(data).__name__}")
-        return cls(**data)
+        with meaning(find_classes(data.pop("imports", {}), allow_imports)):
+            return cls(**data)
 
     def save(self, path: str | Path) -> None:
         """Write the model file."""
         Path(path).write_text(self.to_json(), encoding="utf-8")
 
     @classmethod
-    def load(cls, path: str | Path) -> "Model":
-        """Read a model file. Raises ModelError if it cannot be read or is no model."""
+    def load(cls, path: str | Path, *, allow_imports: bool | Collection[str] = False) -> "Model":
+        """Read a model file; `allow_imports` as in `from_json`. Raises ModelError if it cannot be read or is no
+        model."""
         try:
             text = Path(path).read_bytes()
         except OSError as error:
             raise ModelError(f"model file '{path}' cannot be read: {error.strerror or error}") from None
         try:
-            return cls.from_json(text)
+            return cls.from_json(text, allow_imports=allow_imports)
         except ModelError as error:
             raise ModelError(f"model file '{path}': {error}") from None
 

@@ -42,7 +42,7 @@ def momentum(s: Scenario, result: Result) -> tuple[float, float]:
         place, speed = 0.5 * (before + after), (after - before) / rates
         turning = float(np.sum(mass * (place[:, 0] * speed[:, 1] - place[:, 1] * speed[:, 0])))
         rate = float(np.interp(t, result.t, result["hub.angular_velocity"]))
-        found.append(hub.inertia * rate + turning)  # type: ignore[union-attr]
+        found.append(hub.inertia * rate + turning)  # type: ignore[attr-defined]
     return found[0], found[1]
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..core.description import Model
 from ..core.errors import TlismniError
+from ..core.model.open_union import meaning
 from . import log as logs
 from .calls import Calls, references_in
 from .errors import ExportError, FmuValueError, Status
@@ -15,6 +16,7 @@ from .fmi3_calls import Fmi3Calls
 from .intermediate import UpdateCallback, Updates
 from .log import LogCallback
 from .origin import Origin
+from .own_code import OwnCode
 from .slave import Slave
 from .slave_state import SlaveState
 from .variables import VariableTable
@@ -34,7 +36,7 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
 
     Raises
     ------
-    ExportError : if a file is missing or unreadable.
+    ExportError : if a file is missing or unreadable, or an own module cannot be imported.
     FmuValueError : if `token` is given and is not the FMU's.
     ModelError : if the model is none that the installed version can read.
     """
@@ -50,7 +52,8 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
             f"the {token_name} given is '{token}', this FMU has '{data['token']}': "
             "modelDescription.xml and resources come from different exports"
         )
-    model = Model.load(Path(resources) / MODEL_FILE)
+    with meaning(OwnCode.read(data.get("own"), Path(resources)).classes(Path(resources))):
+        model = Model.load(Path(resources) / MODEL_FILE)
     try:
         table = VariableTable.from_data(data["variables"])
         slave = Slave(model, variables=table, origin=_origin(data.get("scenario")), **data["solver"], **arguments)

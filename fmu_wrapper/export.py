@@ -27,6 +27,7 @@ from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
 from .nominal import with_nominals
+from .own_code import OwnCode
 from .platforms import PLATFORMS, choose, this_platform
 from .python_library import library_record, shared_library
 from .recommended_step import recommended_step
@@ -60,8 +61,9 @@ def export_fmu(
     """Write `source` as a co-simulation FMU.
 
     The FMU embeds the model as data and runs with the `tlismni` of the Python that exports it, or that of another one
-    on the machine where it runs (docs/fmu.md); with `bundle`, with what it carries along. The same source and settings
-    give the same file on one machine, but for its date: with SOURCE_DATE_EPOCH in the environment that is this one.
+    on the machine where it runs (docs/fmu.md); with `bundle`, with what it carries along. Modules that define own
+    classes of the model go into it in any case. The same source and settings give the same file on one machine, but for
+    its date: with SOURCE_DATE_EPOCH in the environment that is this one.
 
     Parameters
     ----------
@@ -88,7 +90,7 @@ def export_fmu(
     Raises
     ------
     ExportError : for an FMI version that is not written, a missing shim or package (lxml), a file that cannot be
-        written, a setting that is no JSON data.
+        written, a setting that is no JSON data, an own class that is in no module file.
     ModelError, FmuValueError : for a wrong model or setting.
     SourceError : for what is neither a Model nor a Scenario; an EquationSystem is code, not data.
     """
@@ -109,8 +111,9 @@ def export_fmu(
         solver_data["communication_step"] = recommended_step(simulation, slave.model, slave.settings.t_end)
     variables = with_nominals(slave.variables, slave.model, slave.settings, simulation)
     slave = Slave(slave.model, variables=variables, origin=slave.origin, **solver_data)
-    identifier = c_identifier(slave.model.name)
-    token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{slave.identity}")) + "}"
+    identifier, code = c_identifier(slave.model.name), OwnCode.of(slave.model)
+    content = slave.identity + (code.digest if code.types else "")
+    token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{content}")) + "}"
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
     generator = f"tlismni {package_version()}"
     about = About(
@@ -125,6 +128,7 @@ def export_fmu(
         "solver": solver_data,
         "variables": slave.variables.to_data(),
         "scenario": None if slave.origin is None else slave.origin.to_data(),
+        **({"own": code.to_data()} if code.types else {}),
     }
     archive, digest = package_archive() if bundle else (None, None)
     files = {
@@ -139,6 +143,7 @@ def export_fmu(
         "resources/libpython.txt": library_record().encode(),
         **{f"resources/{name}": (HERE / name).read_bytes() for name in ("boot.py", "python_library.py")},
         **({} if archive is None else {"resources/tlismni.zip": archive}),
+        **code.files,
         **_binaries(identifier, fmi_version, platforms),
     }
     if shared_library() is None:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from ..core.description import Model
+from ..core.model.own_types import own_classes, place_of
 from ..core.model.signals import MOST_DERIVATIVES
 from .errors import FmuValueError, SnapshotError
 from .origin import Origin
@@ -154,4 +155,7 @@ def identity(model: Model, settings: Settings, variables: VariableTable, origin:
     """Hash of everything that makes an FMU what it is."""
     content: list[Any] = [model.model_dump(mode="json"), settings.as_arguments(), variables.to_data()]
     content += [] if origin is None else [origin.to_data()]
+    own = own_classes(model)
+    # the modules in an FMU have names made of their content: a state of other code is none of this one's
+    content += [{name: place_of(kind) for name, kind in own.items()}] if own else []
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=repr).encode()).hexdigest()

@@ -2,9 +2,8 @@
 
 from typing import Annotated
 
-from pydantic import Field
-
-from .contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from ..model.open_union import OpenUnion
+from .contact2d import Contact2D, DiskOnDisk2D, DiskOnHalfPlane2D
 from .coordinate_contact import CoordinateContact
 from .disk_on_cable import DiskOnCable2D
 from .disk_on_line import DiskOnLine2D
@@ -12,7 +11,5 @@ from .segment2d import DiskOnSegment2D
 
 CONTACTS = (DiskOnHalfPlane2D, DiskOnDisk2D, DiskOnSegment2D, DiskOnLine2D, DiskOnCable2D, CoordinateContact)
 
-Contact = Annotated[
-    DiskOnHalfPlane2D | DiskOnDisk2D | DiskOnSegment2D | DiskOnLine2D | DiskOnCable2D | CoordinateContact,
-    Field(discriminator="type"),
-]
+Contact = Annotated[Contact2D, OpenUnion(CONTACTS, Contact2D)]
+"""Planar contacts: two shapes, a law along the normal, and friction; a user's own subclasses of Contact2D too."""

@@ -95,7 +95,7 @@ def act_bristles(
     k = imat(b.extra, b.count, b.nextra)[e, 0]
     if job == RESIDUAL:
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
-        levels(b, e, imat(b.row, b.count, 2)[e, 1], 1.0, 0.0, gradient, hessian)
+        levels(b, e, imat(b.row, b.count, 2)[e, 1], 0.0, gradient, hessian)
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] == ACTIVE:
         return _bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
     return 0.0, 0.0, 0.0

@@ -73,11 +73,11 @@ def act(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any) -> None
     lam = vec(b.lam, b.m_extended)
     closed = vec(b.memory, MEMORY_SIZE * b.n_memory)[MEMORY_SIZE * k + MODE] == CLOSED
     if job == RESIDUAL and not closed:
-        levels(b, e, row, 1.0, g, gradient, hessian)
+        levels(b, e, row, g, gradient, hessian)
         if not force_law:
             vec(b.monitor, b.n_monitor)[k] = 0.0
     elif job == RESIDUAL or (job == TANGENT and closed):
-        constrain(b, job, e, row, 0, 1.0, g, gradient, hessian)
+        constrain(b, job, e, row, 0, g, gradient, hessian)
         vec(b.monitor, b.n_monitor)[k] = -lam[row]
     if force_law:
         _add_force(b, job, e, k, g, gradient, hessian)

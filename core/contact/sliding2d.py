@@ -44,10 +44,10 @@ def _slide_row(
     if period > 0.0:
         since -= period * np.rint(since / period)
     if sticks:
-        constrain(b, job, e, row, 1, 1.0, since, gradient, hessian)
+        constrain(b, job, e, row, 1, since, gradient, hessian)
     elif job == RESIDUAL:
         # what to remember if it begins to stick here
-        levels(b, e, row, 1.0, s, gradient, hessian)
+        levels(b, e, row, s, gradient, hessian)
 
 
 @internal

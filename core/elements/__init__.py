@@ -1,12 +1,14 @@
-"""Elements: one file each, with its record and its kernel. A new one is a file and its name in one tuple here."""
+"""Elements: one file each, with its record and its kernel. A new one is a file and its name in one tuple here.
+
+A user's own needs neither: subclasses of BodyElement, JointElement and ForceElement can stand in a model as they are.
+"""
 
 from typing import Annotated
 
-from pydantic import Field
-
+from ..model.open_union import OpenUnion
 from .applied_load2d import AppliedForce2D, AppliedTorque2D
 from .axial_rod import AxialRod
-from .base import BodyElement, Element
+from .base import BodyElement, Element, ForceElement, JointElement
 from .bushing2d import Bushing2D
 from .cable2d import Cable2D
 from .clamp2d import Clamp2D
@@ -16,6 +18,8 @@ from .distance2d import Distance2D
 from .flexible_body import FlexibleBody
 from .floating_beam2d import Attachment, FloatingBeam2D
 from .floating_body2d import FloatingBody2D
+from .formula2d import Frame2D
+from .gear2d import Gear2D
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
 from .moving_frame2d import MovingFrame2D
@@ -23,26 +27,32 @@ from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
 from .reduced_body2d import ReducedBody2D, ReducedPoint
 from .revolute2d import Revolute2D
+from .scalar_force2d import ScalarForce2D, scalar_force
+from .scalar_joint2d import ScalarJoint2D, scalar_constraint
 from .spring_damper2d import SpringDamper2D
 
-Body = Annotated[
-    PointMass2D
-    | RigidBody2D
-    | LinearSystem
-    | AxialRod
-    | Cable2D
-    | FloatingBeam2D
-    | ReducedBody2D
-    | MaterialPoint2D
-    | MovingFrame2D,
-    Field(discriminator="type"),
-]
-Joint = Annotated[Revolute2D | Prismatic2D | Clamp2D | Distance2D | CoordinateDriver, Field(discriminator="type")]
-Force = Annotated[
-    SpringDamper2D | Bushing2D | AppliedForce2D | AppliedTorque2D | CoordinateLoad, Field(discriminator="type")
-]
+BODIES = (
+    PointMass2D,
+    RigidBody2D,
+    LinearSystem,
+    AxialRod,
+    Cable2D,
+    FloatingBeam2D,
+    ReducedBody2D,
+    MaterialPoint2D,
+    MovingFrame2D,
+)
+JOINTS = (Revolute2D, Prismatic2D, Clamp2D, Distance2D, Gear2D, CoordinateDriver)
+FORCES = (SpringDamper2D, Bushing2D, AppliedForce2D, AppliedTorque2D, CoordinateLoad)
+
+Body = Annotated[BodyElement, OpenUnion(BODIES, BodyElement)]
+Joint = Annotated[JointElement, OpenUnion(JOINTS, JointElement)]
+Force = Annotated[ForceElement, OpenUnion(FORCES, ForceElement)]
 
 __all__ = [
+    "BODIES",
+    "FORCES",
+    "JOINTS",
     "AppliedForce2D",
     "AppliedTorque2D",
     "Attachment",
@@ -60,7 +70,11 @@ __all__ = [
     "FloatingBeam2D",
     "FloatingBody2D",
     "Force",
+    "ForceElement",
+    "Frame2D",
+    "Gear2D",
     "Joint",
+    "JointElement",
     "LinearSystem",
     "MaterialPoint2D",
     "MovingFrame2D",
@@ -72,5 +86,9 @@ __all__ = [
     "ReducedPoint",
     "Revolute2D",
     "RigidBody2D",
+    "ScalarForce2D",
+    "ScalarJoint2D",
     "SpringDamper2D",
+    "scalar_constraint",
+    "scalar_force",
 ]

@@ -10,7 +10,7 @@ from ..compiled.views import imat, mat, vec
 from ..model.base import Name
 from ..model.markers import Marker2D
 from ..model.signals import INPUT_SIZE, Constant, Signal, evaluate_signal
-from .base import Element, Numbering, Row
+from .base import ForceElement, Numbering, Row
 
 
 @internal
@@ -53,7 +53,7 @@ def applied_load2d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 3]] += fx * v[i] + fy * v[j] + moment * v[k]
 
 
-class _AppliedLoad2D(Element):
+class _AppliedLoad2D(ForceElement):
     kernel: ClassVar[Any] = applied_load2d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 2), (1, 2), (2, 2))
 

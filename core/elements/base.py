@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar, Protocol
 
-from ..model.base import Name, Record
+from ..model.base import Name
 from ..model.channels import Channel
 from ..model.markers import Marker2D
+from ..model.open_union import OpenRecord
 from ..model.signals import Signal
 from ..model.units import UNKNOWN
 
@@ -107,8 +108,8 @@ class Part:
     """Coordinate without mass that the constraint row holds; a closed contact that moves it takes the row's place."""
 
 
-class Element(Record):
-    """Base of everything in a model that has a kernel.
+class Element(OpenRecord):
+    """Base of everything in a model that has a kernel, a user's own too.
 
     Class attributes: those of `Form`, for elements of which all look alike; the others define `form`.
     """
@@ -193,10 +194,17 @@ class Element(Record):
         return ()
 
 
+class JointElement(Element):
+    """Base of what may stand in a model's `joints`: a user's own needs no more than to inherit from it."""
+
+
+class ForceElement(Element):
+    """The same for its `forces`."""
+
+
 class PairElement2D(Element):
     """Base of what acts between two markers of planar bodies: its coordinates are the six of their bodies."""
 
-    type: str
     a: Marker2D
     b: Marker2D
 

@@ -12,7 +12,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import NonNegative
-from .base import Numbering, PairElement2D, Row
+from .base import ForceElement, Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, add_hessian, along, arms, half_square_distance
 
 
@@ -64,7 +64,7 @@ def bushing2d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 0]] += lost
 
 
-class Bushing2D(PairElement2D):
+class Bushing2D(PairElement2D, ForceElement):
     """Elastic bushing: pulls the points of markers `a` and `b` together, equally in all directions.
 
     The markers may coincide: that is where the force is zero. The equal and opposite forces act at the two points;

@@ -10,7 +10,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
-from .base import Numbering, PairElement2D, Row
+from .base import JointElement, Numbering, PairElement2D, Row
 from .geometry2d import arms
 
 
@@ -63,7 +63,7 @@ def clamp2d_kernel(job: int, t: float, b: Any) -> None:
                 values[slot[e, 17]] -= 1.0
 
 
-class Clamp2D(PairElement2D):
+class Clamp2D(PairElement2D, JointElement):
     """Markers `a` and `b` are one: same point, and no turning against each other (a weld).
 
     Its force and torque channels are those on body b, N and N m about the common point.

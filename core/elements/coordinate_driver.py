@@ -12,7 +12,7 @@ from ..model.base import Name
 from ..model.channels import Channel
 from ..model.motion import evaluate_motion
 from ..model.signals import INPUT_SIZE, InputSignal, Signal, Step
-from .base import UNKNOWN_UNIT, Element, Numbering, Row
+from .base import UNKNOWN_UNIT, JointElement, Numbering, Row
 
 
 @internal
@@ -42,7 +42,7 @@ def coordinate_driver_kernel(job: int, t: float, b: Any) -> None:
             a[extra[e, 1]] -= lam[k] * df
 
 
-class CoordinateDriver(Element):
+class CoordinateDriver(JointElement):
     """Coordinate `coordinate` of `body` follows `motion`(t). Channel: the driving force or torque."""
 
     type: Literal["CoordinateDriver"] = "CoordinateDriver"

@@ -8,7 +8,7 @@ from ..compiled.kernels import POWER, RESIDUAL
 from ..compiled.views import imat, vec
 from ..model.base import Name
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
-from .base import Element, Numbering, Row
+from .base import ForceElement, Numbering, Row
 
 
 @internal
@@ -26,7 +26,7 @@ def coordinate_load_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 1]] += f * vec(b.v, b.n_extended)[i]
 
 
-class CoordinateLoad(Element):
+class CoordinateLoad(ForceElement):
     """Generalised force `load`(t) on coordinate `coordinate` of `body`: its power is load times the coordinate's rate.
 
     On x and y of a planar body a force in N, on its angle a torque in N m.

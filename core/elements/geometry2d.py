@@ -160,12 +160,12 @@ def add_hessian(values: Any, slot: Any, gradient: Any, hessian: Any, factor: flo
 
 
 @internal
-def levels(b: Any, e: int, row: int, factor: float, g: float, gradient: Any, hessian: Any) -> None:
-    """Row `row` of phi, phid and phidd: value, rate and acceleration of `factor * g`."""
+def levels(b: Any, e: int, row: int, g: float, gradient: Any, hessian: Any) -> None:
+    """Row `row` of phi, phid and phidd: value, rate and acceleration of `g`."""
     coord = imat(b.coord, b.count, b.ncoord)[e]
     v = vec(b.v, b.n_extended)
-    vec(b.phi, b.m_extended)[row] = factor * g
-    vec(b.phid, b.m_extended)[row] = factor * along(gradient, v, coord)
+    vec(b.phi, b.m_extended)[row] = g
+    vec(b.phid, b.m_extended)[row] = along(gradient, v, coord)
     acceleration, i, j = along(gradient, vec(b.a, b.n_extended), coord), 0, 0
     for k in range(len(hessian)):
         w = 1.0 if i == j else 2.0
@@ -174,31 +174,29 @@ def levels(b: Any, e: int, row: int, factor: float, g: float, gradient: Any, hes
         if j == len(gradient):
             i += 1
             j = i
-    vec(b.phidd, b.m_extended)[row] = factor * acceleration
+    vec(b.phidd, b.m_extended)[row] = acceleration
 
 
 @internal
-def constrain(
-    b: Any, job: int, e: int, row: int, local_row: int, factor: float, g: float, gradient: Any, hessian: Any
-) -> None:
-    """Residual or tangent of the scalar constraint `factor * g = 0` of element `e` of the batch."""
+def constrain(b: Any, job: int, e: int, row: int, local_row: int, g: float, gradient: Any, hessian: Any) -> None:
+    """Residual or tangent of the scalar constraint `g = 0` of element `e` of the batch."""
     n = b.ncoord
     lam = vec(b.lam, b.m_extended)[row]
     if job == RESIDUAL:
-        levels(b, e, row, factor, g, gradient, hessian)
+        levels(b, e, row, g, gradient, hessian)
         coord = imat(b.coord, b.count, n)[e]
         r = vec(b.r, b.n_extended)
         for i in range(len(gradient)):
-            r[coord[i]] += factor * gradient[i] * lam
+            r[coord[i]] += gradient[i] * lam
     else:
         values = vec(b.values, b.n_values)
         slot = imat(b.slot_s + 8 * e * n * n, n, n)
-        add_hessian(values, slot, gradient, hessian, vec(b.coef, 2)[0] * factor * lam)
+        add_hessian(values, slot, gradient, hessian, vec(b.coef, 2)[0] * lam)
         slot_j = imat(b.slot_j, b.count, n * b.nrow)[e]
         slot_jt = imat(b.slot_jt, b.count, n * b.nrow)[e]
         for i in range(len(gradient)):
-            values[slot_j[n * local_row + i]] += factor * gradient[i]
-            values[slot_jt[n * local_row + i]] += factor * gradient[i]
+            values[slot_j[n * local_row + i]] += gradient[i]
+            values[slot_jt[n * local_row + i]] += gradient[i]
 
 
 @internal

@@ -11,7 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
-from .base import Numbering, PairElement2D, Row
+from .base import JointElement, Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, constrain, height_over_line
 
 
@@ -32,7 +32,7 @@ def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
     slot_jt = imat(b.slot_jt, b.count, 12)
     for e in range(b.count):
         g, gradient, hessian = height_over_line(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4])
-        constrain(b, job, e, row[e, 0], 0, 1.0, g, gradient, hessian)
+        constrain(b, job, e, row[e, 0], 0, g, gradient, hessian)
         ta, tb, k = coord[e, 2], coord[e, 5], row[e, 1]
         if job == RESIDUAL:
             vec(b.phi, b.m_extended)[k] = q[tb] - q[ta] - par[e, 5]
@@ -47,7 +47,7 @@ def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
             values[slot_jt[e, 11]] += 1.0
 
 
-class Prismatic2D(PairElement2D):
+class Prismatic2D(PairElement2D, JointElement):
     """Marker `b` slides along the first axis of marker `a` and keeps the relative angle of the bodies.
 
     Its channels are the normal force and the torque on body a's side of the constraint (multipliers with the

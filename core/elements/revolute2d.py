@@ -11,7 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
-from .base import Numbering, PairElement2D, Row
+from .base import JointElement, Numbering, PairElement2D, Row
 
 
 @internal
@@ -73,7 +73,7 @@ def revolute2d_kernel(job: int, t: float, b: Any) -> None:
                 values[slot[e, 11]] -= bx
 
 
-class Revolute2D(PairElement2D):
+class Revolute2D(PairElement2D, JointElement):
     """Markers `a` and `b` share a point. Its force channels are the force on body b, N."""
 
     type: Literal["Revolute2D"] = "Revolute2D"

@@ -9,7 +9,7 @@ from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
 from ..model.base import NonNegative, Positive
-from .base import Numbering, PairElement2D, Row
+from .base import ForceElement, Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, add_hessian, add_product, along, distance, place
 
 MEETING = 1e-12
@@ -46,7 +46,7 @@ def spring_damper2d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 0]] += c * rate * rate
 
 
-class SpringDamper2D(PairElement2D):
+class SpringDamper2D(PairElement2D, ForceElement):
     """Spring and damper between markers `a` and `b`."""
 
     type: Literal["SpringDamper2D"] = "SpringDamper2D"

@@ -1,9 +1,12 @@
 """Unions that a user can extend: the records that this library knows, and a user's own subclasses of their base."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import reduce
 from inspect import get_annotations
 from operator import or_
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, GetCoreSchemaHandler
@@ -26,6 +29,24 @@ class OpenRecord(Record):
             # as if the class had said: type: Literal["Name"] = "Name"
             cls.model_fields["type"] = FieldInfo(annotation=Literal[cls.__name__], default=cls.__name__)  # type: ignore[arg-type]
             cls.model_rebuild(force=True)
+
+
+_meant: ContextVar[Mapping[str, type[OpenRecord]]] = ContextVar("meant", default=MappingProxyType({}))
+
+
+@contextmanager
+def meaning(classes: Mapping[str, type[OpenRecord]]) -> Iterator[None]:
+    """While a model is read here, these names of types mean these classes, whatever else has been defined."""
+    token = _meant.set({**_meant.get(), **classes})
+    try:
+        yield
+    finally:
+        _meant.reset(token)
+
+
+def meant_now() -> Mapping[str, type[OpenRecord]]:
+    """What `meaning` says here."""
+    return _meant.get()
 
 
 class OpenUnion:
@@ -63,7 +84,8 @@ class OpenUnion:
 
     def _from_data(self, value: Mapping[str, Any]) -> Any:
         name = value["type"]
-        own = {record.model_fields["type"].default: record for record in _subclasses(self.base)}
+        own = {record.model_fields["type"].default: record for record in subclasses(self.base)}
+        own |= {key: record for key, record in _meant.get().items() if issubclass(record, self.base)}
         if name not in own:
             known = ", ".join(f"'{each}'" for each in self.names)
             raise ValueError(
@@ -73,7 +95,8 @@ class OpenUnion:
         return own[name](**value)
 
 
-def _subclasses(base: type[OpenRecord]) -> Iterator[type[OpenRecord]]:
+def subclasses(base: type[OpenRecord]) -> Iterator[type[OpenRecord]]:
+    """All classes that inherit from `base`, in the order of their definition but for depth."""
     for record in base.__subclasses__():
         yield record
-        yield from _subclasses(record)
+        yield from subclasses(record)

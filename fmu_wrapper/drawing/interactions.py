@@ -18,6 +18,7 @@ from ...core.elements import (
     CoordinateDriver,
     CoordinateLoad,
     Distance2D,
+    Gear2D,
     MovingFrame2D,
     PlanarFrame,
     Prismatic2D,
@@ -83,6 +84,12 @@ def _(element: Distance2D, drawing: Drawing, places: Places) -> None:
                 drawing, moved(at, (1.0, 0.0), 0.03 * drawing.size), moved(at, (-1.0, 0.0), 0.03 * drawing.size)
             )
             symbols.pin(drawing, at)
+
+
+@draw_interaction.register
+def _(element: Gear2D, drawing: Drawing, places: Places) -> None:
+    for marker, radius in ((element.a, element.radius_a), (element.b, element.radius_b)):
+        drawing.behind.append(Circle(places.at(marker), abs(radius), INK, width=0.4))
 
 
 @draw_interaction.register

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from ...core.description import Model
-from ...core.elements import BodyElement, FlexibleBody, PlanarFrame, PointMass2D
+from ...core.elements import BodyElement, FlexibleBody, Gear2D, PlanarFrame, PointMass2D
 from ...core.model.markers import GROUND, Marker2D
 from .shapes import Point, bounds, turned
 
@@ -72,7 +72,10 @@ class Places:
         for element in (*self.model.joints, *self.model.forces, *self.model.contacts):
             for marker in element.markers():
                 yield self.at(marker)
-        for contact in self.model.contacts:
-            for disk in contact.disks():
-                (x, y), r = self.at(disk.marker), disk.radius
-                yield from ((x - r, y - r), (x + r, y + r))
+        circles = [(disk.marker, disk.radius) for contact in self.model.contacts for disk in contact.disks()]
+        for joint in self.model.joints:
+            if isinstance(joint, Gear2D):
+                circles += [(joint.a, joint.radius_a), (joint.b, joint.radius_b)]
+        for marker, r in circles:
+            x, y = self.at(marker)
+            yield from ((x - abs(r), y - abs(r)), (x + abs(r), y + abs(r)))

@@ -28,6 +28,7 @@ from tlismni.core import (
     Distance2D,
     FloatingBeam2D,
     Flores,
+    Gear2D,
     Gonthier,
     HalfPlane2D,
     Hertz,
@@ -150,6 +151,10 @@ ELEMENTS = {
         st.builds(Clamp2D, name=st.just("x"), a=marker, b=marker, relative_angle=st.none() | number),
         st.builds(Distance2D, name=st.just("x"), a=marker, b=marker, length=positive),
         st.builds(
+            Gear2D, name=st.just("x"), a=st.builds(Marker2D, point=vector), b=st.builds(Marker2D, body=st.just("b")),
+            radius_a=positive, radius_b=positive,
+        ),
+        st.builds(
             CoordinateDriver, name=st.just("x"), body=st.just("b"),
             coordinate=st.sampled_from(["x", "y", "angle"]), motion=motion,
         ),
@@ -244,7 +249,8 @@ def test_the_list_of_elements_above_is_complete():
         "PointMass2D", "RigidBody2D", "Revolute2D", "Prismatic2D", "Distance2D", "CoordinateDriver", "SpringDamper2D",
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
         "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
-        "Clamp2D", "AxialRod", "MovingFrame2D", "MarkerOutput2D", "ReducedBody2D", "FloatingBeam2D", "DiskOnCable2D",
+        "Clamp2D", "Gear2D", "AxialRod", "MovingFrame2D", "MarkerOutput2D", "ReducedBody2D", "FloatingBeam2D",
+        "DiskOnCable2D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

@@ -3,11 +3,14 @@
 The sixth-order central difference with span H has an error of about 1e-10 for functions of scale 1.
 """
 
+import math
+
 import numpy as np
 import pytest
 from helpers import GROUND, circle_pendulum, on
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from own_parts import CrankRotor, Drag, HardeningSpring, InBowl, OnParabola, WheelOnFloor
 from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -22,6 +25,7 @@ from tlismni.core import (
     Distance2D,
     EquationSystem,
     Flores,
+    Gear2D,
     HalfPlane2D,
     Hertz,
     KelvinVoigt,
@@ -84,6 +88,19 @@ CASES = {
     "prismatic on ground": {"joints": [Prismatic2D(name="j", a=on("ground", 0.1, 0.3, 1.1), b=RIGHT)]},
     "distance": {"joints": [Distance2D(name="j", a=LEFT, b=RIGHT, length=1.2)]},
     "distance to ground": {"joints": [Distance2D(name="j", a=on("ground", -1.0, 0.3), b=on("p"), length=1.2)]},
+    "gear": {"joints": [Gear2D(name="j", a=on("a"), b=on("b"), radius_a=1.2, radius_b=math.hypot(2.0, 0.5) - 1.2)]},
+    "inner gear to ground": {
+        "joints": [Gear2D(name="j", a=GROUND, b=on("b"), radius_a=-3.0, radius_b=3.0 - math.hypot(2.0, 0.5))]
+    },
+    "own joint": {"joints": [OnParabola(name="j", a=on("a", 0.3, -0.2, 0.4), b=RIGHT, curvature=0.8)]},
+    "own joint on ground": {"joints": [OnParabola(name="j", b=on("p"), curvature=0.8)]},
+    "own force": {
+        "forces": [
+            HardeningSpring(name="f", a=LEFT, b=RIGHT, natural_length=0.9, stiffness=3.0, cubic=0.8, damping=0.7)
+        ]
+    },
+    "own kernel": {"forces": [Drag(name="f", marker=on("p"), coefficient=0.7)]},
+    "own body": {"bodies": [CrankRotor(name="crank", mean=1.3, swing=0.4)]},
     "driver": {"joints": [CoordinateDriver(name="j", body="a", coordinate="angle", motion=SINE)]},
     "polynomial driver": {
         "joints": [
@@ -141,6 +158,16 @@ CASES = {
     "load on a coordinate": {"forces": [CoordinateLoad(name="f", body="b", coordinate="angle", load=SINE)]},
     "closed plane": {"contacts": [contact(NewtonImpact(restitution=0.5))], "mode": CLOSED},
     "closed disks": {"contacts": [contact(NewtonImpact(restitution=0.5), "disks")], "mode": CLOSED},
+    "closed own contact": {
+        "contacts": [
+            InBowl(name="c", a=on("a", 0.3, -0.2, 0.4), b=RIGHT, curvature=0.4, law=NewtonImpact(restitution=0.5))
+        ],
+        "mode": CLOSED,
+    },
+    "own contact with a force law": {
+        "contacts": [WheelOnFloor(name="c", a=on("a", 0.3, -0.2, 0.4), b=RIGHT, radius=2.5, law=FORCE_LAWS[1])],
+        "mode": ACTIVE,
+    },
     "open plane": {"contacts": [contact(NewtonImpact(restitution=0.5))]},
     **{f"{law.type} on plane": {"contacts": [contact(law)], "mode": ACTIVE} for law in FORCE_LAWS},
     **{f"{law.type} on disk": {"contacts": [contact(law, "disks")], "mode": ACTIVE} for law in FORCE_LAWS},

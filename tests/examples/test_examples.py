@@ -75,6 +75,15 @@ def test_bead_on_the_turning_rod_follows_the_closed_form() -> None:
     assert max(f["residuals"].values()) < 1e-9
 
 
+def test_swinging_atwood_machine_keeps_its_second_integral() -> None:
+    f = figures("own_elements")
+    assert f["integral"] == pytest.approx(np.full_like(f["integral"], f["expected_integral"]), abs=1e-6)
+    assert f["tension"] == pytest.approx(f["expected_tension"], rel=1e-8)
+    assert np.ptp(f["result"]["weight.y"]) > 0.5
+    assert f["largest_energy_balance"] < 1e-6
+    assert max(f["residuals"].values()) < 1e-8
+
+
 def test_impact_oscillator_is_stable_or_chaotic_and_loses_what_damping_and_impacts_take() -> None:
     f = figures("impact_oscillator")
     assert f["closure"] < 1e-7

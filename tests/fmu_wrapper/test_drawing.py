@@ -6,7 +6,8 @@ import struct
 import pytest
 from fmu_helpers import ball_model
 from tlismni.core.description import Model
-from tlismni.core.elements import RigidBody2D
+from tlismni.core.elements import Gear2D, RigidBody2D
+from tlismni.core.model.markers import Marker2D
 from tlismni.fmu_wrapper.drawing import draw, to_png, to_svg
 from tlismni.fmu_wrapper.drawing.mechanism import add_surroundings, round_length
 from tlismni.fmu_wrapper.drawing.shapes import TOUCH, Circle, Label, Path, hull
@@ -39,6 +40,20 @@ def test_parts_are_where_the_model_says():
     (floor,) = [s for s in drawing.shapes if isinstance(s, Path) and s.stroke == TOUCH]
     assert {y for _, y in floor.points} == {0.0}
     assert (0.0, 0.75) in [s.centre for s in drawing.shapes if isinstance(s, Circle)]
+
+
+def test_gears_are_their_pitch_circles():
+    centres = (0.0, 0.0), (0.5, 0.0)
+    bodies = [
+        RigidBody2D(name=name, mass=1.0, inertia=1.0, position=centre)
+        for name, centre in zip("ab", centres, strict=True)
+    ]
+    ring = Gear2D(name="gear", a=Marker2D(body="a"), b=Marker2D(body="b"), radius_a=-0.8, radius_b=0.3)
+    drawing = draw(Model(bodies=bodies, joints=[ring]))
+    circles = {(shape.centre, round(shape.radius, 12)) for shape in drawing.behind if isinstance(shape, Circle)}
+    assert {(centres[0], 0.8), (centres[1], 0.3)} <= circles
+    # the whole ring is in the picture
+    assert drawing.size >= 1.6
 
 
 def test_a_picture_of_the_size_asked():

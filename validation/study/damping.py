@@ -46,7 +46,7 @@ class DampingProblem:
 
 def _rod(courant: float, elements: int = 50) -> DampingProblem:
     rod = load("rod_wall", elements=elements).model.bodies[0]
-    step = courant * rod.length / elements / rod.wave_speed  # type: ignore[union-attr]
+    step = courant * rod.length / elements / rod.wave_speed  # type: ignore[attr-defined]
     return DampingProblem(
         f"rod_wall, h = {courant:g} l/c", "rod_wall", "wall", step, {"elements": elements, "step": step}
     )

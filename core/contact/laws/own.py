@@ -23,7 +23,7 @@ def force_formula(force: Callable[..., float]) -> Any:
     `force` is plain Python or a numba function, of numbers: arithmetic, comparisons, abs, min, max, and the functions
     of `math`. Its derivatives are exact to rounding. The elastic part is F(delta, 0, v0); its energy is integrated by
     Gauss's rule with 8 points in sqrt(delta), which is exact for springs delta^(k/2), k <= 13. It is compiled when it
-    is first used, in every process anew; a full formula (of LAW_SIGNATURE) can be cached on disk instead.
+    is first used, and kept on disk.
 
     Raises
     ------
@@ -38,6 +38,7 @@ def force_formula(force: Callable[..., float]) -> Any:
         )
     # numba learns the type of dual numbers here and not before: not everyone differentiates
     from ...compiled.dual import dual, lift
+    from ...compiled.formula_code import FormulaCode
 
     jit = njit(error_model="numpy")
     # the formula is called with all parameters, the force with those that it takes
@@ -54,4 +55,6 @@ def force_formula(force: Callable[..., float]) -> Any:
         return f.x, f.a, f.b, float(call(d, 0.0, v0, p0, p1, p2, p3)), energy * d
 
     formula.__name__ = plain.__name__
-    return jit(formula)
+    made = jit(formula)
+    made._cache = FormulaCode(formula, (plain,))
+    return made
