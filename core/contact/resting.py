@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST
-from .complementarity import RANK, ContactSolution, farthest, independent, solve_contacts
+from .complementarity import MANY, RANK, ContactSolution, farthest, independent, solve_contacts
 from .lcp import NoComplementarySolution
 from .modes import CLOSED, IDLE, STICKS
 from .painleve import no_solution, painleve
@@ -30,8 +30,9 @@ NEARLY_SINGULAR = 1e-6
 SPARE = 1e-6
 """Part of its limit that a new distribution of sticking friction must leave to each contact."""
 
-LOOSEST_RANK = 1e-4
-"""Part of an inverse mass: directions that differ by less may be taken for one."""
+RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
+"""Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and at an instant that
+does not settle. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
 AHEAD, FARTHEST_AHEAD = 1e-9, 1e-6
 """How far the mechanism is moved, of its size, to see what holds a moment later: at the second event of an instant, and
 ten times farther at each of the following ones, but not beyond."""
@@ -301,7 +302,8 @@ class Resting:
                 again | comes_back(self.sim, now.contacts, self.touching.free_jerks(), found.normal_motion)
             )
         self._found, self._closed = found, closed
-        return self.keep(min(RANK * 100.0 ** max(self.sim.events_here - 2, 0), LOOSEST_RANK))
+        first = RANK if len(self.takes) <= MANY else RANK_OF_MANY
+        return self.keep(min(first * 100.0 ** max(self.sim.events_here - 2, 0), LOOSEST_RANK))
 
     def keep(self, rank: float) -> dict[int, tuple[float, float]]:
         """Those that `choose` has found which do not repeat each other, to `rank`. Contacts that do so nearly need

@@ -77,6 +77,16 @@ def test_ten_blocks():
     assert result.stats["stages"] < 30_000
 
 
+@pytest.mark.parametrize("method, pulled, ends", [("ebdf", 6, 0.33), ("hht", 8, 0.37), ("irk", 5, 0.32)])
+def test_twenty_blocks_that_tip(method, pulled, ends):
+    """A tower that turns about the corner of a block: contacts nearly repeat each other, and rounding must not make an
+    instant, or a time without progress, of it."""
+    result = simulate(stack(20, pulled, 300.0), ends, method, **METHODS[method])
+    check_energies(result, METHODS[method].get("rtol", 1e-6))
+    assert len({event.t for event in result.events}) < 200
+    assert np.max(result["residual.position"]) < 1e-9
+
+
 @pytest.mark.full
 @pytest.mark.parametrize("blocks, pulled", [(n, p) for n in (10, 20) for p in range(n)])
 @pytest.mark.parametrize("method", METHODS)
