@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError, SimulationError
 from ..events import Event
 from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, UNSOLVED
-from .complementarity import MANY, RANK
+from .complementarity import MANY
 from .force_contact import handle_force
 from .impact import EndlessImpact, Impact, strike
 from .laws import ForceLaw, ImpactLaw
@@ -78,17 +78,16 @@ def settle(sim: "Engine", pending: list[int]) -> None:
         rounding = rounding * max(1.0, 2.0 * _impact(sim, touching, now, rounding))
         accelerations = 0.0
     resting = Resting(sim, touching, now, rounding, accelerations)
-    chosen, rank = resting.choose(), RANK
+    chosen = resting.choose()
     while True:
         try:
             _take(sim, now, chosen, slide_values, gaps)
             break
         except ConsistencyError:
             # contacts that each can be told from any other repeat each other together
-            rank *= 100.0
-            if not chosen or rank > LOOSEST_RANK:
+            if not chosen or resting.rank >= LOOSEST_RANK:
                 raise
-            chosen = resting.keep(rank)
+            chosen = resting.keep(min(100.0 * resting.rank, LOOSEST_RANK))
     _report(sim, now, pending)
 
 

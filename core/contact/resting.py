@@ -309,7 +309,7 @@ class Resting:
         """Those that `choose` has found which do not repeat each other, to `rank`. Contacts that do so nearly need
         large forces against each other to move as constraints say: where an instant does not settle, more and more of
         them count as one."""
-        now, found, closed = self.now, self._found, self._closed
+        now, found, closed, self.rank = self.now, self._found, self._closed, rank
         sticking = self.sticking(found)
         sticking = sticking[closed[sticking]]
         normals = np.flatnonzero(closed)[np.argsort(-found.normal[closed], kind="stable")]
