@@ -1,6 +1,7 @@
 """simulate_many: many runs of one model on threads, results as one table."""
 
 import os
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from threading import Event as Flag
@@ -205,6 +206,13 @@ def _checked(compiled: CompiledModel, table: _Rows) -> list[Any]:
     return kept or []
 
 
+def _processors() -> int:
+    """How many this process may use."""
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def _in_threads(
     work: Callable[[range], int],
     count: int,
@@ -213,8 +221,7 @@ def _in_threads(
     stopped: Flag,
 ) -> None:
     """`work` on all rows in small parts, as threads become free."""
-    most = threads if threads is not None else len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 0
-    most = (os.cpu_count() or 1) if threads is None and not most else most
+    most = _processors() if threads is None else threads
     if isinstance(most, bool) or not isinstance(most, int) or most < 1:
         raise ModelError(f"threads must be a whole number of at least 1, not {threads!r}")
     size = max(1, min(64, count // (4 * most)))
