@@ -72,8 +72,7 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
     analysed = structure.dependent is not None and _same(structure.dependent, parts.dependent)
     if not analysed:
         workspace.set_partition(parts.dependent)
-    if structure.probe is not parts.probe:
-        workspace.set_probe(parts.probe)
+    workspace.set_probe(parts.probe)
     for factorization, factors in zip((structure.kkt, structure.lu_d, structure.kkt_query), parts.factors, strict=True):
         if factorization is None:
             raise RuntimeError("a structure with a partition has factorisations")

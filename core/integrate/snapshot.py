@@ -87,7 +87,7 @@ class Snapshot(NamedTuple):
 def take_snapshot(sim: "Simulation") -> Snapshot:
     """Copy everything that decides the future."""
     workspace, structure, drive = sim.workspace, sim.workspace.structure, sim.drive
-    if structure.dependent is None or structure.lu_d is None or structure.probe is None:
+    if structure.dependent is None or structure.lu_d is None:
         raise RuntimeError("a simulation always has a partition once it is built")
     return Snapshot(
         workspace.state_bytes.copy(),
@@ -97,7 +97,7 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
             for lu in (structure.kkt, structure.lu_d, structure.kkt_query)
         ]),
         structure.dependent,
-        structure.probe,
+        structure.probe.copy(),
         workspace.key,
         workspace.dropped,
         sim.t,

@@ -1,5 +1,7 @@
 """Structures by the contacts that are closed, engaged and sticking: those of a run, and those that runs share."""
 
+from collections.abc import Iterator
+
 from .assembly import Assembly
 from .structure import Structure, build_structure
 
@@ -36,13 +38,27 @@ class Patterns:
         new._own[key] = structure
         return new
 
-    def get(self, assembly: Assembly, key: Key) -> Structure:
-        """The structure of `key`: kept, or built."""
-        structure = self._own.pop(key, None) or self._new(assembly, key)
+    def get(self, assembly: Assembly, key: Key) -> tuple[Structure, bool]:
+        """The structure of `key`: kept, or built; and whether it is a new one."""
+        found = self._own.pop(key, None)
+        structure = found or self._new(assembly, key)
         while len(self._own) >= MOST_STRUCTURES:
             del self._own[next(iter(self._own))]
         self._own[key] = structure
+        return structure, found is None
+
+    def at(self, address: int) -> Structure:
+        """The structure whose record is at `address`, which is the last to be given up now."""
+        key, structure = next((key, x) for key, x in self._own.items() if x.record.address == address)
+        self._own[key] = self._own.pop(key)
         return structure
+
+    def __iter__(self) -> Iterator[Structure]:
+        return iter(self._own.values())
+
+    def with_dropped(self, rows: frozenset[int]) -> list[Structure]:
+        """Those in which these redundant rows are left out."""
+        return [structure for key, structure in self._own.items() if key[3] == rows]
 
     def _new(self, assembly: Assembly, key: Key) -> Structure:
         if self._shared is None:

@@ -4,7 +4,7 @@ import numba as nb
 import numpy as np
 from numba import types
 
-from ..compiled.jit import caller
+from ..compiled.jit import caller, record_view
 
 WORKSPACE = np.dtype(
     [
@@ -18,6 +18,9 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_sticking",
+            # (contacts,) codes of `switch.py`; the present structure, all that are kept, and how many
+            "wanted", "structure", "known", "n_known",
+            "wanted_dependent",  # (m_act,) int64: the partition that compiled code has chosen
             # structure (changes with the set of engaged contacts)
             "active", "redundant", "n_redundant", "probe",
             "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
@@ -38,6 +41,29 @@ WORKSPACE = np.dtype(
     ]
 )  # fmt: skip
 WORKSPACE_TYPE = nb.from_dtype(WORKSPACE)
+
+STRUCTURE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            # what the workspace takes over, under the same names
+            "n_values", "values", "m_act", "active", "n_redundant", "redundant", "probe",
+            "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "n_mass", "mass_slot",
+            "kkt", "kkt_query",
+            "codes",                                  # (contacts,) int64: which it is for (`switch.py`)
+            "slots",                                  # (3 n_kernels,) int64: addresses of the batches' slot tables
+            "n_jacobian", "jacobian_start", "jacobian_col", "jacobian_slot",  # Phi_q by rows, of the active ones
+            "partition", "partitions", "n_partitions",  # the present one (0: none), all that are kept, how many
+        )
+    ]
+)  # fmt: skip
+STRUCTURE_TYPE = nb.from_dtype(STRUCTURE)
+
+PARTITION = np.dtype(
+    [(name, np.int64) for name in ("dependent", "n_free", "free_row", "free_col", "free_slot", "lu_d")]
+)
+PARTITION_TYPE = nb.from_dtype(PARTITION)
+structure_at, partition_at = record_view(STRUCTURE_TYPE), record_view(PARTITION_TYPE)
 
 # Called by address, so that their code is compiled once and not again inside each caller.
 EVALUATE_SIGNATURE = types.void(WORKSPACE_TYPE, types.int64)

@@ -4,19 +4,19 @@ An engaged contact is one whose entries belong to the matrix: closed (its row is
 force (its stiffness is in K).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.image import Take, twin
+from ..compiled.records import ArrayRecord
 from ..linalg import Factorization
 from .assembly import Assembly, Batch
-
-MOST_PARTITIONS = 32
-"""Kept for runs that share a pattern."""
-
+from .partitions import MOST_PARTITIONS, Partition, build_partition
+from .records import STRUCTURE
+from .switch import codes_of
 
 @dataclass
 class Structure:
@@ -46,18 +46,54 @@ class Structure:
     """Entries of Phi_q: rows of the active constraints in ascending order, columns ascending within each, and slots."""
     kkt: Factorization
     kkt_query: Factorization
-    lu_d: Factorization | None = None
-    dependent: NDArray[np.int64] | None = None
-    probe: NDArray[np.float64] | None = None
+    codes: NDArray[np.int64]
+    """What each contact is here (`switch.py`), (contacts,)."""
+    values: NDArray[np.float64] = field(init=False)
+    """The numbers in the slots, (n_values,)."""
+    probe: NDArray[np.float64] = field(init=False)
     """Right-hand side (m_act,) with which the condition of the constraints is measured."""
-    free: tuple[NDArray[np.int64], ...] = ()
-    """Row, column and slot of the entries of Phi_q in independent columns."""
-
-    partitions: dict[bytes, tuple[Any, Factorization]] | None = None
-    """Of runs that share this pattern: `free` and an unused factorisation for each choice of dependent coordinates."""
-
+    present: Partition | None = None
+    known: dict[bytes, Partition] = field(default_factory=dict)
+    """Partitions by their dependent coordinates."""
+    shared: dict[bytes, Partition] | None = None
+    """The same of all runs that share this pattern, unused."""
     units: NDArray[np.float64] | None = None
     """What brings coordinates and all rows of Phi to one unit; `use_units` changes it."""
+    record: ArrayRecord = field(init=False)
+    """For compiled code, which may change the present partition (`note_present`)."""
+
+    def __post_init__(self) -> None:
+        self.values, self.probe = np.zeros(self.n_values), np.zeros(len(self.active))
+        tables = [x for k in range(len(self.slot_s)) for x in (self.slot_s[k], self.slot_j[k], self.slot_jt[k])]
+        start = np.searchsorted(self.jacobian_row, np.arange(len(self.active) + 1))
+        names = (
+            "values", "active", "redundant", "probe", "gradient_start", "gradient_col", "gradient_slot", "mass_slot",
+            "codes", "jacobian_col", "jacobian_slot",
+        )  # fmt: skip
+        self.record = ArrayRecord(
+            STRUCTURE,
+            {
+                **{name: getattr(self, name) for name in names},
+                "entry_row": self.rows, "entry_col": self.cols, "jacobian_start": start,
+                "slots": np.array([x.ctypes.data for x in tables], dtype=np.int64),
+                "partitions": np.zeros(MOST_PARTITIONS, dtype=np.int64),
+            },
+            {
+                "n_values": self.n_values, "m_act": len(self.active), "n_redundant": len(self.redundant),
+                "n_mass": len(self.mass_slot), "n_jacobian": len(self.jacobian_slot),
+                "kkt": self.kkt.address, "kkt_query": self.kkt_query.address, "partition": 0, "n_partitions": 0,
+            },
+        )  # fmt: skip
+
+    @property
+    def dependent(self) -> NDArray[np.int64] | None:
+        """Dependent coordinates (m_act,) of the present partition."""
+        return None if self.present is None else self.present.dependent
+
+    @property
+    def lu_d(self) -> Factorization | None:
+        """Factorisation of Phi_qd of the present partition."""
+        return None if self.present is None else self.present.lu_d
 
     def use_units(self, units: NDArray[np.float64], n: int) -> None:
         """Let pivots be chosen with rows and columns in one unit: `units` (n + m + 1,) of coordinates and rows."""
@@ -65,27 +101,34 @@ class Structure:
         both = np.concatenate([units[:n], units[n + self.active]])
         for factorization in (self.kkt, self.kkt_query):
             factorization.use_units(both, both)
-        self._units_of_partition(n)
+        for partition in self.known.values():
+            self._units_of(partition, n)
 
-    def _units_of_partition(self, n: int) -> None:
-        if self.units is not None and self.lu_d is not None and self.dependent is not None:
-            self.lu_d.use_units(self.units[n + self.active], self.units[self.dependent])
-
-    def _factorizations(self) -> dict[str, Factorization]:
-        found = {"kkt": self.kkt, "kkt_query": self.kkt_query, "lu_d": self.lu_d}
-        return {name: factorization for name, factorization in found.items() if factorization is not None}
+    def _units_of(self, partition: Partition, n: int) -> None:
+        if self.units is not None:
+            partition.lu_d.use_units(self.units[n + self.active], self.units[partition.dependent])
 
     def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
-        """Own arrays and records: those of the factorisations. All others never change."""
-        parts = [factorization.memory() for factorization in self._factorizations().values()]
-        return [x for arrays, _ in parts for x in arrays], [x for _, tables in parts for x in tables]
+        """Own arrays and records: numbers, factorisations, and the present partition. All others never change."""
+        parts = [part.memory() for part in (self.kkt, self.kkt_query, self.present) if part is not None]
+        own = [self.values, self.probe, *(x for arrays, _ in parts for x in arrays)]
+        return own, [self.record.table, self.record.arrays["partitions"], *(x for _, tables in parts for x in tables)]
 
     def moved(self, take: Take) -> "Structure":
-        """The same structure in a copy of its memory (`compiled/image.py`)."""
+        """The same structure in a copy of its memory (`compiled/image.py`), with its present partition alone."""
         new = twin(self)
-        for name, factorization in self._factorizations().items():
-            setattr(new, name, factorization.moved(take))
+        new.values, new.probe, new.record = take(self.values), take(self.probe), self.record.moved(take)
+        new.kkt, new.kkt_query = self.kkt.moved(take), self.kkt_query.moved(take)
+        new.present = None if self.present is None else self.present.moved(take)
+        new.known = {} if new.present is None else {new.present.dependent.tobytes(): new.present}
+        new._list_partitions()
         return new
+
+    def _list_partitions(self) -> None:
+        addresses = [partition.record.address for partition in self.known.values()]
+        self.record.arrays["partitions"][: len(addresses)] = addresses
+        self.record.set_size("n_partitions", len(addresses))
+        self.record.set_size("partition", 0 if self.present is None else self.present.record.address)
 
     @property
     def nnz(self) -> int:
@@ -98,41 +141,47 @@ class Structure:
         return len(self.rows) + len(self.gradient_slot) + 1
 
     def partition(self, dependent: NDArray[np.int64]) -> None:
-        """Choose the dependent coordinates (m_act,): builds the factorisations of Phi_qd."""
+        """Choose the dependent coordinates (m_act,): builds the factorisation of Phi_qd where it is not known yet."""
         if self.dependent is not None and np.array_equal(self.dependent, dependent):
             return  # most impacts come back to the same partition
-        n = int(self.kkt.n) - len(self.active)
-        key = dependent.tobytes()
-        known = None if self.partitions is None else self.partitions.get(key)
-        if known is None:
-            known = self._partition_of(n, dependent)
-            if self.partitions is not None and len(self.partitions) < MOST_PARTITIONS:
-                known[1].analyses = {}
-                self.partitions[key] = known
-        self.dependent = np.ascontiguousarray(dependent, dtype=np.int64)
-        self.free, self.lu_d = known[0], known[1] if self.partitions is None else known[1].fresh()
-        self._units_of_partition(n)
+        self.present = self.known.get(dependent.tobytes()) or self._new_partition(dependent)
+        self.record.set_size("partition", self.present.record.address)
 
-    def _partition_of(self, n: int, dependent: NDArray[np.int64]) -> tuple[Any, Factorization]:
-        position = np.full(n, -1, dtype=np.int64)
-        position[dependent] = np.arange(len(dependent))
-        is_dependent = position[self.jacobian_col] >= 0
-        free, bound = np.flatnonzero(~is_dependent), np.flatnonzero(is_dependent)
-        parts = tuple(np.ascontiguousarray(x[free]) for x in (self.jacobian_row, self.jacobian_col, self.jacobian_slot))
-        rows, cols = self.jacobian_row[bound], position[self.jacobian_col[bound]]
-        slots = self.jacobian_slot[bound]
-        return parts, Factorization(len(self.active), rows, cols, slots, source_size=self.n_values)
+    def _new_partition(self, dependent: NDArray[np.int64]) -> Partition:
+        n, key = int(self.kkt.n) - len(self.active), dependent.tobytes()
+        new = None if self.shared is None else self.shared.get(key)
+        if new is None:
+            jacobian = self.jacobian_row, self.jacobian_col, self.jacobian_slot
+            new = build_partition(dependent, jacobian, n, self.n_values)
+            if self.shared is not None and len(self.shared) < MOST_PARTITIONS:
+                new.lu_d.analyses = {}
+                self.shared[key] = new
+        if self.shared is not None:
+            new = new.fresh()
+        while len(self.known) >= MOST_PARTITIONS:
+            del self.known[next(iter(self.known))]
+        self.known[key] = new
+        self._units_of(new, n)
+        self._list_partitions()
+        return new
+
+    def note_present(self) -> None:
+        """Take over the partition that compiled code has chosen."""
+        address = self.record.record["partition"]
+        if self.present is None or self.present.record.address != address:
+            self.present = next(x for x in self.known.values() if x.record.address == address)
 
     def share(self) -> None:
         """Let structures made of this one by `fresh` and `moved` share their analyses from now on."""
-        self.partitions = {}
+        self.shared = {}
         self.kkt.analyses = self.kkt_query.analyses = {}
 
     def fresh(self) -> "Structure":
-        """One of the same pattern with memory of its own."""
+        """One of the same pattern with memory of its own, without a partition."""
         new = twin(self)
-        for name, factorization in self._factorizations().items():
-            setattr(new, name, factorization.fresh())
+        new.kkt, new.kkt_query = self.kkt.fresh(), self.kkt_query.fresh()
+        new.present, new.known = None, {}
+        new.__post_init__()
         return new
 
 
@@ -198,6 +247,7 @@ def build_structure(
         jacobian_slot=jacobian,
         kkt=kkt,
         kkt_query=kkt_query,
+        codes=codes_of(len(assembly.contacts), closed, engaged, sticking),
     )
 
 

@@ -13,7 +13,8 @@ from ..compiled.records import ArrayRecord, Record
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
-from .patterns import Patterns
+from .partitions import Partition
+from .patterns import MOST_STRUCTURES, Patterns
 from .records import (
     CONDITIONS,
     CONTROL_SIZE,
@@ -24,15 +25,18 @@ from .records import (
 )
 from .state_fields import STATE, Field, row_length, state_fields
 from .structure import Structure
+from .switch import key_of, use_partition, use_structure
 
 _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
 )  # fmt: skip
 
-_OF_STRUCTURE = ("gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "mass_slot")
+_OF_STRUCTURE = (
+    "values", "probe", "active", "redundant", "gradient_start", "gradient_col", "gradient_slot", "mass_slot",
+)  # fmt: skip
+_OF_PARTITION = ("dependent", "free_row", "free_col", "free_slot")
 _NEVER_CHANGES = (
-    *_OF_STRUCTURE, "active", "redundant", "probe", "dependent", "free_row", "free_col", "free_slot", "kernels",
-    "contact_rows", "contact_slide_rows",
+    *_OF_STRUCTURE, *_OF_PARTITION, "entry_row", "entry_col", "kernels", "contact_rows", "contact_slide_rows", "known",
 )  # fmt: skip
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
@@ -80,11 +84,15 @@ class Workspace:
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
             "contact_sticking": sticking(a),
             "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
-            "active": np.zeros(0, dtype=np.int64),
-            "redundant": np.zeros(0, dtype=np.int64),
             "probe": np.zeros(0),
-            "dependent": np.zeros(0, dtype=np.int64),
-            **{name: np.zeros(0, dtype=np.int64) for name in ("free_row", "free_col", "free_slot", *_OF_STRUCTURE)},
+            **{
+                name: np.zeros(0, dtype=np.int64)
+                for name in (*_OF_PARTITION, *_OF_STRUCTURE, "entry_row", "entry_col")
+                if name not in ("values", "probe")
+            },
+            "wanted": np.zeros(max(contacts, 1), dtype=np.int64),
+            "wanted_dependent": np.zeros(a.n + m_ext, dtype=np.int64),
+            "known": np.zeros(MOST_STRUCTURES, dtype=np.int64),
             "stage_v": np.zeros(MOST_STAGES * n_ext),
             "stage_a": np.zeros(MOST_STAGES * n_ext + m_ext),
             "stage_rows": np.zeros(COUPLED_STAGES * row_length(a)),
@@ -115,7 +123,8 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0, "n_mass": 0,
                 "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
-                "n_work": len(a.work_names), "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
+                "n_work": len(a.work_names), "structure": 0, "n_known": 0,
+                "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
                 "stage_function": 0,
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
@@ -135,7 +144,9 @@ class Workspace:
         for batch in self._batches:
             own.append(batch.arrays["par"])
         arrays, tables = self.structure.memory()
-        records = [self._record.table, *(batch.table for batch in self._batches), self.arrays["batches"]]
+        records = [
+            self._record.table, *(batch.table for batch in self._batches), self.arrays["batches"], self.arrays["known"]
+        ]  # fmt: skip
         return [*own, *arrays], [*records, *tables]
 
     def moved(self, take: Take) -> "Workspace":
@@ -147,6 +158,8 @@ class Workspace:
         new.arrays = {**new._record.arrays, "signals": take(self.arrays["signals"])}
         new.structure = self.structure.moved(take)
         new.patterns = self.patterns.of_copy((*self.key, self.dropped), new.structure)
+        new._list_structures()
+        new._use(new.structure)
         return new
 
     def take_numbers(self, assembly: Assembly) -> None:
@@ -209,32 +222,37 @@ class Workspace:
     def engage(self, closed: frozenset[int], engaged: frozenset[int], sticking: frozenset[int] = frozenset()) -> None:
         """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
         a place in the matrix."""
-        self.key = (closed, closed | engaged, sticking)
-        self.structure = structure = self.structure_of(*self.key, self.dropped)
-        values = np.zeros(structure.n_values)
-        self._set("values", values, n_values=len(values))
-        self._set("active", structure.active, m_act=len(structure.active))
-        self._set("redundant", structure.redundant, n_redundant=len(structure.redundant))
-        self._set("probe", np.zeros(len(structure.active)) if structure.probe is None else structure.probe)
-        for k, batch in enumerate(self._batches):
-            for name, table in (
-                ("slot_s", structure.slot_s[k]),
-                ("slot_j", structure.slot_j[k]),
-                ("slot_jt", structure.slot_jt[k]),
-            ):
-                batch.set_array(name, table)
-            batch.set_array("values", values)
-            batch.set_size("n_values", len(values))
-        self._set("entry_row", structure.rows)
-        self._set("entry_col", structure.cols)
-        self._set("mass_slot", structure.mass_slot, n_mass=len(structure.mass_slot))
-        for name in ("gradient_start", "gradient_col", "gradient_slot"):
-            self._set(name, getattr(structure, name))
-        self._record.table["kkt"] = structure.kkt.address
-        self._record.table["kkt_query"] = structure.kkt_query.address
-        self._forget()
-        if structure.dependent is not None:
-            self._use_partition()
+        structure = self.structure_of(closed, closed | engaged, sticking, self.dropped)
+        use_structure(self.record, structure.record.address)
+        self._use(structure)
+
+    def _use(self, structure: Structure) -> None:
+        """Name the arrays of the structure that the record has now."""
+        self.structure, self.key = structure, key_of(structure.codes[: len(self.assembly.contacts)])
+        named = {name: getattr(structure, name) for name in _OF_STRUCTURE}
+        self.arrays |= {**named, "entry_row": structure.rows, "entry_col": structure.cols}
+        if structure.present is not None:
+            self._use_partition(structure.present)
+
+    def _use_partition(self, partition: Partition) -> None:
+        row, col, slot = partition.free
+        self.arrays |= {"dependent": partition.dependent, "free_row": row, "free_col": col, "free_slot": slot}
+
+    def sync(self) -> None:
+        """Take over what compiled code has chosen: structure and partition."""
+        address = self.record["structure"]
+        if address != self.structure.record.address:
+            self.structure = self.patterns.at(address)
+        self.structure.note_present()
+        self._use(self.structure)
+
+    def engage_wanted(self) -> None:
+        """Build the structure that compiled code has asked for (`switch.py`) and does not know."""
+        self.structure_of(*key_of(self.arrays["wanted"][: len(self.assembly.contacts)]), self.dropped)
+
+    def partition_wanted(self) -> None:
+        """Build the partition that compiled code has chosen for the present structure and does not know."""
+        self.structure.partition(self.arrays["wanted_dependent"][: len(self.structure.active)].copy())
 
     def _forget(self) -> None:
         """What is known of the matrices' factors and conditions holds no more."""
@@ -244,46 +262,47 @@ class Workspace:
     def use_units(self, units: NDArray[np.float64]) -> None:
         """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
         self.units = units
-        self.structure.use_units(units, self.assembly.n)
+        for structure in self.patterns:
+            structure.use_units(units, self.assembly.n)
         self.arrays["values"][:] = 0.0
         self._forget()
 
     def structure_of(self, *key: frozenset[int]) -> Structure:
         """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
-        structure = self.patterns.get(self.assembly, key)
+        structure, new = self.patterns.get(self.assembly, key)
         if structure.units is not self.units:
             structure.use_units(self.units, self.assembly.n)
+        if new:
+            self._list_structures()
         return structure
+
+    def _list_structures(self) -> None:
+        """Say which structures compiled code may choose from: those with the rows that are dropped now."""
+        addresses = [structure.record.address for structure in self.patterns.with_dropped(self.dropped)]
+        self.arrays["known"][: len(addresses)] = addresses
+        self._record.set_size("n_known", len(addresses))
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
         if rows == self.dropped:
             return
         self.dropped = rows
+        self._list_structures()
         self.arrays["lam"][sorted(rows)] = 0.0
         self.engage(*self.key)
 
     def set_probe(self, probe: NDArray[np.float64]) -> None:
         """Right-hand side (m_act,) with which the condition of the constraints is measured."""
-        self.structure.probe = np.ascontiguousarray(probe)
-        self._set("probe", self.structure.probe)
+        self.structure.probe[:] = probe
 
     def set_partition(self, dependent: NDArray[np.int64]) -> None:
         """Choose the dependent coordinates of the present structure."""
         self.structure.partition(dependent)
-        self._use_partition()
-        self.arrays["rate"][FACTOR_AGE] = -1.0
-
-    def _use_partition(self) -> None:
-        structure = self.structure
-        if structure.lu_d is None or structure.dependent is None:
-            raise RuntimeError("the structure has no partition yet: call set_partition first")
-        self._set("dependent", structure.dependent)
-        row, col, slot = structure.free
-        self._set("free_row", row, n_free=len(row))
-        self._set("free_col", col)
-        self._set("free_slot", slot)
-        self._record.table["lu_d"] = structure.lu_d.address
+        partition = self.structure.present
+        if partition is None:
+            raise RuntimeError("a structure has a partition once one was chosen")
+        use_partition(self.record, partition.record.address)
+        self._use_partition(partition)
 
     def _set(self, name: str, array: NDArray[Any], **sizes: int) -> None:
         self.arrays[name] = array
