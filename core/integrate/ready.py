@@ -24,7 +24,7 @@ from ..stage.accelerations import solve_accelerations
 from ..system.evaluate import constraint_norm, evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..system.levels import force_level, position_level, rate_level
 from ..system.measure import measure_motion, measure_rows
-from ..system.projection import least_correction
+from ..system.projection import meet
 from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
 from .dense_output import interpolate, query
 from .drive import aim_now, drive, settle_now
@@ -66,7 +66,7 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (position_level, (_WORKSPACE,)),
     (rate_level, (_WORKSPACE,)),
     (force_level, (_WORKSPACE,)),
-    (least_correction, (_WORKSPACE, _WHOLE, _WHOLE)),
+    (meet, (_WORKSPACE, types.boolean)),
     (evaluate_joints, (_WORKSPACE,)),
     (factor_joints, (_WORKSPACE,)),
     (solve_joints, (_WORKSPACE,)),

@@ -84,12 +84,14 @@ UNLOCATED = 108  # events have been found whose times Python has to locate
 DUE = 109  # a breakpoint is due
 SETTLE = 110  # pending events are for Python to settle
 JAM = 111  # a sliding contact may have jammed
+WANTED = 112  # something has to be built before pending events can be settled
+FAILED = 113  # pending events cannot be settled
 
 DRIVE = np.dtype(
     [
         (name, np.int64)
         for name in (
-            "workspace", "method", "loop",            # addresses of the records
+            "workspace", "method", "loop", "instant",  # addresses of the records
             "run", "trial", "accept", "write_sample", "accelerations",  # addresses of functions
             "goals",                                  # (GOALS_SIZE,) float64: where to go
             "counts",                                 # (COUNTS_SIZE,) int64
@@ -126,5 +128,6 @@ FOUND_SIZE = 7
 EVENT_ROWS = 1024
 EVENT_SIZE = 9
 """Time, kind, contact, and the numbers of `Event` in their order."""
-IMPACT, GRAZE = range(2)
-EVENT_KINDS = ("impact", "graze")
+IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS = range(8)
+EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
+"""Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the energy."""

@@ -40,7 +40,7 @@ def _insert(pending: Any, count: int, row: int) -> int:
 
 
 @compiled_unlocked
-def _eliminate(
+def eliminate(
     m: int,
     n: int,
     indptr: Any,
@@ -135,7 +135,7 @@ def _eliminate(
     return rank
 
 
-_eliminate_interpreted = interpreted(_eliminate, _insert)
+_eliminate_interpreted = interpreted(eliminate, _insert)
 
 
 def make_elimination_ready() -> None:
@@ -143,7 +143,7 @@ def make_elimination_ready() -> None:
     whole, real = types.int64, types.float64
     wholes, reals = types.Array(whole, 1, "C"), types.Array(real, 1, "C")
     matrix, tables = (whole, whole, wholes, wholes, reals, reals, real), (wholes,) * 5
-    _eliminate.compile((*matrix, *tables, reals, wholes, wholes, reals, wholes, wholes, reals))
+    eliminate.compile((*matrix, *tables, reals, wholes, wholes, reals, wholes, wholes, reals))
 
 
 def eliminate_rows(
@@ -151,12 +151,12 @@ def eliminate_rows(
 ) -> tuple[Ints, int, Ints, Ints, Floats]:
     """As `independent_columns`, and the factors: (pivot_column, rank, f_start (m + 1,), f_row, f)."""
     space = 4 * len(indices) + 4 * n
-    eliminate = _eliminate_interpreted if len(indices) <= FEW_ENTRIES else _eliminate
+    by_size = _eliminate_interpreted if len(indices) <= FEW_ENTRIES else eliminate
     while True:
         pivot_column = np.full(m, -1, np.int64)
         u_start, f_start = np.zeros(m + 1, np.int64), np.zeros(m + 1, np.int64)
         f_row, f = np.empty(space, np.int64), np.empty(space)
-        rank = eliminate(
+        rank = by_size(
             m, n, indptr, indices, data, column_scale, tol, pivot_column,
             np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.empty(n, np.int64), np.empty(n, np.int64),
             np.zeros(n), u_start, np.empty(space, np.int64), np.empty(space), f_start, f_row, f,

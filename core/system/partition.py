@@ -13,6 +13,8 @@ from .workspace import Workspace
 
 RANK_TOLERANCE = 1e-9
 """A constraint row whose remainder after elimination is smaller than this (relative) repeats others."""
+GOLDEN, SILVER = 0.6180339887498949, 0.4142135623730950
+"""Whose multiples have fractions in no simple order."""
 
 
 def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPivots:
@@ -111,6 +113,6 @@ def _probe(workspace: Workspace) -> NDArray[np.float64]:
     rows, cols, values = workspace.jacobian()
     size = np.zeros(len(workspace.structure.active))
     np.maximum.at(size, rows, np.abs(values) * workspace.assembly.coordinate_scale[cols])
-    golden = np.modf(0.6180339887498949 * np.arange(len(size)))[0]
-    silver = np.modf(0.4142135623730950 * np.arange(len(size)))[0]
+    golden = np.modf(GOLDEN * np.arange(len(size)))[0]
+    silver = np.modf(SILVER * np.arange(len(size)))[0]
     return np.asarray(size * (0.5 + golden) * np.where(silver < 0.5, 1.0, -1.0))

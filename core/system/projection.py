@@ -4,13 +4,16 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, inlined
+from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..rounding import MET, NEARLY_MET
 from .evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
 from .levels import position_level, rate_level
 from .workspace import Workspace
+
+MOST_CORRECTIONS = 25
+"""Of Newton's method; it converges within five, or it does not."""
 
 
 @inlined
@@ -30,29 +33,33 @@ def correct_least(ws: Any, residual_address: int, x_address: int) -> None:
     evaluate_residuals(ws)
 
 
-@compiled
-def least_correction(ws: Any, residual_address: int, x_address: int) -> int:
+@internal
+def _least_correction(ws: Any, residual_address: int, x_address: int) -> bool:
     """The correction with matrices of the current point."""
     evaluate_tangent(ws, 0.0, 0.0)
     if factor(lu_at(ws.kkt_query), ws.values) != 0:
-        return 1
+        return False
     correct_least(ws, residual_address, x_address)
-    return 0
+    return True
 
 
-def bring_to_rest(workspace: Workspace, residual: str, x: str) -> bool:
-    """Newton on one level; True when it holds to rounding."""
-    ws = workspace.record
-    table = workspace._record.table
-    previous = np.inf
-    for _ in range(25):
-        norm = constraint_norm(ws, int(table[residual][0]))
-        size = position_level(ws) if x == "q" else rate_level(ws)
+@compiled
+def meet(ws: Any, rates: bool) -> bool:
+    """Newton on one level, positions or `rates`; True when the constraints hold to rounding."""
+    residual, x, previous = (ws.phid, ws.v, np.inf) if rates else (ws.phi, ws.q, np.inf)
+    for _ in range(MOST_CORRECTIONS):
+        norm = constraint_norm(ws, residual)
+        size = rate_level(ws) if rates else position_level(ws)
         if norm <= MET * size or (norm >= 0.5 * previous and norm <= NEARLY_MET * size):
             return True
         if not np.isfinite(norm) or norm > 1e3 * previous:
             return False
         previous = norm
-        if least_correction(ws, int(table[residual][0]), int(table[x][0])) != 0:
+        if not _least_correction(ws, residual, x):
             return False
     return False
+
+
+def bring_to_rest(workspace: Workspace, residual: str, x: str) -> bool:
+    """`meet` for the residual "phi" of "q", or "phid" of "v"."""
+    return bool(meet(workspace.record, (residual, x) == ("phid", "v")))

@@ -1,0 +1,164 @@
+"""What an impact does: contacts that would bounce ever lower are struck without restitution, if they then stay."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..contact.modes import APPROACH_SPEED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, OPEN
+from ..integrate.records import GAINS, GRAZE, IMPACT
+from ..methods.history import history_time
+from ..rounding import FORCE_ROUNDING
+from ..system.evaluate import evaluate_energy
+from .impact import strike
+from .reading import unresolved_speed
+from .records import (
+    APPROACH,
+    COUNT,
+    F_N,
+    FALLS,
+    FIRST_APPROACH,
+    FIRST_FRICTION,
+    FIRST_IMPULSE,
+    FIRST_LOSS,
+    FIRST_SEPARATION,
+    FRICTION,
+    IMPULSE,
+    LEAVES,
+    LEFT,
+    LOSS,
+    LOW,
+    RESIDUAL,
+    RESTITUTION,
+    RESTS,
+    ROUNDING,
+    SEPARATION,
+    SETTLED,
+    SLIPS,
+    STOPS,
+    STRUCK,
+    WAS,
+    col,
+    real,
+    whole,
+)
+from .report import report
+from .resting import begin_rest, find_forces
+
+GAIN = 1e-12
+"""Of the kinetic energy: an impact that gains more is one to report."""
+_RESULTS = (
+    (IMPULSE, FIRST_IMPULSE),
+    (FRICTION, FIRST_FRICTION),
+    (LOSS, FIRST_LOSS),
+    (APPROACH, FIRST_APPROACH),
+    (SEPARATION, FIRST_SEPARATION),
+)
+
+
+@internal
+def impact(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Strike the touching contacts, with events and accounts."""
+    count, v, before, energy = whole(ev)[COUNT], vec(ws.v, ws.n_ext), vec(ev.velocities, ws.n_ext), vec(ws.energy, 3)
+    evaluate_energy(ws)
+    kinetic = energy[0]
+    for i in range(ws.n_ext):
+        before[i] = v[i]
+    # the velocities jump: only they say what moves how
+    whole(ev)[STRUCK] = 1
+    for i in range(count):
+        col(ev, LEAVES)[i] = col(ev, STOPS)[i] = col(ev, SLIPS)[i] = col(ev, RESTS)[i] = 0.0
+    status = strike(ev, dr, ws, False)
+    if status != SETTLED:
+        return status
+    if _any_low(ev, dr, ws):
+        status = _rest(ev, dr, ws, ms)
+        if status != SETTLED:
+            return status
+    total = 0.0
+    for i in range(count):
+        total += col(ev, LOSS)[i]
+    evaluate_energy(ws)
+    if dr.input_account >= 0:
+        v[dr.input_account] += energy[0] - kinetic + total
+    _account(ev, dr, ws, ms, -total if total < -GAIN * max(kinetic, 1e-300) else 0.0)
+    return SETTLED
+
+
+@internal
+def _any_low(ev: Any, dr: Any, ws: Any) -> bool:
+    """Contacts that have bounced by next to nothing, to `LOW`."""
+    memory, contacts = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(ev.contacts, ev.most)
+    ratio, low, found = vec(dr.rest_ratio, ws.n_contacts), col(ev, LOW), False
+    for i in range(whole(ev)[COUNT]):
+        k, approach = contacts[i], col(ev, APPROACH)[i]
+        largest = max(memory[k, LARGEST_APPROACH], approach)
+        least = max(ratio[k] * largest, unresolved_speed(ws, k, col(ev, FALLS)[i]))
+        bounces = col(ev, IMPULSE)[i] > 0.0 and col(ev, RESTITUTION)[i] > 0.0
+        low[i] = bounces and approach > col(ev, ROUNDING)[i] and col(ev, SEPARATION)[i] <= least
+        found = found or low[i] != 0.0
+    return found
+
+
+@internal
+def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Strike those without restitution; if they do not all stay then, it was the bounce."""
+    count, v, bounced = whole(ev)[COUNT], vec(ws.v, ws.n_ext), vec(ev.bounced, ws.n_ext)
+    left, residual = real(ev)[LEFT], real(ev)[RESIDUAL]
+    for one, other in _RESULTS:
+        col(ev, other)[:count] = col(ev, one)[:count]
+    for i in range(ws.n_ext):
+        bounced[i], v[i] = v[i], vec(ev.velocities, ws.n_ext)[i]
+    status = strike(ev, dr, ws, True)
+    if status == SETTLED:
+        status = begin_rest(ev, dr, ws, ms, 0.0)
+    if status == SETTLED:
+        status = find_forces(ev, dr, ws, ms)
+    if status != SETTLED:
+        return status
+    stay = True
+    for i in range(count):
+        stay = stay and (col(ev, LOW)[i] == 0.0 or col(ev, F_N)[i] > 0.0)
+    if stay:
+        col(ev, RESTS)[:count] = col(ev, LOW)[:count]
+        return SETTLED
+    for one, other in _RESULTS:
+        col(ev, one)[:count] = col(ev, other)[:count]
+    real(ev)[LEFT], real(ev)[RESIDUAL] = left, residual
+    for i in range(ws.n_ext):
+        v[i] = bounced[i]
+    return SETTLED
+
+
+@internal
+def _account(ev: Any, dr: Any, ws: Any, ms: Any, gain: float) -> None:
+    """Impulses and losses to the contacts' memories, and their events, that of the fastest approach first. `gain`: of
+    energy, J."""
+    count, contacts, order = whole(ev)[COUNT], ivec(ev.contacts, ev.most), ivec(ev.order, 2 * ev.most)
+    memory, t = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), history_time(ms, 0)
+    impulse, loss, approach = col(ev, IMPULSE), col(ev, LOSS), col(ev, APPROACH)
+    least = 0.0
+    for i in range(count):
+        least = max(least, FORCE_ROUNDING * impulse[i])
+        if gain > 0.0:
+            report(dr, t, GAINS, contacts[i], 0.0, -gain, 0.0, 0.0, 0.0, 0.0)
+        at = i
+        while at > 0 and approach[order[at - 1]] < approach[i]:
+            order[at] = order[at - 1]
+            at -= 1
+        order[at] = i
+    for j in range(count):
+        i = order[j]
+        k = contacts[i]
+        if impulse[i] <= least:
+            continue
+        # a gap that would open again by itself before it could be seen to be negative
+        graze = col(ev, WAS)[i] == OPEN and approach[i] <= unresolved_speed(ws, k, -col(ev, FALLS)[i])
+        memory[k, IMPULSE_JUMP] += impulse[i]
+        memory[k, LOSS_JUMP] += loss[i]
+        if approach[i] > col(ev, ROUNDING)[i]:
+            memory[k, APPROACH_SPEED] = approach[i]
+            memory[k, LARGEST_APPROACH] = max(memory[k, LARGEST_APPROACH], approach[i])
+        report(
+            dr, t, GRAZE if graze else IMPACT, k, impulse[i], loss[i], max(approach[i], 0.0),
+            max(col(ev, SEPARATION)[i], 0.0), real(ev)[RESIDUAL], col(ev, FRICTION)[i],
+        )  # fmt: skip

@@ -1,0 +1,198 @@
+"""Impact of several contacts at once at velocity-increment level, joints and friction included.
+
+[M Phi_q^T; Phi_q 0] (dv, Lambda) = (G_N^T P_N + G_T^T P_T, 0), v^+ = v^- + dv, with the impact law of each contact.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..contact.sweeps import one_contact
+from ..rounding import UNSOLVED
+from .forces import NO_SOLUTION, impulses_among
+from .laws import POISSON, SEQUENTIAL
+from .records import (
+    APPROACH,
+    BASE,
+    COUNT,
+    ENDLESS_BLOWS,
+    ENDLESS_ROUNDS,
+    FRICTION,
+    IMPULSE,
+    KINETIC,
+    LEFT,
+    LOSS,
+    LOW,
+    NO_IMPACT,
+    NOW_N,
+    NOW_T,
+    P_N,
+    P_T,
+    PART,
+    RATE,
+    RATE_BEFORE,
+    RESIDUAL,
+    RESTITUTION,
+    RIGHT_N,
+    RIGHT_T,
+    ROUNDING,
+    SEPARATION,
+    SETTLED,
+    SLIDE_BEFORE,
+    SLIDE_RATE,
+    WANTED,
+    col,
+    delassus,
+    real,
+    whole,
+)
+from .touching import push, read_rates
+
+MOST_BLOWS = 100_000
+"""Of a sequential impact, before it is given up."""
+MOST_ROUNDS = 2000
+"""Of impacts at one instant, each of the contacts that approach then."""
+
+
+@internal
+def strike(ev: Any, dr: Any, ws: Any, low: bool) -> int:
+    """Change the current velocities by the laws of the touching contacts; `low`: without restitution in `LOW`.
+
+    Those that separate beforehand take no part, so that none can put energy in without friction; if they approach
+    afterwards they are struck in another round. What it does goes to IMPULSE, FRICTION, LOSS, APPROACH, SEPARATION.
+    """
+    count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
+    rate, slide_rate, rounding = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, ROUNDING)
+    approach, loss, p_n, p_t = col(ev, APPROACH), col(ev, LOSS), col(ev, P_N), col(ev, P_T)
+    read_rates(ev, ws)
+    active, joint_rates, phid = ivec(ws.active, ws.m_act), vec(ev.joint_rates, ws.m_act), vec(ws.phid, ws.m_ext)
+    for i in range(ws.m_act):
+        joint_rates[i] = phid[active[i]]
+    sequential, largest = False, 0.0
+    for i in range(count):
+        col(ev, IMPULSE)[i] = col(ev, FRICTION)[i] = loss[i] = 0.0
+        approach[i] = max(-rate[i], 0.0)
+        sequential = sequential or law[contacts[i]] == SEQUENTIAL
+        largest = max(largest, abs(rate[i]) / rounding[i], abs(slide_rate[i]) / rounding[i])
+    real(ev)[RESIDUAL], left, noise = 0.0, np.inf, UNSOLVED * largest
+    before_n, before_t = col(ev, RATE_BEFORE), col(ev, SLIDE_BEFORE)
+    for turn in range(MOST_ROUNDS + 1):
+        before_round, left = left, 0.0
+        for i in range(count):
+            left = max(left, -rate[i] / rounding[i])
+        # where contacts repeat each other nearly, no round gets below what rounding leaves in the forces
+        if left <= 1.0 or 0.5 * before_round <= left <= noise:
+            break
+        if turn == MOST_ROUNDS:
+            return ENDLESS_ROUNDS
+        for i in range(count):
+            approach[i] = approach[i] if approach[i] > rounding[i] else -rate[i]
+            before_n[i], before_t[i] = rate[i], slide_rate[i]
+        status = _sequence(ev, ws, low) if sequential else _at_once(ev, dr, ws, low)
+        if status != SETTLED:
+            return status
+        read_rates(ev, ws)
+        for i in range(count):
+            loss[i] -= 0.5 * (p_n[i] * (before_n[i] + rate[i]) + p_t[i] * (before_t[i] + slide_rate[i]))
+            col(ev, IMPULSE)[i] += p_n[i]
+            col(ev, FRICTION)[i] += p_t[i]
+    # the joints keep their rates
+    for i in range(ws.m_act):
+        real(ev)[RESIDUAL] = max(real(ev)[RESIDUAL], abs(phid[active[i]] - joint_rates[i]))
+    col(ev, SEPARATION)[:count] = rate[:count]
+    real(ev)[LEFT] = left
+    return SETTLED
+
+
+@internal
+def _restitution(ev: Any, low: bool, i: int) -> float:
+    return 0.0 if low and col(ev, LOW)[i] != 0.0 else col(ev, RESTITUTION)[i]
+
+
+@internal
+def _at_once(ev: Any, dr: Any, ws: Any, low: bool) -> int:
+    """One complementarity problem of the contacts that do not separate, and a second one for the expansion of
+    Poisson's contacts."""
+    count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
+    part, p_n, p_t, base = col(ev, PART), col(ev, P_N), col(ev, P_T), col(ev, BASE)
+    rate, rounding, wanted, back = col(ev, RATE), col(ev, ROUNDING), col(ev, WANTED), False
+    for i in range(count):
+        part[i] = rate[i] <= rounding[i]
+        poisson = law[contacts[i]] == POISSON
+        clear = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
+        wanted[i] = 0.0 if poisson else _restitution(ev, low, i) * clear
+        base[i] = 0.0
+        p_n[i] = p_t[i] = 0.0
+        back = back or (part[i] != 0.0 and poisson and _restitution(ev, low, i) > 0.0)
+    status = _solve_and_push(ev, ws, wanted)
+    if status != SETTLED or not back:
+        return status
+    for i in range(count):
+        base[i] = _restitution(ev, low, i) * p_n[i] if law[contacts[i]] == POISSON else 0.0
+    read_rates(ev, ws)
+    return _solve_and_push(ev, ws, wanted)
+
+
+@internal
+def _solve_and_push(ev: Any, ws: Any, wanted: Any) -> int:
+    """Impulses of the contacts `PART` from the current rates, pushed and added to `P_N` and `P_T`; `BASE` is given in
+    any case, and of what is beyond it complementarity is asked."""
+    count, part, base = whole(ev)[COUNT], col(ev, PART), col(ev, BASE)
+    rate, slide_rate, rounding = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, ROUNDING)
+    normal, tangential = col(ev, NOW_N), col(ev, NOW_T)
+    for i in range(count):
+        clear = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
+        col(ev, RIGHT_N)[i] = clear + wanted[i]
+        col(ev, RIGHT_T)[i] = 0.0 if abs(slide_rate[i]) <= rounding[i] else slide_rate[i]
+    if impulses_among(ev, count) == NO_SOLUTION:
+        return NO_IMPACT
+    push(ev, ws, normal, tangential)
+    read_rates(ev, ws)
+    largest, off = 0.0, 0.0
+    for i in range(count):
+        if part[i] != 0.0:
+            largest = max(largest, normal[i] - base[i])
+    for i in range(count):
+        if part[i] == 0.0:
+            continue
+        motion = rate[i] + wanted[i]
+        off = max(off, -motion)
+        if normal[i] - base[i] > 1e-9 * largest:
+            off = max(off, abs(motion))
+        col(ev, P_N)[i] += normal[i]
+        col(ev, P_T)[i] += tangential[i]
+    real(ev)[RESIDUAL] = max(real(ev)[RESIDUAL], off)
+    return SETTLED
+
+
+@internal
+def _sequence(ev: Any, ws: Any, low: bool) -> int:
+    """One blow after another, the fastest approach first, until none approaches."""
+    count, p_n, p_t, rounding = whole(ev)[COUNT], col(ev, P_N), col(ev, P_T), col(ev, ROUNDING)
+    rate, slide_rate, a, mu = col(ev, RATE), col(ev, SLIDE_RATE), delassus(ev, count), col(ev, KINETIC)
+    for i in range(count):
+        p_n[i] = p_t[i] = 0.0
+    for _ in range(MOST_BLOWS):
+        k = 0
+        for i in range(count):
+            k = i if rate[i] < rate[k] else k
+        if rate[k] >= -rounding[k]:
+            push(ev, ws, p_n, p_t)
+            return SETTLED
+        one, other = one_contact(
+            a[k, k], a[k, count + k], a[count + k, count + k], rate[k] * (1.0 + _restitution(ev, low, k)),
+            slide_rate[k], mu[k] if a[count + k, count + k] > 0.0 else 0.0, 0.0, 0.0,
+        )  # fmt: skip
+        if not np.isfinite(one):
+            return NO_IMPACT
+        p_n[k] += one
+        p_t[k] += other
+        for i in range(count):
+            rate[i] += a[i, k] * one + a[i, count + k] * other
+            slide_rate[i] += a[count + i, k] * one + a[count + i, count + k] * other
+        # exactly, so that the same contact is not struck again by rounding
+        rate[k] = max(rate[k], 0.0)
+    return ENDLESS_BLOWS
+

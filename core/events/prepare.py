@@ -1,0 +1,123 @@
+"""New partition and new pivots for the structure of the contacts' modes, compiled.
+
+What it does is `system/partition.prepare`; the elimination is that of `linalg/row_pivoting.py`.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..linalg import analyze, follow, lu_at
+from ..linalg.row_pivoting import eliminate
+from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..system.partition import GOLDEN, RANK_TOLERANCE, SILVER
+from ..system.records import (
+    ANALYSES,
+    COUNTERS_SIZE,
+    FACTOR_AGE,
+    FIRST_SENSITIVITY,
+    OK,
+    PARTITIONS,
+    RATE_SIZE,
+    SENSITIVITY,
+    partition_at,
+    structure_at,
+)
+from ..system.switch import engage_modes, take_partition
+from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_PARTITION, WANT_ROOM, WANT_STRUCTURE
+
+
+@internal
+def use_modes(ev: Any, ws: Any) -> int:
+    """Take the structure of the present modes, with a partition and pivots for the current point."""
+    if not engage_modes(ws):
+        return WANT_STRUCTURE
+    evaluate_residuals(ws)
+    evaluate_tangent(ws, 0.0, 0.0)
+    status = _choose_partition(ev, ws)
+    if status != SETTLED:
+        return status
+    counters, rate = ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE)
+    counters[PARTITIONS] += 1
+    counters[ANALYSES] += 1
+    if analyze(lu_at(ws.kkt), ws.values) != OK:
+        return SINGULAR_MATRIX
+    if ws.m_act > 0 and analyze(lu_at(ws.lu_d), ws.values) != OK:
+        return SINGULAR_MATRIX
+    follow(lu_at(ws.kkt_query), lu_at(ws.kkt))
+    _set_probe(ws)
+    rate[FACTOR_AGE], rate[SENSITIVITY], rate[FIRST_SENSITIVITY] = -1.0, 0.0, -1.0
+    return SETTLED
+
+
+@internal
+def _choose_partition(ev: Any, ws: Any) -> int:
+    st, m, n, space = structure_at(ws.structure), ws.m_act, ws.n, ev.rows_space
+    size, wholes, reals = n + m + 1, ev.row_wholes, ev.row_reals
+    values, slots = vec(ws.values, ws.n_values), ivec(st.jacobian_slot, st.n_jacobian)
+    owner, mark, wanted = ivec(wholes, n), ivec(wholes + 8 * size, n), ivec(ws.wanted_dependent, m)
+    column, pending = ivec(wholes + 16 * size, n), ivec(wholes + 24 * size, n)
+    starts, f_starts = ivec(wholes + 32 * size, m + 1), ivec(wholes + 40 * size, m + 1)
+    data, x = vec(reals, st.n_jacobian), vec(reals + 8 * space, n)
+    for i in range(n):
+        owner[i] = mark[i] = -1
+        x[i] = 0.0
+    for i in range(m):
+        wanted[i] = -1
+    starts[0] = f_starts[0] = 0
+    if st.n_jacobian > space:
+        return WANT_ROOM
+    for e in range(st.n_jacobian):
+        data[e] = values[slots[e]]
+    rank = eliminate(
+        m, n, ivec(st.jacobian_start, m + 1), ivec(st.jacobian_col, st.n_jacobian), data, vec(ws.scale, n),
+        RANK_TOLERANCE, wanted, owner, mark, column, pending, x,
+        starts, ivec(wholes + 48 * size, space), vec(reals + 8 * (space + size), space),
+        f_starts, ivec(wholes + 48 * size + 8 * space, space), vec(reals + 8 * (2 * space + size), space),
+    )  # fmt: skip
+    if rank < 0:
+        return WANT_ROOM
+    if rank < m:
+        return REPEATED_ROWS
+    return _find_partition(ws, st, wanted)
+
+
+@internal
+def _find_partition(ws: Any, st: Any, wanted: Any) -> int:
+    """Take the partition with the dependent coordinates `wanted`."""
+    if st.partition != 0 and _same(partition_at(st.partition).dependent, wanted):
+        take_partition(ws, st.partition)
+        return SETTLED
+    known = ivec(st.partitions, st.n_partitions)
+    for i in range(st.n_partitions):
+        if _same(partition_at(known[i]).dependent, wanted):
+            take_partition(ws, known[i])
+            return SETTLED
+    return WANT_PARTITION
+
+
+@internal
+def _same(address: int, wanted: Any) -> bool:
+    own = ivec(address, len(wanted))
+    for i in range(len(wanted)):
+        if own[i] != wanted[i]:
+            return False
+    return True
+
+
+@internal
+def _set_probe(ws: Any) -> None:
+    """See `system/partition._probe`."""
+    st = structure_at(ws.structure)
+    starts, columns = ivec(st.jacobian_start, ws.m_act + 1), ivec(st.jacobian_col, st.n_jacobian)
+    slots, values = ivec(st.jacobian_slot, st.n_jacobian), vec(ws.values, ws.n_values)
+    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
+    for i in range(ws.m_act):
+        size = 0.0
+        for e in range(starts[i], starts[i + 1]):
+            size = max(size, abs(values[slots[e]]) * scale[columns[e]])
+        golden, silver = GOLDEN * i, SILVER * i
+        sign = 1.0 if silver - np.floor(silver) < 0.5 else -1.0
+        probe[i] = size * (0.5 + golden - np.floor(golden)) * sign

@@ -1,0 +1,91 @@
+"""What is known of the touching contacts before an instant is settled: modes, and which events they have."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..contact.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..contact.settling import AT_LIMIT, BRAKED
+from ..rounding import FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, UNRESOLVED
+from ..system.levels import force_level, position_level, rate_level
+from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
+
+
+@internal
+def largest_acceleration(ws: Any) -> float:
+    """Of all coordinates, in parts of their scales, 1/s^2."""
+    a, scale, largest = vec(ws.a, ws.n_ext), vec(ws.scale, ws.n), 0.0
+    for i in range(ws.n):
+        largest = max(largest, abs(a[i]) / scale[i])
+    return largest
+
+
+@internal
+def rate_size(ws: Any, k: int) -> float:
+    """What the rates of gap and sliding distance of contact k are small or large against, m/s."""
+    scale, slide = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    along = scale[slide] if slide >= 0 else 0.0
+    return rate_level(ws) * max(scale[ivec(ws.contact_rows, ws.n_contacts)[k]], along)
+
+
+@internal
+def unresolved_speed(ws: Any, k: int, falls: float) -> float:
+    """Speed of separation below which a gap with the acceleration -falls (m/s^2) cannot be seen to open, m/s."""
+    scale = vec(ws.row_scale, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
+    return np.sqrt(2.0 * UNRESOLVED * position_level(ws) * scale * max(falls, 0.0))
+
+
+@internal
+def comes_back(ws: Any, k: int, jerk: float, motion: float) -> bool:
+    """True if a gap at rest with this acceleration (m/s^2) and its rate (m/s^3) does not open, or by less than could be
+    told from zero before it closes again. g = b t^2/2 + j t^3/6, j < 0, is highest at t = -2 b/j."""
+    scale = vec(ws.row_scale, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
+    height = 2.0 * max(motion, 0.0) ** 3 / (3.0 * jerk * jerk) if jerk < 0.0 else np.inf
+    return height <= UNRESOLVED * position_level(ws) * scale
+
+
+@internal
+def read_before(ev: Any, dr: Any, ws: Any) -> None:
+    """What the touching contacts were, and which events those that are pending have, at the current point."""
+    contacts, pending = ivec(ev.contacts, ev.most), ivec(dr.pending, ws.n_contacts)
+    memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
+    phid, phidd = vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext)
+    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
+    scale, static = vec(ws.row_scale, ws.m_ext), vec(ws.contact_sticking, ws.n_contacts)
+    was, slid, leaves, slips, stops = col(ev, WAS), col(ev, SLID), col(ev, LEAVES), col(ev, SLIPS), col(ev, STOPS)
+    forces, braked = force_level(ws), BRAKED * largest_acceleration(ws)
+    whole(ev)[STRUCK] = 0
+    for i in range(whole(ev)[COUNT]):
+        k = contacts[i]
+        row, slide = rows[k], slides[k]
+        was[i], slid[i], col(ev, OLD_RATIO)[i] = memory[k, MODE], memory[k, SLIDE], memory[k, RATIO]
+        leaves[i] = slips[i] = stops[i] = 0.0
+        fastest = rate_size(ws, k)
+        rounding = RATE_ROUNDING * fastest
+        col(ev, ROUNDING)[i], col(ev, FALLS)[i] = rounding, -phidd[row]
+        if was[i] != CLOSED:
+            continue
+        if slide >= 0 and abs(slid[i]) == 1.0:
+            # what moves with another that stops does so at the same time
+            stops[i] = abs(phid[slide]) <= rounding and slid[i] * phidd[slide] < -braked * scale[slide]
+        if pending[k] == 0:
+            continue
+        force, strongest = -lam[row], forces / scale[row]
+        # a method that does not meet the constraints at all levels may end a little before its force is zero
+        if slide < 0 or slid[i] == IDLE or force <= FORCE_ROUNDING * strongest:
+            leaves[i] = 1.0
+            continue
+        # a force is found less finely than a velocity: the event is of what is nearer to zero
+        part = force / strongest
+        if slid[i] == STICKS:
+            friction = -lam[slide]
+            if abs(friction) >= static[k] * force * (1.0 - AT_LIMIT):
+                slips[i] = -np.sign(friction)
+            else:
+                leaves[i] = part <= NEAR_ZERO
+        elif abs(slid[i]) == 1.0:
+            leaves[i] = part <= NEAR_ZERO and part < abs(phid[slide]) / fastest
+            if leaves[i] == 0.0:
+                stops[i] = 1.0

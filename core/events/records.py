@@ -1,0 +1,118 @@
+"""The record of an instant: the contacts that touch, what is known of each, and room to work in.
+
+All of it is scratch: an instant is settled from the state alone, and leaves behind nothing that the next one reads.
+"""
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+
+from ..compiled.jit import inlined, record_view
+from ..compiled.views import ivec, mat, vec
+
+INSTANT = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "most",                      # touching contacts that there is room for
+            "cones", "cones_work",       # the record of `contact/cones.py`
+            "contacts",                  # (most,) int64: which touch
+            "table",                     # (COLUMNS, most) float64: of each of them
+            "reals", "wholes",           # (REALS,) float64, (WHOLES,) int64
+            "a",                         # (2 most, 2 most) float64: inverse effective masses, normals first
+            "directions", "responses",   # (2 most, n) float64: gradients, and the motions that unit impulses cause
+            "some", "chosen", "order",   # (2 most,) int64
+            "kept_memory",               # (n_contacts, MEMORY_SIZE) float64
+            "velocities", "bounced",     # (n_ext,) float64
+            "noise", "sum", "terms",     # (n_ext,) float64
+            "joint_rates",               # (m_ext,) float64
+            "matrix",                    # (2 most, 2 most) float64
+            "row_wholes", "row_reals",   # (5 (n + m) + 2 rows_space,) int64, (n + 2 rows_space,) float64: see `prepare.py`
+            "rows_space",
+            "slots_work",                # (entries of the block of the mass matrix, at most) float64
+            "modes",                     # (n_contacts,) float64: before the instant
+            "massless",                  # (n_contacts,) int64: 1 at massless ends
+        )
+    ]
+)  # fmt: skip
+INSTANT_TYPE = nb.from_dtype(INSTANT)
+instant_at = record_view(INSTANT_TYPE)
+
+# rows of `table`, each (most,)
+(
+    WAS, SLID, OLD_RATIO,              # mode, SLIDE and RATIO before
+    LEAVES, SLIPS, STOPS,              # its event: its force is zero; it reaches its limit, in this direction; it stops
+    FALLS,                             # acceleration with which its gap closes before any impact, m/s^2
+    GAP, SLIDE_VALUE,                  # m
+    ROUNDING,                          # rates below it are none, m/s
+    RESTITUTION, KINETIC, STATIC,      # coefficients
+    RATE, SLIDE_RATE,                  # of gap and sliding distance, m/s
+    KNOWN, AT_REST, TAKES, DIRECTION, FULL,
+    B_N, B_T, SIZE,                    # accelerations without contact forces, m/s^2; size of the gap's gradient
+    F_N, F_T, W_N, W_T,                # forces and the accelerations with them
+    OTHER_N, OTHER_T, OTHER_WN, OTHER_WT,  # the same of another solution
+    KEPT_DIRECTION, KEPT_FULL, KEPT_TAKES,
+    CLOSES, NEW_SLIDE, NEW_RATIO,      # what was chosen
+    IMPULSE, FRICTION, LOSS, APPROACH, SEPARATION,  # of the impact
+    P_N, P_T, PART, MU, BASE, RESTS, LOW,
+    FIRST_IMPULSE, FIRST_FRICTION, FIRST_LOSS, FIRST_APPROACH, FIRST_SEPARATION,  # of the impact with all restitution
+    RATE_BEFORE, SLIDE_BEFORE, WANTED, RIGHT_N, RIGHT_T, NOW_N, NOW_T,
+    FLAG, OTHER_FLAG, SPARE, APART, LOADED,
+) = range(66)  # fmt: skip
+COLUMNS = 66
+
+# entries of `reals`
+NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)
+REALS = 6
+# entries of `wholes`
+COUNT = 0  # contacts that touch
+STRUCK = 1
+SLIPPING = 2
+STICKS = 3  # all friction was found below its limit at once
+WHO = 4  # the contact that a failure is of
+READY = 5  # accelerations have been looked at
+WHOLES = 6
+
+# what settling an instant returns
+SETTLED = 0
+DECLINED = 1  # nothing has happened: Python settles it
+WANT_STRUCTURE = 2  # nothing has happened; Python builds what is asked for, and it is settled anew
+WANT_PARTITION = 3
+WANT_ROOM = 4
+SINGULAR_JOINTS = 10
+IMMOVABLE_CONTACT = 11
+NO_IMPACT = 12
+ENDLESS_ROUNDS = 13
+ENDLESS_BLOWS = 14
+NO_FORCES = 15
+JAMS = 16
+NOT_MET = 17
+NO_ACCELERATIONS = 18
+REPEATED_ROWS = 19
+SINGULAR_MATRIX = 20
+NO_FREE_ACCELERATIONS = 21
+
+
+@inlined
+def col(ev: Any, k: int) -> Any:
+    """Row k of the table."""
+    return vec(ev.table + 8 * k * ev.most, ev.most)
+
+
+@inlined
+def whole(ev: Any) -> Any:
+    """The integers."""
+    return ivec(ev.wholes, WHOLES)
+
+
+@inlined
+def real(ev: Any) -> Any:
+    """The numbers."""
+    return vec(ev.reals, REALS)
+
+
+@inlined
+def delassus(ev: Any, count: int) -> Any:
+    """Inverse effective masses (2 count, 2 count): normals first."""
+    return mat(ev.a, 2 * count, 2 * count)

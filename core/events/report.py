@@ -1,0 +1,26 @@
+"""Events go to a buffer that Python empties."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat
+from ..integrate.records import COUNTS_SIZE, EVENT_ROWS, EVENT_SIZE, EVENTS
+
+
+@internal
+def room_for(dr: Any, count: int) -> bool:
+    """True if there is room for `count` more events."""
+    return bool(ivec(dr.counts, COUNTS_SIZE)[EVENTS] + count <= EVENT_ROWS)
+
+
+@internal
+def report(
+    dr: Any, t: float, kind: int, k: int, impulse: float, loss: float, approach: float, separation: float,
+    residual: float, friction: float,
+) -> None:  # fmt: skip
+    """An event of contact k at time t; numbers as in `Event`."""
+    counts = ivec(dr.counts, COUNTS_SIZE)
+    row = mat(dr.events, EVENT_ROWS, EVENT_SIZE)[counts[EVENTS]]
+    counts[EVENTS] += 1
+    row[0], row[1], row[2], row[3], row[4] = t, kind, k, impulse, loss
+    row[5], row[6], row[7], row[8] = approach, separation, residual, friction

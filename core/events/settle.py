@@ -1,0 +1,307 @@
+"""An instant with events: impacts, then which of the touching constraint contacts stay, and which stick or slide.
+
+`settle` decides from the state alone. Where it needs a structure or a partition that has not been built yet, or fails,
+it puts everything back and says so; once Python has built what it needs, it decides again in the same way.
+"""
+
+from typing import Any
+
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..contact.complementarity import MANY
+from ..contact.complementarity import RANK as FINEST_RANK
+from ..contact.modes import (
+    CLOSED,
+    GAP_START,
+    MEMORY_SIZE,
+    MODE,
+    OPEN,
+    RATIO,
+    SLIDE,
+    SLIDE_START,
+)
+from ..contact.modes import STICKS as STUCK
+from ..contact.progress import AT_ONCE, COUNT as GUARDED, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
+from ..contact.resting import LOOSEST_RANK, RANK_OF_MANY
+from ..integrate.records import (
+    CLOSE,
+    COUNTS_SIZE,
+    EVENTS,
+    GOALS_SIZE,
+    GRAZE,
+    HANDLED,
+    HANDLED_AT,
+    HERE,
+    OPENS,
+    REST,
+    SLIP,
+    STICK,
+    call_accelerations,
+    call_sample,
+)
+from ..integrate.watch import remember
+from ..methods.history import history_time, recall, restart
+from ..rounding import GAP_ROUNDING, UNSOLVED
+from ..system.evaluate import evaluate_power, evaluate_residuals
+from ..system.levels import position_level
+from ..system.projection import meet
+from ..system.records import FACTOR_AGE, OK, RATE_SIZE
+from ..system.switch import engage_modes
+from .blow import impact
+from .laws import OTHER, UNTOUCHED
+from .prepare import use_modes
+from .reading import largest_acceleration, read_before
+from .records import (
+    COUNT,
+    DECLINED,
+    FLAG,
+    GAP,
+    KINETIC,
+    LEFT,
+    NEW_RATIO,
+    NEW_SLIDE,
+    NO_ACCELERATIONS,
+    NOT_MET,
+    RANK,
+    RATE,
+    REPEATED_ROWS,
+    RESTITUTION,
+    RESTS,
+    ROUNDING,
+    SETTLED,
+    SINGULAR_MATRIX,
+    SLID,
+    SLIDE_RATE,
+    SLIDE_VALUE,
+    STATIC,
+    STRUCK,
+    WANT_ROOM,
+    WAS,
+    col,
+    real,
+    whole,
+)
+from .report import report, room_for
+from .resting import begin_rest, choose, keep
+from .touching import find_touching, looks_again, open_touching, read_rates, read_values
+from .unsettled import find_unsettled
+
+
+@internal
+def begin_anew(ws: Any, ms: Any, lc: Any) -> None:
+    """A history that begins at the current point, whose accelerations are known."""
+    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
+    evaluate_power(ws)
+    for i in range(ws.n_ext):
+        aux[i] = a[i]
+    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    evaluate_residuals(ws)
+    restart(ws, ms)
+    remember(ws, lc)
+
+
+@internal
+def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+    """Let the pending events happen at the newest row: a status of `records`."""
+    t, counts, goals = history_time(ms, 0), ivec(dr.counts, COUNTS_SIZE), vec(dr.goals, GOALS_SIZE)
+    room = lc.capacity == 0 or ivec(lc.cursor, 1)[0] < lc.capacity
+    if not room or not room_for(dr, 3 * ws.n_contacts) or not _gets_on(dr, t):
+        return DECLINED
+    # samples may have been asked for since the step that ended here
+    recall(ws, ms, 0)
+    evaluate_residuals(ws)
+    if not _for_compiled(dr, ws):
+        return DECLINED
+    if not find_touching(ev, dr, ws):
+        return WANT_ROOM
+    memory, kept, modes = (
+        vec(ws.memory, ws.n_contacts * MEMORY_SIZE),
+        vec(ev.kept_memory, ws.n_contacts * MEMORY_SIZE),
+        vec(ev.modes, ws.n_contacts),
+    )
+    kept[:] = memory
+    for k in range(ws.n_contacts):
+        modes[k] = memory[k * MEMORY_SIZE + MODE]
+    handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
+    counts[HERE] = here + 1 if t == handled_at else 1
+    goals[HANDLED_AT] = t
+    status = _decide(ev, dr, ws, ms)
+    if status != SETTLED:
+        memory[:] = kept
+        goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
+        engage_modes(ws)
+        recall(ws, ms, 0)
+        evaluate_residuals(ws)
+        return status
+    begin_anew(ws, ms, lc)
+    _count(dr, t)
+    find_unsettled(ev, ws, ivec(dr.pending, ws.n_contacts))
+    _sample(dr, ws, lc)
+    return SETTLED
+
+
+@internal
+def _for_compiled(dr: Any, ws: Any) -> bool:
+    """True if all that is pending is of contacts that this code knows."""
+    law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if law[k] == OTHER or (law[k] == UNTOUCHED and pending[k] != 0):
+            return False
+    return bool(ws.n_redundant == 0)
+
+
+@internal
+def _gets_on(dr: Any, t: float) -> bool:
+    """False if the guard against runs that events keep from going on would speak (`contact/progress.py`)."""
+    goals, counts, guard = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE), vec(dr.guard, GUARD_SIZE)
+    if t == goals[HANDLED_AT] and counts[HERE] >= AT_ONCE:
+        return False
+    if guard[GUARDED] < IN_A_ROW:
+        return True
+    return abs(t - guard[SINCE]) > STANDSTILL * abs(t - guard[START])
+
+
+@internal
+def _count(dr: Any, t: float) -> None:
+    """One more instant."""
+    counts, guard = ivec(dr.counts, COUNTS_SIZE), vec(dr.guard, GUARD_SIZE)
+    counts[HANDLED] += 1
+    guard[GUARDED] += 1.0
+    if guard[GUARDED] > IN_A_ROW:
+        guard[SINCE], guard[GUARDED] = t, 0.0
+
+
+@internal
+def _sample(dr: Any, ws: Any, lc: Any) -> None:
+    if lc.capacity > 0:
+        cursor = ivec(lc.cursor, 1)
+        call_sample(dr.write_sample, ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
+        cursor[0] += 1
+
+
+@internal
+def _decide(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Impacts, forces, and what they mean."""
+    read_before(ev, dr, ws)
+    read_values(ev, ws)
+    count, contacts, accelerations = whole(ev)[COUNT], ivec(ev.contacts, ev.most), largest_acceleration(ws)
+    friction, static = vec(dr.friction, ws.n_contacts), vec(ws.contact_sticking, ws.n_contacts)
+    for i in range(count):
+        k = contacts[i]
+        col(ev, KINETIC)[i], col(ev, STATIC)[i] = friction[k], static[k]
+        col(ev, RESTITUTION)[i] = vec(dr.restitution, ws.n_contacts)[k]
+        col(ev, RESTS)[i] = 0.0
+    status = open_touching(ev, dr, ws)
+    if status != SETTLED:
+        return status
+    read_rates(ev, ws)
+    if _approach(ev, ms):
+        status = impact(ev, dr, ws, ms)
+        if status != SETTLED:
+            return status
+        for i in range(count):
+            col(ev, ROUNDING)[i] *= max(1.0, 2.0 * real(ev)[LEFT])
+        accelerations = 0.0
+    status = begin_rest(ev, dr, ws, ms, accelerations)
+    if status == SETTLED:
+        status = choose(ev, dr, ws, ms)
+    if status != SETTLED:
+        return status
+    rank = FINEST_RANK if count <= MANY else RANK_OF_MANY
+    keep(ev, ws, min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK))
+    while True:
+        status = _take(ev, dr, ws, ms)
+        repeats = status == REPEATED_ROWS or status == SINGULAR_MATRIX or status == NO_ACCELERATIONS
+        # contacts that each can be told from any other repeat each other together
+        if not repeats or real(ev)[RANK] >= LOOSEST_RANK or not _any(ev, FLAG):
+            break
+        keep(ev, ws, min(100.0 * real(ev)[RANK], LOOSEST_RANK))
+    if status == SETTLED:
+        _report(ev, dr, ws, ms)
+    return status
+
+
+@internal
+def _any(ev: Any, k: int) -> bool:
+    for i in range(whole(ev)[COUNT]):
+        if col(ev, k)[i] != 0.0:
+            return True
+    return False
+
+
+@internal
+def _approach(ev: Any, ms: Any) -> bool:
+    """True if a touching contact approaches by more than what rounding leaves."""
+    count, rate, rounding, largest = whole(ev)[COUNT], col(ev, RATE), col(ev, ROUNDING), 0.0
+    for i in range(count):
+        largest = max(largest, abs(rate[i]), abs(col(ev, SLIDE_RATE)[i]))
+    found = False
+    for i in range(count):
+        # what an impact of many leaves is no reason for another
+        if count > MANY and -UNSOLVED * largest <= rate[i] < -rounding[i]:
+            rounding[i] = 2.0 * abs(rate[i])
+        found = found or (rate[i] < -rounding[i] and (col(ev, WAS)[i] == OPEN or ms.exact != 0))
+    return found
+
+
+@internal
+def _take(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Set the modes, bring gaps that are more than rounding and all rates of new constraints to zero, and solve for the
+    accelerations."""
+    contacts, slides = ivec(ev.contacts, ev.most), ivec(ws.contact_slide_rows, ws.n_contacts)
+    scale, rows = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)
+    level, changed, some = GAP_ROUNDING * position_level(ws), False, False
+    for i in range(whole(ev)[COUNT]):
+        k, was, taken = contacts[i], col(ev, WAS)[i], col(ev, FLAG)[i] != 0.0
+        memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+        some = some or taken or was == CLOSED
+        memory[MODE] = CLOSED if taken else OPEN
+        memory[SLIDE] = col(ev, NEW_SLIDE)[i] if taken else STUCK
+        memory[RATIO] = col(ev, NEW_RATIO)[i] if taken else 0.0
+        if not taken:
+            memory[GAP_START] = 0.0
+            continue
+        gap = col(ev, GAP)[i]
+        if was != CLOSED:
+            memory[GAP_START] = gap if abs(gap) <= level * scale[rows[k]] else 0.0
+        kept = was == CLOSED and col(ev, SLID)[i] == memory[SLIDE]
+        changed = changed or not kept
+        if memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
+            memory[SLIDE_START] = col(ev, SLIDE_VALUE)[i]
+    if some:
+        status = use_modes(ev, ws)
+        if status != SETTLED:
+            return status
+    if changed and ms.exact != 0:
+        for rates in range(2):
+            evaluate_residuals(ws)
+            if not meet(ws, rates == 1):
+                return NOT_MET
+        evaluate_residuals(ws)
+    return SETTLED if call_accelerations(dr.accelerations, ws) == OK else NO_ACCELERATIONS
+
+
+@internal
+def _report(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
+    """Events of contacts that have closed, opened, begun to slide or to stick."""
+    contacts, pending = ivec(ev.contacts, ev.most), ivec(dr.pending, ws.n_contacts)
+    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
+    t, phid = history_time(ms, 0), vec(ws.phid, ws.m_ext)
+    started = t > vec(dr.guard, GUARD_SIZE)[START]
+    for i in range(whole(ev)[COUNT]):
+        k, was, slid = contacts[i], col(ev, WAS)[i], col(ev, SLID)[i]
+        memory, kind = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], -1
+        closed = memory[MODE] == CLOSED
+        if closed and was != CLOSED:
+            kind = REST if col(ev, RESTS)[i] != 0.0 else CLOSE
+        elif not closed and was == CLOSED:
+            kind = OPENS
+        elif not closed and whole(ev)[STRUCK] == 0 and pending[k] != 0 and started:
+            kind = GRAZE
+        elif closed and slides[k] >= 0 and memory[SLIDE] != slid:
+            kind = SLIP if abs(memory[SLIDE]) == 1.0 else (STICK if abs(slid) == 1.0 else -1)
+        if kind >= 0:
+            report(dr, t, kind, k, 0.0, 0.0, 0.0, max(phid[rows[k]], 0.0) if kind == OPENS else 0.0, 0.0, 0.0)
+
+
