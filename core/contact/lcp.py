@@ -5,8 +5,14 @@ every problem, degenerate ones (redundant contacts) included. For positive semid
 a solution if one exists.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+from ..compiled.jit import compiled, internal
+from ..compiled.views import ivec, mat, vec
+from ..linalg.small import add, dot, least_norm, least_norm_size
 
 PIVOT = 1e-11
 """An entry of a column below this, relative to the column's largest, is rounding."""
@@ -15,10 +21,17 @@ TIES = (1e-13, 1e-11, 1e-9)
 first, the next is tried."""
 VIOLATION = 1e-9
 """Of the conditions, relative: beyond it a result is none."""
+RANK = 1e-13
+"""Singular values of the solution's equations below this part of the largest are zero."""
 
 
 class NoComplementarySolution(ArithmeticError):
     """The pivoting ended on a ray: the problem has no solution, or M is of a class for which it cannot find one."""
+
+
+def lcp_size(n: int) -> int:
+    """Numbers (of 8 bytes) in the scratch of `find_complementary`."""
+    return n * (2 * n + 2) + 4 * n + least_norm_size(n, n, 1)
 
 
 def solve_lcp(m: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -28,81 +41,147 @@ def solve_lcp(m: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.floa
     ------
     NoComplementarySolution : if the pivoting ends on a ray.
     """
-    n = len(q)
-    size = float(np.max(np.abs(q), initial=0.0))
-    if n == 0 or float(np.min(q)) >= -TIES[0] * size:
-        return np.zeros(n)
+    z, work = np.zeros(len(q)), np.empty(lcp_size(len(q)))
+    m, q = (np.ascontiguousarray(x, dtype=np.float64) for x in (m, q))
+    if not _find(m, q, z, work, work.ctypes.data):
+        raise NoComplementarySolution("Lemke's pivoting ends on a ray: the complementarity problem has no solution")
+    return z
+
+
+@compiled
+def _find(m: Any, q: Any, z: Any, work: Any, address: int) -> bool:
+    # (`work` is there to be kept alive)
+    return bool(find_complementary(m, q, z, address))
+
+
+@internal
+def find_complementary(m: Any, q: Any, z: Any, work: int) -> bool:
+    """z (n,) of the problem with m (n, n) and q (n,); False if the pivoting ends on a ray. `work` is the address of
+    `lcp_size` numbers."""
+    n, size, least = len(q), 0.0, 0.0
+    for i in range(n):
+        z[i] = 0.0
+        size, least = max(size, abs(q[i])), min(least, q[i])
+    if least >= -TIES[0] * size:
+        return True
     for tie in TIES:
-        z = _lemke(m, q, size, tie)
-        if z is not None and float(np.min(m @ z + q)) >= -VIOLATION * size:
-            return z
-    raise NoComplementarySolution("Lemke's pivoting ends on a ray: the complementarity problem has no solution")
+        if _lemke(m, q, z, size, tie, work):
+            least = 0.0
+            for i in range(n):
+                least = min(least, dot(m[i], z) + q[i])
+            if least >= -VIOLATION * size:
+                return True
+    return False
 
 
-def _lemke(m: NDArray[np.float64], q: NDArray[np.float64], size: float, tie: float) -> NDArray[np.float64] | None:
-    """The solution, or None if the pivoting ends on a ray or does not end."""
+@internal
+def _lemke(m: Any, q: Any, z: Any, size: float, tie: float, work: int) -> bool:
+    """The solution; False if the pivoting ends on a ray or does not end."""
     n = len(q)
     # columns: w (0 .. n-1), z (n .. 2n-1), the artificial variable (2n), the right-hand side
-    table = np.hstack([np.eye(n), -m, -np.ones((n, 1)), q[:, None] / size])
-    basis = np.arange(n)
-    row = _first_row(table, tie)
-    entering = 2 * n
+    start, table = work, mat(work, n, 2 * n + 2)
+    work += 8 * n * (2 * n + 2)
+    basis, rows = ivec(work, n), ivec(work + 8 * n, n)
+    work += 16 * n
+    for i in range(n):
+        basis[i] = i
+        for j in range(n):
+            table[i, j], table[i, n + j] = 1.0 if i == j else 0.0, -m[i, j]
+        table[i, 2 * n], table[i, 2 * n + 1] = -1.0, q[i] / size
+    row, entering = _first_row(table, rows, tie), 2 * n
     for _ in range(60 * n + 100):
-        leaving = int(basis[row])
+        leaving = basis[row]
         _pivot(table, row, entering)
         basis[row] = entering
         if leaving == 2 * n:
-            return _refined(m, q, basis)
+            _refine(m, q, z, basis, rows, start, work)
+            return True
         entering = leaving + n if leaving < n else leaving - n
-        row = _ratio_row(table, entering, basis, tie)
+        row = _ratio_row(table, entering, basis, rows, tie)
         if row < 0:
-            return None
-    return None
+            return False
+    return False
 
 
-def _first_row(table: NDArray[np.float64], tie: float) -> int:
+@internal
+def _first_row(table: Any, rows: Any, tie: float) -> int:
     """Row of the most negative right-hand side; ties by the lexicographic order."""
-    n = len(table)
-    least = table[:, -1].min()
-    candidates = np.flatnonzero(table[:, -1] <= least + tie)
-    return _lexicographic(table[candidates][:, :n], candidates)
+    n, least, count = len(table), np.inf, 0
+    for i in range(n):
+        least = min(least, table[i, 2 * n + 1])
+    for i in range(n):
+        if table[i, 2 * n + 1] <= least + tie:
+            rows[count] = i
+            count += 1
+    return int(_lexicographic(table, rows, count, -1))
 
 
-def _ratio_row(table: NDArray[np.float64], entering: int, basis: NDArray[np.int64], tie: float) -> int:
+@internal
+def _ratio_row(table: Any, entering: int, basis: Any, rows: Any, tie: float) -> int:
     """Row that leaves when column `entering` grows; -1 if nothing limits it."""
-    n = len(table)
-    column = table[:, entering]
-    rows = np.flatnonzero(column > PIVOT * max(1.0, float(np.max(np.abs(column)))))
-    if len(rows) == 0:
-        return -1
-    ratio = table[rows, -1] / column[rows]
-    least = ratio.min()
-    rows = rows[ratio <= least + tie * max(1.0, abs(least))]
-    artificial = rows[basis[rows] == 2 * n]
-    if len(artificial):
-        return int(artificial[0])
-    return _lexicographic(table[rows][:, :n] / column[rows][:, None], rows)
+    n, largest, least, count = len(table), 1.0, np.inf, 0
+    for i in range(n):
+        largest = max(largest, abs(table[i, entering]))
+    for i in range(n):
+        if table[i, entering] > PIVOT * largest:
+            least = min(least, table[i, 2 * n + 1] / table[i, entering])
+    for i in range(n):
+        x = table[i, entering]
+        if x > PIVOT * largest and table[i, 2 * n + 1] / x <= least + tie * max(1.0, abs(least)):
+            if basis[i] == 2 * n:
+                return i
+            rows[count] = i
+            count += 1
+    return int(_lexicographic(table, rows, count, entering)) if count > 0 else -1
 
 
-def _lexicographic(vectors: NDArray[np.float64], rows: NDArray[np.int64]) -> int:
-    """The row whose vector is lexicographically least."""
-    order = np.lexsort(vectors.T[::-1])
-    return int(rows[order[0]])
+@internal
+def _lexicographic(table: Any, rows: Any, count: int, column: int) -> int:
+    """Of the first `count` of `rows` that which is lexicographically least, each over its entry in `column` (-1: as it
+    is)."""
+    least = rows[0]
+    for k in range(1, count):
+        row = rows[k]
+        one, other = 1.0, 1.0
+        if column >= 0:
+            one, other = table[row, column], table[least, column]
+        for j in range(len(table)):
+            x, y = table[row, j] / one, table[least, j] / other
+            if x < y:
+                least = row
+            if x != y:
+                break
+    return int(least)
 
 
-def _pivot(table: NDArray[np.float64], row: int, column: int) -> None:
-    table[row] /= table[row, column]
-    factors = table[:, column].copy()
-    factors[row] = 0.0
-    table -= factors[:, None] * table[row]
+@internal
+def _pivot(table: Any, row: int, column: int) -> None:
+    x = table[row, column]
+    for j in range(table.shape[1]):
+        table[row, j] /= x
+    for i in range(len(table)):
+        x = table[i, column]
+        if i != row and x != 0.0:
+            add(table[i], -x, table[row])
 
 
-def _refined(m: NDArray[np.float64], q: NDArray[np.float64], basis: NDArray[np.int64]) -> NDArray[np.float64]:
-    """z of a complementary basis, solved anew from the given matrix: free of the pivoting's rounding."""
-    n = len(q)
-    basic = np.sort(basis[(basis >= n) & (basis < 2 * n)] - n)
-    z = np.zeros(n)
-    if len(basic):
-        block = m[np.ix_(basic, basic)]
-        z[basic] = np.linalg.lstsq(block, -q[basic], rcond=1e-13)[0]
-    return np.maximum(z, 0.0)
+@internal
+def _refine(m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: int) -> None:
+    """z of a complementary basis, solved anew from the given matrix: free of the pivoting's rounding. What is at the
+    addresses `table` and `work` is used no more."""
+    n, count = len(q), 0
+    for i in range(n):
+        for j in range(n):
+            if basis[j] == n + i:
+                basic[count] = i
+                count += 1
+    block, b, x = mat(table, count, count), mat(work, count, 1), mat(work + 8 * count, count, 1)
+    for i in range(count):
+        b[i, 0] = -q[basic[i]]
+        for j in range(count):
+            block[i, j] = m[basic[i], basic[j]]
+    least_norm(block, b, x, RANK, work + 16 * count)
+    for i in range(n):
+        z[i] = 0.0
+    for i in range(count):
+        z[basic[i]] = max(x[i, 0], 0.0)

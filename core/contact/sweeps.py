@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
+from ..compiled.views import mat, vec
 
 
 @internal
@@ -42,23 +43,14 @@ def one_contact(a: float, b: float, c: float, w_n: float, w_t: float, mu: float,
     return np.nan, np.nan
 
 
-@compiled
-def sweep(
-    nn: Any,
-    nt: Any,
-    tt: Any,
-    b_n: Any,
-    b_t: Any,
-    mu: Any,
-    direction: Any,
-    base: Any,
-    normal: Any,
-    friction: Any,
-    count: int,
-) -> bool:
-    """`count` sweeps over the contacts, from (`normal`, `friction`), which are overwritten. False if a contact has no
-    solution of its own."""
-    n = len(b_n)
+@internal
+def sweep(cn: Any, mu: Any, normal: Any, friction: Any, eps: float, count: int) -> bool:
+    """`count` sweeps over the contacts of the record `cn` (`cones.py`) with the coefficients of friction mu (n,), from
+    (`normal`, `friction`), which are overwritten; each gives way by the part `eps` of its own inverse mass. False if a
+    contact has no solution of its own."""
+    n = cn.n
+    nn, nt, tt = mat(cn.nn, n, n), mat(cn.nt, n, n), mat(cn.tt, n, n)
+    b_n, b_t, direction, base = vec(cn.b_n, n), vec(cn.b_t, n), vec(cn.direction, n), vec(cn.base, n)
     for _ in range(count):
         for i in range(n):
             w_n, w_t = b_n[i], b_t[i]
@@ -66,7 +58,8 @@ def sweep(
                 if j != i:
                     w_n += nn[i, j] * normal[j] + nt[i, j] * friction[j]
                     w_t += nt[j, i] * normal[j] + tt[i, j] * friction[j]
-            alone = one_contact(nn[i, i], nt[i, i], tt[i, i], w_n, w_t, mu[i], direction[i], base[i])
+            a, c = nn[i, i] + eps * nn[i, i], tt[i, i] + eps * tt[i, i]
+            alone = one_contact(a, nt[i, i], c, w_n, w_t, mu[i], direction[i], base[i])
             if not np.isfinite(alone[0]):
                 return False
             normal[i], friction[i] = alone

@@ -1,0 +1,99 @@
+"""Forces (or impulses) of several contacts at once as one compiled function: no allocation, no exception, no Python.
+
+Compiled code calls it by its address (`address_of(solve_cones, CONES_SIGNATURE)`, `call_cones`) with a record of sizes
+and addresses; `Cones` builds one with memory for up to so many contacts. What the problem is: `complementarity.py`.
+"""
+
+from typing import Any
+
+import numba as nb
+import numpy as np
+from numba import types
+
+from ..compiled.jit import caller, compiled
+from ..compiled.records import ArrayRecord
+from ..compiled.views import mat, vec
+from .many import by_limit, many_size
+from .pivoting import by_pivoting, pivoting_size
+
+IMMOVABLE = 1e-12
+"""A direction whose inverse effective mass is below this part of what it could be cannot move."""
+MANY = 8
+"""Contacts; the forces of more are found as the limit of those that give way a little (`many.py`)."""
+
+NONE, SOLVED, STICKS = range(3)
+"""What `solve_cones` returns: there are no forces; there are; and all friction was found below its limit at once,
+shared in proportion to what the contacts allow."""
+
+CONES = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "n",                                    # contacts
+            "nn", "nt", "tt",                       # (n, n) inverse effective masses, 1/kg
+            "b_n", "b_t",                           # (n,) motion without contact forces; b_n > 0: the contact separates
+            "mu",                                   # (n,) coefficients of friction; 0: none
+            "direction",                            # (n,) +-1 where it slides and friction is known, 0: friction decides
+            "base",                                 # (n,) normal forces that act in any case
+            "normal", "tangential",                 # (n,) found: forces, base included
+            "normal_motion", "tangential_motion",   # (n,) found: motion with them
+            "work",                                 # (work_size(n),) scratch
+        )
+    ]
+)  # fmt: skip
+CONES_TYPE = nb.from_dtype(CONES)
+CONES_SIGNATURE = types.int64(CONES_TYPE)
+call_cones = caller(CONES_SIGNATURE)
+"""call_cones(address of `solve_cones`, cn): NONE, SOLVED or STICKS."""
+
+
+def work_size(n: int) -> int:
+    """Numbers (of 8 bytes) in the scratch of `solve_cones` for n contacts."""
+    return n + max(pivoting_size(n), many_size(n))
+
+
+class Cones(ArrayRecord):
+    """The record of a problem of at most `most` contacts, with memory for it: `arrays` by their names in CONES.
+
+    A problem of n contacts takes the first n (or n n, row by row) numbers of each array; `set_size("n", n)`, or
+    compiled code by `cn.n = n`, tells n.
+    """
+
+    def __init__(self, most: int) -> None:
+        arrays = {name: np.zeros((most, most)) for name in ("nn", "nt", "tt")}
+        arrays |= {name: np.zeros(most) for name in CONES.names[4:-1]}  # type: ignore[index]
+        super().__init__(CONES, {**arrays, "work": np.zeros(work_size(most))}, {"n": most})
+
+
+@compiled
+def solve_cones(cn: Any) -> int:
+    """Forces of the contacts of the record `cn`, and the motion with them: NONE, SOLVED or STICKS.
+
+    The arrays of what is given stay as they are; with NONE, those of what is found mean nothing.
+    """
+    n = cn.n
+    if n == 0:
+        return SOLVED
+    nn, tt = mat(cn.nn, n, n), mat(cn.tt, n, n)
+    given, direction, mu = vec(cn.mu, n), vec(cn.direction, n), vec(cn.work, n)
+    if n == 1 and given[0] == 0.0 and vec(cn.base, n)[0] == 0.0:
+        # most impacts are of one contact: no pivoting is needed
+        b_n, alone = vec(cn.b_n, n)[0], max(-vec(cn.b_n, n)[0] / nn[0, 0], 0.0)
+        vec(cn.normal, n)[0], vec(cn.tangential, n)[0] = alone, 0.0
+        vec(cn.normal_motion, n)[0] = max(b_n, 0.0)
+        vec(cn.tangential_motion, n)[0] = vec(cn.b_t, n)[0] + mat(cn.nt, n, n)[0, 0] * alone
+        return SOLVED
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, nn[i, i], tt[i, i])
+    for i in range(n):
+        mu[i] = given[i] if direction[i] != 0.0 or tt[i, i] > IMMOVABLE * largest else 0.0
+    work = cn.work + 8 * n
+    for way in range(2):
+        if (way == 0) == (n > MANY):
+            status = by_limit(cn, mu, work)
+        else:
+            status = by_pivoting(cn, mu, work)
+        if status != NONE:
+            return int(status)
+    return NONE

@@ -1,0 +1,96 @@
+"""Which directions of contacts do not repeat others."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..linalg.small import add, dot
+
+RANK = 1e-10
+"""Part of a direction's inverse mass that must be left of it beside the others."""
+
+
+def independent_size(count: int, coordinates: int) -> int:
+    """Numbers in the scratch of `independent_directions`."""
+    return 2 * (count + 1) * coordinates
+
+
+def farthest_size(count: int) -> int:
+    """Numbers in the scratch of `farthest_directions`."""
+    return count * (count + 2)
+
+
+@compiled
+def independent_directions(
+    directions: Any, responses: Any, some: Any, rank: float, kept: Any, work: Any
+) -> int:  # fmt: skip
+    """Positions in `some` of those directions that do not repeat earlier ones go to `kept`; returns how many there are.
+
+    Parameters
+    ----------
+    directions, responses : G and G M_b, each (directions, coordinates).
+    some : numbers of directions, (count,) int64, the most important ones first.
+    rank : part of a direction's inverse mass that must be left of it.
+    kept : (count,) int64.
+    work : scratch, (independent_size(count, coordinates),).
+    """
+    count, n = len(some), directions.shape[1]
+    x, moved, found = work[:n], work[n : 2 * n], 0
+    for k in range(count):
+        x[:], moved[:] = directions[some[k]], responses[some[k]]
+        size = dot(x, moved)
+        # orthogonal to one another, in the product that the inverse masses make, and of unit size; twice, for rounding
+        for _ in range(2):
+            for i in range(found):
+                at = 2 * (i + 1) * n
+                part = dot(work[at + n : at + 2 * n], x)
+                add(x, -part, work[at : at + n])
+                add(moved, -part, work[at + n : at + 2 * n])
+        rest = dot(x, moved)
+        if rest > rank * size:
+            root, at = np.sqrt(rest), 2 * (found + 1) * n
+            for i in range(n):
+                work[at + i], work[at + n + i] = x[i] / root, moved[i] / root
+            kept[found] = k
+            found += 1
+    return found
+
+
+@compiled
+def farthest_directions(matrix: Any, among: Any, kept: Any, work: Any) -> int:
+    """Those of the directions `among` that do not repeat others, each time the one that is least held by those before
+    it, go to `kept` in their order in `among`; returns how many there are.
+
+    Parameters
+    ----------
+    matrix : inverse masses, (directions, directions).
+    among : numbers of directions, (count,) int64, ascending.
+    kept : numbers of directions, (count,) int64.
+    work : scratch, (farthest_size(count),).
+    """
+    count, found = len(among), 0
+    scale, chosen = work[count * count : count * (count + 1)], work[count * (count + 1) : count * (count + 2)]
+    for i in range(count):
+        for j in range(count):
+            work[i * count + j] = matrix[among[i], among[j]]
+        scale[i], chosen[i] = work[i * count + i], 0.0
+    for _ in range(count):
+        k = 0
+        for i in range(count):
+            if work[i * count + i] > work[k * count + k]:
+                k = i
+        pivot = work[k * count + k]
+        if not pivot > RANK * scale[k]:
+            break
+        chosen[k] = 1.0
+        row = work[k * count : (k + 1) * count]
+        for i in range(count):
+            if i != k:
+                add(work[i * count : (i + 1) * count], -work[i * count + k] / pivot, row)
+        row[:] = 0.0
+    for i in range(count):
+        if chosen[i] != 0.0:
+            kept[found] = among[i]
+            found += 1
+    return found
