@@ -103,3 +103,47 @@ class ArrayRecord:
     def address(self) -> int:
         """Address of the record itself, to be stored in another record."""
         return int(self.table.ctypes.data)
+
+
+class BlockRecord:
+    """The same with all arrays as parts of one block of memory: for scratch, which is copied, moved and built at once.
+
+    Parameters
+    ----------
+    dtype : structured dtype, every field int64.
+    lengths : numbers (float64 or int64) in each array, by field name.
+    sizes : plain integers by field name.
+    """
+
+    def __init__(self, dtype: np.dtype, lengths: Mapping[str, int], sizes: Mapping[str, int]) -> None:
+        self._lengths, at = dict(lengths), 0
+        self.table = np.zeros(1, dtype)
+        self.block = np.zeros(sum(lengths.values()))
+        begin = self.block.__array_interface__["data"][0]
+        self._start: dict[str, int] = {}
+        for name, length in lengths.items():
+            self._start[name] = at
+            self.table[name] = begin + 8 * at
+            at += length
+        for name, size in sizes.items():
+            self.table[name] = size
+        missing = set(dtype.names or ()) - set(lengths) - set(sizes)
+        if missing:
+            raise TypeError(f"fields of the record are missing: {sorted(missing)}")
+
+    def whole(self, name: str) -> NDArray[np.int64]:
+        """The integers of the array `name`."""
+        start = self._start[name]
+        return self.block[start : start + self._lengths[name]].view(np.int64)
+
+    @property
+    def address(self) -> int:
+        """Address of the record itself."""
+        return int(self.table.ctypes.data)
+
+    def moved(self, take: Take) -> "BlockRecord":
+        """The same record in a copy of its memory (`image.py`)."""
+        new = object.__new__(BlockRecord)
+        new._lengths, new._start = self._lengths, self._start
+        new.table, new.block = take(self.table), take(self.block)
+        return new

@@ -3,12 +3,20 @@
 from typing import Any
 
 import numpy as np
+from numba import types
 
-from ..compiled.jit import compiled
+from ..compiled.jit import caller, compiled
 from ..linalg.small import add, dot
 
 RANK = 1e-10
 """Part of a direction's inverse mass that must be left of it beside the others."""
+
+_TABLE, _VECTOR = types.Array(types.float64, 2, "C"), types.Array(types.float64, 1, "C")
+_WHOLES = types.Array(types.int64, 1, "C")
+INDEPENDENT_SIGNATURE = types.int64(_TABLE, _TABLE, _WHOLES, types.float64, _WHOLES, _VECTOR)
+FARTHEST_SIGNATURE = types.int64(_TABLE, _WHOLES, _WHOLES, _VECTOR)
+call_independent, call_farthest = caller(INDEPENDENT_SIGNATURE), caller(FARTHEST_SIGNATURE)
+"""call_independent(address of `independent_directions`, ...) and call_farthest."""
 
 
 def independent_size(count: int, coordinates: int) -> int:

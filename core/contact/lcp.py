@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.jit import compiled, internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import ivec, mat
 from ..linalg.small import add, dot, least_norm, least_norm_size
 
 PIVOT = 1e-11

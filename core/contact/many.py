@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.views import imat, ivec, mat, vec
+from ..compiled.views import imat, ivec, vec
 from .conditions import PRESSES, STICKS, does, largest_motion, left, move, solve_for, solving_size
 from .few import AT_REST, basic, basic_size
 from .sweeps import sweep

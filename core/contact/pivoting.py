@@ -10,7 +10,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg.small import add, dot
+from ..linalg.small import dot
 from .lcp import find_complementary, lcp_size
 from .sticking import RANK, hold_tangents, share, sticking_size
 

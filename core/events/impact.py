@@ -195,4 +195,3 @@ def _sequence(ev: Any, ws: Any, low: bool) -> int:
         # exactly, so that the same contact is not struck again by rounding
         rate[k] = max(rate[k], 0.0)
     return ENDLESS_BLOWS
-

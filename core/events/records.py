@@ -16,7 +16,7 @@ INSTANT = np.dtype(
         (name, np.int64)
         for name in (
             "most",                      # touching contacts that there is room for
-            "cones", "cones_work",       # the record of `contact/cones.py`
+            "cones", "solve_cones", "independent", "farthest",  # record of `contact/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
             "reals", "wholes",           # (REALS,) float64, (WHOLES,) int64
@@ -27,12 +27,12 @@ INSTANT = np.dtype(
             "velocities", "bounced",     # (n_ext,) float64
             "noise", "sum", "terms",     # (n_ext,) float64
             "joint_rates",               # (m_ext,) float64
-            "matrix",                    # (2 most, 2 most) float64
+            "matrix",                    # (2 most, 2 most + 2) float64
+            "work", "work_size",         # float64
             "row_wholes", "row_reals",   # (5 (n + m) + 2 rows_space,) int64, (n + 2 rows_space,) float64: see `prepare.py`
             "rows_space",
             "slots_work",                # (entries of the block of the mass matrix, at most) float64
             "modes",                     # (n_contacts,) float64: before the instant
-            "massless",                  # (n_contacts,) int64: 1 at massless ends
         )
     ]
 )  # fmt: skip

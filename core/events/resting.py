@@ -302,7 +302,8 @@ def _balance(ev: Any, ws: Any, ms: Any) -> int:
 def _solve(ev: Any, ws: Any, ms: Any) -> int:
     count, takes, none = whole(ev)[COUNT], col(ev, TAKES), real(ev)[NONE]
     for _ in range(2):
-        if among(ev, count, takes, col(ev, DIRECTION)) == NO_SOLUTION:
+        if among(ev, count, takes, col(ev, DIRECTION), col(ev, DIRECTION)) == NO_SOLUTION:
+            _name_jammed(ev)
             return NO_FORCES
         _note_loaded(ev, ws)
         # one that leaves does so unless the others' forces press it together again
@@ -314,6 +315,17 @@ def _solve(ev: Any, ws: Any, ms: Any) -> int:
         if not again:
             break
     return SETTLED
+
+
+@internal
+def _name_jammed(ev: Any) -> None:
+    """Which contact's friction alone may turn the effect of the normal force round; -1: none's."""
+    count, kinetic = whole(ev)[COUNT], col(ev, KINETIC)
+    a, who = delassus(ev, count), -1
+    for i in range(count - 1, -1, -1):
+        if kinetic[i] > 0.0 and a[i, i] <= kinetic[i] * abs(a[i, count + i]):
+            who = ivec(ev.contacts, ev.most)[i]
+    whole(ev)[WHO] = who
 
 
 @internal
@@ -344,7 +356,7 @@ def _tries(ev: Any, ws: Any, tried: Any, keeps: bool, spare: float) -> bool:
     """True if the contacts stay where they are with the directions `tried`; `keeps`: those in `FULL` do not move by
     these."""
     count, static, full, order = whole(ev)[COUNT], col(ev, STATIC), col(ev, FULL), ivec(ev.order, 2 * ev.most)
-    if among(ev, count, col(ev, TAKES), tried, True) == NO_SOLUTION:
+    if among(ev, count, col(ev, TAKES), tried, col(ev, DIRECTION)) == NO_SOLUTION:
         return False
     _note_loaded(ev, ws)
     free = 0
@@ -546,6 +558,6 @@ def _refuse_jam(ev: Any) -> int:
             left = a[i, i] - kinetic[i] * direction[i] * a[i, count + i]
             pressed = col(ev, F_N)[i] > 0.0 or col(ev, WAS)[i] == CLOSED
             if left <= NEARLY_SINGULAR * a[i, i] and pressed:
-                whole(ev)[WHO] = i
+                whole(ev)[WHO] = ivec(ev.contacts, ev.most)[i]
                 return JAMS
     return SETTLED

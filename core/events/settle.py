@@ -6,7 +6,6 @@ it puts everything back and says so; once Python has built what it needs, it dec
 
 from typing import Any
 
-
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.complementarity import MANY
@@ -22,7 +21,8 @@ from ..contact.modes import (
     SLIDE_START,
 )
 from ..contact.modes import STICKS as STUCK
-from ..contact.progress import AT_ONCE, COUNT as GUARDED, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
+from ..contact.progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
+from ..contact.progress import COUNT as GUARDED
 from ..contact.resting import LOOSEST_RANK, RANK_OF_MANY
 from ..integrate.records import (
     CLOSE,
@@ -46,8 +46,8 @@ from ..rounding import GAP_ROUNDING, UNSOLVED
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.levels import position_level
 from ..system.projection import meet
-from ..system.records import FACTOR_AGE, OK, RATE_SIZE
-from ..system.switch import engage_modes
+from ..system.records import FACTOR_AGE, OK, RATE_SIZE, structure_at
+from ..system.switch import take_partition, take_structure
 from .blow import impact
 from .laws import OTHER, UNTOUCHED
 from .prepare import use_modes
@@ -123,6 +123,8 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     kept[:] = memory
     for k in range(ws.n_contacts):
         modes[k] = memory[k * MEMORY_SIZE + MODE]
+    structure = ws.structure
+    partition = structure_at(structure).partition
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
@@ -130,7 +132,9 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     if status != SETTLED:
         memory[:] = kept
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
-        engage_modes(ws)
+        if ws.structure != structure:
+            take_structure(ws, structure)
+        take_partition(ws, partition)
         recall(ws, ms, 0)
         evaluate_residuals(ws)
         return status
@@ -303,5 +307,3 @@ def _report(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
             kind = SLIP if abs(memory[SLIDE]) == 1.0 else (STICK if abs(slid) == 1.0 else -1)
         if kind >= 0:
             report(dr, t, kind, k, 0.0, 0.0, 0.0, max(phid[rows[k]], 0.0) if kind == OPENS else 0.0, 0.0, 0.0)
-
-

@@ -278,7 +278,3 @@ def free_jerks(ev: Any, ws: Any, jerks: Any) -> None:
 def looks_again(dr: Any) -> int:
     """How often events have been handled at this instant, this time included."""
     return int(ivec(dr.counts, COUNTS_SIZE)[HERE])
-
-
-
-

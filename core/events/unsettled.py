@@ -2,7 +2,6 @@
 
 from typing import Any
 
-
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
@@ -59,5 +58,3 @@ def _contact_noise(ev: Any, ws: Any, row: int) -> float:
     for i in range(ws.n):
         work = max(work, noise[i] * scale[i])
     return work / vec(ws.row_scale, ws.m_ext)[row]
-
-

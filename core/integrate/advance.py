@@ -31,6 +31,7 @@ from ..system.records import (
     SINGULAR,
     WORST_CONDITION,
 )
+from .failures import failure_of
 from .locate import find_root
 from .loop import accept, trial_step
 from .near_singular import STRAINED
@@ -40,6 +41,7 @@ from .records import (
     CHUNK,
     DUE,
     EVENT,
+    FAILED,
     FIXED_STEP,
     FULL,
     JAM,
@@ -52,6 +54,7 @@ from .records import (
     TRIAL_STEP,
     UNLOCATED,
     VIOLATED,
+    WANTED,
 )
 from .repair import repair
 from .search import AT_ONCE, MOST_HALVINGS
@@ -103,6 +106,7 @@ def advance_to(
                 continue
             left = min(chunk, steps_left(sim, first, t))
             code = sim.drive.go(t, stop, left, hold or not sim.compiled_events)
+            sim.workspace.sync()
             sim.take_events()
         returned, code = code, None
         sim.flush()
@@ -115,6 +119,10 @@ def advance_to(
             restart_at(sim, min(b for b in sim.assembly.breakpoints if b > sim.t_internal))
         elif returned == SETTLE:
             sim.pending = sim.drive.take_pending()
+        elif returned == WANTED:
+            sim.build_wanted(sim.drive.status)
+        elif returned == FAILED:
+            raise failure_of(sim, sim.drive.status)
         elif returned == UNLOCATED:
             _locate_again(sim)
         elif returned == JAM:

@@ -47,8 +47,9 @@ class Blueprint:
         for record in _records(sim):
             arrays += [x for name, x in record.arrays.items() if name not in (*_BLANK, "probes")]
             tables.append(record.table)
-        tables.append(sim._loop.arrays["probes"])
+        tables += [sim._loop.arrays["probes"], *sim.drive.instant.tables()]
         blank = [record.arrays[name] for record in _records(sim) for name in _BLANK if name in record.arrays]
+        blank += sim.drive.instant.scratch()
         self._image = Image(arrays, tables, blank)
 
     def simulation(self) -> Simulation:

@@ -5,6 +5,7 @@ something comes up that Python has to do.
 of `records` that says what it is.
 """
 
+import logging
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,16 +15,19 @@ from ..compiled.image import Take, twin
 from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, vec
-from ..contact.laws import ForceLaw, ImpactLaw, NewtonImpact, PoissonImpact
+from ..contact.laws import ImpactLaw
 from ..contact.progress import Progress
 from ..events import Event
+from ..events.instant import Instant
+from ..events.laws import code_of
+from ..events.records import DECLINED, SETTLED, WANT_ROOM, instant_at
+from ..events.settle import settle
 from ..methods.history import history_time
 from ..methods.records import METHOD_TYPE
 from ..rounding import NO_STEP
 from ..stage.accelerations import solve_accelerations
-from ..system.assembly import Assembly, ContactInfo
+from ..system.assembly import Assembly
 from ..system.records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
-from .instant import NEWTON, OTHER, POISSON, UNTOUCHED, settle
 from .loop import accept, run, trial_step
 from .records import (
     ACCELERATIONS_SIGNATURE,
@@ -40,7 +44,9 @@ from .records import (
     EVENT_ROWS,
     EVENT_SIZE,
     EVENTS,
+    FAILED,
     FOUND_SIZE,
+    GAINS,
     GOAL,
     GOALS_SIZE,
     HANDLED,
@@ -52,11 +58,15 @@ from .records import (
     RUN_SIGNATURE,
     SAMPLE_SIGNATURE,
     SETTLE,
+    SETTLE_SIGNATURE,
+    STATUS,
     STOP_TIME,
     TARGET_TIME,
     TRIAL_SIGNATURE,
     UNLOCATED,
+    WANTED,
     call_run,
+    call_settle,
 )
 from .sample import write_sample
 from .search import NEAREST, locate
@@ -65,6 +75,7 @@ from .sliding import any_slides, may_have_jammed
 if TYPE_CHECKING:
     from .engine import Engine
 
+logger = logging.getLogger(__name__)
 workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
 
 
@@ -94,8 +105,15 @@ def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
     """Steps and events up to the goal; `hold`: only up to where events are pending."""
     counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
     last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
-    pending = ivec(dr.pending, ws.n_contacts)
     while True:
+        if _is_due(dr, ws):
+            if hold or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
+                return SETTLE
+            status = call_settle(dr.settle, dr)
+            if status != SETTLED:
+                counts[STATUS] = status
+                return SETTLE if status == DECLINED else (WANTED if status <= WANT_ROOM else FAILED)
+            continue
         code = _aim(dr, ms, lc)
         if code != OK:
             return code
@@ -115,11 +133,16 @@ def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
             return code
         if locate(dr, ws, ms, lc) != OK:
             return UNLOCATED
-        due = False
-        for k in range(ws.n_contacts):
-            due = due or pending[k] != 0
-        if due and (hold or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL] or not settle(dr, ws, ms, lc)):
-            return SETTLE
+
+
+@internal
+def _is_due(dr: Any, ws: Any) -> bool:
+    """True if events are pending."""
+    pending = ivec(dr.pending, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if pending[k] != 0:
+            return True
+    return False
 
 
 @compiled_unlocked
@@ -135,18 +158,10 @@ def aim_now(dr: Any) -> int:
 
 
 @compiled
-def settle_now(dr: Any) -> bool:
-    """`settle`, for Python."""
-    return settle(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
-
-
-def _law(assembly: Assembly, k: int, contact: ContactInfo) -> int:
-    """How impacts of contact k are solved (`instant.py`)."""
-    if isinstance(contact.law, ForceLaw) or k in assembly.massless_contacts:
-        return UNTOUCHED
-    if isinstance(contact.law, NewtonImpact):
-        return NEWTON if contact.law.propagation == "simultaneous" else OTHER
-    return POISSON if isinstance(contact.law, PoissonImpact) else OTHER
+def settle_pending(dr: Any) -> int:
+    """Let the pending events happen at the newest row: a status of `events/records.py`."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return settle(dr, instant_at(dr.instant), ws, ms, lc)
 
 
 def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
@@ -155,11 +170,23 @@ def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
     impacts = [c.law if isinstance(c.law, ImpactLaw) else None for c in contacts]
     return {
         "breakpoints": np.array(assembly.breakpoints, dtype=np.float64),
-        "law": np.array([_law(assembly, k, c) for k, c in enumerate(contacts)], dtype=np.int64),
+        "law": np.array(
+            [code_of(c.law, k in assembly.massless_contacts) for k, c in enumerate(contacts)], dtype=np.int64
+        ),
         "restitution": np.array([law.restitution if law else 0.0 for law in impacts], dtype=np.float64),
         "rest_ratio": np.array([law.rest_ratio if law else 0.0 for law in impacts], dtype=np.float64),
         "friction": np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in contacts], dtype=np.float64),
     }
+
+
+def _warn_of_gain(t: float, gains: list[tuple[str, float]]) -> None:
+    logger.warning(
+        "at t = %.9g s an impact of %s raises the energy by %.3g J: Newton's law can with friction or several "
+        "contacts; PoissonImpact does not with friction",
+        t,
+        ", ".join(f"'{name}'" for name, _ in gains),
+        gains[0][1],
+    )
 
 
 class Drive:
@@ -172,12 +199,13 @@ class Drive:
 
     def __init__(self, sim: "Engine", guard: Progress) -> None:
         assembly = sim.assembly
-        contacts, n_ext, self._names = assembly.contacts, assembly.n_extended, [c.name for c in assembly.contacts]
+        contacts, self._names = assembly.contacts, [c.name for c in assembly.contacts]
         count = max(len(contacts), 1)
         self.goals, self.counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
         self.goals[HANDLED_AT] = np.nan
         self.pending = np.zeros(count, dtype=np.int64)
         self.events = np.zeros((EVENT_ROWS if contacts else 1, EVENT_SIZE))
+        self.instant = Instant(assembly)
         self._record = ArrayRecord(
             DRIVE,
             {
@@ -185,11 +213,10 @@ class Drive:
                 **_numbers_of(assembly),
                 "found": np.zeros((count, FOUND_SIZE)), "events": self.events, "last_trial": np.zeros(1),
                 "nearest": np.zeros(NEAREST),
-                **{name: np.zeros(n_ext) for name in ("velocities", "gradient", "response", "sideways")},
-                "joint_rates": np.zeros(assembly.m + 1),
             },
             {
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": sim._loop.address,
+                "instant": self.instant.address, "settle": address_of(settle_pending, SETTLE_SIGNATURE),
                 "n_breakpoints": len(assembly.breakpoints),
                 "run": address_of(run, RUN_SIGNATURE), "trial": address_of(trial_step, TRIAL_SIGNATURE),
                 "accept": address_of(accept, ACCEPT_SIGNATURE),
@@ -212,7 +239,7 @@ class Drive:
     def moved(self, take: Take) -> "Drive":
         """The same in a copy of its memory (`compiled/image.py`)."""
         new = twin(self)
-        new._record = self._record.moved(take)
+        new._record, new.instant = self._record.moved(take), self.instant.moved(take)
         new.goals, new.counts, new.pending, new.events = map(
             new._record.arrays.__getitem__, ("goals", "counts", "pending", "events")
         )
@@ -233,21 +260,40 @@ class Drive:
         self.goals[GOAL], self.goals[LAST_STOP] = t, stop
         aim_now(self._record.record)
 
-    def settle(self, pending: list[int]) -> bool:
-        """Let the events of the contacts `pending` happen at the newest row, if they are of the kind that compiled code
-        settles; else nothing has happened."""
+    def settle(self, pending: list[int]) -> int:
+        """Let the events of the contacts `pending` happen at the newest row: a status of `events/records.py`. With any
+        but SETTLED nothing has happened."""
         self.pending[:] = 0
         self.pending[pending] = 1
-        return bool(settle_now(self._record.record))
+        return int(settle_pending(self._record.record))
+
+    @property
+    def status(self) -> int:
+        """Why pending events could not be settled: a status of `events/records.py`."""
+        return int(self.counts[STATUS])
+
+    def give_room(self) -> None:
+        """More room for the instants of this run."""
+        self.instant = self.instant.grown()
+        self._record.set_size("instant", self.instant.address)
 
     def take_pending(self) -> list[int]:
         """The contacts with events that are left to settle."""
-        return [int(k) for k in np.flatnonzero(self.pending)]
+        found = [int(k) for k in np.flatnonzero(self.pending)]
+        self.pending[:] = 0
+        return found
 
     def take_events(self) -> list[Event]:
         """The events since the last call."""
         rows: NDArray[np.float64] = self.events[: self.counts[EVENTS]]
         self.counts[EVENTS] = 0
-        return [
-            Event(t, EVENT_KINDS[int(kind)], self._names[int(k)], *numbers) for t, kind, k, *numbers in rows.tolist()
-        ]
+        found, gains = [], []
+        for t, kind, k, *numbers in rows.tolist():
+            name = self._names[int(k)]
+            if kind == GAINS:
+                gains.append((t, name, -numbers[1]))
+            else:
+                found.append(Event(t, EVENT_KINDS[int(kind)], name, *numbers))
+        for t in dict.fromkeys(t for t, _, _ in gains):
+            _warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t])
+        return found

@@ -19,6 +19,7 @@ from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
 from ..events import Event, Fallback
+from ..events.records import DECLINED, SETTLED, WANT_ROOM, WANT_STRUCTURE
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
 from ..methods.records import step_address
@@ -37,6 +38,7 @@ from . import motions
 from .contact_side import ContactSide
 from .dense_output import query
 from .drive import Drive
+from .failures import failure_of
 from .near_singular import smooth_query, strained
 from .output import ChannelTable
 from .ready import make_ready
@@ -237,9 +239,7 @@ class Engine(ContactSide):
             return
         pending, self.pending = self.pending, []
         if self.compiled_events and self.method_arrays["ring"][1]:
-            self.flush()
-            if self.drive.settle(pending):
-                self.take_events()
+            if self._settled(pending):
                 return
         t = self.t_internal if self.method_arrays["ring"][1] else self.settings.t0
         count = self.events_here + 1 if t == self.drive.goals[HANDLED_AT] else 1
@@ -255,6 +255,31 @@ class Engine(ContactSide):
         self._new_history()
         self.pending = self.unsettled_since(was)
         self._sample_now()
+
+    def _settled(self, pending: list[int]) -> bool:
+        """Let compiled code settle the pending events; False, with nothing changed, if they are for Python."""
+        self.flush()
+        while (status := self.drive.settle(pending)) != SETTLED:
+            self.workspace.sync()
+            if status == DECLINED:
+                self.drive.take_pending()
+                return False
+            if status > WANT_ROOM:
+                raise failure_of(self, status)
+            self.build_wanted(status)
+        self.workspace.sync()
+        self.pending = self.drive.take_pending()
+        self.take_events()
+        return True
+
+    def build_wanted(self, status: int) -> None:
+        """What compiled code needs to settle pending events."""
+        if status == WANT_ROOM:
+            self.drive.give_room()
+        elif status == WANT_STRUCTURE:
+            self.workspace.engage_wanted()
+        else:
+            self.workspace.partition_wanted()
 
     @property
     def compiled_events(self) -> bool:

@@ -21,6 +21,7 @@ from ..compiled.views import ivec, mat, vec
 from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..description import Model
 from ..errors import ModelError
+from ..events.settle import begin_anew
 from ..methods.history import bridge_rows, history_time, recall
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
@@ -41,7 +42,6 @@ from . import advance
 from .dense_output import query
 from .drive import drive_on, loop_at, method_at, workspace_at
 from .inputs import PUNCTUAL
-from .instant import begin_anew
 from .near_singular import STRAINED
 from .records import (
     ACCELERATIONS_SIGNATURE,
@@ -280,6 +280,7 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     if code == DECLINED:
         _at_length(sim, inputs, t)
         return None
+    sim.workspace.sync()
     sim.take_events()
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from numba import types
 
 from ..compiled.jit import address_of
-from ..contact.sweeps import sweep
 from ..contact.touching import evaluate_joints, factor_joints, solve_joints
 from ..linalg import DENSE_LIMIT
 from ..linalg.factorization import make_sparse_ready
@@ -27,7 +26,7 @@ from ..system.measure import measure_motion, measure_rows
 from ..system.projection import meet
 from ..system.records import STAGE_SIGNATURE, WORKSPACE_TYPE
 from .dense_output import interpolate, query
-from .drive import aim_now, drive, settle_now
+from .drive import aim_now, drive, settle_pending
 from .loop import accept, set_weights_at, trial_step, violates_redundant
 from .records import DRIVE_TYPE, FIND_EVENTS_SIGNATURE, LOOP_TYPE
 from .sample import write_sample
@@ -42,7 +41,7 @@ _VECTOR = types.Array(_REAL, 1, "C")
 
 _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (drive, (DRIVE_TYPE, types.boolean)),
-    (settle_now, (DRIVE_TYPE,)),
+    (settle_pending, (DRIVE_TYPE,)),
     (aim_now, (DRIVE_TYPE,)),
     (query, (_WORKSPACE, _METHOD, _REAL)),
     (interpolate, (_WORKSPACE, _METHOD, _REAL)),
@@ -83,10 +82,8 @@ def _compile_called() -> None:
 
 
 @cache
-def _compile_for_contacts(several: bool, sparse: bool, many_entries: bool) -> None:
+def _compile_for_contacts(sparse: bool, many_entries: bool) -> None:
     friction_margin.compile((_WORKSPACE, _WHOLE))
-    if several:
-        sweep.compile((types.Array(_REAL, 2, "C"),) * 3 + (_VECTOR,) * 7 + (_WHOLE,))
     # closed contacts make the matrices larger, and open ones make them smaller than they are now
     functions_of("dense")
     if sparse:
@@ -104,7 +101,6 @@ def make_ready(sim: "Engine") -> None:
     if not assembly.contacts:
         return
     _compile_for_contacts(
-        len(assembly.contacts) > 1,
         assembly.n + assembly.m > DENSE_LIMIT,
         sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches) > FEW_ENTRIES,
     )

@@ -92,7 +92,7 @@ DRIVE = np.dtype(
         (name, np.int64)
         for name in (
             "workspace", "method", "loop", "instant",  # addresses of the records
-            "run", "trial", "accept", "write_sample", "accelerations",  # addresses of functions
+            "run", "trial", "accept", "write_sample", "accelerations", "settle",  # addresses of functions
             "goals",                                  # (GOALS_SIZE,) float64: where to go
             "counts",                                 # (COUNTS_SIZE,) int64
             "guard",                                  # (GUARD_SIZE,) float64: of `Progress`
@@ -103,8 +103,6 @@ DRIVE = np.dtype(
             "restitution", "rest_ratio", "friction",  # (n_contacts,) float64
             "pending",                                # (n_contacts,) int64: 1 where an event has to be handled
             "found",                                  # (n_contacts, FOUND_SIZE) float64: of the location of events
-            "velocities", "gradient", "response", "sideways",  # (n_ext,) float64
-            "joint_rates",                            # (m_ext,) float64
             "events",                                 # (EVENT_ROWS, EVENT_SIZE) float64: a ring that Python empties
             "last_trial",                             # (1,) float64: size of the step that ends at the current point
             "nearest",                                # (NEAREST,) float64: the last event searched for (`search.py`)
@@ -112,6 +110,8 @@ DRIVE = np.dtype(
     ]
 )  # fmt: skip
 DRIVE_TYPE = nb.from_dtype(DRIVE)
+SETTLE_SIGNATURE = types.int64(DRIVE_TYPE)
+call_settle = caller(SETTLE_SIGNATURE)
 
 # columns of `goals`, s
 GOAL, LAST_STOP, HANDLED_AT = range(3)
@@ -121,7 +121,8 @@ BUDGET = 0  # steps and instants with events that `drive` may take
 HANDLED = 1  # instants with events so far
 HERE = 2  # of these at the time HANDLED_AT
 EVENTS = 3  # events in the ring
-COUNTS_SIZE = 4
+STATUS = 4  # of the settling that has ended a run: `events/records.py`
+COUNTS_SIZE = 5
 
 FOUND_SIZE = 7
 # columns of an event

@@ -4,7 +4,7 @@ from .errors import SingularMatrixError
 from .factorization import DENSE_LIMIT, Factorization
 from .record import LU, LU_TYPE, NO_PIVOT, OK, REANALYSE, lu_at
 from .row_pivoting import RowPivots, independent_columns, pivot_rows
-from .solve import factor, solve
+from .solve import analyze, factor, follow, solve
 
 __all__ = [
     "DENSE_LIMIT",
@@ -16,7 +16,9 @@ __all__ = [
     "Factorization",
     "RowPivots",
     "SingularMatrixError",
+    "analyze",
     "factor",
+    "follow",
     "independent_columns",
     "lu_at",
     "pivot_rows",

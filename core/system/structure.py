@@ -18,6 +18,7 @@ from .partitions import MOST_PARTITIONS, Partition, build_partition
 from .records import STRUCTURE
 from .switch import codes_of
 
+
 @dataclass
 class Structure:
     """The matrix [S, Phi_q^T; Phi_q, 0] as slots, for one set of active rows and engaged contacts."""
@@ -147,6 +148,11 @@ class Structure:
         self.present = self.known.get(dependent.tobytes()) or self._new_partition(dependent)
         self.record.set_size("partition", self.present.record.address)
 
+    def know_partition(self, dependent: NDArray[np.int64]) -> None:
+        """Have the partition with these dependent coordinates (m_act,) ready for compiled code."""
+        if dependent.tobytes() not in self.known:
+            self._new_partition(dependent)
+
     def _new_partition(self, dependent: NDArray[np.int64]) -> Partition:
         n, key = int(self.kkt.n) - len(self.active), dependent.tobytes()
         new = None if self.shared is None else self.shared.get(key)
@@ -159,7 +165,7 @@ class Structure:
         if self.shared is not None:
             new = new.fresh()
         while len(self.known) >= MOST_PARTITIONS:
-            del self.known[next(iter(self.known))]
+            del self.known[next(key for key, x in self.known.items() if x is not self.present)]
         self.known[key] = new
         self._units_of(new, n)
         self._list_partitions()

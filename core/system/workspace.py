@@ -240,19 +240,23 @@ class Workspace:
 
     def sync(self) -> None:
         """Take over what compiled code has chosen: structure and partition."""
-        address = self.record["structure"]
-        if address != self.structure.record.address:
+        address, before = self.record["structure"], self.structure.present
+        known = address == self.structure.record.address
+        if not known:
             self.structure = self.patterns.at(address)
         self.structure.note_present()
-        self._use(self.structure)
+        if not known or self.structure.present is not before:
+            self._use(self.structure)
 
     def engage_wanted(self) -> None:
         """Build the structure that compiled code has asked for (`switch.py`) and does not know."""
         self.structure_of(*key_of(self.arrays["wanted"][: len(self.assembly.contacts)]), self.dropped)
 
     def partition_wanted(self) -> None:
-        """Build the partition that compiled code has chosen for the present structure and does not know."""
-        self.structure.partition(self.arrays["wanted_dependent"][: len(self.structure.active)].copy())
+        """Build the partition that compiled code has asked for, of the structure that it wanted."""
+        key = key_of(self.arrays["wanted"][: len(self.assembly.contacts)])
+        structure = self.structure_of(*key, self.dropped)
+        structure.know_partition(self.arrays["wanted_dependent"][: len(structure.active)].copy())
 
     def _forget(self) -> None:
         """What is known of the matrices' factors and conditions holds no more."""

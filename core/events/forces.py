@@ -1,0 +1,150 @@
+"""The problems of an instant as problems of `contact/cones.py` and `contact/directions.py`: which contacts take part."""
+
+from typing import Any
+
+from ..compiled.jit import internal, record_view
+from ..compiled.views import ivec, mat, vec
+from ..contact.cones import CONES_TYPE, NONE, STICKS, call_cones
+from ..contact.directions import RANK, call_farthest, call_independent
+from ..linalg.small import least_norm
+from .records import (
+    AT_REST,
+    B_N,
+    B_T,
+    BASE,
+    COUNT,
+    F_N,
+    F_T,
+    KINETIC,
+    KNOWN,
+    NOW_N,
+    NOW_T,
+    PART,
+    RATE,
+    RIGHT_N,
+    RIGHT_T,
+    SLIDE_RATE,
+    STATIC,
+    W_N,
+    W_T,
+    col,
+    delassus,
+    whole,
+)
+from .records import STICKS as ALL_STICK
+
+NO_SOLUTION = False
+cones_at = record_view(CONES_TYPE)
+
+
+@internal
+def _pose(ev: Any, count: int, takes: Any, b_n: Any, b_t: Any) -> int:
+    """Inverse masses and motion of the contacts that take part, to the record of the problem; their number."""
+    cn, some, n = cones_at(ev.cones), ivec(ev.some, 2 * ev.most), 0
+    for i in range(count):
+        if takes[i] != 0.0:
+            some[n] = i
+            n += 1
+    cn.n = n
+    a, nn, nt, tt = delassus(ev, count), mat(cn.nn, n, n), mat(cn.nt, n, n), mat(cn.tt, n, n)
+    for i in range(n):
+        p = some[i]
+        for j in range(n):
+            q = some[j]
+            nn[i, j], nt[i, j], tt[i, j] = a[p, q], a[p, count + q], a[count + p, count + q]
+        vec(cn.b_n, n)[i], vec(cn.b_t, n)[i], vec(cn.base, n)[i] = b_n[p], b_t[p], 0.0
+    return n
+
+
+@internal
+def among(ev: Any, count: int, takes: Any, direction: Any, slides: Any) -> bool:
+    """Forces `F_N`, `F_T` of the contacts `takes`, with the motion `W_N`, `W_T` of all; the others get none. Friction
+    has the direction `direction` where that is not 0, with the kinetic coefficient where `slides` is not 0."""
+    f_n, f_t, w_n, w_t, b_n, b_t = (
+        col(ev, F_N), col(ev, F_T), col(ev, W_N), col(ev, W_T), col(ev, B_N), col(ev, B_T)
+    )  # fmt: skip
+    n, cn, some = _pose(ev, count, takes, b_n, b_t), cones_at(ev.cones), ivec(ev.some, 2 * ev.most)
+    for i in range(n):
+        p = some[i]
+        vec(cn.mu, n)[i] = col(ev, KINETIC)[p] if slides[p] != 0.0 else col(ev, STATIC)[p]
+        vec(cn.direction, n)[i] = direction[p]
+    status = call_cones(ev.solve_cones, cn)
+    if status == NONE:
+        return NO_SOLUTION
+    whole(ev)[ALL_STICK] = 1 if status == STICKS else 0
+    for i in range(count):
+        f_n[i] = f_t[i] = 0.0
+    for i in range(n):
+        f_n[some[i]], f_t[some[i]] = vec(cn.normal, n)[i], vec(cn.tangential, n)[i]
+    a = delassus(ev, count)
+    for i in range(count):
+        along, across = 0.0, 0.0
+        for j in range(count):
+            along += a[i, j] * f_n[j] + a[i, count + j] * f_t[j]
+            across += a[count + i, j] * f_n[j] + a[count + i, count + j] * f_t[j]
+        w_n[i], w_t[i] = b_n[i] + along, b_t[i] + across
+    return not NO_SOLUTION
+
+
+@internal
+def impulses_among(ev: Any, count: int) -> bool:
+    """Impulses `NOW_N`, `NOW_T` of the contacts `PART` from the motion `RIGHT_N`, `RIGHT_T`, at least `BASE`."""
+    n = _pose(ev, count, col(ev, PART), col(ev, RIGHT_N), col(ev, RIGHT_T))
+    cn, some = cones_at(ev.cones), ivec(ev.some, 2 * ev.most)
+    for i in range(n):
+        p = some[i]
+        vec(cn.mu, n)[i], vec(cn.direction, n)[i], vec(cn.base, n)[i] = col(ev, KINETIC)[p], 0.0, col(ev, BASE)[p]
+    if call_cones(ev.solve_cones, cn) == NONE:
+        return NO_SOLUTION
+    for i in range(count):
+        col(ev, NOW_N)[i] = col(ev, NOW_T)[i] = 0.0
+    for i in range(n):
+        col(ev, NOW_N)[some[i]], col(ev, NOW_T)[some[i]] = vec(cn.normal, n)[i], vec(cn.tangential, n)[i]
+    return not NO_SOLUTION
+
+
+@internal
+def independent_of(ev: Any, ws: Any, some: Any, number: int, rank: float) -> int:
+    """Positions of those of the first `number` directions in `some` that do not repeat earlier ones, to `chosen`; their
+    number. `rank` 0: that of forces."""
+    count = whole(ev)[COUNT]
+    directions, responses = mat(ev.directions, 2 * count, ws.n), mat(ev.responses, 2 * count, ws.n)
+    work, least = vec(ev.work, ev.work_size), rank if rank > 0.0 else RANK
+    chosen = ivec(ev.chosen, 2 * ev.most)
+    return int(call_independent(ev.independent, directions, responses, some[:number], least, chosen, work))
+
+
+@internal
+def farthest_of(ev: Any, count: int, some: Any, number: int) -> int:
+    """Those of the first `number` contacts in `some` whose normals do not repeat others, to `chosen`; their number."""
+    chosen, work = ivec(ev.chosen, 2 * ev.most), vec(ev.work, ev.work_size)
+    return int(call_farthest(ev.farthest, delassus(ev, count), some[:number], chosen, work))
+
+
+@internal
+def remove_rates(ev: Any, normal: Any, along: Any) -> None:
+    """Impulses that take away the rates of the contacts at rest, the least of them."""
+    count, some, n, stuck = whole(ev)[COUNT], ivec(ev.some, 2 * ev.most), 0, 0
+    for i in range(count):
+        normal[i] = along[i] = 0.0
+        if col(ev, AT_REST)[i] != 0.0:
+            some[n] = i
+            n += 1
+    for i in range(count):
+        if col(ev, AT_REST)[i] != 0.0 and col(ev, STATIC)[i] > 0.0 and col(ev, KNOWN)[i] == 0.0:
+            some[n + stuck] = count + i
+            stuck += 1
+    a, size = delassus(ev, count), n + stuck
+    matrix, rates = mat(ev.matrix, size, size), mat(ev.matrix + 8 * size * size, size, 1)
+    found = mat(ev.matrix + 8 * size * (size + 1), size, 1)
+    for i in range(size):
+        p = some[i]
+        rates[i, 0] = -col(ev, RATE)[p] if p < count else -col(ev, SLIDE_RATE)[p - count]
+        for j in range(size):
+            matrix[i, j] = a[p, some[j]]
+    least_norm(matrix, rates, found, RANK, ev.work)
+    for i in range(size):
+        if some[i] < count:
+            normal[some[i]] = found[i, 0]
+        else:
+            along[some[i] - count] = found[i, 0]

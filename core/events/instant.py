@@ -1,0 +1,97 @@
+"""What settling the instants of one run works with: the INSTANT record and its memory."""
+
+from typing import Any
+
+from numpy.typing import NDArray
+
+from ..compiled.image import Take, twin
+from ..compiled.jit import address_of
+from ..compiled.records import BlockRecord
+from ..contact.cones import CONES, CONES_SIGNATURE, solve_cones, work_size
+from ..contact.directions import (
+    FARTHEST_SIGNATURE,
+    INDEPENDENT_SIGNATURE,
+    farthest_directions,
+    farthest_size,
+    independent_directions,
+    independent_size,
+)
+from ..contact.modes import MEMORY_SIZE
+from ..linalg.small import least_norm_size
+from ..system.assembly import Assembly
+from .records import COLUMNS, COUNT, INSTANT, REALS, WHO, WHOLES
+
+FEW = 8
+"""Touching contacts that there is room for at first."""
+
+
+class Instant:
+    """Scratch for the instants of a run with `assembly`: for so many touching contacts, and for so many numbers in the
+    elimination of the constraints' rows."""
+
+    def __init__(self, assembly: Assembly, most: int = FEW, rows_space: int = 0) -> None:
+        self._assembly = assembly
+        n, n_ext, m, contacts = assembly.n, assembly.n_extended, assembly.m + 1, max(len(assembly.contacts), 1)
+        most = self.most = max(min(most, contacts), 1)
+        entries = sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches)
+        space = self.rows_space = rows_space or 4 * (entries + n)
+        work = max(independent_size(2 * most, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
+        names = CONES.names or ()
+        self._cones = BlockRecord(
+            CONES,
+            {name: most * most if name in ("nn", "nt", "tt") else most for name in names if name not in ("n", "work")}
+            | {"work": work_size(most)},
+            {"n": most},
+        )
+        self._record = BlockRecord(
+            INSTANT,
+            {
+                **dict.fromkeys(("velocities", "bounced", "noise", "sum", "terms"), n_ext),
+                **dict.fromkeys(("some", "chosen", "order"), 2 * most),
+                "contacts": most, "table": COLUMNS * most, "reals": REALS, "wholes": WHOLES,
+                "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
+                "directions": 2 * most * n, "responses": 2 * most * n,
+                "kept_memory": contacts * MEMORY_SIZE, "modes": contacts, "joint_rates": m,
+                "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
+                "slots_work": n + sum(len(b.coord) * len(b.tangent_pattern) for b in assembly.batches),
+            },
+            {
+                "most": most, "work_size": work, "rows_space": space, "cones": self._cones.address,
+                "solve_cones": address_of(solve_cones, CONES_SIGNATURE),
+                "independent": address_of(independent_directions, INDEPENDENT_SIGNATURE),
+                "farthest": address_of(farthest_directions, FARTHEST_SIGNATURE),
+            },
+        )  # fmt: skip
+
+    @property
+    def address(self) -> int:
+        """Address of the record."""
+        return self._record.address
+
+    @property
+    def touching(self) -> list[int]:
+        """The contacts that touched at the instant looked at last."""
+        return [int(k) for k in self._record.whole("contacts")[: self._record.whole("wholes")[COUNT]]]
+
+    @property
+    def who(self) -> int:
+        """Of these, the one that a failure is of."""
+        return int(self._record.whole("wholes")[WHO])
+
+    def grown(self) -> "Instant":
+        """One with more room."""
+        return Instant(self._assembly, 2 * self.most, 2 * self.rows_space)
+
+    def scratch(self) -> list[NDArray[Any]]:
+        """The memory, whose content decides nothing."""
+        return [self._record.block, self._cones.block]
+
+    def tables(self) -> list[NDArray[Any]]:
+        """The records of addresses."""
+        return [self._record.table, self._cones.table]
+
+    def moved(self, take: Take) -> "Instant":
+        """The same in a copy of its memory (`compiled/image.py`)."""
+        new = twin(self)
+        new._record, new._cones = self._record.moved(take), self._cones.moved(take)
+        return new
