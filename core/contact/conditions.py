@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg.small import add, dot, least_norm, least_norm_size, solve_square
+from ..linalg.small import add, call_least_norm, dot, least_norm_size, solve_square
 
 RANK = 1e-13
 """Singular values below this part of the largest are zero."""
@@ -149,7 +149,7 @@ def solve_for(
         change = wanted
     else:
         _equations(cn, some, stuck, ratio, w_n, w_t, eps, matrix, wanted)
-        least_norm(matrix, wanted, change, RANK, work + 8 * size * (size + 2))
+        call_least_norm(cn.least_norm, matrix, wanted, change, RANK, work + 8 * size * (size + 2))
     for k in range(count):
         normal[some[k]] += change[k, 0]
     for k in range(held):

@@ -10,9 +10,11 @@ import numba as nb
 import numpy as np
 from numba import types
 
-from ..compiled.jit import caller, compiled
+from ..compiled.jit import address_of, caller, compiled
 from ..compiled.records import ArrayRecord
 from ..compiled.views import mat, vec
+from ..linalg.small import LEAST_NORM_SIGNATURE, least_norm
+from .lcp import FIND_SIGNATURE, find_complementary
 from .many import by_limit, many_size
 from .pivoting import by_pivoting, pivoting_size
 
@@ -25,23 +27,32 @@ NONE, SOLVED, STICKS = range(3)
 """What `solve_cones` returns: there are no forces; there are; and all friction was found below its limit at once,
 shared in proportion to what the contacts allow."""
 
+VECTORS = (
+    "b_n", "b_t",                          # motion without contact forces; b_n > 0: the contact separates
+    "mu",                                  # coefficients of friction; 0: none
+    "direction",                           # +-1 where it slides and friction is known, 0: friction decides
+    "base",                                # normal forces that act in any case
+    "normal", "tangential",                # found: forces, base included
+    "normal_motion", "tangential_motion",  # found: motion with them
+)  # fmt: skip
+"""(n,) each."""
+
 CONES = np.dtype(
     [
         (name, np.int64)
         for name in (
+            "by_pivoting", "by_limit", "find_complementary", "least_norm",  # addresses of these functions
             "n",                                    # contacts
             "nn", "nt", "tt",                       # (n, n) inverse effective masses, 1/kg
-            "b_n", "b_t",                           # (n,) motion without contact forces; b_n > 0: the contact separates
-            "mu",                                   # (n,) coefficients of friction; 0: none
-            "direction",                            # (n,) +-1 where it slides and friction is known, 0: friction decides
-            "base",                                 # (n,) normal forces that act in any case
-            "normal", "tangential",                 # (n,) found: forces, base included
-            "normal_motion", "tangential_motion",   # (n,) found: motion with them
+            *VECTORS,
             "work",                                 # (work_size(n),) scratch
         )
     ]
 )  # fmt: skip
 CONES_TYPE = nb.from_dtype(CONES)
+WAY_SIGNATURE = types.int64(CONES_TYPE, types.Array(types.float64, 1, "C"), types.int64)
+call_way = caller(WAY_SIGNATURE)
+"""call_way(address, cn, mu, work): one of the two ways to solutions."""
 CONES_SIGNATURE = types.int64(CONES_TYPE)
 call_cones = caller(CONES_SIGNATURE)
 """call_cones(address of `solve_cones`, cn): NONE, SOLVED or STICKS."""
@@ -52,6 +63,16 @@ def work_size(n: int) -> int:
     return n + max(pivoting_size(n), many_size(n))
 
 
+def addresses() -> dict[str, int]:
+    """The functions whose addresses the record holds."""
+    return {
+        "by_pivoting": address_of(by_pivoting, WAY_SIGNATURE),
+        "by_limit": address_of(by_limit, WAY_SIGNATURE),
+        "find_complementary": address_of(find_complementary, FIND_SIGNATURE),
+        "least_norm": address_of(least_norm, LEAST_NORM_SIGNATURE),
+    }
+
+
 class Cones(ArrayRecord):
     """The record of a problem of at most `most` contacts, with memory for it: `arrays` by their names in CONES.
 
@@ -60,9 +81,10 @@ class Cones(ArrayRecord):
     """
 
     def __init__(self, most: int) -> None:
+        sizes = {"n": most, **addresses()}
         arrays = {name: np.zeros((most, most)) for name in ("nn", "nt", "tt")}
-        arrays |= {name: np.zeros(most) for name in CONES.names[4:-1]}  # type: ignore[index]
-        super().__init__(CONES, {**arrays, "work": np.zeros(work_size(most))}, {"n": most})
+        arrays |= {name: np.zeros(most) for name in VECTORS}
+        super().__init__(CONES, {**arrays, "work": np.zeros(work_size(most))}, sizes)
 
 
 @compiled
@@ -90,10 +112,8 @@ def solve_cones(cn: Any) -> int:
         mu[i] = given[i] if direction[i] != 0.0 or tt[i, i] > IMMOVABLE * largest else 0.0
     work = cn.work + 8 * n
     for way in range(2):
-        if (way == 0) == (n > MANY):
-            status = by_limit(cn, mu, work)
-        else:
-            status = by_pivoting(cn, mu, work)
+        first = (way == 0) == (n > MANY)
+        status = call_way(cn.by_limit if first else cn.by_pivoting, cn, mu, work)
         if status != NONE:
             return int(status)
     return NONE

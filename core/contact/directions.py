@@ -46,7 +46,8 @@ def independent_directions(
     count, n = len(some), directions.shape[1]
     x, moved, found = work[:n], work[n : 2 * n], 0
     for k in range(count):
-        x[:], moved[:] = directions[some[k]], responses[some[k]]
+        for i in range(n):
+            x[i], moved[i] = directions[some[k], i], responses[some[k], i]
         size = dot(x, moved)
         # orthogonal to one another, in the product that the inverse masses make, and of unit size; twice, for rounding
         for _ in range(2):
@@ -94,9 +95,13 @@ def farthest_directions(matrix: Any, among: Any, kept: Any, work: Any) -> int:
         chosen[k] = 1.0
         row = work[k * count : (k + 1) * count]
         for i in range(count):
-            if i != k:
-                add(work[i * count : (i + 1) * count], -work[i * count + k] / pivot, row)
-        row[:] = 0.0
+            held = work[i * count + k]
+            if i != k and held != 0.0:
+                # (the order of product and quotient decides between equals)
+                for j in range(count):
+                    work[i * count + j] -= held * row[j] / pivot
+        for i in range(count):
+            row[i] = 0.0
     for i in range(count):
         if chosen[i] != 0.0:
             kept[found] = among[i]

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import internal
+from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import add, null_space
 from .conditions import PRESSES, STICKS, move, solve_for, solving_size
@@ -77,7 +77,7 @@ def basic(cn: Any, mu: Any, size: float, normal: Any, friction: Any, work: int) 
     return True
 
 
-@internal
+@inlined
 def _reduced(cn: Any, state: Any, ratio: Any, stuck: Any, some: Any, forces: Any, work: int) -> None:
     """`forces` (beyond the base) of the contacts `some` on no more of them than it takes for the motion of all that
     stay together."""

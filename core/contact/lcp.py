@@ -8,11 +8,12 @@ a solution if one exists.
 from typing import Any
 
 import numpy as np
+from numba import types
 from numpy.typing import NDArray
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import address_of, caller, compiled, internal
 from ..compiled.views import ivec, mat
-from ..linalg.small import add, dot, least_norm, least_norm_size
+from ..linalg.small import LEAST_NORM_SIGNATURE, add, call_least_norm, dot, least_norm, least_norm_size
 
 PIVOT = 1e-11
 """An entry of a column below this, relative to the column's largest, is rounding."""
@@ -23,6 +24,13 @@ VIOLATION = 1e-9
 """Of the conditions, relative: beyond it a result is none."""
 RANK = 1e-13
 """Singular values of the solution's equations below this part of the largest are zero."""
+
+
+FIND_SIGNATURE = types.boolean(
+    types.int64, types.Array(types.float64, 2, "C"), *(types.Array(types.float64, 1, "C"),) * 2, types.int64
+)
+call_find = caller(FIND_SIGNATURE)
+"""call_find(address of `find_complementary`, that of `least_norm`, m, q, z, work)."""
 
 
 class NoComplementarySolution(ArithmeticError):
@@ -43,21 +51,22 @@ def solve_lcp(m: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.floa
     """
     z, work = np.zeros(len(q)), np.empty(lcp_size(len(q)))
     m, q = (np.ascontiguousarray(x, dtype=np.float64) for x in (m, q))
-    if not _find(m, q, z, work, work.ctypes.data):
+    if not _find(
+        address_of(find_complementary, FIND_SIGNATURE), address_of(least_norm, LEAST_NORM_SIGNATURE), m, q, z, work
+    ):
         raise NoComplementarySolution("Lemke's pivoting ends on a ray: the complementarity problem has no solution")
     return z
 
 
 @compiled
-def _find(m: Any, q: Any, z: Any, work: Any, address: int) -> bool:
-    # (`work` is there to be kept alive)
-    return bool(find_complementary(m, q, z, address))
+def _find(find: int, by_norm: int, m: Any, q: Any, z: Any, work: Any) -> bool:
+    return bool(call_find(find, by_norm, m, q, z, work.ctypes.data))
 
 
 @internal
-def find_complementary(m: Any, q: Any, z: Any, work: int) -> bool:
-    """z (n,) of the problem with m (n, n) and q (n,); False if the pivoting ends on a ray. `work` is the address of
-    `lcp_size` numbers."""
+def find_complementary(by_norm: int, m: Any, q: Any, z: Any, work: int) -> bool:
+    """z (n,) of the problem with m (n, n) and q (n,); False if the pivoting ends on a ray. `by_norm` is the address
+    of `least_norm`, `work` that of `lcp_size` numbers."""
     n, size, least = len(q), 0.0, 0.0
     for i in range(n):
         z[i] = 0.0
@@ -65,7 +74,7 @@ def find_complementary(m: Any, q: Any, z: Any, work: int) -> bool:
     if least >= -TIES[0] * size:
         return True
     for tie in TIES:
-        if _lemke(m, q, z, size, tie, work):
+        if _lemke(by_norm, m, q, z, size, tie, work):
             least = 0.0
             for i in range(n):
                 least = min(least, dot(m[i], z) + q[i])
@@ -75,7 +84,7 @@ def find_complementary(m: Any, q: Any, z: Any, work: int) -> bool:
 
 
 @internal
-def _lemke(m: Any, q: Any, z: Any, size: float, tie: float, work: int) -> bool:
+def _lemke(by_norm: int, m: Any, q: Any, z: Any, size: float, tie: float, work: int) -> bool:
     """The solution; False if the pivoting ends on a ray or does not end."""
     n = len(q)
     # columns: w (0 .. n-1), z (n .. 2n-1), the artificial variable (2n), the right-hand side
@@ -94,7 +103,7 @@ def _lemke(m: Any, q: Any, z: Any, size: float, tie: float, work: int) -> bool:
         _pivot(table, row, entering)
         basis[row] = entering
         if leaving == 2 * n:
-            _refine(m, q, z, basis, rows, start, work)
+            _refine(by_norm, m, q, z, basis, rows, start, work)
             return True
         entering = leaving + n if leaving < n else leaving - n
         row = _ratio_row(table, entering, basis, rows, tie)
@@ -166,7 +175,9 @@ def _pivot(table: Any, row: int, column: int) -> None:
 
 
 @internal
-def _refine(m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: int) -> None:
+def _refine(
+    by_norm: int, m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: int
+) -> None:  # fmt: skip
     """z of a complementary basis, solved anew from the given matrix: free of the pivoting's rounding. What is at the
     addresses `table` and `work` is used no more."""
     n, count = len(q), 0
@@ -180,7 +191,7 @@ def _refine(m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: in
         b[i, 0] = -q[basic[i]]
         for j in range(count):
             block[i, j] = m[basic[i], basic[j]]
-    least_norm(block, b, x, RANK, work + 16 * count)
+    call_least_norm(by_norm, block, b, x, RANK, work + 16 * count)
     for i in range(n):
         z[i] = 0.0
     for i in range(count):

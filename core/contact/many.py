@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import internal
+from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, ivec, vec
 from .conditions import PRESSES, STICKS, does, largest_motion, left, move, solve_for, solving_size
 from .few import AT_REST, basic, basic_size
@@ -61,7 +61,7 @@ def by_limit(cn: Any, mu: Any, work: int) -> int:
     return 2 if some else 1
 
 
-@internal
+@inlined
 def _solve(cn: Any, mu: Any, size: float, work: int) -> bool:
     """Normal and tangential forces, the base in them; False where none were found."""
     n = cn.n
@@ -99,7 +99,7 @@ def _copy(normal: Any, friction: Any, to_normal: Any, to_friction: Any) -> None:
         to_normal[i], to_friction[i] = normal[i], friction[i]
 
 
-@internal
+@inlined
 def _follow(cn: Any, mu: Any, size: float, other: Any, other_friction: Any, work: int) -> bool:
     """Forces where contacts give way by next to nothing, from those in the record; False if the path comes to an end.
     `other`, `other_friction`: scratch."""

@@ -11,7 +11,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import dot
-from .lcp import find_complementary, lcp_size
+from .lcp import call_find, lcp_size
 from .sticking import RANK, hold_tangents, share, sticking_size
 
 MOVES = 1e-9
@@ -87,7 +87,7 @@ def _scaled(cn: Any, m: Any, q: Any, z: Any, work: int) -> bool:
         q[i] *= unit[i]
         for j in range(n):
             m[i, j] = unit[i] * m[i, j] * unit[j]
-    found = find_complementary(m, q, z, work + 8 * n)
+    found = call_find(cn.find_complementary, cn.least_norm, m, q, z, work + 8 * n)
     for i in range(n):
         z[i] *= unit[i]
     return bool(found)
@@ -190,7 +190,7 @@ def _with_limits(
         q[i] *= columns[i]
         for j in range(size):
             m[i, j] = columns[i] * m[i, j] * columns[j]
-    if not find_complementary(m, q, z, work):
+    if not call_find(cn.find_complementary, cn.least_norm, m, q, z, work):
         return False
     for i in range(n):
         normal[i] = columns[i] * z[i]

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import mat
-from ..linalg.small import add, least_norm, least_norm_size
+from ..linalg.small import add, call_least_norm, least_norm_size
 
 RANK = 1e-10
 """Singular values of the block of friction that sticks below this part of the largest are zero."""
@@ -33,7 +33,7 @@ def hold_tangents(cn: Any, stuck: Any, tn: Any, matrix: Any, across: Any, work: 
             along[i, j] = tt[stuck[i], stuck[j]]
         for j in range(n):
             b[i, j] = nt[j, stuck[i]]
-    least_norm(along, b, across, RANK, work + 8 * count * (count + n))
+    call_least_norm(cn.least_norm, along, b, across, RANK, work + 8 * count * (count + n))
     for i in range(n):
         for k in range(count):
             add(matrix[i], -across[k, i], tn[stuck[k]])
@@ -49,6 +49,6 @@ def share(cn: Any, stuck: Any, limit: Any, wanted: Any, friction: Any, work: int
     for i in range(count):
         for j in range(count):
             matrix[i, j] = tt[stuck[i], stuck[j]] * np.sqrt(limit[j])
-    least_norm(matrix, wanted, friction, RANK, work + 8 * count * count)
+    call_least_norm(cn.least_norm, matrix, wanted, friction, RANK, work + 8 * count * count)
     for i in range(count):
         friction[i, 0] *= np.sqrt(limit[i])

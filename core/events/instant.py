@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.records import BlockRecord
-from ..contact.cones import CONES, CONES_SIGNATURE, solve_cones, work_size
+from ..contact.cones import CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
 from ..contact.directions import (
     FARTHEST_SIGNATURE,
     INDEPENDENT_SIGNATURE,
@@ -36,13 +36,8 @@ class Instant:
         entries = sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches)
         space = self.rows_space = rows_space or 4 * (entries + n)
         work = max(independent_size(2 * most, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
-        names = CONES.names or ()
-        self._cones = BlockRecord(
-            CONES,
-            {name: most * most if name in ("nn", "nt", "tt") else most for name in names if name not in ("n", "work")}
-            | {"work": work_size(most)},
-            {"n": most},
-        )
+        of_cones = {name: most * most for name in ("nn", "nt", "tt")} | {name: most for name in VECTORS}
+        self._cones = BlockRecord(CONES, {**of_cones, "work": work_size(most)}, {"n": most, **addresses()})
         self._record = BlockRecord(
             INSTANT,
             {

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from numba import types
 
 from ..compiled.jit import address_of
+from ..contact.cones import CONES_TYPE, Cones, solve_cones
+from ..contact.directions import farthest_directions, independent_directions
 from ..contact.touching import evaluate_joints, factor_joints, solve_joints
 from ..linalg import DENSE_LIMIT
 from ..linalg.factorization import make_sparse_ready
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
 
 _WORKSPACE, _METHOD, _LOOP = WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE
 _REAL, _WHOLE = types.float64, types.int64
-_VECTOR = types.Array(_REAL, 1, "C")
+_VECTOR, _MATRIX, _NUMBERS = types.Array(_REAL, 1, "C"), types.Array(_REAL, 2, "C"), types.Array(_WHOLE, 1, "C")
 
 _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (drive, (DRIVE_TYPE, types.boolean)),
@@ -84,6 +86,11 @@ def _compile_called() -> None:
 @cache
 def _compile_for_contacts(sparse: bool, many_entries: bool) -> None:
     friction_margin.compile((_WORKSPACE, _WHOLE))
+    # its record holds the addresses of all that it calls
+    Cones(1)
+    solve_cones.compile((CONES_TYPE,))
+    independent_directions.compile((_MATRIX, _MATRIX, _NUMBERS, _REAL, _NUMBERS, _VECTOR))
+    farthest_directions.compile((_MATRIX, _NUMBERS, _NUMBERS, _VECTOR))
     # closed contacts make the matrices larger, and open ones make them smaller than they are now
     functions_of("dense")
     if sparse:

@@ -9,9 +9,15 @@ Reflections from the right then give what is least (complete orthogonal decompos
 from typing import Any
 
 import numpy as np
+from numba import types
 
-from ..compiled.jit import internal
+from ..compiled.jit import caller, internal
 from ..compiled.views import ivec, mat, vec
+
+_MATRIX = types.Array(types.float64, 2, "C")
+LEAST_NORM_SIGNATURE = types.int64(_MATRIX, _MATRIX, _MATRIX, types.float64, types.int64)
+call_least_norm = caller(LEAST_NORM_SIGNATURE)
+"""call_least_norm(address of `least_norm`, a, b, x, tolerance, work), so that its code is not part of each caller's."""
 
 EPS = float(np.finfo(np.float64).eps)
 NOISE = 4.0 * EPS
