@@ -8,7 +8,7 @@ from ..contact.modes import APPROACH_SPEED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS
 from ..integrate.records import GAINS, GRAZE, IMPACT
 from ..methods.history import history_time
 from ..rounding import FORCE_ROUNDING
-from ..system.evaluate import evaluate_energy
+from ..system.evaluate import evaluate_energy, evaluate_residuals
 from .impact import strike
 from .reading import unresolved_speed
 from .records import (
@@ -43,6 +43,7 @@ from .records import (
 )
 from .report import report
 from .resting import begin_rest, find_forces
+from .touching import read_rates
 
 GAIN = 1e-12
 """Of the kinetic energy: an impact that gains more is one to report."""
@@ -108,6 +109,8 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         col(ev, other)[:count] = col(ev, one)[:count]
     for i in range(ws.n_ext):
         bounced[i], v[i] = v[i], vec(ev.velocities, ws.n_ext)[i]
+    evaluate_residuals(ws)
+    read_rates(ev, ws)
     status = strike(ev, dr, ws, True)
     if status == SETTLED:
         status = begin_rest(ev, dr, ws, ms, 0.0)
@@ -126,6 +129,8 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     real(ev)[LEFT], real(ev)[RESIDUAL] = left, residual
     for i in range(ws.n_ext):
         v[i] = bounced[i]
+    evaluate_residuals(ws)
+    read_rates(ev, ws)
     return SETTLED
 
 

@@ -6,7 +6,7 @@ from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..contact.cones import CONES_TYPE, NONE, STICKS, call_cones
 from ..contact.directions import RANK, call_farthest, call_independent
-from ..linalg.small import least_norm
+from ..linalg.small import call_least_norm
 from .records import (
     AT_REST,
     B_N,
@@ -124,7 +124,7 @@ def farthest_of(ev: Any, count: int, some: Any, number: int) -> int:
 @internal
 def remove_rates(ev: Any, normal: Any, along: Any) -> None:
     """Impulses that take away the rates of the contacts at rest, the least of them."""
-    count, some, n, stuck = whole(ev)[COUNT], ivec(ev.some, 2 * ev.most), 0, 0
+    count, some, n, stuck, cn = whole(ev)[COUNT], ivec(ev.some, 2 * ev.most), 0, 0, cones_at(ev.cones)
     for i in range(count):
         normal[i] = along[i] = 0.0
         if col(ev, AT_REST)[i] != 0.0:
@@ -142,7 +142,7 @@ def remove_rates(ev: Any, normal: Any, along: Any) -> None:
         rates[i, 0] = -col(ev, RATE)[p] if p < count else -col(ev, SLIDE_RATE)[p - count]
         for j in range(size):
             matrix[i, j] = a[p, some[j]]
-    least_norm(matrix, rates, found, RANK, ev.work)
+    call_least_norm(cn.least_norm, matrix, rates, found, RANK, ev.work)
     for i in range(size):
         if some[i] < count:
             normal[some[i]] = found[i, 0]

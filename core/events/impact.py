@@ -11,6 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..contact.sweeps import one_contact
 from ..rounding import UNSOLVED
+from ..system.evaluate import evaluate_residuals
 from .forces import NO_SOLUTION, impulses_among
 from .laws import POISSON, SEQUENTIAL
 from .records import (
@@ -66,7 +67,6 @@ def strike(ev: Any, dr: Any, ws: Any, low: bool) -> int:
     count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
     rate, slide_rate, rounding = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, ROUNDING)
     approach, loss, p_n, p_t = col(ev, APPROACH), col(ev, LOSS), col(ev, P_N), col(ev, P_T)
-    read_rates(ev, ws)
     active, joint_rates, phid = ivec(ws.active, ws.m_act), vec(ev.joint_rates, ws.m_act), vec(ws.phid, ws.m_ext)
     for i in range(ws.m_act):
         joint_rates[i] = phid[active[i]]
@@ -93,12 +93,13 @@ def strike(ev: Any, dr: Any, ws: Any, low: bool) -> int:
         status = _sequence(ev, ws, low) if sequential else _at_once(ev, dr, ws, low)
         if status != SETTLED:
             return status
-        read_rates(ev, ws)
         for i in range(count):
             loss[i] -= 0.5 * (p_n[i] * (before_n[i] + rate[i]) + p_t[i] * (before_t[i] + slide_rate[i]))
             col(ev, IMPULSE)[i] += p_n[i]
             col(ev, FRICTION)[i] += p_t[i]
     # the joints keep their rates
+    evaluate_residuals(ws)
+    read_rates(ev, ws)
     for i in range(ws.m_act):
         real(ev)[RESIDUAL] = max(real(ev)[RESIDUAL], abs(phid[active[i]] - joint_rates[i]))
     col(ev, SEPARATION)[:count] = rate[:count]
@@ -131,7 +132,6 @@ def _at_once(ev: Any, dr: Any, ws: Any, low: bool) -> int:
         return status
     for i in range(count):
         base[i] = _restitution(ev, low, i) * p_n[i] if law[contacts[i]] == POISSON else 0.0
-    read_rates(ev, ws)
     return _solve_and_push(ev, ws, wanted)
 
 
@@ -149,7 +149,6 @@ def _solve_and_push(ev: Any, ws: Any, wanted: Any) -> int:
     if impulses_among(ev, count) == NO_SOLUTION:
         return NO_IMPACT
     push(ev, ws, normal, tangential)
-    read_rates(ev, ws)
     largest, off = 0.0, 0.0
     for i in range(count):
         if part[i] != 0.0:
@@ -171,9 +170,10 @@ def _solve_and_push(ev: Any, ws: Any, wanted: Any) -> int:
 def _sequence(ev: Any, ws: Any, low: bool) -> int:
     """One blow after another, the fastest approach first, until none approaches."""
     count, p_n, p_t, rounding = whole(ev)[COUNT], col(ev, P_N), col(ev, P_T), col(ev, ROUNDING)
-    rate, slide_rate, a, mu = col(ev, RATE), col(ev, SLIDE_RATE), delassus(ev, count), col(ev, KINETIC)
+    rate, slide_rate, a, mu = col(ev, RIGHT_N), col(ev, RIGHT_T), delassus(ev, count), col(ev, KINETIC)
     for i in range(count):
         p_n[i] = p_t[i] = 0.0
+        rate[i], slide_rate[i] = col(ev, RATE)[i], col(ev, SLIDE_RATE)[i]
     for _ in range(MOST_BLOWS):
         k = 0
         for i in range(count):

@@ -36,7 +36,7 @@ class Instant:
         entries = sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches)
         space = self.rows_space = rows_space or 4 * (entries + n)
         work = max(independent_size(2 * most, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
-        of_cones = {name: most * most for name in ("nn", "nt", "tt")} | {name: most for name in VECTORS}
+        of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS, most)
         self._cones = BlockRecord(CONES, {**of_cones, "work": work_size(most)}, {"n": most, **addresses()})
         self._record = BlockRecord(
             INSTANT,
@@ -46,7 +46,7 @@ class Instant:
                 "contacts": most, "table": COLUMNS * most, "reals": REALS, "wholes": WHOLES,
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
                 "directions": 2 * most * n, "responses": 2 * most * n,
-                "kept_memory": contacts * MEMORY_SIZE, "modes": contacts, "joint_rates": m,
+                "kept_memory": contacts * MEMORY_SIZE, "modes": contacts, "unsettled": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
                 "slots_work": n + sum(len(b.coord) * len(b.tangent_pattern) for b in assembly.batches),
             },

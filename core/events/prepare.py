@@ -11,7 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import analyze, follow, lu_at
 from ..linalg.row_pivoting import eliminate
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..system.evaluate import evaluate_tangent
 from ..system.partition import GOLDEN, RANK_TOLERANCE, SILVER
 from ..system.records import (
     ANALYSES,
@@ -34,7 +34,6 @@ def use_modes(ev: Any, ws: Any) -> int:
     """Take the structure of the present modes, with a partition and pivots for the current point."""
     if not engage_modes(ws):
         return WANT_STRUCTURE
-    evaluate_residuals(ws)
     evaluate_tangent(ws, 0.0, 0.0)
     status = _choose_partition(ev, ws)
     if status != SETTLED:

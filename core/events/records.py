@@ -33,6 +33,7 @@ INSTANT = np.dtype(
             "rows_space",
             "slots_work",                # (entries of the block of the mass matrix, at most) float64
             "modes",                     # (n_contacts,) float64: before the instant
+            "unsettled",                 # (n_contacts,) int64
         )
     ]
 )  # fmt: skip

@@ -74,7 +74,7 @@ from .records import (
     real,
     whole,
 )
-from .touching import force_noise, free_accelerations, free_jerks, looks_again, push, read_rates
+from .touching import force_noise, free_accelerations, free_jerks, looks_again, push
 
 NEARLY_SINGULAR = 1e-6
 """Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
@@ -89,9 +89,8 @@ ten times farther at each of the following ones, but not beyond."""
 
 
 @internal
-def _look(ev: Any, ws: Any, ms: Any) -> None:
-    """Read the velocities: +-1 in `KNOWN` where the contact slides, 0 where friction decides."""
-    read_rates(ev, ws)
+def _look(ev: Any, ms: Any) -> None:
+    """What the rates say: +-1 in `KNOWN` where the contact slides, 0 where friction decides."""
     rounding, slide_rate, known, slid = col(ev, ROUNDING), col(ev, SLIDE_RATE), col(ev, KNOWN), col(ev, SLID)
     for i in range(whole(ev)[COUNT]):
         known[i] = np.sign(slide_rate[i]) if abs(slide_rate[i]) > rounding[i] else 0.0
@@ -107,7 +106,7 @@ def _look(ev: Any, ws: Any, ms: Any) -> None:
 def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any, accelerations: float) -> int:
     """Which contacts neither separate nor approach. `accelerations`: of the coordinates before, 1/s^2."""
     count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
-    _look(ev, ws, ms)
+    _look(ev, ms)
     rates, slow = col(ev, RATE), whole(ev)[STRUCK] == 0
     for i in range(count):
         at_rest[i] = abs(rates[i]) <= col(ev, ROUNDING)[i]
@@ -179,7 +178,7 @@ def _hold_back(ev: Any, ws: Any, ms: Any, motion: Any) -> bool:
     normal, along = col(ev, SPARE), col(ev, OTHER_FLAG)
     remove_rates(ev, normal, along)
     push(ev, ws, normal, along)
-    _look(ev, ws, ms)
+    _look(ev, ms)
     return True
 
 

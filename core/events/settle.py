@@ -85,7 +85,7 @@ from .records import (
 from .report import report, room_for
 from .resting import begin_rest, choose, keep
 from .touching import find_touching, looks_again, open_touching, read_rates, read_values
-from .unsettled import find_unsettled
+from .unsettled import find_pending
 
 
 @internal
@@ -96,7 +96,6 @@ def begin_anew(ws: Any, ms: Any, lc: Any) -> None:
     for i in range(ws.n_ext):
         aux[i] = a[i]
     vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
-    evaluate_residuals(ws)
     restart(ws, ms)
     remember(ws, lc)
 
@@ -129,6 +128,8 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
     status = _decide(ev, dr, ws, ms)
+    if status == SETTLED:
+        status = find_pending(ev, dr, ws, lc)
     if status != SETTLED:
         memory[:] = kept
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
@@ -140,7 +141,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         return status
     begin_anew(ws, ms, lc)
     _count(dr, t)
-    find_unsettled(ev, ws, ivec(dr.pending, ws.n_contacts))
+    ivec(dr.pending, ws.n_contacts)[:] = ivec(ev.unsettled, ws.n_contacts)
     _sample(dr, ws, lc)
     return SETTLED
 

@@ -14,7 +14,7 @@ from ..contact.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, S
 from ..integrate.records import COUNTS_SIZE, HERE, call_accelerations
 from ..linalg import analyze, lu_at, solve
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..system.evaluate import evaluate_tangent
 from ..system.levels import position_level
 from ..system.records import OK
 from ..system.switch import engage_modes
@@ -83,7 +83,6 @@ def open_touching(ev: Any, dr: Any, ws: Any) -> int:
     # as constraints that stick, the contacts say their gradients; no matrix holds them
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
-    evaluate_residuals(ws)
     evaluate_tangent(ws, 0.0, 0.0)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
     directions = mat(ev.directions, 2 * count, ws.n)
@@ -95,7 +94,6 @@ def open_touching(ev: Any, dr: Any, ws: Any) -> int:
         else:
             directions[count + i, :] = 0.0
         memory[k, MODE] = OPEN
-    evaluate_residuals(ws)
     evaluate_tangent(ws, 0.0, 0.0)
     # pivots of an earlier visit to this structure would be a state that no State holds
     if analyze(lu_at(ws.kkt_query), ws.values) != OK:
@@ -158,8 +156,7 @@ def _refuse_immovable(ev: Any, ws: Any, count: int) -> int:
 
 @internal
 def read_rates(ev: Any, ws: Any) -> None:
-    """Rates of gaps and sliding distances at the current velocities."""
-    evaluate_residuals(ws)
+    """Rates of gaps and sliding distances, as the residuals have been evaluated last."""
     _read(ev, ws, vec(ws.phid, ws.m_ext), col(ev, RATE), col(ev, SLIDE_RATE))
 
 
@@ -188,16 +185,21 @@ def read_values(ev: Any, ws: Any) -> None:
 
 @internal
 def push(ev: Any, ws: Any, normal: Any, tangential: Any) -> None:
-    """Add the velocities that impulses in N s, one for each contact, cause to the current ones."""
+    """Add the velocities that impulses in N s, one for each contact, cause to the current ones; the rates follow from
+    the inverse masses."""
     count, v = whole(ev)[COUNT], vec(ws.v, ws.n_ext)
-    responses = mat(ev.responses, 2 * count, ws.n)
-    for j in range(ws.n):
-        change = 0.0
-        for i in range(count):
-            change += normal[i] * responses[i, j]
-        for i in range(count):
-            change += tangential[i] * responses[count + i, j]
-        v[j] += change
+    responses, a, rate, slide_rate = (
+        mat(ev.responses, 2 * count, ws.n), delassus(ev, count), col(ev, RATE), col(ev, SLIDE_RATE)
+    )  # fmt: skip
+    for i in range(2 * count):
+        impulse = normal[i] if i < count else tangential[i - count]
+        if impulse == 0.0:
+            continue
+        for j in range(ws.n):
+            v[j] += impulse * responses[i, j]
+        for j in range(count):
+            rate[j] += impulse * a[j, i]
+            slide_rate[j] += impulse * a[count + j, i]
 
 
 @internal

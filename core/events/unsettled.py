@@ -4,11 +4,18 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
+from ..contact.modes import CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..integrate.records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
 from ..system.levels import force_level
-from ..system.records import structure_at
-from .touching import force_noise
+from ..system.records import OK, structure_at
+from .laws import UNTOUCHED
+from .prepare import use_modes
+from .reading import comes_back
+from .records import B_N, B_T, COUNT, NO_ACCELERATIONS, SETTLED, SPARE, WANT_STRUCTURE, col, whole
+from .touching import force_noise, free_accelerations, free_jerks, open_touching
+
+NO, YES = -1, -2
 
 
 @internal
@@ -34,6 +41,55 @@ def find_unsettled(ev: Any, ws: Any, found: Any) -> bool:
             if abs(lam[slides[k]]) > static[k] * force * (1.0 + SLIP_EXCESS) + none:
                 found[k], any_found = 1, True
     return any_found
+
+
+@internal
+def find_pending(ev: Any, dr: Any, ws: Any, lc: Any) -> int:
+    """Contacts to settle next at this instant, to `unsettled`.
+
+    Left out are those that have just closed because they would open by less than can be told from zero: they pull by
+    what the errors of the steps have left in the waves of an elastic body, and would open and close for ever.
+    """
+    found, modes, law = ivec(ev.unsettled, ws.n_contacts), vec(ev.modes, ws.n_contacts), ivec(dr.law, ws.n_contacts)
+    if not find_unsettled(ev, ws, found):
+        return SETTLED
+    for k in range(ws.n_contacts):
+        if found[k] != 0 and modes[k] != CLOSED and law[k] != UNTOUCHED:
+            status = _returns_at_once(ev, dr, ws, lc, k)
+            if status == YES:
+                found[k] = 0
+            elif status != NO:
+                return status
+    return SETTLED
+
+
+@internal
+def _returns_at_once(ev: Any, dr: Any, ws: Any, lc: Any, k: int) -> int:
+    """YES if contact k, closed, pulls by no more than lets its gap open by what could not be told from zero before it
+    closes again. The next step then goes beyond that. NO, or what is wanted to know it."""
+    memory, clock = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], vec(lc.clock, CLOCK_SIZE)
+    mode, slide, ratio = memory[MODE], memory[SLIDE], memory[RATIO]
+    ivec(ev.contacts, ev.most)[0], whole(ev)[COUNT] = k, 1
+    motion, jerks = col(ev, B_N), col(ev, SPARE)
+    status = open_touching(ev, dr, ws)
+    if status == SETTLED:
+        status = free_accelerations(ev, dr, ws, motion, col(ev, B_T), 0.0)
+        free_jerks(ev, ws, jerks)
+    memory[MODE], memory[SLIDE], memory[RATIO] = mode, slide, ratio
+    if status == WANT_STRUCTURE:
+        return status
+    back = use_modes(ev, ws)
+    if back == SETTLED and call_accelerations(dr.accelerations, ws) != OK:
+        back = NO_ACCELERATIONS
+    if back != SETTLED:
+        return back
+    # the others may hold it, with the friction of those that slide: which of them stay is for all to settle;
+    # one that presses is unsettled by its friction, which is for the stick and slip to settle
+    if status != SETTLED or not motion[0] > 0.0 or not comes_back(ws, k, jerks[0], motion[0]):
+        return NO
+    # b + j t, the acceleration of the open gap, has turned well before this
+    clock[STEP_SIZE] = max(clock[STEP_SIZE], min(4.0 * motion[0] / -jerks[0], clock[MAX_STEP]))
+    return YES
 
 
 @internal

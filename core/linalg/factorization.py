@@ -21,7 +21,7 @@ Ints = NDArray[np.int64]
 # Largest n that is factored densely. Measured (benchmarks/linalg_timing.py): from n = 5 on the sparse refactorisation
 # is faster, but at these sizes by a tenth of a microsecond only, and small models save the seconds in which numba
 # compiles the symbolic analysis on a first run.
-DENSE_LIMIT = 8
+DENSE_LIMIT = 200
 # The list of operations is written down while it is at most this many times the fill. Measured: 1.2-1.5 times
 # faster than by columns for chains (1.1 operations an entry), 1.2-1.7 times slower for spring grids (10-30).
 PROGRAM_LIMIT = 4
