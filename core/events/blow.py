@@ -9,9 +9,9 @@ from ..integrate.records import GAINS, GRAZE, IMPACT
 from ..methods.history import history_time
 from ..rounding import FORCE_ROUNDING
 from ..system.evaluate import evaluate_energy, evaluate_residuals
-from .impact import strike
 from .reading import unresolved_speed
 from .records import (
+    ACCELERATIONS,
     APPROACH,
     COUNT,
     F_N,
@@ -37,12 +37,14 @@ from .records import (
     STOPS,
     STRUCK,
     WAS,
+    WITHOUT,
+    call_part,
     col,
+    copy,
     real,
     whole,
 )
 from .report import report
-from .resting import begin_rest, find_forces
 from .touching import read_rates
 
 GAIN = 1e-12
@@ -68,7 +70,8 @@ def impact(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     whole(ev)[STRUCK] = 1
     for i in range(count):
         col(ev, LEAVES)[i] = col(ev, STOPS)[i] = col(ev, SLIPS)[i] = col(ev, RESTS)[i] = 0.0
-    status = strike(ev, dr, ws, False)
+    whole(ev)[WITHOUT] = 0
+    status = call_part(ev.strike, ev, dr, ws, ms)
     if status != SETTLED:
         return status
     if _any_low(ev, dr, ws):
@@ -106,26 +109,27 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     count, v, bounced = whole(ev)[COUNT], vec(ws.v, ws.n_ext), vec(ev.bounced, ws.n_ext)
     left, residual = real(ev)[LEFT], real(ev)[RESIDUAL]
     for one, other in _RESULTS:
-        col(ev, other)[:count] = col(ev, one)[:count]
+        copy(col(ev, other), col(ev, one), count)
     for i in range(ws.n_ext):
         bounced[i], v[i] = v[i], vec(ev.velocities, ws.n_ext)[i]
     evaluate_residuals(ws)
     read_rates(ev, ws)
-    status = strike(ev, dr, ws, True)
+    whole(ev)[WITHOUT], real(ev)[ACCELERATIONS] = 1, 0.0
+    status = call_part(ev.strike, ev, dr, ws, ms)
     if status == SETTLED:
-        status = begin_rest(ev, dr, ws, ms, 0.0)
+        status = call_part(ev.begin_rest, ev, dr, ws, ms)
     if status == SETTLED:
-        status = find_forces(ev, dr, ws, ms)
+        status = call_part(ev.find_forces, ev, dr, ws, ms)
     if status != SETTLED:
         return status
     stay = True
     for i in range(count):
         stay = stay and (col(ev, LOW)[i] == 0.0 or col(ev, F_N)[i] > 0.0)
     if stay:
-        col(ev, RESTS)[:count] = col(ev, LOW)[:count]
+        copy(col(ev, RESTS), col(ev, LOW), count)
         return SETTLED
     for one, other in _RESULTS:
-        col(ev, one)[:count] = col(ev, other)[:count]
+        copy(col(ev, one), col(ev, other), count)
     real(ev)[LEFT], real(ev)[RESIDUAL] = left, residual
     for i in range(ws.n_ext):
         v[i] = bounced[i]

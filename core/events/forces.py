@@ -104,21 +104,21 @@ def impulses_among(ev: Any, count: int) -> bool:
 
 
 @internal
-def independent_of(ev: Any, ws: Any, some: Any, number: int, rank: float) -> int:
+def independent_of(ev: Any, ws: Any, number: int, rank: float) -> int:
     """Positions of those of the first `number` directions in `some` that do not repeat earlier ones, to `chosen`; their
     number. `rank` 0: that of forces."""
     count = whole(ev)[COUNT]
     directions, responses = mat(ev.directions, 2 * count, ws.n), mat(ev.responses, 2 * count, ws.n)
     work, least = vec(ev.work, ev.work_size), rank if rank > 0.0 else RANK
     chosen = ivec(ev.chosen, 2 * ev.most)
-    return int(call_independent(ev.independent, directions, responses, some[:number], least, chosen, work))
+    return int(call_independent(ev.independent, directions, responses, ivec(ev.some, number), least, chosen, work))
 
 
 @internal
-def farthest_of(ev: Any, count: int, some: Any, number: int) -> int:
+def farthest_of(ev: Any, count: int, number: int) -> int:
     """Those of the first `number` contacts in `some` whose normals do not repeat others, to `chosen`; their number."""
     chosen, work = ivec(ev.chosen, 2 * ev.most), vec(ev.work, ev.work_size)
-    return int(call_farthest(ev.farthest, delassus(ev, count), some[:number], chosen, work))
+    return int(call_farthest(ev.farthest, delassus(ev, count), ivec(ev.some, number), chosen, work))
 
 
 @internal

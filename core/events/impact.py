@@ -44,7 +44,9 @@ from .records import (
     SLIDE_BEFORE,
     SLIDE_RATE,
     WANTED,
+    WITHOUT,
     col,
+    copy,
     delassus,
     real,
     whole,
@@ -58,14 +60,14 @@ MOST_ROUNDS = 2000
 
 
 @internal
-def strike(ev: Any, dr: Any, ws: Any, low: bool) -> int:
-    """Change the current velocities by the laws of the touching contacts; `low`: without restitution in `LOW`.
+def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Change the current velocities by the laws of the touching contacts.
 
     Those that separate beforehand take no part, so that none can put energy in without friction; if they approach
     afterwards they are struck in another round. What it does goes to IMPULSE, FRICTION, LOSS, APPROACH, SEPARATION.
     """
     count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
-    rate, slide_rate, rounding = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, ROUNDING)
+    rate, slide_rate, rounding, low = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, ROUNDING), whole(ev)[WITHOUT] != 0
     approach, loss, p_n, p_t = col(ev, APPROACH), col(ev, LOSS), col(ev, P_N), col(ev, P_T)
     active, joint_rates, phid = ivec(ws.active, ws.m_act), vec(ev.joint_rates, ws.m_act), vec(ws.phid, ws.m_ext)
     for i in range(ws.m_act):
@@ -102,7 +104,7 @@ def strike(ev: Any, dr: Any, ws: Any, low: bool) -> int:
     read_rates(ev, ws)
     for i in range(ws.m_act):
         real(ev)[RESIDUAL] = max(real(ev)[RESIDUAL], abs(phid[active[i]] - joint_rates[i]))
-    col(ev, SEPARATION)[:count] = rate[:count]
+    copy(col(ev, SEPARATION), rate, count)
     real(ev)[LEFT] = left
     return SETTLED
 

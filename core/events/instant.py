@@ -19,8 +19,14 @@ from ..contact.directions import (
 from ..contact.modes import MEMORY_SIZE
 from ..linalg.small import least_norm_size
 from ..system.assembly import Assembly
-from .records import COLUMNS, COUNT, INSTANT, REALS, WHO, WHOLES
+from ..system.records import COUNTERS_SIZE, RATE_SIZE
+from .impact import strike
+from .prepare import use_modes
+from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, WHO, WHOLES
+from .resting import begin_rest, find_forces
+from .touching import open_touching
 
+PARTS = (open_touching, strike, begin_rest, find_forces, use_modes)
 FEW = 8
 """Touching contacts that there is room for at first."""
 
@@ -46,12 +52,14 @@ class Instant:
                 "contacts": most, "table": COLUMNS * most, "reals": REALS, "wholes": WHOLES,
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
                 "directions": 2 * most * n, "responses": 2 * most * n,
-                "kept_memory": contacts * MEMORY_SIZE, "modes": contacts, "unsettled": contacts, "joint_rates": m,
+                "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
+                "modes": contacts, "unsettled": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
                 "slots_work": n + sum(len(b.coord) * len(b.tangent_pattern) for b in assembly.batches),
             },
             {
                 "most": most, "work_size": work, "rows_space": space, "cones": self._cones.address,
+                **{f.py_func.__name__: address_of(f, PART_SIGNATURE) for f in PARTS},
                 "solve_cones": address_of(solve_cones, CONES_SIGNATURE),
                 "independent": address_of(independent_directions, INDEPENDENT_SIGNATURE),
                 "farthest": address_of(farthest_directions, FARTHEST_SIGNATURE),

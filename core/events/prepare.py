@@ -9,7 +9,9 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..linalg import analyze, follow, lu_at
+from ..linalg import follow, lu_at
+from ..linalg.analyze import call_analyze
+from ..linalg.record import WANT_ANALYSIS
 from ..linalg.row_pivoting import eliminate
 from ..system.evaluate import evaluate_tangent
 from ..system.partition import GOLDEN, RANK_TOLERANCE, SILVER
@@ -26,11 +28,11 @@ from ..system.records import (
     structure_at,
 )
 from ..system.switch import engage_modes, take_partition
-from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_PARTITION, WANT_ROOM, WANT_STRUCTURE
+from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_PARTITION, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
 
 
 @internal
-def use_modes(ev: Any, ws: Any) -> int:
+def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Take the structure of the present modes, with a partition and pivots for the current point."""
     if not engage_modes(ws):
         return WANT_STRUCTURE
@@ -41,11 +43,13 @@ def use_modes(ev: Any, ws: Any) -> int:
     counters, rate = ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE)
     counters[PARTITIONS] += 1
     counters[ANALYSES] += 1
-    if analyze(lu_at(ws.kkt), ws.values) != OK:
-        return SINGULAR_MATRIX
-    if ws.m_act > 0 and analyze(lu_at(ws.lu_d), ws.values) != OK:
-        return SINGULAR_MATRIX
-    follow(lu_at(ws.kkt_query), lu_at(ws.kkt))
+    code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
+    if code == OK and ws.m_act > 0:
+        code = call_analyze(ws.analyze, lu_at(ws.lu_d), ws.values)
+    if code != OK:
+        return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_MATRIX
+    if not follow(lu_at(ws.kkt_query), lu_at(ws.kkt)):
+        return WANT_PIVOTS
     _set_probe(ws)
     rate[FACTOR_AGE], rate[SENSITIVITY], rate[FIRST_SENSITIVITY] = -1.0, 0.0, -1.0
     return SETTLED

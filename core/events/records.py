@@ -7,15 +7,20 @@ from typing import Any
 
 import numba as nb
 import numpy as np
+from numba import types
 
-from ..compiled.jit import inlined, record_view
+from ..compiled.jit import caller, internal, record_view
 from ..compiled.views import ivec, mat, vec
+from ..integrate.records import DRIVE_TYPE
+from ..methods.records import METHOD_TYPE
+from ..system.records import WORKSPACE_TYPE
 
 INSTANT = np.dtype(
     [
         (name, np.int64)
         for name in (
             "most",                      # touching contacts that there is room for
+            "open_touching", "strike", "begin_rest", "find_forces", "use_modes",  # addresses of these functions
             "cones", "solve_cones", "independent", "farthest",  # record of `contact/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
@@ -24,6 +29,7 @@ INSTANT = np.dtype(
             "directions", "responses",   # (2 most, n) float64: gradients, and the motions that unit impulses cause
             "some", "chosen", "order",   # (2 most,) int64
             "kept_memory",               # (n_contacts, MEMORY_SIZE) float64
+            "kept_rate", "kept_counters",  # (RATE_SIZE,) float64, (COUNTERS_SIZE,) int64
             "velocities", "bounced",     # (n_ext,) float64
             "noise", "sum", "terms",     # (n_ext,) float64
             "joint_rates",               # (m_ext,) float64
@@ -38,6 +44,10 @@ INSTANT = np.dtype(
     ]
 )  # fmt: skip
 INSTANT_TYPE = nb.from_dtype(INSTANT)
+PART_SIGNATURE = types.int64(INSTANT_TYPE, DRIVE_TYPE, WORKSPACE_TYPE, METHOD_TYPE)
+call_part = caller(PART_SIGNATURE)
+"""call_part(address, ev, dr, ws, ms): the larger parts are called by address, so that each is compiled once and not
+again inside each caller."""
 instant_at = record_view(INSTANT_TYPE)
 
 # rows of `table`, each (most,)
@@ -73,7 +83,8 @@ SLIPPING = 2
 STICKS = 3  # all friction was found below its limit at once
 WHO = 4  # the contact that a failure is of
 READY = 5  # accelerations have been looked at
-WHOLES = 6
+WITHOUT = 6  # 1: impacts are without restitution where `LOW` says so
+WHOLES = 7
 
 # what settling an instant returns
 SETTLED = 0
@@ -81,6 +92,7 @@ DECLINED = 1  # nothing has happened: Python settles it
 WANT_STRUCTURE = 2  # nothing has happened; Python builds what is asked for, and it is settled anew
 WANT_PARTITION = 3
 WANT_ROOM = 4
+WANT_PIVOTS = 5
 SINGULAR_JOINTS = 10
 IMMOVABLE_CONTACT = 11
 NO_IMPACT = 12
@@ -95,25 +107,39 @@ SINGULAR_MATRIX = 20
 NO_FREE_ACCELERATIONS = 21
 
 
-@inlined
+@internal
 def col(ev: Any, k: int) -> Any:
     """Row k of the table."""
     return vec(ev.table + 8 * k * ev.most, ev.most)
 
 
-@inlined
+@internal
 def whole(ev: Any) -> Any:
     """The integers."""
     return ivec(ev.wholes, WHOLES)
 
 
-@inlined
+@internal
 def real(ev: Any) -> Any:
     """The numbers."""
     return vec(ev.reals, REALS)
 
 
-@inlined
+@internal
 def delassus(ev: Any, count: int) -> Any:
     """Inverse effective masses (2 count, 2 count): normals first."""
     return mat(ev.a, 2 * count, 2 * count)
+
+
+@internal
+def copy(to: Any, given: Any, n: int) -> None:
+    """The first n numbers of `given` to `to`. (Slices take numba ten times as long to compile.)"""
+    for i in range(n):
+        to[i] = given[i]
+
+
+@internal
+def clear(x: Any, n: int) -> None:
+    """Zeros to the first n numbers."""
+    for i in range(n):
+        x[i] = 0

@@ -20,6 +20,7 @@ from ..system.records import CONTROL_SIZE, ENERGY_SCALE
 from .forces import NO_SOLUTION, among, farthest_of, independent_of, remove_rates
 from .reading import comes_back, largest_acceleration, rate_size, unresolved_speed
 from .records import (
+    ACCELERATIONS,
     APART,
     AT_REST,
     B_N,
@@ -69,7 +70,10 @@ from .records import (
     W_T,
     WAS,
     WHO,
+    call_part,
+    clear,
     col,
+    copy,
     delassus,
     real,
     whole,
@@ -103,8 +107,8 @@ def _look(ev: Any, ms: Any) -> None:
 
 
 @internal
-def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any, accelerations: float) -> int:
-    """Which contacts neither separate nor approach. `accelerations`: of the coordinates before, 1/s^2."""
+def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Which contacts neither separate nor approach. `ACCELERATIONS` of the coordinates before, 1/s^2, are given."""
     count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
     _look(ev, ms)
     rates, slow = col(ev, RATE), whole(ev)[STRUCK] == 0
@@ -117,7 +121,7 @@ def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any, accelerations: float) -> int:
     whole(ev)[READY] = 0
     if not slow:
         return SETTLED
-    return _prepare(ev, dr, ws, ms, accelerations)
+    return _prepare(ev, dr, ws, ms, real(ev)[ACCELERATIONS])
 
 
 @internal
@@ -217,17 +221,17 @@ def _stand_apart(ev: Any, ws: Any, ms: Any) -> None:
         return
     kept = (DIRECTION, KEPT_DIRECTION), (FULL, KEPT_FULL), (TAKES, KEPT_TAKES)
     for one, other in kept:
-        col(ev, other)[:count] = col(ev, one)[:count]
+        copy(col(ev, other), col(ev, one), count)
     slipping, sticks = whole(ev)[SLIPPING], whole(ev)[STICKS]
     _swap_forces(ev, count)
-    col(ev, TAKES)[:count] = apart[:count]
+    copy(col(ev, TAKES), apart, count)
     good = _balance(ev, ws, ms) == SETTLED
     for i in range(count):
         good = good and (apart[i] == 0.0 or _loaded(ev, i))
     if good:
         return
     for one, other in kept:
-        col(ev, one)[:count] = col(ev, other)[:count]
+        copy(col(ev, one), col(ev, other), count)
     whole(ev)[SLIPPING], whole(ev)[STICKS] = slipping, sticks
     _swap_forces(ev, count)
     _note_loaded(ev, ws)
@@ -254,13 +258,13 @@ def _spread(ev: Any, ws: Any, apart: Any) -> bool:
         if col(ev, TAKES)[i] != 0.0 and abs(col(ev, W_N)[i]) <= 1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
             some[still] = i
             still += 1
-    number = farthest_of(ev, count, some, still)
+    number = farthest_of(ev, count, still)
     chosen, every = ivec(ev.chosen, 2 * ev.most), True
     for j in range(number):
         every = every and _loaded(ev, chosen[j])
     if number == still or every:
         return False
-    apart[:count] = 0.0
+    clear(apart, count)
     for j in range(number):
         apart[chosen[j]] = 1.0
     return True
@@ -346,7 +350,7 @@ def _held(ev: Any, ws: Any) -> bool:
             for i in range(count):
                 full[i] = 1.0 if attempt == 0 and full[i] != 0.0 else 0.0
             return True
-    full[:count] = 0.0
+    clear(full, count)
     return False
 
 
@@ -455,7 +459,7 @@ def _moves(ev: Any, ws: Any, number: int, i: int) -> bool:
     for j in range(number):
         some[normals + j] = count + order[j]
     some[normals + number] = count + i
-    kept, chosen = independent_of(ev, ws, some, normals + number + 1, 0.0), ivec(ev.chosen, 2 * ev.most)
+    kept, chosen = independent_of(ev, ws, normals + number + 1, 0.0), ivec(ev.chosen, 2 * ev.most)
     return kept > 0 and chosen[kept - 1] == normals + number
 
 
@@ -466,13 +470,13 @@ def _moves(ev: Any, ws: Any, number: int, i: int) -> bool:
 def choose(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Which contacts stay closed, to `CLOSES`."""
     count, closes, now = whole(ev)[COUNT], col(ev, CLOSES), whole(ev)[STRUCK] == 0
-    closes[:count] = 0.0
+    clear(closes, count)
     rests = False
     for i in range(count):
         rests = rests or col(ev, AT_REST)[i] != 0.0
     if not rests:
         return SETTLED
-    status = find_forces(ev, dr, ws, ms)
+    status = call_part(ev.find_forces, ev, dr, ws, ms)
     if status != SETTLED:
         return status
     idle, none = False, real(ev)[NONE]
@@ -512,7 +516,7 @@ def keep(ev: Any, ws: Any, rank: float) -> None:
     some, order, chosen = ivec(ev.some, 2 * ev.most), ivec(ev.order, 2 * ev.most), ivec(ev.chosen, 2 * ev.most)
     slide, ratio, kinetic, direction = col(ev, NEW_SLIDE), col(ev, NEW_RATIO), col(ev, KINETIC), col(ev, DIRECTION)
     real(ev)[RANK] = rank
-    flag[:count] = 0.0
+    clear(flag, count)
     stuck, normals, kept = sticking(ev), 0, 0
     for i in range(count):
         if closes[i] != 0.0:
@@ -528,7 +532,7 @@ def keep(ev: Any, ws: Any, rank: float) -> None:
         if closes[order[j]] != 0.0:
             some[normals + kept] = count + order[j]
             kept += 1
-    number = independent_of(ev, ws, some, normals + kept, rank)
+    number = independent_of(ev, ws, normals + kept, rank)
     for j in range(number):
         if chosen[j] < normals:
             i = some[chosen[j]]

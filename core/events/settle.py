@@ -46,13 +46,13 @@ from ..rounding import GAP_ROUNDING, UNSOLVED
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.levels import position_level
 from ..system.projection import meet
-from ..system.records import FACTOR_AGE, OK, RATE_SIZE, structure_at
+from ..system.records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, structure_at
 from ..system.switch import take_partition, take_structure
 from .blow import impact
 from .laws import OTHER, UNTOUCHED
-from .prepare import use_modes
 from .reading import largest_acceleration, read_before
 from .records import (
+    ACCELERATIONS,
     COUNT,
     DECLINED,
     FLAG,
@@ -78,13 +78,15 @@ from .records import (
     STRUCK,
     WANT_ROOM,
     WAS,
+    call_part,
     col,
+    copy,
     real,
     whole,
 )
 from .report import report, room_for
-from .resting import begin_rest, choose, keep
-from .touching import find_touching, looks_again, open_touching, read_rates, read_values
+from .resting import choose, keep
+from .touching import find_touching, looks_again, read_rates, read_values
 from .unsettled import find_pending
 
 
@@ -107,21 +109,18 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     room = lc.capacity == 0 or ivec(lc.cursor, 1)[0] < lc.capacity
     if not room or not room_for(dr, 3 * ws.n_contacts) or not _gets_on(dr, t):
         return DECLINED
+    if not _for_compiled(dr, ws):
+        return DECLINED
+    _keep(ev, ws, False)
     # samples may have been asked for since the step that ended here
     recall(ws, ms, 0)
     evaluate_residuals(ws)
-    if not _for_compiled(dr, ws):
-        return DECLINED
     if not find_touching(ev, dr, ws):
+        _keep(ev, ws, True)
         return WANT_ROOM
-    memory, kept, modes = (
-        vec(ws.memory, ws.n_contacts * MEMORY_SIZE),
-        vec(ev.kept_memory, ws.n_contacts * MEMORY_SIZE),
-        vec(ev.modes, ws.n_contacts),
-    )
-    kept[:] = memory
+    modes = vec(ev.modes, ws.n_contacts)
     for k in range(ws.n_contacts):
-        modes[k] = memory[k * MEMORY_SIZE + MODE]
+        modes[k] = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     structure = ws.structure
     partition = structure_at(structure).partition
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
@@ -129,21 +128,39 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     goals[HANDLED_AT] = t
     status = _decide(ev, dr, ws, ms)
     if status == SETTLED:
-        status = find_pending(ev, dr, ws, lc)
+        status = find_pending(ev, dr, ws, ms, lc)
     if status != SETTLED:
-        memory[:] = kept
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
         if ws.structure != structure:
             take_structure(ws, structure)
         take_partition(ws, partition)
         recall(ws, ms, 0)
         evaluate_residuals(ws)
+        _keep(ev, ws, True)
         return status
     begin_anew(ws, ms, lc)
     _count(dr, t)
-    ivec(dr.pending, ws.n_contacts)[:] = ivec(ev.unsettled, ws.n_contacts)
+    copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
     _sample(dr, ws, lc)
     return SETTLED
+
+
+@internal
+def _keep(ev: Any, ws: Any, back: bool) -> None:
+    """What an instant changes of the state, besides what the newest row holds: kept, or put `back`."""
+    size = ws.n_contacts * MEMORY_SIZE
+    memory, kept = vec(ws.memory, size), vec(ev.kept_memory, size)
+    rate, kept_rate = vec(ws.rate, RATE_SIZE), vec(ev.kept_rate, RATE_SIZE)
+    counters, kept_counters = ivec(ws.counters, COUNTERS_SIZE), ivec(ev.kept_counters, COUNTERS_SIZE)
+    if back:
+        copy(memory, kept, size)
+        copy(rate, kept_rate, RATE_SIZE)
+        copy(counters, kept_counters, COUNTERS_SIZE)
+        rate[FACTOR_AGE] = -1.0
+    else:
+        copy(kept, memory, size)
+        copy(kept_rate, rate, RATE_SIZE)
+        copy(kept_counters, counters, COUNTERS_SIZE)
 
 
 @internal
@@ -197,7 +214,7 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         col(ev, KINETIC)[i], col(ev, STATIC)[i] = friction[k], static[k]
         col(ev, RESTITUTION)[i] = vec(dr.restitution, ws.n_contacts)[k]
         col(ev, RESTS)[i] = 0.0
-    status = open_touching(ev, dr, ws)
+    status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status != SETTLED:
         return status
     read_rates(ev, ws)
@@ -208,7 +225,8 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         for i in range(count):
             col(ev, ROUNDING)[i] *= max(1.0, 2.0 * real(ev)[LEFT])
         accelerations = 0.0
-    status = begin_rest(ev, dr, ws, ms, accelerations)
+    real(ev)[ACCELERATIONS] = accelerations
+    status = call_part(ev.begin_rest, ev, dr, ws, ms)
     if status == SETTLED:
         status = choose(ev, dr, ws, ms)
     if status != SETTLED:
@@ -275,7 +293,7 @@ def _take(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         if memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
             memory[SLIDE_START] = col(ev, SLIDE_VALUE)[i]
     if some:
-        status = use_modes(ev, ws)
+        status = call_part(ev.use_modes, ev, dr, ws, ms)
         if status != SETTLED:
             return status
     if changed and ms.exact != 0:

@@ -12,10 +12,12 @@ from ..compiled.views import ivec, mat, vec
 from ..contact.complementarity import IMMOVABLE
 from ..contact.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
 from ..integrate.records import COUNTS_SIZE, HERE, call_accelerations
-from ..linalg import analyze, lu_at, solve
-from ..rounding import COORDINATE_NOISE, GAP_ROUNDING
+from ..linalg import lu_at, solve
+from ..linalg.analyze import call_analyze
+from ..linalg.record import WANT_ANALYSIS
+from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, NO_ACCELERATION, RATE_ROUNDING
 from ..system.evaluate import evaluate_tangent
-from ..system.levels import position_level
+from ..system.levels import acceleration_level, position_level, rate_level
 from ..system.records import OK
 from ..system.switch import engage_modes
 from .laws import UNTOUCHED
@@ -29,8 +31,10 @@ from .records import (
     SINGULAR_JOINTS,
     SLIDE_RATE,
     SLIDE_VALUE,
+    WANT_PIVOTS,
     WANT_STRUCTURE,
     WHO,
+    clear,
     col,
     delassus,
     whole,
@@ -71,7 +75,7 @@ def _gradient(ws: Any, row: int, out: Any) -> None:
 
 
 @internal
-def open_touching(ev: Any, dr: Any, ws: Any) -> int:
+def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Open the touching contacts, and find how impulses at them move the others."""
     count, contacts = whole(ev)[COUNT], ivec(ev.contacts, ev.most)
     memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
@@ -92,12 +96,13 @@ def open_touching(ev: Any, dr: Any, ws: Any) -> int:
         if slides[k] >= 0:
             _gradient(ws, slides[k], directions[count + i])
         else:
-            directions[count + i, :] = 0.0
+            clear(directions[count + i], ws.n)
         memory[k, MODE] = OPEN
     evaluate_tangent(ws, 0.0, 0.0)
     # pivots of an earlier visit to this structure would be a state that no State holds
-    if analyze(lu_at(ws.kkt_query), ws.values) != OK:
-        return SINGULAR_JOINTS
+    code = call_analyze(ws.analyze, lu_at(ws.kkt_query), ws.values)
+    if code != OK:
+        return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_JOINTS
     _respond(ev, ws, count, slides)
     return _refuse_immovable(ev, ws, count)
 
@@ -109,7 +114,7 @@ def _respond(ev: Any, ws: Any, count: int, slides: Any) -> None:
     rhs = vec(ws.rhs, n + ws.m_act)
     for i in range(2 * count):
         if i >= count and slides[contacts[i - count]] < 0:
-            responses[i, :] = 0.0
+            clear(responses[i], n)
             continue
         for j in range(n):
             rhs[j] = directions[i, j]
@@ -261,19 +266,30 @@ def force_noise(ev: Any, ws: Any) -> Any:
 @internal
 def free_jerks(ev: Any, ws: Any, jerks: Any) -> None:
     """Rates of the gaps' free accelerations, m/s^3, as the forces' dependence on the motion makes them:
-    M a' = -(K v + D a). What is not more than rounding is zero."""
-    count, total, sizes = whole(ev)[COUNT], vec(ev.sum, ws.n), vec(ev.terms, ws.n)
-    responses = mat(ev.responses, 2 * count, ws.n)
-    for i in range(ws.n):
+    M a' = -(K v + D a). What is not more than rounding, of the sum or of velocities and accelerations, is zero."""
+    count, n, total, sizes = whole(ev)[COUNT], ws.n, vec(ev.sum, ws.n), vec(ev.terms, ws.n)
+    responses, noise, scale = mat(ev.responses, 2 * count, n), vec(ev.noise, n), vec(ws.scale, n)
+    for i in range(n):
+        total[i] = sizes[i] = 0.0
+        noise[i] = RATE_ROUNDING * rate_level(ws) * scale[i]
+    tangent_product(ev, ws, 1.0, 0.0, noise)
+    for i in range(n):
+        noise[i] = NO_ACCELERATION * acceleration_level(ws) * scale[i]
+    tangent_product(ev, ws, 0.0, 1.0, noise)
+    for i in range(count):
+        jerks[i] = 0.0
+        for j in range(n):
+            jerks[i] += abs(responses[i, j]) * sizes[j]
+    for i in range(n):
         total[i] = sizes[i] = 0.0
     tangent_product(ev, ws, 1.0, 0.0, vec(ws.v, ws.n_ext))
     tangent_product(ev, ws, 0.0, 1.0, vec(ws.a, ws.n_ext))
     for i in range(count):
         jerk, size = 0.0, 0.0
-        for j in range(ws.n):
+        for j in range(n):
             jerk -= responses[i, j] * total[j]
             size += abs(responses[i, j]) * sizes[j]
-        jerks[i] = 0.0 if abs(jerk) <= NO_JERK * size else jerk
+        jerks[i] = 0.0 if abs(jerk) <= max(NO_JERK * size, jerks[i]) else jerk
 
 
 @internal

@@ -10,10 +10,21 @@ from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
 from ..system.levels import force_level
 from ..system.records import OK, structure_at
 from .laws import UNTOUCHED
-from .prepare import use_modes
 from .reading import comes_back
-from .records import B_N, B_T, COUNT, NO_ACCELERATIONS, SETTLED, SPARE, WANT_STRUCTURE, col, whole
-from .touching import force_noise, free_accelerations, free_jerks, open_touching
+from .records import (
+    B_N,
+    B_T,
+    COUNT,
+    NO_ACCELERATIONS,
+    SETTLED,
+    SPARE,
+    WANT_PIVOTS,
+    WANT_STRUCTURE,
+    call_part,
+    col,
+    whole,
+)
+from .touching import force_noise, free_accelerations, free_jerks
 
 NO, YES = -1, -2
 
@@ -44,7 +55,7 @@ def find_unsettled(ev: Any, ws: Any, found: Any) -> bool:
 
 
 @internal
-def find_pending(ev: Any, dr: Any, ws: Any, lc: Any) -> int:
+def find_pending(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     """Contacts to settle next at this instant, to `unsettled`.
 
     Left out are those that have just closed because they would open by less than can be told from zero: they pull by
@@ -55,7 +66,7 @@ def find_pending(ev: Any, dr: Any, ws: Any, lc: Any) -> int:
         return SETTLED
     for k in range(ws.n_contacts):
         if found[k] != 0 and modes[k] != CLOSED and law[k] != UNTOUCHED:
-            status = _returns_at_once(ev, dr, ws, lc, k)
+            status = _returns_at_once(ev, dr, ws, ms, lc, k)
             if status == YES:
                 found[k] = 0
             elif status != NO:
@@ -64,21 +75,21 @@ def find_pending(ev: Any, dr: Any, ws: Any, lc: Any) -> int:
 
 
 @internal
-def _returns_at_once(ev: Any, dr: Any, ws: Any, lc: Any, k: int) -> int:
+def _returns_at_once(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int:
     """YES if contact k, closed, pulls by no more than lets its gap open by what could not be told from zero before it
     closes again. The next step then goes beyond that. NO, or what is wanted to know it."""
     memory, clock = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], vec(lc.clock, CLOCK_SIZE)
     mode, slide, ratio = memory[MODE], memory[SLIDE], memory[RATIO]
     ivec(ev.contacts, ev.most)[0], whole(ev)[COUNT] = k, 1
     motion, jerks = col(ev, B_N), col(ev, SPARE)
-    status = open_touching(ev, dr, ws)
+    status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status == SETTLED:
         status = free_accelerations(ev, dr, ws, motion, col(ev, B_T), 0.0)
         free_jerks(ev, ws, jerks)
     memory[MODE], memory[SLIDE], memory[RATIO] = mode, slide, ratio
-    if status == WANT_STRUCTURE:
+    if status == WANT_STRUCTURE or status == WANT_PIVOTS:
         return status
-    back = use_modes(ev, ws)
+    back = call_part(ev.use_modes, ev, dr, ws, ms)
     if back == SETTLED and call_accelerations(dr.accelerations, ws) != OK:
         back = NO_ACCELERATIONS
     if back != SETTLED:

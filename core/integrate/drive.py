@@ -20,7 +20,7 @@ from ..contact.progress import Progress
 from ..events import Event
 from ..events.instant import Instant
 from ..events.laws import code_of
-from ..events.records import DECLINED, SETTLED, WANT_ROOM, instant_at
+from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, instant_at
 from ..events.settle import settle
 from ..methods.history import history_time
 from ..methods.records import METHOD_TYPE
@@ -112,7 +112,7 @@ def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
             status = call_settle(dr.settle, dr)
             if status != SETTLED:
                 counts[STATUS] = status
-                return SETTLE if status == DECLINED else (WANTED if status <= WANT_ROOM else FAILED)
+                return SETTLE if status == DECLINED else (WANTED if status <= WANT_PIVOTS else FAILED)
             continue
         code = _aim(dr, ms, lc)
         if code != OK:
@@ -179,12 +179,12 @@ def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
     }
 
 
-def _warn_of_gain(t: float, gains: list[tuple[str, float]]) -> None:
+def _warn_of_gain(t: float, gains: list[tuple[str, float]], laws: dict[str, str]) -> None:
     logger.warning(
         "at t = %.9g s an impact of %s raises the energy by %.3g J: Newton's law can with friction or several "
         "contacts; PoissonImpact does not with friction",
         t,
-        ", ".join(f"'{name}'" for name, _ in gains),
+        ", ".join(f"'{name}' ({laws[name]})" for name, _ in gains),
         gains[0][1],
     )
 
@@ -200,6 +200,7 @@ class Drive:
     def __init__(self, sim: "Engine", guard: Progress) -> None:
         assembly = sim.assembly
         contacts, self._names = assembly.contacts, [c.name for c in assembly.contacts]
+        self._laws = {c.name: type(c.law).__name__ for c in contacts}
         count = max(len(contacts), 1)
         self.goals, self.counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
         self.goals[HANDLED_AT] = np.nan
@@ -295,5 +296,5 @@ class Drive:
             else:
                 found.append(Event(t, EVENT_KINDS[int(kind)], name, *numbers))
         for t in dict.fromkeys(t for t, _, _ in gains):
-            _warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t])
+            _warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t], self._laws)
         return found

@@ -19,7 +19,7 @@ from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
 from ..events import Event, Fallback
-from ..events.records import DECLINED, SETTLED, WANT_ROOM, WANT_STRUCTURE
+from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
 from ..methods.records import step_address
@@ -264,7 +264,7 @@ class Engine(ContactSide):
             if status == DECLINED:
                 self.drive.take_pending()
                 return False
-            if status > WANT_ROOM:
+            if status > WANT_PIVOTS:
                 raise failure_of(self, status)
             self.build_wanted(status)
         self.workspace.sync()
@@ -278,6 +278,8 @@ class Engine(ContactSide):
             self.drive.give_room()
         elif status == WANT_STRUCTURE:
             self.workspace.engage_wanted()
+        elif status == WANT_PIVOTS:
+            self.workspace.pivots_wanted()
         else:
             self.workspace.partition_wanted()
 

@@ -1,10 +1,11 @@
 """Linear solver for square matrices of one pattern and changing values, for use inside compiled loops."""
 
+from .analyze import analyze, follow
 from .errors import SingularMatrixError
 from .factorization import DENSE_LIMIT, Factorization
 from .record import LU, LU_TYPE, NO_PIVOT, OK, REANALYSE, lu_at
 from .row_pivoting import RowPivots, independent_columns, pivot_rows
-from .solve import analyze, factor, follow, solve
+from .solve import factor, solve
 
 __all__ = [
     "DENSE_LIMIT",

@@ -1,19 +1,20 @@
 """The Python side of the linear solver: analysis, storage, and what restores a solver's state."""
 
 from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..compiled.image import Take, twin
 from ..compiled.records import Record
-from .check_pattern import LARGEST_INDEX, check_pattern
+from .analysis import Analysis, Known
+from .analyze import analyze, follow, use_analysis
+from .check_pattern import check_pattern
+from .choice import work_size
 from .errors import SingularMatrixError
-from .ordering import balancing_scales, choose_pivots, singular_place
-from .record import GROWTH, LU, OK
+from .ordering import order_columns, singular_place
+from .record import LU, OK, WANT_ANALYSIS, WANT_ROOM
 from .solve import factor, functions_of, solve
-from .symbolic import Operations, count_operations, fill_pattern, operation_list
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -21,13 +22,16 @@ Ints = NDArray[np.int64]
 # Largest n that is factored densely. Measured (benchmarks/linalg_timing.py): from n = 5 on the sparse refactorisation
 # is faster, but at these sizes by a tenth of a microsecond only, and small models save the seconds in which numba
 # compiles the symbolic analysis on a first run.
-DENSE_LIMIT = 200
-# The list of operations is written down while it is at most this many times the fill. Measured: 1.2-1.5 times
-# faster than by columns for chains (1.1 operations an entry), 1.2-1.7 times slower for spring grids (10-30).
-PROGRAM_LIMIT = 4
-_OWN = ("work", "row_unit", "values", "pivots")  # arrays that are not of the pattern
-Analyses = dict[bytes, tuple[str, int, dict[str, Any]]]  # by permutations
-MOST_ANALYSES = 32  # kept for one pattern
+DENSE_LIMIT = 8
+_OWN = (
+    "work",
+    "row_unit",
+    "col_unit",
+    "values",
+    "pivots",
+    "wanted",
+    "choice_work",
+)  # arrays that are not of the pattern
 _NO_VALUES, _NO_PIVOTS = np.empty(0), np.empty(0, np.int64)
 
 
@@ -36,7 +40,8 @@ def make_sparse_ready() -> None:
     """Compile all that sparse factorisations of any pattern call."""
     for kind in ("program", "columns"):
         functions_of(kind)
-    Factorization(1, [0], [0], [0], dense=False).analyze_with([0], [0])
+    one = Factorization(1, [0], [0], [0], dense=False)
+    one.analyze(np.ones(1))
 
 
 class Factorization:
@@ -82,10 +87,8 @@ class Factorization:
         self.record = Record(self._table)
         """What to hand to a compiled function."""
         self.arrays: dict[str, NDArray] = {}
-        self._permutations = (np.empty(0, np.int64), np.empty(0, np.int64))
-        self.analyses: Analyses | None = None
-        self.kind = "unready"
-        self.col_unit = np.ones(self.n)
+        self.built: dict[bytes, Analysis] = {}
+        self.known = Known(self.built)
         self._set(
             n=self.n,
             nnz=len(self.rows),
@@ -93,6 +96,8 @@ class Factorization:
             entry_from=self.slots.astype(np.uint32),
             work=np.zeros(self.n),
             row_unit=np.ones(self.n),
+            col_unit=np.ones(self.n),
+            order=-1,  # not chosen yet
         )
         if self.dense:
             self._set(
@@ -100,11 +105,24 @@ class Factorization:
                 entry_to=(self.rows * self.n + self.cols).astype(np.uint32),
                 values=np.zeros(self.n * (self.n + 1)),
                 pivots=np.arange(self.n),
+                order=0,
             )
+
+    def sibling(self) -> "Factorization":
+        """One of the same pattern and entries, which shares tables and analyses with this one in one run."""
+        new = self.fresh()
+        new.known = self.known
+        new._point_to_known()
+        return new
+
+    def _point_to_known(self) -> None:
+        self._table["known"] = self.known.addresses.ctypes.data
+        self._table["n_known"] = self.known.count.ctypes.data
 
     def memory(self) -> tuple[list[NDArray], list[NDArray]]:
         """Own arrays and records; all others never change, and factorisations of the same pattern share them."""
-        return [self.arrays[name] for name in _OWN if name in self.arrays], [self._table]
+        arrays = [self.arrays[name] for name in _OWN if name in self.arrays]
+        return [*arrays, self.known.addresses, self.known.count], [self._table]
 
     def fresh(self) -> "Factorization":
         """One of the same pattern, in the same state, with memory of its own."""
@@ -113,6 +131,11 @@ class Factorization:
         new.record = Record(new._table)
         new.arrays = self.arrays.copy()
         new._set(**{name: self.arrays[name].copy() for name in _OWN if name in self.arrays})
+        new.known = self.known.fresh()
+        if not self.dense:
+            new._point_to_known()
+            if self._table["analysis"][0]:
+                new.known.add(self._present())
         return new
 
     def moved(self, take: Take) -> "Factorization":
@@ -124,7 +147,11 @@ class Factorization:
         for name in _OWN:
             if name in new.arrays:
                 new.arrays[name] = take(new.arrays[name])
+        new.known = self.known.moved(take)
         return new
+
+    def _present(self) -> Analysis:
+        return self.known.at(int(self._table["analysis"][0]))
 
     @property
     def address(self) -> int:
@@ -134,7 +161,10 @@ class Factorization:
     @property
     def lu_values(self) -> Floats:
         """The numeric factors and the limits on the growth of L as one array, to be copied out and back."""
-        return self.arrays.get("values", _NO_VALUES)
+        values = self.arrays.get("values", _NO_VALUES)
+        if self.dense or not self._table["analysis"][0]:
+            return values
+        return values[: self.record["nl"] + self.record["nu"] + 2 * self.n]
 
     @property
     def pivots(self) -> Ints:
@@ -149,60 +179,97 @@ class Factorization:
     def use_units(self, rows: Floats, columns: Floats) -> None:
         """Choose pivots as if the rows were multiplied by `rows` (n,) and the columns by `columns` (n,)."""
         self.arrays["row_unit"][:] = rows
-        self.col_unit = columns
+        self.arrays["col_unit"][:] = columns
 
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense."""
-        return self._permutations
+        if self.dense or not self._table["analysis"][0]:
+            return _NO_PIVOTS, _NO_PIVOTS
+        present = self._present()
+        return present.perm_r, present.perm_c
 
     def analyze(self, values: Floats) -> None:
-        """Take ordering and pivots from the source array `values`, and factor with them.
+        """Choose pivots that fit the source array `values`, and factor with them.
 
         Raises
         ------
         SingularMatrixError : if there are no pivots, or a value is not finite.
         """
         values = self._source(values)
-        entries = values[self.slots]
-        bad = np.flatnonzero(~np.isfinite(entries))
-        if len(bad):
-            e = bad[0]
-            raise SingularMatrixError(
-                f"entry ({self.rows[e]}, {self.cols[e]}) of the {self.n} x {self.n} matrix is {entries[e]}"
-            )
-        if not self.dense:
-            row_unit = self.arrays["row_unit"]
-            entries = entries * row_unit[self.rows] * self.col_unit[self.cols]
-            self.analyze_with(*choose_pivots(self.n, self.rows, self.cols, entries))
-        if factor(self.record, values.ctypes.data) != OK:
+        while (status := int(analyze(self.record, values.ctypes.data))) in (WANT_ANALYSIS, WANT_ROOM):
+            self.make_wanted()
+        if status != OK:
+            entries = values[self.slots]
+            bad = np.flatnonzero(~np.isfinite(entries))
+            if len(bad):
+                e = bad[0]
+                raise SingularMatrixError(
+                    f"entry ({self.rows[e]}, {self.cols[e]}) of the {self.n} x {self.n} matrix is {entries[e]}"
+                )
+            entries = entries * self.arrays["row_unit"][self.rows] * self.arrays["col_unit"][self.cols]
             place = singular_place(self.n, self.rows, self.cols, entries)
             raise SingularMatrixError(f"the {self.n} x {self.n} matrix is singular: {place}")
-        if not self.dense:
-            nl, column, row = self.record["nl"], self.arrays["l_col"], self.arrays["l_row"]
-            # an entry of L that is 1 once the rows are balanced: units of the rows do not count as growth
-            balance = row_unit * balancing_scales(self.n, self.rows, self.cols, entries)[0]
-            balance = balance[self.arrays["row_at"]]
-            largest = np.zeros(self.n)
-            np.maximum.at(largest, column, balance[column] / balance[row])
-            np.maximum.at(largest, column, np.abs(self.lu_values[:nl]))
-            self._growth_limits()[:] = GROWTH * largest
+
+    @property
+    def wants(self) -> bool:
+        """True if compiled code has asked for something that `make_wanted` makes."""
+        return bool(self._table["wants"][0])
+
+    def make_wanted(self) -> None:
+        """What compiled `analyze` has asked for: the order of the columns, room, or the analysis of chosen pivots."""
+        wants = int(self._table["wants"][0])
+        self._table["wants"] = 0
+        if "order" not in self.arrays:
+            self._order_columns()
+        elif wants == WANT_ROOM:
+            self._make_room(4 * self.record["choice_room"])
+        elif wants == WANT_ANALYSIS:
+            self._know(self.arrays["wanted"].copy(), self._perm_c)
+        else:
+            self.have_room()
+
+    def _order_columns(self) -> None:
+        perm_c = order_columns(self.n, self.rows, self.cols)
+        col_at = np.argsort(perm_c)
+        entries = np.lexsort((self.rows, perm_c[self.cols]))
+        start = np.concatenate(([0], np.cumsum(np.bincount(perm_c[self.cols], minlength=self.n))))
+        self._perm_c = perm_c
+        self._set(
+            order=col_at,
+            column_start=start,
+            column_row=self.rows[entries],
+            column_of=self.cols[entries],
+            column_slot=self.slots[entries],
+            wanted=np.zeros(self.n, dtype=np.int64),
+        )
+        self._point_to_known()
+        self._make_room(2 * len(self.rows) + 2 * self.n + 16)
+
+    def _make_room(self, room: int) -> None:
+        self._set(choice_work=np.zeros(work_size(self.n, len(self.rows), room)), choice_room=room)
+
+    def _know(self, perm_r: Ints, perm_c: Ints) -> Analysis:
+        found = self.known.get(self.n, self.rows, self.cols, self.slots, perm_r, perm_c)
+        self.known.add(found)
+        self.have_room()
+        return found
+
+    def have_room(self) -> None:
+        """Room for the factors of every analysis that is known."""
+        size = self.known.largest
+        values = self.arrays.get("values", _NO_VALUES)
+        if len(values) < size:
+            self._set(values=np.concatenate([values, np.zeros(size - len(values))]), room=size)
 
     def follow(self, other: "Factorization") -> None:
-        """Take pattern and factors of `other`, which has the same entries, slots and units."""
-        if self.dense:
-            self.pivots[:] = other.pivots
-            self.lu_values[:] = other.lu_values
-            return
-        own = {name: self.arrays[name] for name in ("work", "row_unit")}
-        self._table.view(np.uint8)[:] = other._table.view(np.uint8)
-        self.arrays, self.kind, self._permutations = other.arrays.copy(), other.kind, other._permutations
-        self._set(values=other.lu_values.copy(), **own)
+        """Take analysis and factors of `other`, which has the same entries, slots and units."""
+        while not follow(self.record, other.record):
+            self.make_wanted()
 
     def analyze_with(self, perm_r: ArrayLike, perm_c: ArrayLike) -> None:
-        """Rebuild pattern and storage from the permutations of an earlier `analysis()`, without values.
+        """Take the analysis with the permutations of an earlier `analysis()`, without values.
 
-        The structure is the same, entry for entry. The limits on the growth of L are part of `lu_values`:
-        until that is copied back, `factor` does not return 2.
+        The limits on the growth of L are part of `lu_values`: until that is copied back, `factor` does not return 2.
         """
         perm_r, perm_c = (np.array(p, dtype=np.int64, ndmin=1) for p in (perm_r, perm_c))
         if self.dense:
@@ -212,51 +279,20 @@ class Factorization:
         for name, p in (("perm_r", perm_r), ("perm_c", perm_c)):
             if not np.array_equal(np.sort(p), np.arange(self.n)):
                 raise ValueError(f"{name} must be a permutation of 0..{self.n - 1}")
-        key = perm_r.tobytes() + perm_c.tobytes()
-        known = None if self.analyses is None else self.analyses.get(key)
-        if known is None:
-            known = self._analysis_of(perm_r, perm_c)
-            if self.analyses is not None and len(self.analyses) < MOST_ANALYSES:
-                self.analyses[key] = known
-        kind, count, fields = known
-        self._set(**self._functions(kind), values=np.zeros(count), **fields)
-        self._growth_limits()[:] = np.inf
-        self._permutations = (perm_r, perm_c)
+        if "order" not in self.arrays:
+            self._order_columns()
+        if not np.array_equal(perm_c, self._perm_c):
+            raise ValueError("perm_c is not the order of the columns that this pattern has")
+        use_analysis(self.record, self._know(perm_r, perm_c).address)
 
-    def _analysis_of(self, perm_r: Ints, perm_c: Ints) -> tuple[str, int, dict[str, Any]]:
-        """Kind of the factorisation, number of stored values, and the fields of its pattern."""
-        n = self.n
-        row, col = perm_r[self.rows], perm_c[self.cols]
-        l, u = fill_pattern(n, row, col)
-        nl, nu = len(l.row), len(u.row)
-        if nl + nu + 2 * n > LARGEST_INDEX:
-            raise ValueError(f"{nl + nu + 2 * n} stored values are more than 32-bit indices can reach")
-        if count_operations(l, u) <= PROGRAM_LIMIT * (nl + nu + n):
-            kind, operations = "program", operation_list(n, l, u)
-        else:
-            kind, operations = "columns", Operations(*(np.zeros((k, 0), np.uint32) for k in (1, 3, 1, 2)))
-        entry_to = nl + nu + row
-        below, above = row > col, row < col
-        entry_to[below] = l.find(n, row[below], col[below])
-        entry_to[above] = nl + u.find(n, row[above], col[above])
-        order = np.argsort(entry_to)  # written in ascending order
-        indices = {
-            "entry_to": entry_to[order],
-            "entry_from": self.slots[order],
-            "row_at": np.argsort(perm_r),
-            "col_at": np.argsort(perm_c),
-            "step_start": operations.step_start,
-            "sum_start": operations.sum_start,
-            **dict(zip(("step_to", "step_left", "step_right"), operations.steps, strict=True)),
-            **dict(zip(("sum_left", "sum_right"), operations.sums, strict=True)),
-            **{f"{name}_{field}": value for name, t in (("l", l), ("u", u)) for field, value in t._asdict().items()},
-        }
-        fields: dict[str, Any] = {name: np.ascontiguousarray(x, dtype=np.uint32) for name, x in indices.items()}
-        fields |= {"nl": nl, "nu": nu, "n_steps": operations.steps.shape[1], "n_sums": operations.sums.shape[1]}
-        return kind, nl + nu + 2 * n, fields
+    @property
+    def kind(self) -> str:
+        """Of the refactorisation: "dense", "program" or "columns"; "unready" before the first analysis."""
+        if self.dense:
+            return "dense"
+        return self._present().kind if self._table["analysis"][0] else "unready"
 
     def _functions(self, kind: str) -> dict[str, int]:
-        self.kind = kind
         factor_function, solve_function = functions_of(kind)
         return {"factor_function": factor_function, "solve_function": solve_function}
 
@@ -271,9 +307,6 @@ class Factorization:
             raise ValueError(f"b has shape {x.shape}, the matrix needs ({self.n},)")
         solve(self.record, x.ctypes.data)
         return x
-
-    def _growth_limits(self) -> Floats:
-        return self.lu_values[len(self.lu_values) - self.n :]
 
     def _source(self, values: Floats) -> Floats:
         values = np.ascontiguousarray(values, dtype=np.float64)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import address_of, caller, compiled, internal
-from ..compiled.views import ivec, vec
+from ..compiled.views import vec
 from .dense import dense_factor, dense_solve
 from .record import FACTOR_SIGNATURE, OK, REANALYSE, SOLVE_SIGNATURE
 from .sparse import columns_factor, program_factor, sparse_solve
@@ -67,18 +67,3 @@ def functions_of(kind: str) -> tuple[int, int]:
         "columns": (columns_factor, sparse_solve),
     }[kind]
     return address_of(factor_function, FACTOR_SIGNATURE), address_of(solve_function, SOLVE_SIGNATURE)
-
-
-@internal
-def analyze(lu: Any, values_address: int) -> int:
-    return factor(lu, values_address)
-
-
-@internal
-def follow(lu: Any, other: Any) -> None:
-    a, b = vec(lu.values, lu.n * (lu.n + 1)), vec(other.values, lu.n * (lu.n + 1))
-    for i in range(len(a)):
-        a[i] = b[i]
-    p, q = ivec(lu.pivots, lu.n), ivec(other.pivots, lu.n)
-    for i in range(lu.n):
-        p[i] = q[i]

@@ -16,7 +16,7 @@ WORKSPACE = np.dtype(
             "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
             "values", "coef", "energy", "monitor", "memory", "inputs",
             # model
-            "kernels", "batches", "evaluate_function", "stage_function", "contact_rows", "contact_release",
+            "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_sticking",
             # (contacts,) codes of `switch.py`; the present structure, all that are kept, and how many
             "wanted", "structure", "known", "n_known",

@@ -120,6 +120,7 @@ class Structure:
         new = twin(self)
         new.values, new.probe, new.record = take(self.values), take(self.probe), self.record.moved(take)
         new.kkt, new.kkt_query = self.kkt.moved(take), self.kkt_query.moved(take)
+        new.kkt_query.known = new.kkt.known
         new.present = None if self.present is None else self.present.moved(take)
         new.known = {} if new.present is None else {new.present.dependent.tobytes(): new.present}
         new._list_partitions()
@@ -160,7 +161,6 @@ class Structure:
             jacobian = self.jacobian_row, self.jacobian_col, self.jacobian_slot
             new = build_partition(dependent, jacobian, n, self.n_values)
             if self.shared is not None and len(self.shared) < MOST_PARTITIONS:
-                new.lu_d.analyses = {}
                 self.shared[key] = new
         if self.shared is not None:
             new = new.fresh()
@@ -177,15 +177,24 @@ class Structure:
         if self.present is None or self.present.record.address != address:
             self.present = next(x for x in self.known.values() if x.record.address == address)
 
+    def make_wanted(self) -> None:
+        """Make what compiled code has asked for to choose pivots."""
+        factorizations = [self.kkt, self.kkt_query, *(partition.lu_d for partition in self.known.values())]
+        for factorization in factorizations:
+            if factorization.wants:
+                factorization.make_wanted()
+        for factorization in factorizations:
+            factorization.have_room()
+
     def share(self) -> None:
         """Let structures made of this one by `fresh` and `moved` share their analyses from now on."""
         self.shared = {}
-        self.kkt.analyses = self.kkt_query.analyses = {}
 
     def fresh(self) -> "Structure":
         """One of the same pattern with memory of its own, without a partition."""
         new = twin(self)
-        new.kkt, new.kkt_query = self.kkt.fresh(), self.kkt_query.fresh()
+        new.kkt = self.kkt.fresh()
+        new.kkt_query = new.kkt.sibling()
         new.present, new.known = None, {}
         new.__post_init__()
         return new
@@ -235,7 +244,7 @@ def build_structure(
     tables = [[slots(places) for places in batch] for batch in placed]
     everything = np.arange(count)
     jacobian = np.flatnonzero((rows >= n) & (cols < n))
-    kkt, kkt_query = (Factorization(size, rows, cols, everything, source_size=len(unique) + 1) for _ in range(2))
+    kkt = Factorization(size, rows, cols, everything, source_size=len(unique) + 1)
     return Structure(
         active,
         redundant=np.array(sorted(dropped), dtype=np.int64),
@@ -252,7 +261,7 @@ def build_structure(
         jacobian_col=cols[jacobian],
         jacobian_slot=jacobian,
         kkt=kkt,
-        kkt_query=kkt_query,
+        kkt_query=kkt.sibling(),
         codes=codes_of(len(assembly.contacts), closed, engaged, sticking),
     )
 

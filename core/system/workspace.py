@@ -10,6 +10,7 @@ from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record
+from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
 from .assembly import Assembly
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
@@ -125,7 +126,7 @@ class Workspace:
                 "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
                 "n_work": len(a.work_names), "structure": 0, "n_known": 0,
                 "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
-                "stage_function": 0,
+                "stage_function": 0, "analyze": address_of(analyze, ANALYZE_SIGNATURE),
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
             },
         )  # fmt: skip
@@ -257,6 +258,11 @@ class Workspace:
         key = key_of(self.arrays["wanted"][: len(self.assembly.contacts)])
         structure = self.structure_of(*key, self.dropped)
         structure.know_partition(self.arrays["wanted_dependent"][: len(structure.active)].copy())
+
+    def pivots_wanted(self) -> None:
+        """Make what compiled code has asked for to choose pivots."""
+        for structure in self.patterns:
+            structure.make_wanted()
 
     def _forget(self) -> None:
         """What is known of the matrices' factors and conditions holds no more."""

@@ -36,9 +36,7 @@ OF_LOOP = (
     *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor")),
     "travel", "brackets", "samples",
 )  # fmt: skip
-OF_DRIVE = (
-    "found", "velocities", "gradient", "response", "sideways", "joint_rates", "events", "nearest", "last_trial",
-)  # fmt: skip
+OF_DRIVE = ("found", "events", "nearest", "last_trial")
 
 
 def spoil(sim):
@@ -50,6 +48,12 @@ def spoil(sim):
     ):
         for name in names:
             arrays[name][...] = np.nan
+    for scratch in sim.drive.instant.scratch():
+        scratch[:] = np.nan
+    for structure in sim.workspace.patterns:
+        for factorization in (structure.kkt, structure.kkt_query, structure.lu_d):
+            if factorization is not None and "choice_work" in factorization.arrays:
+                factorization.arrays["choice_work"][:] = np.nan
 
 
 def run(name, end, method, between):
