@@ -37,11 +37,13 @@ VECTORS = (
 )  # fmt: skip
 """(n,) each."""
 
+CALLED = ("by_pivoting", "by_limit", "find_complementary", "least_norm")
+
 CONES = np.dtype(
     [
         (name, np.int64)
         for name in (
-            "by_pivoting", "by_limit", "find_complementary", "least_norm",  # addresses of these functions
+            *CALLED,                                # addresses of these functions
             "n",                                    # contacts
             "nn", "nt", "tt",                       # (n, n) inverse effective masses, 1/kg
             *VECTORS,

@@ -1,4 +1,4 @@
-"""The problems of an instant as problems of `contact/cones.py` and `contact/directions.py`: which contacts take part."""
+"""The problems of an instant, as those of `contact/cones.py` and `contact/directions.py`."""
 
 from typing import Any
 

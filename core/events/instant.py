@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.records import BlockRecord
-from ..contact.cones import CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
+from ..contact.cones import CALLED, CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
 from ..contact.directions import (
     FARTHEST_SIGNATURE,
     INDEPENDENT_SIGNATURE,
@@ -27,8 +27,19 @@ from .resting import begin_rest, find_forces
 from .touching import open_touching
 
 PARTS = (open_touching, strike, begin_rest, find_forces, use_modes)
+_OTHERS = (
+    ("solve_cones", solve_cones, CONES_SIGNATURE),
+    ("independent", independent_directions, INDEPENDENT_SIGNATURE),
+    ("farthest", farthest_directions, FARTHEST_SIGNATURE),
+)
 FEW = 8
 """Touching contacts that there is room for at first."""
+
+
+def _functions(needed: bool) -> dict[str, int]:
+    """Addresses of what the record calls; zeros, and nothing to compile, where it never will."""
+    parts = [(part.py_func.__name__, part, PART_SIGNATURE) for part in PARTS]
+    return {name: address_of(f, signature) if needed else 0 for name, f, signature in (*parts, *_OTHERS)}
 
 
 class Instant:
@@ -43,7 +54,11 @@ class Instant:
         space = self.rows_space = rows_space or 4 * (entries + n)
         work = max(independent_size(2 * most, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
         of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS, most)
-        self._cones = BlockRecord(CONES, {**of_cones, "work": work_size(most)}, {"n": most, **addresses()})
+        self._cones = BlockRecord(
+            CONES,
+            {**of_cones, "work": work_size(most)},
+            {"n": most, **(addresses() if assembly.contacts else dict.fromkeys(CALLED, 0))},
+        )
         self._record = BlockRecord(
             INSTANT,
             {
@@ -59,10 +74,7 @@ class Instant:
             },
             {
                 "most": most, "work_size": work, "rows_space": space, "cones": self._cones.address,
-                **{f.py_func.__name__: address_of(f, PART_SIGNATURE) for f in PARTS},
-                "solve_cones": address_of(solve_cones, CONES_SIGNATURE),
-                "independent": address_of(independent_directions, INDEPENDENT_SIGNATURE),
-                "farthest": address_of(farthest_directions, FARTHEST_SIGNATURE),
+                **_functions(bool(assembly.contacts)),
             },
         )  # fmt: skip
 

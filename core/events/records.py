@@ -35,7 +35,7 @@ INSTANT = np.dtype(
             "joint_rates",               # (m_ext,) float64
             "matrix",                    # (2 most, 2 most + 2) float64
             "work", "work_size",         # float64
-            "row_wholes", "row_reals",   # (5 (n + m) + 2 rows_space,) int64, (n + 2 rows_space,) float64: see `prepare.py`
+            "row_wholes", "row_reals",   # int64 and float64: see `prepare.py`
             "rows_space",
             "slots_work",                # (entries of the block of the mass matrix, at most) float64
             "modes",                     # (n_contacts,) float64: before the instant

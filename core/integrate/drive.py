@@ -217,7 +217,7 @@ class Drive:
             },
             {
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": sim._loop.address,
-                "instant": self.instant.address, "settle": address_of(settle_pending, SETTLE_SIGNATURE),
+                "instant": self.instant.address, "settle": address_of(settle_pending, SETTLE_SIGNATURE) if contacts else 0,
                 "n_breakpoints": len(assembly.breakpoints),
                 "run": address_of(run, RUN_SIGNATURE), "trial": address_of(trial_step, TRIAL_SIGNATURE),
                 "accept": address_of(accept, ACCEPT_SIGNATURE),

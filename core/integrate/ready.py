@@ -43,7 +43,6 @@ _VECTOR, _MATRIX, _NUMBERS = types.Array(_REAL, 1, "C"), types.Array(_REAL, 2, "
 
 _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (drive, (DRIVE_TYPE, types.boolean)),
-    (settle_pending, (DRIVE_TYPE,)),
     (aim_now, (DRIVE_TYPE,)),
     (query, (_WORKSPACE, _METHOD, _REAL)),
     (interpolate, (_WORKSPACE, _METHOD, _REAL)),
@@ -86,6 +85,7 @@ def _compile_called() -> None:
 @cache
 def _compile_for_contacts(sparse: bool, many_entries: bool) -> None:
     friction_margin.compile((_WORKSPACE, _WHOLE))
+    settle_pending.compile((DRIVE_TYPE,))
     # its record holds the addresses of all that it calls
     Cones(1)
     solve_cones.compile((CONES_TYPE,))

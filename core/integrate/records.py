@@ -131,4 +131,5 @@ EVENT_SIZE = 9
 """Time, kind, contact, and the numbers of `Event` in their order."""
 IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS = range(8)
 EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
-"""Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the energy."""
+"""Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the
+energy."""

@@ -1,4 +1,4 @@
-"""Ordering and pivots of a sparse matrix from SuperLU, chosen on its scaled values.
+"""Order of the columns of a sparse matrix, by its pattern; and what makes a matrix singular.
 
 Measured on the matrices [M Phi^T; Phi 0] of chains, masses from 1e-3 to 1e3, and on spring grids with
 constraints: COLAMD with pivots from the diagonal down to a tenth of the column's largest gives the lowest
@@ -45,8 +45,8 @@ def order_columns(n: int, rows: Ints, cols: Ints) -> Ints:
 
 
 def _local_order(matrix: Any, factors: Any) -> Ints:
-    """An order in which neighbours stay neighbours (reverse Cuthill-McKee) if its fill is nearly that of `factors`, else
-    theirs. A chain's factors are then read one after the other, not all over the memory."""
+    """An order in which neighbours stay neighbours (reverse Cuthill-McKee) if its fill is nearly that of `factors`,
+    else theirs. A chain's factors are then read one after the other, not all over the memory."""
     from scipy.sparse.csgraph import reverse_cuthill_mckee
     from scipy.sparse.linalg import splu
 
