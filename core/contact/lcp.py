@@ -175,9 +175,7 @@ def _pivot(table: Any, row: int, column: int) -> None:
 
 
 @internal
-def _refine(
-    by_norm: int, m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: int
-) -> None:  # fmt: skip
+def _refine(by_norm: int, m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: int) -> None:
     """z of a complementary basis, solved anew from the given matrix: free of the pivoting's rounding. What is at the
     addresses `table` and `work` is used no more."""
     n, count = len(q), 0

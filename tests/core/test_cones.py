@@ -132,10 +132,8 @@ def test_units_change_no_digit(n):
         found = solve(scaled)
         assert found[0] == status
         if status != NONE:
-            for x, wanted in zip(
-                found[1:], (normal * force, tangential * force, w_n * speed, w_t * speed), strict=True
-            ):
-                assert np.array_equal(x, wanted)
+            assert np.array_equal(found[1:3], np.stack([normal, tangential]) * force)
+            assert np.array_equal(found[3:], np.stack([w_n, w_t]) * speed)
 
 
 @pytest.mark.parametrize("n", [1, 2, 5, 8, 9, 20])
@@ -161,8 +159,8 @@ def test_memory_decides_nothing(n):
 
 @pytest.mark.parametrize("n", [1, 2, 9, 12])
 def test_a_jammed_rod_has_no_solution(n):
-    """Painleve's paradox: friction of a sliding rod's end turns the effect of its normal force round, a - mu b < 0, while
-    its weight presses it down. A neighbour that is not concerned does not help."""
+    """Painleve's paradox: friction of a sliding rod's end turns the effect of its normal force round, a - mu b < 0,
+    while its weight presses it down. Neighbours that are not concerned do not help."""
     nn, nt, tt = np.eye(n), np.zeros((n, n)), np.eye(n)
     nt[0, 0] = 0.9
     problem = Problem(
@@ -175,9 +173,8 @@ def test_a_jammed_rod_has_no_solution(n):
 
 
 def test_what_sticks_says_so():
-    p = Problem(
-        np.eye(2), np.zeros((2, 2)), np.eye(2), -np.ones(2), np.full(2, 0.1), np.full(2, 0.3), *np.zeros((2, 2))
-    )
+    one, none = np.eye(2), np.zeros(2)
+    p = Problem(one, np.zeros((2, 2)), one, -np.ones(2), np.full(2, 0.1), np.full(2, 0.3), none, none)
     assert solve(p)[0] == STICKS
     assert solve(p._replace(b_t=np.ones(2)))[0] == SOLVED
     assert solve(p._replace(direction=np.ones(2)))[0] == SOLVED
