@@ -70,6 +70,8 @@ def find_complementary(by_norm: int, m: Any, q: Any, z: Any, work: int) -> bool:
     n, size, least = len(q), 0.0, 0.0
     for i in range(n):
         z[i] = 0.0
+        if not np.isfinite(q[i]):
+            return False
         size, least = max(size, abs(q[i])), min(least, q[i])
     if least >= -TIES[0] * size:
         return True

@@ -172,6 +172,19 @@ def test_a_jammed_rod_has_no_solution(n):
     assert solve(problem._replace(direction=-np.eye(n)[0]))[0] != NONE
 
 
+@pytest.mark.parametrize("what", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("n", [1, 3, 10])
+def test_what_is_no_number_does_no_harm(n, what):
+    rng = np.random.default_rng(n)
+    for k in range(len(Problem._fields)):
+        problem = random_problem(rng, n)
+        problem[k].reshape(-1)[-1] = what
+        cones = Cones(n)
+        cones.set_array("work", np.full(work_size(n) + 50, 7.0))
+        assert solve(problem, cones)[0] in (NONE, SOLVED, STICKS)
+        assert np.all(cones.arrays["work"][-50:] == 7.0)
+
+
 def test_what_sticks_says_so():
     one, none = np.eye(2), np.zeros(2)
     p = Problem(one, np.zeros((2, 2)), one, -np.ones(2), np.full(2, 0.1), np.full(2, 0.3), none, none)
