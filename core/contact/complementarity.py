@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .cones import IMMOVABLE, MANY, NONE, STICKS, Cones, solve_cones
+from .cones import IMMOVABLE, MANY, NONE, STICKS, VECTORS, Cones, solve_cones
 from .directions import RANK, farthest_directions, farthest_size, independent_directions, independent_size
 from .lcp import NoComplementarySolution
 
@@ -99,8 +99,8 @@ def solve_contacts(
     status = solve_cones(cones.record)
     if status == NONE:
         raise NoComplementarySolution("neither pivoting nor Newton's method find forces of the contacts")
-    found = (cones.arrays[name] for name in ("normal", "tangential", "normal_motion", "tangential_motion"))
-    return ContactSolution(*found, sticks=status == STICKS)
+    normal, tangential, normal_motion, tangential_motion = (cones.arrays[name] for name in VECTORS[-4:])
+    return ContactSolution(normal, tangential, normal_motion, tangential_motion, status == STICKS)
 
 
 def independent(

@@ -16,7 +16,10 @@ from ..linalg.small import add, call_least_norm, dot, least_norm_size, solve_squ
 RANK = 1e-13
 """Singular values below this part of the largest are zero."""
 
-PRESSES, STICKS, RIGHT, LEFT = 1, 2, 4, 8
+NONE, SOLVED, STICKS = range(3)
+"""What solvers return: there are no forces; there are; there are, and all friction was found below its limit at once,
+shared in proportion to what the contacts allow."""
+PRESSING, STUCK, RIGHT, LEFT = 1, 2, 4, 8
 """What a contact does: bits of its state. The last two tell to which side the friction of one that does not stick
 goes."""
 
@@ -76,9 +79,7 @@ def left(cn: Any, mu: Any, normal: Any, friction: Any, eps: float, work: int) ->
 
 
 @internal
-def does(
-    cn: Any, mu: Any, normal: Any, friction: Any, eps: float, state: Any, ratio: Any, work: int
-) -> None:  # fmt: skip
+def does(cn: Any, mu: Any, normal: Any, friction: Any, eps: float, state: Any, ratio: Any, work: int) -> None:
     """State of each contact, (n,) int64, and what part of its normal force the friction of those that do not stick is,
     (n,)."""
     n = cn.n
@@ -86,14 +87,14 @@ def does(
     w_n, w_t = vec(work, n), vec(work + 8 * n, n)
     move(cn, normal, friction, eps, w_n, w_t)
     for i in range(n):
-        state[i] = PRESSES if (normal[i] - base[i]) * nn[i, i] > w_n[i] else 0
+        state[i] = PRESSING if (normal[i] - base[i]) * nn[i, i] > w_n[i] else 0
         ratio[i] = -direction[i] * mu[i]
         if mu[i] > 0.0 and direction[i] == 0.0:
             proposed = friction[i] - w_t[i] / tangential_mass(cn, i)
             ratio[i] = mu[i] * np.sign(proposed)
             if abs(proposed) < mu[i] * max(normal[i], base[i]):
                 ratio[i] = 0.0
-                state[i] |= STICKS
+                state[i] |= STUCK
         if ratio[i] != 0.0:
             state[i] |= RIGHT if ratio[i] > 0.0 else LEFT
 
@@ -101,7 +102,7 @@ def does(
 @internal
 def _equations(
     cn: Any, some: Any, stuck: Any, ratio: Any, w_n: Any, w_t: Any, eps: float, matrix: Any, wanted: Any
-) -> None:  # fmt: skip
+) -> None:
     """Of the normal forces of `some`, with the friction that goes with them, and of the friction of `stuck`."""
     n, first = cn.n, len(some)
     nn, nt, tt = mat(cn.nn, n, n), mat(cn.nt, n, n), mat(cn.tt, n, n)
@@ -124,9 +125,7 @@ def _equations(
 
 
 @internal
-def solve_for(
-    cn: Any, state: Any, ratio: Any, normal: Any, friction: Any, eps: float, work: int
-) -> None:  # fmt: skip
+def solve_for(cn: Any, state: Any, ratio: Any, normal: Any, friction: Any, eps: float, work: int) -> None:
     """Forces with which contacts that press and that stick do not move; the friction of the others is `ratio` times
     their normal force. Where they are not unique, those nearest to the given ones, which they replace."""
     n, count, held = cn.n, 0, 0
@@ -134,10 +133,10 @@ def solve_for(
     work += 32 * n
     move(cn, normal, friction, eps, w_n, w_t)
     for i in range(n):
-        if state[i] & PRESSES:
+        if state[i] & PRESSING:
             presses[count] = i
             count += 1
-        if state[i] & STICKS:
+        if state[i] & STUCK:
             sticks[held] = i
             held += 1
     some, stuck, size = presses[:count], sticks[:held], count + held
@@ -155,5 +154,5 @@ def solve_for(
     for k in range(held):
         friction[stuck[k]] += change[count + k, 0]
     for i in range(n):
-        if not state[i] & STICKS:
+        if not state[i] & STUCK:
             friction[i] = ratio[i] * normal[i]

@@ -14,18 +14,31 @@ from ..compiled.jit import address_of, caller, compiled
 from ..compiled.records import ArrayRecord
 from ..compiled.views import mat, vec
 from ..linalg.small import LEAST_NORM_SIGNATURE, least_norm
+from .conditions import NONE, SOLVED, STICKS
 from .lcp import FIND_SIGNATURE, find_complementary
 from .many import by_limit, many_size
 from .pivoting import by_pivoting, pivoting_size
+
+__all__ = [
+    "CONES",
+    "CONES_SIGNATURE",
+    "CONES_TYPE",
+    "IMMOVABLE",
+    "MANY",
+    "NONE",
+    "SOLVED",
+    "STICKS",
+    "VECTORS",
+    "Cones",
+    "call_cones",
+    "solve_cones",
+    "work_size",
+]
 
 IMMOVABLE = 1e-12
 """A direction whose inverse effective mass is below this part of what it could be cannot move."""
 MANY = 8
 """Contacts; the forces of more are found as the limit of those that give way a little (`many.py`)."""
-
-NONE, SOLVED, STICKS = range(3)
-"""What `solve_cones` returns: there are no forces; there are; and all friction was found below its limit at once,
-shared in proportion to what the contacts allow."""
 
 VECTORS = (
     "b_n", "b_t",                          # motion without contact forces; b_n > 0: the contact separates
@@ -84,9 +97,9 @@ class Cones(ArrayRecord):
 
     def __init__(self, most: int) -> None:
         sizes = {"n": most, **addresses()}
-        arrays = {name: np.zeros((most, most)) for name in ("nn", "nt", "tt")}
-        arrays |= {name: np.zeros(most) for name in VECTORS}
-        super().__init__(CONES, {**arrays, "work": np.zeros(work_size(most))}, sizes)
+        shapes: dict[str, tuple[int, ...]] = dict.fromkeys(("nn", "nt", "tt"), (most, most))
+        shapes |= dict.fromkeys(VECTORS, (most,)) | {"work": (work_size(most),)}
+        super().__init__(CONES, {name: np.zeros(shape) for name, shape in shapes.items()}, sizes)
 
 
 @compiled
@@ -114,8 +127,8 @@ def solve_cones(cn: Any) -> int:
         mu[i] = given[i] if direction[i] != 0.0 or tt[i, i] > IMMOVABLE * largest else 0.0
     work = cn.work + 8 * n
     for way in range(2):
-        first = (way == 0) == (n > MANY)
-        status = call_way(cn.by_limit if first else cn.by_pivoting, cn, mu, work)
+        limit = (way == 0) == (n > MANY)
+        status = call_way(cn.by_limit if limit else cn.by_pivoting, cn, mu, work)
         if status != NONE:
             return int(status)
     return NONE

@@ -30,9 +30,7 @@ def farthest_size(count: int) -> int:
 
 
 @compiled
-def independent_directions(
-    directions: Any, responses: Any, some: Any, rank: float, kept: Any, work: Any
-) -> int:  # fmt: skip
+def independent_directions(directions: Any, responses: Any, some: Any, rank: float, kept: Any, work: Any) -> int:
     """Positions in `some` of those directions that do not repeat earlier ones go to `kept`; returns how many there are.
 
     Parameters

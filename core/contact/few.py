@@ -7,7 +7,7 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import add, null_space
-from .conditions import PRESSES, STICKS, move, solve_for, solving_size
+from .conditions import PRESSING, STUCK, move, solve_for, solving_size
 from .sticking import hold_tangents, share, sticking_size
 
 AT_REST = 1e-9
@@ -34,15 +34,15 @@ def basic(cn: Any, mu: Any, size: float, normal: Any, friction: Any, work: int) 
     work += 56 * n
     move(cn, normal, friction, 0.0, w_n, w_t)
     for i in range(n):
-        state[i] = PRESSES if abs(w_n[i]) <= AT_REST * size else 0
-        free = mu[i] > 0.0 and direction[i] == 0.0 and state[i] & PRESSES != 0
+        state[i] = PRESSING if abs(w_n[i]) <= AT_REST * size else 0
+        free = mu[i] > 0.0 and direction[i] == 0.0 and state[i] & PRESSING != 0
         ratio[i] = -mu[i] * (np.sign(w_t[i]) if free else direction[i])
         if free and abs(w_t[i]) <= AT_REST * size:
             ratio[i] = 0.0
-            state[i] |= STICKS
+            state[i] |= STUCK
             sticks[held] = i
             held += 1
-        normal[i] = max(normal[i], base[i]) if state[i] & PRESSES else base[i]
+        normal[i] = max(normal[i], base[i]) if state[i] & PRESSING else base[i]
         if normal[i] > base[i]:
             loaded[count] = i
             forces[count] = normal[i] - base[i]
@@ -83,7 +83,7 @@ def _reduced(cn: Any, state: Any, ratio: Any, stuck: Any, some: Any, forces: Any
     stay together."""
     n, count, rows = cn.n, len(some), 0
     for i in range(n):
-        rows += 1 if state[i] & PRESSES else 0
+        rows += 1 if state[i] & PRESSING else 0
     block = mat(work, rows, count)
     work += 8 * n * n
     matrix, tn, across = mat(work, n, n), mat(work + 8 * n * n, n, n), mat(work + 16 * n * n, len(stuck), n)
@@ -95,7 +95,7 @@ def _reduced(cn: Any, state: Any, ratio: Any, stuck: Any, some: Any, forces: Any
     hold_tangents(cn, stuck, tn, matrix, across, work + 24 * n * n)
     row = 0
     for i in range(n):
-        if state[i] & PRESSES:
+        if state[i] & PRESSING:
             for j in range(count):
                 block[row, j] = matrix[i, some[j]]
             row += 1

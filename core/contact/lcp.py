@@ -70,6 +70,8 @@ def find_complementary(by_norm: int, m: Any, q: Any, z: Any, work: int) -> bool:
     n, size, least = len(q), 0.0, 0.0
     for i in range(n):
         z[i] = 0.0
+        if not np.isfinite(q[i]):
+            return False
         size, least = max(size, abs(q[i])), min(least, q[i])
     if least >= -TIES[0] * size:
         return True
@@ -175,9 +177,7 @@ def _pivot(table: Any, row: int, column: int) -> None:
 
 
 @internal
-def _refine(
-    by_norm: int, m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: int
-) -> None:  # fmt: skip
+def _refine(by_norm: int, m: Any, q: Any, z: Any, basis: Any, basic: Any, table: int, work: int) -> None:
     """z of a complementary basis, solved anew from the given matrix: free of the pivoting's rounding. What is at the
     addresses `table` and `work` is used no more."""
     n, count = len(q), 0

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, ivec, vec
-from .conditions import PRESSES, STICKS, does, largest_motion, left, move, solve_for, solving_size
+from .conditions import NONE, PRESSING, SOLVED, STICKS, STUCK, does, largest_motion, left, move, solve_for, solving_size
 from .few import AT_REST, basic, basic_size
 from .sweeps import sweep
 
@@ -46,19 +46,18 @@ def many_size(n: int) -> int:
 
 @internal
 def by_limit(cn: Any, mu: Any, work: int) -> int:
-    """The solution as the limit of those with contacts that give way: 1 with it, 2 if in it all friction is below its
-    limit at once, 0 if the path to it ends."""
+    """The solution as the limit of those with contacts that give way: SOLVED or STICKS, NONE if the path to it ends."""
     n, size, some = cn.n, largest_motion(cn), False
     if not _solve(cn, mu, size, work):
-        return 0
+        return NONE
     normal, direction, w_t = vec(cn.normal, n), vec(cn.direction, n), vec(cn.tangential_motion, n)
     move(cn, normal, vec(cn.tangential, n), 0.0, vec(cn.normal_motion, n), w_t)
     for i in range(n):
         if mu[i] > 0.0 and direction[i] == 0.0 and normal[i] > 0.0:
             some = True
             if not abs(w_t[i]) <= AT_REST * size:
-                return 1
-    return 2 if some else 1
+                return SOLVED
+    return STICKS if some else SOLVED
 
 
 @inlined
@@ -143,7 +142,7 @@ def _newton(cn: Any, mu: Any, size: float, best: Any, best_friction: Any, eps: f
         else:
             for i in range(n):
                 seen[met, i] = state[i]
-                normal[i] = 0.0 if state[i] & PRESSES else base[i]
+                normal[i] = 0.0 if state[i] & PRESSING else base[i]
                 friction[i] = ratio[i] * normal[i]
             met += 1
             solve_for(cn, state, ratio, normal, friction, eps, work + 16 * n)
@@ -174,12 +173,12 @@ def _direct(cn: Any, mu: Any, normal: Any, friction: Any, work: int) -> None:
     state, ratio = ivec(work, n), vec(work + 8 * n, n)
     does(cn, mu, normal, friction, 0.0, state, ratio, work + 16 * n)
     for i in range(n):
-        if not state[i] & PRESSES:
+        if not state[i] & PRESSING:
             normal[i] = base[i]
-        if not state[i] & STICKS:
+        if not state[i] & STUCK:
             friction[i] = ratio[i] * normal[i]
     solve_for(cn, state, ratio, normal, friction, 0.0, work + 16 * n)
     for i in range(n):
         normal[i] = max(normal[i], base[i])
-        if not state[i] & STICKS:
+        if not state[i] & STUCK:
             friction[i] = ratio[i] * normal[i]

@@ -11,6 +11,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import dot
+from .conditions import NONE, SOLVED, STICKS
 from .lcp import call_find, lcp_size
 from .sticking import RANK, hold_tangents, share, sticking_size
 
@@ -29,7 +30,7 @@ def pivoting_size(n: int) -> int:
 
 @internal
 def by_pivoting(cn: Any, mu: Any, work: int) -> int:
-    """The solution by Lemke's method: 1 with it, 2 if in it all friction is below its limit at once, 0 without."""
+    """The solution by Lemke's method: NONE, SOLVED or STICKS."""
     n = cn.n
     nn, tn, sliding = mat(work, n, n), mat(work + 8 * n * n, n, n), vec(work + 16 * n * n, n)
     work += 8 * (2 * n * n + n)
@@ -50,12 +51,12 @@ def by_pivoting(cn: Any, mu: Any, work: int) -> int:
         for j in range(n):
             nn[i, j], tn[i, j] = a_nn[i, j] + a_nt[i, j] * sliding[j], a_nt[j, i] + a_tt[i, j] * sliding[j]
         b_n[i], b_t[i] = vec(cn.b_n, n)[i] + dot(nn[i], base), vec(cn.b_t, n)[i] + dot(tn[i], base)
-    status = 1
+    status = SOLVED
     if count > 0 and _all_stick(cn, nn, tn, b_n, b_t, mu, free[:count], normal, work):
-        status = 2
+        status = STICKS
     elif count > 0:
         if not _with_limits(cn, nn, tn, b_n, b_t, mu, free[:count], normal, work):
-            return 0
+            return NONE
     else:
         matrix, q = mat(work, n, n), vec(work + 8 * n * n, n)
         for i in range(n):
@@ -63,7 +64,7 @@ def by_pivoting(cn: Any, mu: Any, work: int) -> int:
             for j in range(n):
                 matrix[i, j] = nn[i, j]
         if not _scaled(cn, matrix, q, normal, work + 8 * (n * n + n)):
-            return 0
+            return NONE
     for i in range(n):
         w_n[i], w_t[i] = b_n[i] + dot(nn[i], normal), b_t[i] + dot(tn[i], normal)
         for k in range(count):
@@ -94,9 +95,7 @@ def _scaled(cn: Any, m: Any, q: Any, z: Any, work: int) -> bool:
 
 
 @internal
-def _all_stick(
-    cn: Any, nn: Any, tn: Any, b_n: Any, b_t: Any, mu: Any, free: Any, normal: Any, work: int
-) -> bool:  # fmt: skip
+def _all_stick(cn: Any, nn: Any, tn: Any, b_n: Any, b_t: Any, mu: Any, free: Any, normal: Any, work: int) -> bool:
     """The solution in which no contact of `free` slides, each with the same part of what its friction allows as the
     others that it shares with: normal forces beyond their base, and the tangential ones. False if there is none."""
     n, count = len(b_n), len(free)
@@ -150,9 +149,7 @@ def _all_stick(
 
 
 @internal
-def _with_limits(
-    cn: Any, nn: Any, tn: Any, b_n: Any, b_t: Any, mu: Any, free: Any, normal: Any, work: int
-) -> bool:  # fmt: skip
+def _with_limits(cn: Any, nn: Any, tn: Any, b_n: Any, b_t: Any, mu: Any, free: Any, normal: Any, work: int) -> bool:
     """The problem with friction limits: unknown P_N, the two signs of P_T, and the speed of sliding. False if there is
     no solution.
 
