@@ -133,8 +133,12 @@ class BlockRecord:
 
     def whole(self, name: str) -> NDArray[np.int64]:
         """The integers of the array `name`."""
+        return self.part(name).view(np.int64)
+
+    def part(self, name: str) -> NDArray[np.float64]:
+        """The numbers of the array `name`."""
         start = self._start[name]
-        return self.block[start : start + self._lengths[name]].view(np.int64)
+        return self.block[start : start + self._lengths[name]]
 
     @property
     def address(self) -> int:

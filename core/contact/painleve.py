@@ -9,13 +9,12 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
+from .joints import factor_joints, solve_joints
 from .modes import CLOSED, MODE, RATIO, SLIDE
-from .touching import Touching, factor_joints, solve_joints
 
 if TYPE_CHECKING:
     from ..integrate.engine import Engine
@@ -31,19 +30,6 @@ def painleve(name: str, t: float, mu: float) -> str:
         "bodies together more than the normal force keeps them apart, so that rigid bodies with Coulomb friction have "
         "no (or no unique) accelerations here: use a smaller coefficient, or a force law with regularised friction "
         "for this contact"
-    )
-
-
-def no_solution(touching: Touching, mu: NDArray[np.float64]) -> str:
-    """What to tell where no forces fit the touching contacts with the coefficients mu (contacts,)."""
-    a, t = touching.a, touching.sim.t_internal
-    for i, contact in enumerate(touching.infos):
-        if mu[i] > 0.0 and a.nn[i, i] <= mu[i] * abs(a.nt[i, i]):
-            return painleve(contact.name, t, float(mu[i]))
-    names = ", ".join(f"'{c.name}'" for c in touching.infos)
-    return (
-        f"contacts {names}, t = {t:.9g} s: no contact forces satisfy complementarity and friction at once (Painleve's "
-        "paradox of several contacts): use smaller friction coefficients, or force laws"
     )
 
 
@@ -79,22 +65,18 @@ def refuse_passed_jam(sim: "Engine", sliding: list[int]) -> None:
 
 def jam(sim: "Engine") -> str | None:
     """Why a run cannot go on from the newest row, if its sliding contacts jam there; else None."""
-    memory, key, sliding = sim.memory, sim.workspace.key, sliding_contacts(sim)
-    closed = memory[:, MODE] == CLOSED
+    memory, sliding = sim.memory, sliding_contacts(sim)
     if not sliding or not sim.method_arrays["ring"][1]:
         return None
-    kept = memory.copy()
+    ratio = memory[sliding, RATIO]
     recall(sim.workspace.record, sim._method.record, 0)
     try:
-        others = frozenset(int(k) for k in np.flatnonzero(closed)) - frozenset(sliding)
-        a = Touching(sim, sliding, others).a
+        a, count = sim.inverse_masses(sliding), len(sliding)
     except SimulationError:
         return None
-    finally:
-        memory[:] = kept
-        sim.workspace.engage(*key)
-    with_friction = a.nn + a.nt * kept[sliding, RATIO]
-    if np.linalg.det(with_friction) > JAMS * np.linalg.det(a.nn):
+    of_normals = a[:count, :count]
+    with_friction = of_normals + a[:count, count:] * ratio
+    if np.linalg.det(with_friction) > JAMS * np.linalg.det(of_normals):
         return None
-    worst = int(np.argmin(np.diag(with_friction) / np.diag(a.nn)))
-    return painleve(sim.assembly.contacts[sliding[worst]].name, sim.t_internal, abs(float(kept[sliding[worst], RATIO])))
+    worst = int(np.argmin(np.diag(with_friction) / np.diag(of_normals)))
+    return painleve(sim.assembly.contacts[sliding[worst]].name, sim.t_internal, abs(float(ratio[worst])))

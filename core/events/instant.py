@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.image import Take, twin
@@ -68,7 +69,7 @@ class Instant:
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
                 "directions": 2 * most * n, "responses": 2 * most * n,
                 "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
-                "modes": contacts, "unsettled": contacts, "joint_rates": m,
+                "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
                 "slots_work": n + sum(len(b.coord) * len(b.tangent_pattern) for b in assembly.batches),
             },
@@ -87,6 +88,22 @@ class Instant:
     def touching(self) -> list[int]:
         """The contacts that touched at the instant looked at last."""
         return [int(k) for k in self._record.whole("contacts")[: self._record.whole("wholes")[COUNT]]]
+
+    @touching.setter
+    def touching(self, contacts: list[int]) -> None:
+        self._record.whole("contacts")[: len(contacts)] = contacts
+        self._record.whole("wholes")[COUNT] = len(contacts)
+
+    @property
+    def inverse_masses(self) -> NDArray[np.float64]:
+        """Of the contacts that have been opened last, (2 contacts, 2 contacts), 1/kg: normals first."""
+        size = 2 * len(self.touching)
+        return self._record.part("a")[: size * size].reshape(size, size).copy()
+
+    @property
+    def unsettled(self) -> NDArray[np.int64]:
+        """1 for each contact found unsettled."""
+        return self._record.whole("unsettled")
 
     @property
     def who(self) -> int:

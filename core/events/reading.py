@@ -7,10 +7,14 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
-from ..contact.settling import AT_LIMIT, BRAKED
 from ..rounding import FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, UNRESOLVED
 from ..system.levels import force_level, position_level, rate_level
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
+
+BRAKED = 1e-9
+"""Of the largest acceleration: what slides with no speed and is braked by less begins to slide, it does not stop."""
+AT_LIMIT = 1e-9
+"""Friction within this part of its limit has reached it."""
 
 
 @internal

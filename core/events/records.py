@@ -40,6 +40,7 @@ INSTANT = np.dtype(
             "slots_work",                # (entries of the block of the mass matrix, at most) float64
             "modes",                     # (n_contacts,) float64: before the instant
             "unsettled",                 # (n_contacts,) int64
+            "massless_rates",            # (n_contacts,) float64
         )
     ]
 )  # fmt: skip

@@ -4,13 +4,16 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat
-from ..integrate.records import COUNTS_SIZE, EVENT_ROWS, EVENT_SIZE, EVENTS
+from ..integrate.records import COUNTS_SIZE, EVENT_SIZE, EVENTS
+
+MOST_EVENTS = 4
+"""Of a contact at one instant."""
 
 
 @internal
 def room_for(dr: Any, count: int) -> bool:
     """True if there is room for `count` more events."""
-    return bool(ivec(dr.counts, COUNTS_SIZE)[EVENTS] + count <= EVENT_ROWS)
+    return bool(ivec(dr.counts, COUNTS_SIZE)[EVENTS] + count <= dr.event_rows)
 
 
 @internal
@@ -20,7 +23,7 @@ def report(
 ) -> None:  # fmt: skip
     """An event of contact k at time t; numbers as in `Event`."""
     counts = ivec(dr.counts, COUNTS_SIZE)
-    row = mat(dr.events, EVENT_ROWS, EVENT_SIZE)[counts[EVENTS]]
+    row = mat(dr.events, dr.event_rows, EVENT_SIZE)[counts[EVENTS]]
     counts[EVENTS] += 1
     row[0], row[1], row[2], row[3], row[4] = t, kind, k, impulse, loss
     row[5], row[6], row[7], row[8] = approach, separation, residual, friction

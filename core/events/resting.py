@@ -13,12 +13,11 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import CLOSED, IDLE
 from ..contact.modes import STICKS as STUCK
-from ..contact.settling import AT_LIMIT
 from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST
 from ..system.levels import position_level
 from ..system.records import CONTROL_SIZE, ENERGY_SCALE
 from .forces import NO_SOLUTION, among, farthest_of, independent_of, remove_rates
-from .reading import comes_back, largest_acceleration, rate_size, unresolved_speed
+from .reading import AT_LIMIT, comes_back, largest_acceleration, rate_size, unresolved_speed
 from .records import (
     ACCELERATIONS,
     APART,
@@ -84,6 +83,9 @@ NEARLY_SINGULAR = 1e-6
 """Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
 TO_SPARE = 1e-6
 """Part of its limit that a new distribution of sticking friction must leave to each contact."""
+RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
+"""Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and at an instant that
+does not settle. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
 AHEAD, FARTHEST_AHEAD = 1e-9, 1e-6
 """How far the mechanism is moved, of its size, to see what holds a moment later: at the second event of an instant, and
 ten times farther at each of the following ones, but not beyond."""

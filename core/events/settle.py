@@ -23,7 +23,6 @@ from ..contact.modes import (
 from ..contact.modes import STICKS as STUCK
 from ..contact.progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
 from ..contact.progress import COUNT as GUARDED
-from ..contact.resting import LOOSEST_RANK, RANK_OF_MANY
 from ..integrate.records import (
     CLOSE,
     COUNTS_SIZE,
@@ -45,11 +44,12 @@ from ..methods.history import history_time, recall, restart
 from ..rounding import GAP_ROUNDING, UNSOLVED
 from ..system.evaluate import evaluate_power, evaluate_residuals
 from ..system.levels import position_level
-from ..system.projection import meet
 from ..system.records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, structure_at
 from ..system.switch import take_partition, take_structure
 from .blow import impact
-from .laws import OTHER, UNTOUCHED
+from .laws import FORCE, MASSLESS
+from .massless import settle_massless
+from .meeting import meet_constraints
 from .reading import largest_acceleration, read_before
 from .records import (
     ACCELERATIONS,
@@ -84,8 +84,8 @@ from .records import (
     real,
     whole,
 )
-from .report import report, room_for
-from .resting import choose, keep
+from .report import MOST_EVENTS, report, room_for
+from .resting import LOOSEST_RANK, RANK_OF_MANY, choose, keep
 from .touching import find_touching, looks_again, read_rates, read_values
 from .unsettled import find_pending
 
@@ -107,17 +107,14 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     """Let the pending events happen at the newest row: a status of `records`."""
     t, counts, goals = history_time(ms, 0), ivec(dr.counts, COUNTS_SIZE), vec(dr.goals, GOALS_SIZE)
     room = lc.capacity == 0 or ivec(lc.cursor, 1)[0] < lc.capacity
-    if not room or not room_for(dr, 3 * ws.n_contacts) or not _gets_on(dr, t):
+    if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts) or not _gets_on(dr, t):
         return DECLINED
-    if not _for_compiled(dr, ws):
+    if _any_force(dr, ws):
         return DECLINED
     _keep(ev, ws, False)
     # samples may have been asked for since the step that ended here
     recall(ws, ms, 0)
     evaluate_residuals(ws)
-    if not find_touching(ev, dr, ws):
-        _keep(ev, ws, True)
-        return WANT_ROOM
     modes = vec(ev.modes, ws.n_contacts)
     for k in range(ws.n_contacts):
         modes[k] = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
@@ -126,7 +123,9 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
-    status = _decide(ev, dr, ws, ms)
+    status = settle_massless(ev, dr, ws, ms)
+    if status == SETTLED and _any_constraint(dr, ws):
+        status = _decide(ev, dr, ws, ms)
     if status == SETTLED:
         status = find_pending(ev, dr, ws, ms, lc)
     if status != SETTLED:
@@ -164,13 +163,23 @@ def _keep(ev: Any, ws: Any, back: bool) -> None:
 
 
 @internal
-def _for_compiled(dr: Any, ws: Any) -> bool:
-    """True if all that is pending is of contacts that this code knows."""
+def _any_force(dr: Any, ws: Any) -> bool:
+    """True if a contact with a force law is pending."""
     law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
     for k in range(ws.n_contacts):
-        if law[k] == OTHER or (law[k] == UNTOUCHED and pending[k] != 0):
-            return False
-    return bool(ws.n_redundant == 0)
+        if law[k] == FORCE and pending[k] != 0:
+            return True
+    return False
+
+
+@internal
+def _any_constraint(dr: Any, ws: Any) -> bool:
+    """True if a contact with mass on both sides is pending."""
+    law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if pending[k] != 0 and law[k] != MASSLESS:
+            return True
+    return False
 
 
 @internal
@@ -205,6 +214,8 @@ def _sample(dr: Any, ws: Any, lc: Any) -> None:
 @internal
 def _decide(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Impacts, forces, and what they mean."""
+    if not find_touching(ev, dr, ws):
+        return WANT_ROOM
     read_before(ev, dr, ws)
     read_values(ev, ws)
     count, contacts, accelerations = whole(ev)[COUNT], ivec(ev.contacts, ev.most), largest_acceleration(ws)
@@ -296,12 +307,8 @@ def _take(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         status = call_part(ev.use_modes, ev, dr, ws, ms)
         if status != SETTLED:
             return status
-    if changed and ms.exact != 0:
-        for rates in range(2):
-            evaluate_residuals(ws)
-            if not meet(ws, rates == 1):
-                return NOT_MET
-        evaluate_residuals(ws)
+    if changed and ms.exact != 0 and not meet_constraints(ws):
+        return NOT_MET
     return SETTLED if call_accelerations(dr.accelerations, ws) == OK else NO_ACCELERATIONS
 
 

@@ -20,7 +20,7 @@ from ..system.evaluate import evaluate_tangent
 from ..system.levels import acceleration_level, position_level, rate_level
 from ..system.records import OK
 from ..system.switch import engage_modes
-from .laws import UNTOUCHED
+from .laws import FORCE, MASSLESS
 from .records import (
     COUNT,
     GAP,
@@ -53,7 +53,7 @@ def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
     phi, scale, contacts = vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
     level, count = GAP_ROUNDING * position_level(ws), 0
     for k in range(ws.n_contacts):
-        if law[k] == UNTOUCHED:
+        if law[k] == FORCE or law[k] == MASSLESS:
             continue
         if pending[k] != 0 or memory[k, MODE] == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == ev.most:

@@ -9,7 +9,7 @@ from ..integrate.records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerati
 from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
 from ..system.levels import force_level
 from ..system.records import OK, structure_at
-from .laws import UNTOUCHED
+from .laws import MASSLESS
 from .reading import comes_back
 from .records import (
     B_N,
@@ -65,7 +65,7 @@ def find_pending(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     if not find_unsettled(ev, ws, found):
         return SETTLED
     for k in range(ws.n_contacts):
-        if found[k] != 0 and modes[k] != CLOSED and law[k] != UNTOUCHED:
+        if found[k] != 0 and modes[k] != CLOSED and law[k] != MASSLESS:
             status = _returns_at_once(ev, dr, ws, ms, lc, k)
             if status == YES:
                 found[k] = 0

@@ -1,4 +1,4 @@
-"""What the contact state machine may ask of a run and do with it, at the workspace's current point."""
+"""What the handling of force contacts, and studies, may ask of a run and do with it, at the workspace's point."""
 
 import logging
 from collections.abc import Sequence
@@ -7,26 +7,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, CLOSED, GAP_START, LOSS_JUMP, MODE, SLIDE, SLIDE_START, STICKS
-from ..contact.settling import comes_back
-from ..contact.touching import Touching
-from ..errors import ConsistencyError, SimulationError
+from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, SLIDE, STICKS
+from ..errors import ConsistencyError
 from ..events import Event
+from ..events.records import SETTLED, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
 from ..methods.registry import Formula
-from ..rounding import COORDINATE_NOISE, FIRST_TOUCH, FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
+from ..rounding import FIRST_TOUCH, RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
-from ..system.evaluate import evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
-from ..system.levels import force_level, position_level, rate_level
+from ..system.evaluate import evaluate_energy, evaluate_power
+from ..system.levels import position_level, rate_level
 from ..system.partition import prepare
-from ..system.projection import bring_to_rest
 from ..system.records import OK
 from ..system.redundancy import RedundantRow, choose_rows, describe
 from ..system.scales import Scales
 from ..system.workspace import Workspace
 from .drive import Drive
-from .records import HANDLED, HERE, MAX_STEP, STEP_SIZE
+from .failures import failure_of
+from .records import HANDLED, HERE, STEP_SIZE
 from .settings import Settings
 
 logger = logging.getLogger(__name__)
@@ -87,48 +85,44 @@ class ContactSide:
         """Elastic energy that the force law of contact k holds, J."""
         return float(contact.law.elastic_energy(max(-self.gap(k), 0.0)))
 
+    def inverse_masses(self, contacts: list[int]) -> NDArray[np.float64]:
+        """Inverse effective masses (2 contacts, 2 contacts) of these contacts, 1/kg: how unit impulses along normals
+        and, behind them, tangents move each other, with joints and other closed contacts intact.
+
+        Raises
+        ------
+        SimulationError : where impulses cannot be computed.
+        """
+        kept, key = self.memory.copy(), self.workspace.key
+        try:
+            while (status := self.drive.open(contacts)) != SETTLED:
+                self.memory[:] = kept
+                if status > WANT_PIVOTS:
+                    raise failure_of(self, status)
+                self.build_wanted(status)
+            return self.drive.instant.inverse_masses
+        finally:
+            self.memory[:] = kept
+            self.workspace.sync()
+            self.workspace.engage(*key)
+
     def effective_mass(self, k: int) -> float:
         """Mass that contact k feels: normal impulse for a unit change of the gap's rate, joints included, kg."""
-        before = self.memory[k].copy()
-        closed = np.flatnonzero(self.memory[: len(self.assembly.contacts), MODE] == CLOSED)
         try:
-            return 1.0 / float(Touching(self, [k], frozenset(int(j) for j in closed)).a.nn[0, 0])
+            return 1.0 / float(self.inverse_masses([k])[0, 0])
         finally:
-            self.memory[k] = before
             self.use_modes()
 
-    def unsettled_since(self, was: NDArray[np.float64]) -> list[int]:
-        """Contacts whose mode does not fit their force. `was`: the modes before this instant was settled.
-
-        Left out are those that have just closed because they would open by less than can be told from zero: they pull
-        by what the errors of the steps have left in the waves of an elastic body, and would open and close for ever.
-        """
-        found = self.unsettled()
-        new = [k for k in found if was[k] != CLOSED and k not in self.assembly.massless_contacts]
-        settled = {k for k in new if self.returns_at_once(k)}
-        return [k for k in found if k not in settled]
-
-    def returns_at_once(self, k: int) -> bool:
-        """True if contact k, closed, pulls by no more than lets its gap open by what could not be told from zero before
-        it closes again (`comes_back`). The next step then goes beyond that."""
-        before = self.memory[k].copy()
-        others = np.flatnonzero(self.memory[: len(self.assembly.contacts), MODE] == CLOSED)
-        try:
-            touching = Touching(self, [k], frozenset(int(j) for j in others if j != k))
-            motion, jerks = touching.free_accelerations()[0], touching.free_jerks()
-        except SimulationError:
-            # the others hold it, with the friction of those that slide: which of them stay is for all to settle
-            return False
-        finally:
-            self.memory[k] = before
-            self.use_modes()
-        # one that presses is unsettled by its friction, which is for the stick and slip to settle
-        if not motion[0] > 0.0 or not comes_back(self, [k], jerks, motion)[0]:
-            return False
-        # b + j t, the acceleration of the open gap, has turned well before this
-        beyond = min(4.0 * float(motion[0]) / -float(jerks[0]), float(self.clock[MAX_STEP]))
-        self.clock[STEP_SIZE] = max(self.clock[STEP_SIZE], beyond)
-        return True
+    def build_wanted(self, status: int) -> None:
+        """What compiled code needs to settle pending events."""
+        if status == WANT_ROOM:
+            self.drive.give_room()
+        elif status == WANT_STRUCTURE:
+            self.workspace.engage_wanted()
+        elif status == WANT_PIVOTS:
+            self.workspace.pivots_wanted()
+        else:
+            self.workspace.partition_wanted()
 
     def start_small(self, k: int, speed: float) -> None:
         """Begin contact k with a step in which it closes by FIRST_TOUCH of its size, so that the error control sees the
@@ -180,40 +174,6 @@ class ContactSide:
         # with the rates of the work accounts: Newmark's formula integrates them from here
         arrays["aux"][:] = arrays["a"]
 
-    # ---- constraint contacts ------------------------------------------------------------------------------------
-
-    def touching(self, pending: list[int]) -> list[int]:
-        """Constraint contacts without a gap at the workspace's point: closed ones, `pending`, and others that touch.
-        Those at massless ends are left out: they take no impulse."""
-        none = GAP_ROUNDING * self.gap_size(range(len(self.assembly.contacts)))
-        return [
-            k
-            for k, contact in enumerate(self.assembly.contacts)
-            if not isinstance(contact.law, ForceLaw)
-            and k not in self.assembly.massless_contacts
-            and (k in pending or self.memory[k, MODE] == CLOSED or abs(self.gap(k)) <= none[k])
-        ]
-
-    def held(self) -> frozenset[int]:
-        """Closed contacts at massless ends: to impacts of others they are joints."""
-        return frozenset(k for k in self.assembly.massless_contacts if self.memory[k, MODE] == CLOSED)
-
-    def slide_values(self, contacts: list[int]) -> dict[int, float]:
-        """Sliding distances of those contacts that have friction, m."""
-        found = {}
-        for k in contacts:
-            row, memory = self.assembly.contacts[k].slide_row, self.memory[k]
-            if row >= 0:
-                sticks = memory[MODE] == CLOSED and memory[SLIDE] == STICKS
-                found[k] = float(self.workspace.arrays["phi"][row] + (memory[SLIDE_START] if sticks else 0.0))
-        return found
-
-    def gap_values(self, contacts: list[int]) -> NDArray[np.float64]:
-        """Gaps of those contacts, (contacts,), m: of closed ones what rounding has left them."""
-        memory = self.memory[contacts]
-        held = np.where(memory[:, MODE] == CLOSED, memory[:, GAP_START], 0.0)
-        return np.asarray(self.workspace.arrays["phi"][[self.assembly.contacts[k].row for k in contacts]] + held)
-
     def gap_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
         """What the gaps of these contacts are small or large against at the workspace's point, (contacts,), m."""
         return position_level(self.workspace.record) * self._row_scale(contacts)
@@ -223,10 +183,6 @@ class ContactSide:
         scale, rows = self.workspace.arrays["row_scale"], self.workspace.arrays["contact_slide_rows"][list(contacts)]
         along = np.where(rows >= 0, scale[rows], 0.0)
         return rate_level(self.workspace.record) * np.maximum(self._row_scale(contacts), along)
-
-    def force_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
-        """The same of their normal forces, (contacts,), N."""
-        return force_level(self.workspace.record) / self._row_scale(contacts)
 
     def _row_scale(self, contacts: Sequence[int]) -> NDArray[np.float64]:
         arrays = self.workspace.arrays
@@ -251,68 +207,10 @@ class ContactSide:
         """Instants with events so far."""
         return int(self.drive.counts[HANDLED])
 
-    def meet_constraints(self) -> None:
-        """Bring positions and velocities onto the constraints of the present structure, by rounding's worth."""
-        for residual, x in (("phi", "q"), ("phid", "v")):
-            evaluate_residuals(self.workspace.record)
-            if not bring_to_rest(self.workspace, residual, x):
-                raise SimulationError(
-                    f"at t = {self.t_internal:.9g} s the closed contacts cannot be met together with the joints",
-                    t=self.t_internal,
-                    loop="contact",
-                )
-        evaluate_residuals(self.workspace.record)
-
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the workspace's point: they pull, or are held beyond
         their friction."""
-        arrays, none = self.workspace.arrays, self.no_force(range(len(self.assembly.contacts)))
-        found = []
-        for k, contact in enumerate(self.assembly.contacts):
-            if self.memory[k, MODE] != CLOSED:
-                continue
-            force, tolerance = -arrays["lam"][contact.row], float(none[k])
-            if force < -tolerance and force < -self._contact_noise(contact.row):
-                found.append(k)
-            elif contact.coulomb is not None and self.memory[k, SLIDE] == STICKS:
-                limit = contact.coulomb.sticking_coefficient * force
-                if abs(arrays["lam"][contact.slide_row]) > limit * (1.0 + SLIP_EXCESS) + tolerance:
-                    found.append(k)
-        return found
-
-    def _contact_noise(self, row: int) -> float:
-        """What rounding of the coordinates leaves in the force of the closed contact with this row, N."""
-        noise = self.force_noise()
-        rows, cols, values = self.workspace.jacobian()
-        here = np.flatnonzero((self.workspace.structure.active[rows] == row) & (values != 0.0))
-        if not np.any(noise[cols[here]]):
-            # on frames without stiffness of their own, which hand on the forces of others
-            work = float(np.max(noise * self.assembly.coordinate_scale, initial=0.0))
-            return work / float(self.workspace.arrays["row_scale"][row])
-        return float(np.max(noise[cols[here]] / np.abs(values[here]), initial=0.0))
-
-    def no_force(self, contacts: Sequence[int]) -> NDArray[np.float64]:
-        """Rounding of the multipliers: forces of these contacts below this are none, (contacts,), N."""
-        return FORCE_ROUNDING * self.force_size(contacts)
-
-    def tangent_product(self, c_q: float, c_v: float, x: NDArray[np.float64]) -> tuple[Any, Any]:
-        """(c_v D + c_q K) x (n,), without the mass matrix, and the same of the magnitudes of all terms."""
-        workspace, n = self.workspace, self.assembly.n
-        rows, cols = workspace.structure.rows, workspace.structure.cols
-        evaluate_tangent(workspace.record, c_q, c_v)
-        values = workspace.arrays["values"].copy()
-        evaluate_tangent(workspace.record, 0.0, 0.0)
-        here = np.flatnonzero((rows < n) & (cols < n))
-        terms = (values[here] - workspace.arrays["values"][here]) * x[cols[here]]
-        return np.bincount(rows[here], terms, n), np.bincount(rows[here], np.abs(terms), n)
-
-    def force_noise(self) -> NDArray[np.float64]:
-        """What rounding of the coordinates leaves in the forces (n,), N: in stiff bodies, coordinates that are nearly
-        equal make large forces that cancel each other. That of the largest travels to all of them as waves."""
-        scale = self.assembly.coordinate_scale
-        largest = float(np.max(np.abs(self.workspace.arrays["q"][: self.assembly.n]) / scale, initial=0.0))
-        noise = COORDINATE_NOISE * largest * scale
-        return np.asarray(self.tangent_product(1.0, 0.0, noise)[1])
+        return self.drive.unsettled()
 
     def presses(self, k: int) -> bool:
         """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""

@@ -20,8 +20,10 @@ from ..contact.progress import Progress
 from ..events import Event
 from ..events.instant import Instant
 from ..events.laws import code_of
-from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, instant_at
+from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, call_part, instant_at
+from ..events.report import MOST_EVENTS
 from ..events.settle import settle
+from ..events.unsettled import find_unsettled
 from ..methods.history import history_time
 from ..methods.records import METHOD_TYPE
 from ..rounding import NO_STEP
@@ -107,7 +109,8 @@ def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
     last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
     while True:
         if _is_due(dr, ws):
-            if hold or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
+            # which redundant rows are left out is for Python to look at, at every instant
+            if hold or ws.n_redundant > 0 or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
                 return SETTLE
             status = call_settle(dr.settle, dr)
             if status != SETTLED:
@@ -164,6 +167,20 @@ def settle_pending(dr: Any) -> int:
     return settle(dr, instant_at(dr.instant), ws, ms, lc)
 
 
+@compiled
+def unsettled_now(dr: Any) -> bool:
+    """`find_unsettled` at the current point, for Python."""
+    ws, ev = workspace_at(dr.workspace), instant_at(dr.instant)
+    return find_unsettled(ev, ws, ivec(ev.unsettled, ws.n_contacts))
+
+
+@compiled
+def open_now(dr: Any) -> int:
+    """`open_touching` at the current point, for Python."""
+    ev = instant_at(dr.instant)
+    return call_part(ev.open_touching, ev, dr, workspace_at(dr.workspace), method_at(dr.method))
+
+
 def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
     """What the record takes from the model."""
     contacts = assembly.contacts
@@ -205,7 +222,7 @@ class Drive:
         self.goals, self.counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
         self.goals[HANDLED_AT] = np.nan
         self.pending = np.zeros(count, dtype=np.int64)
-        self.events = np.zeros((EVENT_ROWS if contacts else 1, EVENT_SIZE))
+        self.events = np.zeros((max(EVENT_ROWS, 2 * MOST_EVENTS * len(contacts)) if contacts else 1, EVENT_SIZE))
         self.instant = Instant(assembly)
         self._record = ArrayRecord(
             DRIVE,
@@ -217,7 +234,8 @@ class Drive:
             },
             {
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": sim._loop.address,
-                "instant": self.instant.address, "settle": address_of(settle_pending, SETTLE_SIGNATURE) if contacts else 0,
+                "instant": self.instant.address, "event_rows": len(self.events),
+                "settle": address_of(settle_pending, SETTLE_SIGNATURE) if contacts else 0,
                 "n_breakpoints": len(assembly.breakpoints),
                 "run": address_of(run, RUN_SIGNATURE), "trial": address_of(trial_step, TRIAL_SIGNATURE),
                 "accept": address_of(accept, ACCEPT_SIGNATURE),
@@ -267,6 +285,20 @@ class Drive:
         self.pending[:] = 0
         self.pending[pending] = 1
         return int(settle_pending(self._record.record))
+
+    def unsettled(self) -> list[int]:
+        """Closed contacts whose mode does not fit the forces at the current point: they pull, or are held beyond their
+        friction."""
+        if not unsettled_now(self._record.record):
+            return []
+        return [int(k) for k in np.flatnonzero(self.instant.unsettled[: len(self._names)])]
+
+    def open(self, contacts: list[int]) -> int:
+        """Open these contacts at the current point, and find how impulses at them move each other: a status."""
+        while len(contacts) > self.instant.most:
+            self.give_room()
+        self.instant.touching = contacts
+        return int(open_now(self._record.record))
 
     @property
     def status(self) -> int:

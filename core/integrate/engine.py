@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
 from ..compiled.notices import compile_notices
-from ..contact import machine
+from ..contact.force_contact import handle_force
 from ..contact.laws import ForceLaw
-from ..contact.modes import MODE
 from ..contact.progress import Progress
 from ..description import Model
 from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
 from ..events import Event, Fallback
-from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
+from ..events.records import DECLINED, SETTLED, WANT_PIVOTS
 from ..linalg import SingularMatrixError
 from ..methods.history import recall, restart
 from ..methods.records import step_address
@@ -30,7 +29,7 @@ from ..system.assembly import Assembly
 from ..system.consistent import START_TOLERANCE, make_consistent
 from ..system.evaluate import evaluate_residuals
 from ..system.records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, SINGULAR, STAGE_SIGNATURE
-from ..system.redundancy import RedundantRow
+from ..system.redundancy import RedundantRow, choose_rows
 from ..system.scales import Scales, measure_scales
 from ..system.workspace import Workspace
 from ..tolerances import DEFAULT_ATOL
@@ -210,8 +209,9 @@ class Engine(ContactSide):
         self._new_history()
         # a force law that acts from the start holds energy from the start
         for k in touching:
-            if isinstance(a.contacts[k].law, ForceLaw):
-                machine.handle(self, [k])
+            law = a.contacts[k].law
+            if isinstance(law, ForceLaw):
+                handle_force(self, k, law)
         self._new_history()
         self.table.initial_energy = self.table.total_energy(self.sample())
         self._sample_now()
@@ -233,55 +233,80 @@ class Engine(ContactSide):
     # ---- at event rate ----------------------------------------
 
     def _handle_pending(self) -> None:
-        """Let the state machine act on the pending events at the newest row; then the history starts anew."""
+        """Let the pending events happen at the newest row; then the history starts anew."""
         if not self.pending:
             self._new_history()
             return
         pending, self.pending = self.pending, []
-        if self.compiled_events and self.method_arrays["ring"][1]:
-            if self._settled(pending):
-                return
-        t = self.t_internal if self.method_arrays["ring"][1] else self.settings.t0
+        if not self.compiled_events:
+            self._handle_otherwise(pending)
+            return
+        forces = [k for k in pending if isinstance(self.assembly.contacts[k].law, ForceLaw)]
+        constraints = [k for k in pending if k not in forces]
+        if forces:
+            self._handle_forces(forces, bool(constraints))
+        if constraints:
+            self._settle(constraints)
+
+    def _note_instant(self, pending: list[int]) -> None:
+        """One more instant with events, which Python handles."""
+        t = self.t_internal
         count = self.events_here + 1 if t == self.drive.goals[HANDLED_AT] else 1
         self.drive.goals[HANDLED_AT], self.drive.counts[HERE] = t, count
         self.drive.counts[HANDLED] += 1
         self.guard.note(t, count, [self.assembly.contacts[k].name for k in pending])
-        if self.method_arrays["ring"][1]:
-            # samples may have been asked for since the step that ended here
-            recall(self.workspace.record, self._method.record, 0)
+
+    def _handle_otherwise(self, pending: list[int]) -> None:
+        """Let studies of other treatments of contacts act."""
+        self._note_instant(pending)
+        # samples may have been asked for since the step that ended here
+        recall(self.workspace.record, self._method.record, 0)
         self._new_history()
-        was = self.memory[:, MODE].copy()
         self.handle_contacts(pending)
         self._new_history()
-        self.pending = self.unsettled_since(was)
+        self.pending = self.unsettled()
         self._sample_now()
 
-    def _settled(self, pending: list[int]) -> bool:
-        """Let compiled code settle the pending events; False, with nothing changed, if they are for Python."""
+    def _handle_forces(self, pending: list[int], more: bool) -> None:
+        """Let forces of contacts begin and end; `more`: other contacts have events at this instant too."""
+        self._note_instant(pending)
+        recall(self.workspace.record, self._method.record, 0)
+        self._new_history()
+        for k in pending:
+            law = self.assembly.contacts[k].law
+            if isinstance(law, ForceLaw):
+                handle_force(self, k, law)
+        self._new_history()
+        if not more:
+            self.pending = self.unsettled()
+            self._sample_now()
+
+    def _settle(self, pending: list[int]) -> None:
+        """Let compiled code settle the pending events of contacts that are constraints."""
         self.flush()
+        self.take_events()
+        if self.workspace.dropped:
+            self._look_at_redundant_rows()
         while (status := self.drive.settle(pending)) != SETTLED:
             self.workspace.sync()
             if status == DECLINED:
-                self.drive.take_pending()
-                return False
-            if status > WANT_PIVOTS:
+                self._note_instant(pending)
+                raise RuntimeError("compiled code declines only what the guard against endless events stops")
+            elif status > WANT_PIVOTS:
                 raise failure_of(self, status)
-            self.build_wanted(status)
+            else:
+                self.build_wanted(status)
         self.workspace.sync()
         self.pending = self.drive.take_pending()
         self.take_events()
-        return True
 
-    def build_wanted(self, status: int) -> None:
-        """What compiled code needs to settle pending events."""
-        if status == WANT_ROOM:
-            self.drive.give_room()
-        elif status == WANT_STRUCTURE:
-            self.workspace.engage_wanted()
-        elif status == WANT_PIVOTS:
-            self.workspace.pivots_wanted()
-        else:
-            self.workspace.partition_wanted()
+    def _look_at_redundant_rows(self) -> None:
+        """Choose anew which of them are left out, if others would be much better at the newest row."""
+        recall(self.workspace.record, self._method.record, 0)
+        if choose_rows(self.workspace):
+            self.note_redundant()
+            self.use_modes()
+            self._new_history()
 
     @property
     def compiled_events(self) -> bool:
@@ -294,8 +319,8 @@ class Engine(ContactSide):
             self.add_event(event)
 
     def handle_contacts(self, pending: list[int]) -> None:
-        """Let the state machine act on contacts with events. Studies of other treatments override this."""
-        machine.handle(self, pending)
+        """What studies of other treatments do at events of contacts, instead of what the laws say."""
+        raise NotImplementedError
 
     def _new_history(self) -> None:
         evaluate_residuals(self.workspace.record)

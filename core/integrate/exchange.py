@@ -18,17 +18,17 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of, caller, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
+from ..contact.modes import ACTIVE, CLOSED
 from ..description import Model
 from ..errors import ModelError
+from ..events.records import instant_at
 from ..events.settle import begin_anew
+from ..events.unsettled import find_unsettled
 from ..methods.history import bridge_rows, history_time, recall
 from ..methods.multistep import rows_available
 from ..methods.records import METHOD_TYPE
 from ..model.signals import INPUT_SIZE
-from ..rounding import FORCE_ROUNDING
 from ..stage.accelerations import solve_accelerations
-from ..system.levels import force_level
 from ..system.records import (
     COUNTERS_SIZE,
     LEAST_CONDITION,
@@ -111,24 +111,7 @@ def _input_changes(ex: Any, ws: Any) -> int:
 
 
 @internal
-def _unsettled(ws: Any) -> bool:
-    """True if the mode of a closed contact may not fit the forces at the current point (`ContactSide.unsettled`)."""
-    memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
-    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    work, static = FORCE_ROUNDING * force_level(ws), vec(ws.contact_sticking, ws.n_contacts)
-    for k in range(ws.n_contacts):
-        if memory[k, MODE] != CLOSED:
-            continue
-        force, none = -lam[rows[k]], work / vec(ws.row_scale, ws.m_ext)[rows[k]]
-        if force < -none:
-            return True
-        if slides[k] >= 0 and memory[k, SLIDE] == STICKS and abs(lam[slides[k]]) > static[k] * force + none:
-            return True
-    return False
-
-
-@internal
-def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any) -> bool:
+def _change_inputs(ex: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> bool:
     """Let the inputs take the values that are wanted, and start anew from now, as `restart_here` does; False, with the
     inputs as they were, if that takes more."""
     times = vec(ex.times, TIMES_SIZE)
@@ -148,7 +131,7 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any) -> bool:
         vec(ws.t, 1)[0] = t
     if status == OK:
         status = call_accelerations(ex.accelerations, ws)
-    if status != OK or _unsettled(ws):
+    if status != OK or find_unsettled(ev, ws, ivec(ev.unsettled, ws.n_contacts)):
         for k in range(n):
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]
@@ -209,10 +192,10 @@ def _read(ex: Any, ws: Any, ms: Any) -> bool:
 def exchange(ex: Any) -> int:
     """Set the inputs, go to the goal, read the channels."""
     ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
-    changes = _input_changes(ex, ws)
-    if changes < 0 or (changes > 0 and not _change_inputs(ex, ws, ms, lc)):
+    changes, dr = _input_changes(ex, ws), drive_at(ex.drive)
+    if changes < 0 or (changes > 0 and not _change_inputs(ex, instant_at(dr.instant), ws, ms, lc)):
         return DECLINED
-    dr, times = drive_at(ex.drive), vec(ex.times, TIMES_SIZE)
+    times = vec(ex.times, TIMES_SIZE)
     goals, counts = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE)
     goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[GOAL], _stop(times), ex.chunk
     times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]

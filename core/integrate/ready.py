@@ -12,7 +12,7 @@ from numba import types
 from ..compiled.jit import address_of
 from ..contact.cones import CONES_TYPE, Cones, solve_cones
 from ..contact.directions import farthest_directions, independent_directions
-from ..contact.touching import evaluate_joints, factor_joints, solve_joints
+from ..contact.joints import evaluate_joints, factor_joints, solve_joints
 from ..linalg import DENSE_LIMIT
 from ..linalg.factorization import make_sparse_ready
 from ..linalg.record import FACTOR_SIGNATURE, SOLVE_SIGNATURE

@@ -103,7 +103,7 @@ DRIVE = np.dtype(
             "restitution", "rest_ratio", "friction",  # (n_contacts,) float64
             "pending",                                # (n_contacts,) int64: 1 where an event has to be handled
             "found",                                  # (n_contacts, FOUND_SIZE) float64: of the location of events
-            "events",                                 # (EVENT_ROWS, EVENT_SIZE) float64: a ring that Python empties
+            "events", "event_rows",                   # (event_rows, EVENT_SIZE) float64: a buffer that Python empties
             "last_trial",                             # (1,) float64: size of the step that ends at the current point
             "nearest",                                # (NEAREST,) float64: the last event searched for (`search.py`)
         )

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.touching import evaluate_joints, factor_joints, solve_joints
+from ..contact.joints import evaluate_joints, factor_joints, solve_joints
 from ..errors import SimulationError
 from ..linalg import SingularMatrixError
 from ..system.evaluate import evaluate_residuals

@@ -43,7 +43,7 @@ LU = np.dtype(
             "wants",                       # what `analyze` has asked for; 0: nothing
             "wanted",                      # (n,) int64: place of each row in the pivot sequence
             "choice_work", "choice_room",  # scratch of `choice.py`
-            # sparse, of the analysis: L (unit diagonal) and U by columns; U is stored divided by the pivot of its column
+            # sparse, of the analysis: L (unit diagonal) and U by columns; U is stored divided by its columns' pivots
             "nl", "nu",
             "l_start", "u_start",                # (n + 1,) uint32
             "l_row", "l_col", "u_row", "u_col",  # (nl,), (nu,) uint32, rows ascending in each column

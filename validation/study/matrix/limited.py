@@ -1,7 +1,6 @@
 """A run that ends when it has cost too much, and what its CPU time is without compilation."""
 
 import time
-from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
@@ -17,18 +16,6 @@ MOST_NUMBERS = 2e7
 
 class LimitReached(Exception):
     """A run has cost too much."""
-
-
-class LimitedSimulation(Simulation):
-    """A run that looks at its limit at every event too: events that follow each other at no distance make no steps."""
-
-    look: Callable[[float], None] | None = None
-
-    def handle_contacts(self, pending: list[int]) -> None:
-        """Let the state machine act, unless the run has cost too much."""
-        if self.look is not None:
-            self.look(self.t_internal)
-        super().handle_contacts(pending)
 
 
 class CpuClock(event.Listener):
@@ -65,7 +52,7 @@ class CpuClock(event.Listener):
         return time.process_time() - self.start - self.compiled
 
 
-def run_limited(sim: LimitedSimulation, t_end: float, limit: float) -> float:
+def run_limited(sim: Simulation, t_end: float, limit: float) -> float:
     """Run `sim` to `t_end` (s); gives the CPU time, s.
 
     Raises
@@ -82,7 +69,7 @@ def run_limited(sim: LimitedSimulation, t_end: float, limit: float) -> float:
         if steps * sim.buffer.shape[1] > MOST_NUMBERS:
             raise LimitReached(f"record above {8e-6 * MOST_NUMBERS:.0f} MB {where}")
 
-    sim.progress = sim.look = look
+    sim.progress = look
     with clock:
         for k in range(1, SLICES + 1):
             # until: where the run pauses; its steps stay those of a run in one go

@@ -12,7 +12,7 @@ from ....models import Scenario
 from ..cases import Setting
 from ..runs import COUNTS
 from .course import Course, course_difference, event_errors, mean_difference
-from .limited import LimitedSimulation, LimitReached, run_limited
+from .limited import LimitReached, run_limited
 from .records import MatrixRun, Pair
 
 KEPT_OPTIONS = ("max_step", "first_step", "redundant")
@@ -81,11 +81,11 @@ class Measured:
             text = f"broken: {type(error).__name__}: {first_sentence(error)}"
             return MatrixRun(tolerance=tolerance, kind="broken", failure=text)
 
-    def simulation(self, setting: Setting, tolerance: float) -> LimitedSimulation:
+    def simulation(self, setting: Setting, tolerance: float) -> Simulation:
         """The run, ready to go."""
         return start(self.scenario, setting, *self.course.tolerances(tolerance))
 
-    def _figures(self, sim: LimitedSimulation) -> dict[str, Any]:
+    def _figures(self, sim: Simulation) -> dict[str, Any]:
         course, reference = Course.of(sim), self.course
         error = float(np.max(course_difference(course, self.spline, self.scale)))
         if not np.isfinite(error):
@@ -105,10 +105,10 @@ class Measured:
         }
 
 
-def start(scenario: Scenario, setting: Setting, rtol: float, atol: Mapping[str, float]) -> LimitedSimulation:
+def start(scenario: Scenario, setting: Setting, rtol: float, atol: Mapping[str, float]) -> Simulation:
     """A simulation that records every step."""
     kept = {name: value for name, value in scenario.options.items() if name in KEPT_OPTIONS}
-    return LimitedSimulation(scenario.model, setting.method, rtol, atol, record=True, **kept, **setting.options)
+    return Simulation(scenario.model, setting.method, rtol, atol, record=True, **kept, **setting.options)
 
 
 def first_sentence(error: Exception) -> str:
@@ -117,5 +117,5 @@ def first_sentence(error: Exception) -> str:
     return text.partition(". ")[0].rstrip(".") or type(error).__name__
 
 
-def _counts(sim: LimitedSimulation) -> dict[str, Any]:
+def _counts(sim: Simulation) -> dict[str, Any]:
     return {name: int(sim.stats[key]) for name, key in COUNTS.items()}
