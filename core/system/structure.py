@@ -53,7 +53,6 @@ class Structure:
     """The numbers in the slots, (n_values,)."""
     probe: NDArray[np.float64] = field(init=False)
     """Right-hand side (m_act,) with which the condition of the constraints is measured."""
-    present: Partition | None = None
     known: dict[bytes, Partition] = field(default_factory=dict)
     """Partitions by their dependent coordinates."""
     shared: dict[bytes, Partition] | None = None
@@ -61,7 +60,9 @@ class Structure:
     units: NDArray[np.float64] | None = None
     """What brings coordinates and all rows of Phi to one unit; `use_units` changes it."""
     record: ArrayRecord = field(init=False)
-    """For compiled code, which may change the present partition (`note_present`)."""
+    """For compiled code, which chooses the present partition too."""
+
+    _latest: Partition | None = None
 
     def __post_init__(self) -> None:
         self.values, self.probe = np.zeros(self.n_values), np.zeros(len(self.active))
@@ -85,6 +86,14 @@ class Structure:
                 "kkt": self.kkt.address, "kkt_query": self.kkt_query.address, "partition": 0, "n_partitions": 0,
             },
         )  # fmt: skip
+
+    @property
+    def present(self) -> Partition | None:
+        """The present partition."""
+        address = self.record.record["partition"]
+        if self._latest is None or self._latest.record.address != address:
+            self._latest = next((x for x in self.known.values() if x.record.address == address), None)
+        return self._latest
 
     @property
     def dependent(self) -> NDArray[np.int64] | None:
@@ -121,16 +130,19 @@ class Structure:
         new.values, new.probe, new.record = take(self.values), take(self.probe), self.record.moved(take)
         new.kkt, new.kkt_query = self.kkt.moved(take), self.kkt_query.moved(take)
         new.kkt_query.known = new.kkt.known
-        new.present = None if self.present is None else self.present.moved(take)
-        new.known = {} if new.present is None else {new.present.dependent.tobytes(): new.present}
+        present = None if self.present is None else self.present.moved(take)
+        new.known = {} if present is None else {present.dependent.tobytes(): present}
         new._list_partitions()
+        new._choose(present)
         return new
 
     def _list_partitions(self) -> None:
         addresses = [partition.record.address for partition in self.known.values()]
         self.record.arrays["partitions"][: len(addresses)] = addresses
         self.record.set_size("n_partitions", len(addresses))
-        self.record.set_size("partition", 0 if self.present is None else self.present.record.address)
+
+    def _choose(self, partition: Partition | None) -> None:
+        self.record.set_size("partition", 0 if partition is None else partition.record.address)
 
     @property
     def nnz(self) -> int:
@@ -146,8 +158,7 @@ class Structure:
         """Choose the dependent coordinates (m_act,): builds the factorisation of Phi_qd where it is not known yet."""
         if self.dependent is not None and np.array_equal(self.dependent, dependent):
             return  # most impacts come back to the same partition
-        self.present = self.known.get(dependent.tobytes()) or self._new_partition(dependent)
-        self.record.set_size("partition", self.present.record.address)
+        self._choose(self.known.get(dependent.tobytes()) or self._new_partition(dependent))
 
     def know_partition(self, dependent: NDArray[np.int64]) -> None:
         """Have the partition with these dependent coordinates (m_act,) ready for compiled code."""
@@ -164,18 +175,13 @@ class Structure:
                 self.shared[key] = new
         if self.shared is not None:
             new = new.fresh()
+        present = self.present
         while len(self.known) >= MOST_PARTITIONS:
-            del self.known[next(key for key, x in self.known.items() if x is not self.present)]
+            del self.known[next(key for key, x in self.known.items() if x is not present)]
         self.known[key] = new
         self._units_of(new, n)
         self._list_partitions()
         return new
-
-    def note_present(self) -> None:
-        """Take over the partition that compiled code has chosen."""
-        address = self.record.record["partition"]
-        if self.present is None or self.present.record.address != address:
-            self.present = next(x for x in self.known.values() if x.record.address == address)
 
     def make_wanted(self) -> None:
         """Make what compiled code has asked for to choose pivots."""
@@ -195,7 +201,7 @@ class Structure:
         new = twin(self)
         new.kkt = self.kkt.fresh()
         new.kkt_query = new.kkt.sibling()
-        new.present, new.known = None, {}
+        new.known = {}
         new.__post_init__()
         return new
 

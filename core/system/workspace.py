@@ -232,8 +232,9 @@ class Workspace:
         self.structure, self.key = structure, key_of(structure.codes[: len(self.assembly.contacts)])
         named = {name: getattr(structure, name) for name in _OF_STRUCTURE}
         self.arrays |= {**named, "entry_row": structure.rows, "entry_col": structure.cols}
-        if structure.present is not None:
-            self._use_partition(structure.present)
+        present = structure.present
+        if present is not None:
+            self._use_partition(present)
 
     def _use_partition(self, partition: Partition) -> None:
         row, col, slot = partition.free
@@ -241,13 +242,11 @@ class Workspace:
 
     def sync(self) -> None:
         """Take over what compiled code has chosen: structure and partition."""
-        address, before = self.record["structure"], self.structure.present
-        known = address == self.structure.record.address
-        if not known:
-            self.structure = self.patterns.at(address)
-        self.structure.note_present()
-        if not known or self.structure.present is not before:
-            self._use(self.structure)
+        address = self.record["structure"]
+        if address != self.structure.record.address:
+            self._use(self.patterns.at(address))
+        elif (present := self.structure.present) is not None and present.dependent is not self.arrays["dependent"]:
+            self._use_partition(present)
 
     def engage_wanted(self) -> None:
         """Build the structure that compiled code has asked for (`switch.py`) and does not know."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import BPoly
 
-from ....core import ConsistencyError, ModelError, SimulationError
+from ....core import ConsistencyError, ModelError, Simulation, SimulationError
 from ....models import Scenario
 from ..cases import Setting
 from ..runs import COUNTS
