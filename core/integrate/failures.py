@@ -21,7 +21,7 @@ from ..events.records import (
 from ..system.partition import prepare
 
 if TYPE_CHECKING:
-    from .engine import Engine
+    from .contact_side import ContactSide
 
 _OF_IMPACT = {
     NO_IMPACT: "neither pivoting nor Newton's method find forces of the contacts",
@@ -30,7 +30,7 @@ _OF_IMPACT = {
 }
 
 
-def failure_of(sim: "Engine", status: int) -> SimulationError | ConsistencyError:
+def failure_of(sim: "ContactSide", status: int) -> SimulationError | ConsistencyError:
     """The error for a status of `events/records.py`; the simulation is as it was before the instant."""
     t, instant, contacts = sim.t_internal, sim.drive.instant, sim.assembly.contacts
     names = ", ".join(f"'{contacts[k].name}'" for k in instant.touching)
@@ -83,7 +83,7 @@ def failure_of(sim: "Engine", status: int) -> SimulationError | ConsistencyError
     raise RuntimeError(f"status {status} of an instant is not known")
 
 
-def _inconsistent(sim: "Engine") -> ConsistencyError:
+def _inconsistent(sim: "ContactSide") -> ConsistencyError:
     """What `prepare` says of the structure that was tried."""
     key = sim.workspace.key
     try:
