@@ -107,6 +107,8 @@ class EquationBinding:
                 _, f_d, f_dd, _, _ = self._force(k, g[0], gd[0])
                 # the curvature of the gap is left out: it changes the rate of convergence, not the solution
                 stiffness = stiffness + (c_q * f_d + c_v * f_dd) * np.outer(gradient, gradient)
+        # compiled code may have taken another structure since
+        self.workspace.sync()
         structure, values = self.workspace.structure, arrays["values"]
         values[structure.slot_s[0][0]] += stiffness.ravel()
         if rows.size:

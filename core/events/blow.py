@@ -139,6 +139,13 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
+def _speed(ev: Any, i: int) -> float:
+    """Approach of touching contact i, 0 where that is rounding."""
+    approach = col(ev, APPROACH)[i]
+    return approach if approach > col(ev, ROUNDING)[i] else 0.0
+
+
+@internal
 def _account(ev: Any, dr: Any, ws: Any, ms: Any, gain: float) -> None:
     """Impulses and losses to the contacts' memories, and their events, that of the fastest approach first. `gain`: of
     energy, J."""
@@ -150,8 +157,9 @@ def _account(ev: Any, dr: Any, ws: Any, ms: Any, gain: float) -> None:
         least = max(least, FORCE_ROUNDING * impulse[i])
         if gain > 0.0:
             report(dr, t, GAINS, contacts[i], 0.0, -gain, 0.0, 0.0, 0.0, 0.0)
-        at = i
-        while at > 0 and approach[order[at - 1]] < approach[i]:
+        # those that rounding alone makes approach stay in the order of their numbers
+        at, speed = i, _speed(ev, i)
+        while at > 0 and _speed(ev, order[at - 1]) < speed:
             order[at] = order[at - 1]
             at -= 1
         order[at] = i

@@ -15,7 +15,6 @@ from tlismni.core import (
     NewtonImpact,
     Ramp,
     RigidBody2D,
-    Simulation,
     Sine,
     simulate,
 )
@@ -247,17 +246,6 @@ def test_stick_slip_on_a_belt(speed):
     assert result["b.vx"][sticks] == pytest.approx(speed, rel=1e-12)
     assert np.abs(result["c.sliding_velocity"][sticks]).max() < 1e-13
     assert balanced(result, 1e-9)
-
-
-def test_a_contact_that_presses_is_not_taken_for_one_that_opens_and_closes_at_once():
-    """Its mode may be wrong all the same: sticking beyond the limit of its friction."""
-    belt = Belt(0.3)
-    sim = Simulation(belt.model())
-    for t in np.linspace(0.0, belt.times(4)[-1], 40):
-        sim.advance(float(t))
-        step = sim.step_size
-        assert not sim.returns_at_once(0)
-        assert sim.step_size == step
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
