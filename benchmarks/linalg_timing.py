@@ -13,9 +13,6 @@ from numba import njit
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 from tlismni.core.linalg import Factorization, factor, solve
-from tlismni.core.linalg.record import COLUMNS, DENSE, PROGRAM
-
-KINDS = {DENSE: "dense", PROGRAM: "program", COLUMNS: "columns"}
 
 
 def chain_matrix(links: int, angles: np.ndarray, mass: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -73,7 +70,7 @@ def measure(n: int, rows: np.ndarray, cols: np.ndarray, values: np.ndarray, dens
     rhs = np.ones(n)
     splu_time = best_time(lambda: splu(matrix).solve(rhs), 5)
     print(
-        f"{n:6d} {KINDS[int(lu['kind'])]:>8s} {len(rows):7d} {factorization.fill:8d}"
+        f"{n:6d} {factorization.kind:>8s} {len(rows):7d} {factorization.fill:8d}"
         f" {factor_time * 1e6:10.2f} {solve_time * 1e6:9.2f} {(factor_time + solve_time) * 1e6:9.2f}"
         f" {splu_time * 1e6:10.1f} {analyze_time * 1e3:9.2f}",
         flush=True,

@@ -14,7 +14,7 @@ _KINDS = frozenset((np.dtype(np.float64).char, np.dtype(np.int64).char))
 
 
 @cache
-def _words_of(dtype: np.dtype) -> dict[str, int]:
+def words_of(dtype: np.dtype) -> dict[str, int]:
     """Place of each field among the 8-byte words of the record."""
     return {name: field[1] // 8 for name, field in (dtype.fields or {}).items()}
 
@@ -31,15 +31,19 @@ class Record:
     with a record of 70 fields. Of this it asks the same questions by the same names, and has the answers at once.
     """
 
-    __slots__ = ("_numba_type_", "_table", "data")
+    __slots__ = ("_numba_type_", "_table", "_words", "data")
 
     def __init__(self, table: NDArray[Any]) -> None:
-        self._table = table
+        self._table, self._words = table, table.view(np.int64)
         self.data = table.view(np.uint8)
         self._numba_type_ = _type_of(table.dtype)
 
     def __getitem__(self, field: str) -> int:
         return int(self._table[field][0])
+
+    def word(self, place: int) -> int:
+        """The field at this place (`words_of`), in a tenth of the time."""
+        return self._words.item(place)
 
 
 class ArrayRecord:
@@ -74,9 +78,11 @@ class ArrayRecord:
             table[name] = size
 
     def _use(self, table: NDArray[Any]) -> None:
-        self.table, self._words, self._place = table, table.view(np.int64), _words_of(table.dtype)
+        self.table, self._words, self._place = table, table.view(np.int64), words_of(table.dtype)
         self.record = Record(table)
         """What to hand to a compiled function."""
+        self.address = int(self._words.__array_interface__["data"][0])  # that of a structured array describes its type
+        """Address of the record itself, to be stored in another record."""
 
     def set_array(self, name: str, array: NDArray) -> None:
         """Let field `name` point to `array`."""
@@ -98,11 +104,6 @@ class ArrayRecord:
         new._use(take(self.table))
         new.arrays = {name: take(array) for name, array in self.arrays.items()}
         return new
-
-    @property
-    def address(self) -> int:
-        """Address of the record itself, to be stored in another record."""
-        return int(self.table.ctypes.data)
 
 
 class BlockRecord:

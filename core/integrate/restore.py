@@ -69,15 +69,16 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
         workspace.engage(*parts.key)
     structure = workspace.structure
     # most ways back are short, and patterns are dear: what fits is kept
-    analysed = structure.dependent is not None and _same(structure.dependent, parts.dependent)
-    if not analysed:
+    present = structure.present
+    if present is None or not _same(present.dependent, parts.dependent):
         workspace.set_partition(parts.dependent)
+        present = structure.present
     workspace.set_probe(parts.probe)
-    for factorization, factors in zip((structure.kkt, structure.lu_d, structure.kkt_query), parts.factors, strict=True):
-        if factorization is None:
-            raise RuntimeError("a structure with a partition has factorisations")
+    if present is None:
+        raise RuntimeError("a structure has a partition once one was chosen")
+    for factorization, factors in zip((structure.kkt, present.lu_d, structure.kkt_query), parts.factors, strict=True):
         perm_r, perm_c = factorization.analysis()
-        if not (analysed and _same(perm_r, factors.perm_r) and _same(perm_c, factors.perm_c)):
+        if not (_same(perm_r, factors.perm_r) and _same(perm_c, factors.perm_c)):
             factorization.analyze_with(factors.perm_r, factors.perm_c)
         for own, stored in ((factorization.lu_values, factors.values), (factorization.pivots, factors.pivots)):
             if own.shape != stored.shape:

@@ -87,16 +87,17 @@ class Snapshot(NamedTuple):
 def take_snapshot(sim: "Simulation") -> Snapshot:
     """Copy everything that decides the future."""
     workspace, structure, drive = sim.workspace, sim.workspace.structure, sim.drive
-    if structure.dependent is None or structure.lu_d is None:
+    partition = structure.present
+    if partition is None:
         raise RuntimeError("a simulation always has a partition once it is built")
     return Snapshot(
         workspace.state_bytes.copy(),
         workspace.state.dtype,
         tuple([
             Factors(*lu.analysis(), lu.lu_values.copy(), lu.pivots.copy())
-            for lu in (structure.kkt, structure.lu_d, structure.kkt_query)
+            for lu in (structure.kkt, partition.lu_d, structure.kkt_query)
         ]),
-        structure.dependent,
+        partition.dependent,
         structure.probe.copy(),
         workspace.key,
         workspace.dropped,

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..compiled.image import Take, twin
-from ..compiled.records import Record
+from ..compiled.records import Record, words_of
 from .analysis import Analysis, Known
 from .analyze import analyze, follow, use_analysis
 from .check_pattern import check_pattern
@@ -32,6 +32,7 @@ _OWN = (
     "wanted",
     "choice_work",
 )  # arrays that are not of the pattern
+_ANALYSIS = words_of(LU)["analysis"]
 _NO_VALUES, _NO_PIVOTS = np.empty(0), np.empty(0, np.int64)
 
 
@@ -89,6 +90,7 @@ class Factorization:
         self.arrays: dict[str, NDArray] = {}
         self.built: dict[bytes, Analysis] = {}
         self.known = Known(self.built)
+        self._latest: Analysis | None = None
         self._set(
             n=self.n,
             nnz=len(self.rows),
@@ -134,8 +136,9 @@ class Factorization:
         new.known = self.known.fresh()
         if not self.dense:
             new._point_to_known()
-            if self._table["analysis"][0]:
-                new.known.add(self._present())
+            present = self._present()
+            if present is not None:
+                new.known.add(present)
         return new
 
     def moved(self, take: Take) -> "Factorization":
@@ -150,8 +153,12 @@ class Factorization:
         new.known = self.known.moved(take)
         return new
 
-    def _present(self) -> Analysis:
-        return self.known.at(int(self._table["analysis"][0]))
+    def _present(self) -> Analysis | None:
+        """The present analysis, which compiled code may have chosen; none if dense, or before the first."""
+        address = self.record.word(_ANALYSIS)
+        if self._latest is None or self._latest.address != address:
+            self._latest = self.known.at(address) if address else None
+        return self._latest
 
     @property
     def address(self) -> int:
@@ -161,10 +168,8 @@ class Factorization:
     @property
     def lu_values(self) -> Floats:
         """The numeric factors and the limits on the growth of L as one array, to be copied out and back."""
-        values = self.arrays.get("values", _NO_VALUES)
-        if self.dense or not self._table["analysis"][0]:
-            return values
-        return values[: self.record["nl"] + self.record["nu"] + 2 * self.n]
+        values, present = self.arrays.get("values", _NO_VALUES), self._present()
+        return values if present is None else values[: present.size]
 
     @property
     def pivots(self) -> Ints:
@@ -183,10 +188,8 @@ class Factorization:
 
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense."""
-        if self.dense or not self._table["analysis"][0]:
-            return _NO_PIVOTS, _NO_PIVOTS
         present = self._present()
-        return present.perm_r, present.perm_c
+        return (_NO_PIVOTS, _NO_PIVOTS) if present is None else (present.perm_r, present.perm_c)
 
     def analyze(self, values: Floats) -> None:
         """Choose pivots that fit the source array `values`, and factor with them.
@@ -290,7 +293,8 @@ class Factorization:
         """Of the refactorisation: "dense", "program" or "columns"; "unready" before the first analysis."""
         if self.dense:
             return "dense"
-        return self._present().kind if self._table["analysis"][0] else "unready"
+        present = self._present()
+        return "unready" if present is None else present.kind
 
     def _functions(self, kind: str) -> dict[str, int]:
         factor_function, solve_function = functions_of(kind)

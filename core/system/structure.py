@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.image import Take, twin
-from ..compiled.records import ArrayRecord
+from ..compiled.records import ArrayRecord, words_of
 from ..linalg import Factorization
 from .assembly import Assembly, Batch
 from .partitions import MOST_PARTITIONS, Partition, build_partition
 from .records import STRUCTURE
 from .switch import codes_of
+
+_PARTITION = words_of(STRUCTURE)["partition"]
 
 
 @dataclass
@@ -90,7 +92,7 @@ class Structure:
     @property
     def present(self) -> Partition | None:
         """The present partition."""
-        address = self.record.record["partition"]
+        address = self.record.record.word(_PARTITION)
         if self._latest is None or self._latest.record.address != address:
             self._latest = next((x for x in self.known.values() if x.record.address == address), None)
         return self._latest

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
-from ..compiled.records import ArrayRecord, Record
+from ..compiled.records import ArrayRecord, Record, words_of
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
 from .assembly import Assembly
 from .evaluate import all_kernels
@@ -41,6 +41,7 @@ _NEVER_CHANGES = (
 )  # fmt: skip
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
+_STRUCTURE = words_of(WORKSPACE)["structure"]
 _CONDITIONS = [*CONDITIONS]
 MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
@@ -242,7 +243,7 @@ class Workspace:
 
     def sync(self) -> None:
         """Take over what compiled code has chosen: structure and partition."""
-        address = self.record["structure"]
+        address = self.record.word(_STRUCTURE)
         if address != self.structure.record.address:
             self._use(self.patterns.at(address))
         elif (present := self.structure.present) is not None and present.dependent is not self.arrays["dependent"]:

@@ -19,6 +19,7 @@ from tlismni.core.linalg import (
     pivot_rows,
     solve,
 )
+from tlismni.core.linalg.record import MOST_ANALYSES
 from tlismni.core.linalg.symbolic import fill_pattern
 
 seeds = st.integers(0, 2**32 - 1)
@@ -103,6 +104,39 @@ def test_new_values_of_a_chain_seldom_need_a_new_analysis(mass):
             b = rng.normal(size=n)
             assert backward_error(full(n, rows, cols, values), lu.solve(b), b) < 1e-12
     assert asked <= 0.01 * tried
+
+
+@given(seed=seeds)
+@settings(deadline=None, max_examples=25)
+def test_pivots_follow_from_the_values_alone(seed):
+    """Whatever was factorised before: bars that turn make other pivots, and come back to the same bits."""
+    rng = np.random.default_rng(seed)
+    links = int(rng.integers(2, 12))
+    turns = [chain(links, rng.uniform(-np.pi, np.pi, links), mass=10.0 ** rng.uniform(-3, 3)) for _ in range(4)]
+    rows, cols, _ = turns[0]
+    worn = Factorization(5 * links, rows, cols, np.arange(len(rows)), dense=False)
+    for k in rng.integers(0, len(turns), 12):
+        values = turns[k][2]
+        worn.analyze(values)
+        fresh = Factorization(5 * links, rows, cols, np.arange(len(rows)), dense=False)
+        fresh.analyze(values)
+        assert all(np.array_equal(x, y) for x, y in zip(worn.analysis(), fresh.analysis(), strict=True))
+        assert worn.lu_values.tobytes() == fresh.lu_values.tobytes()
+        x = rng.normal(size=5 * links)
+        assert np.allclose(worn.solve(full(5 * links, rows, cols, values) @ x), x, rtol=1e-7, atol=1e-7)
+
+
+def test_more_analyses_than_are_kept_make_no_difference():
+    n, rng = 12, np.random.default_rng(7)
+    rows, cols = (x.ravel() for x in np.indices((n, n)))
+    lu = Factorization(n, rows, cols, np.arange(n * n), dense=False)
+    for _ in range(2 * MOST_ANALYSES + 10):
+        values = np.zeros((n, n))
+        values[rng.permutation(n), np.arange(n)] = 10.0
+        values += rng.uniform(-0.1, 0.1, (n, n))
+        lu.analyze(values.ravel())
+        x = rng.normal(size=n)
+        assert np.allclose(lu.solve(values @ x), x)
 
 
 @pytest.mark.parametrize("links", [2, 40, 400])

@@ -1,0 +1,68 @@
+"""Disks that fall into a box and come to rest on each other, with friction: many contacts, many instants."""
+
+import numpy as np
+import pytest
+from tlismni.core import (
+    CoulombFriction,
+    Disk2D,
+    DiskOnDisk2D,
+    DiskOnHalfPlane2D,
+    HalfPlane2D,
+    Marker2D,
+    Model,
+    NewtonImpact,
+    RigidBody2D,
+    Simulation,
+)
+
+RADIUS, WIDTH, G = 0.05, 0.34, 9.81
+
+
+def heap(count, restitution, friction, seed):
+    """So many disks of 1 kg over a box of 0.34 m, three in a row."""
+    rng = np.random.default_rng(seed)
+    law, rough = NewtonImpact(restitution=restitution), CoulombFriction(coefficient=friction)
+    bodies = [
+        RigidBody2D(
+            name=f"disk{k}", mass=1.0, inertia=0.5 * RADIUS**2,
+            position=(WIDTH * (k % 3 + 0.5) / 3 + rng.uniform(-0.005, 0.005), 0.08 + 0.12 * (k // 3)),
+        )
+        for k in range(count)
+    ]  # fmt: skip
+    disks = [Disk2D(marker=Marker2D(body=body.name), radius=RADIUS) for body in bodies]
+    walls = [
+        HalfPlane2D(),
+        HalfPlane2D(marker=Marker2D(point=(0.0, 0.0), angle=-np.pi / 2)),
+        HalfPlane2D(marker=Marker2D(point=(WIDTH, 0.0), angle=np.pi / 2)),
+    ]
+    contacts = [
+        DiskOnHalfPlane2D(name=f"wall{i}_{k}", plane=wall, disk=disk, law=law, friction=rough)
+        for i, wall in enumerate(walls)
+        for k, disk in enumerate(disks)
+    ]
+    contacts += [
+        DiskOnDisk2D(name=f"pair{i}_{j}", a=disks[i], b=disks[j], law=law, friction=rough)
+        for i in range(count)
+        for j in range(i)
+    ]
+    return Model(gravity=(0.0, -G), bodies=bodies, contacts=contacts)
+
+
+# what the error control leaves in the energy: at its tolerance of 1e-6 a method of second order more than one of fifth
+@pytest.mark.parametrize("method, ledger", [("ebdf", 1e-8), ("hht", 1e-6)])
+@pytest.mark.parametrize("restitution, friction, seed", [(0.3, 0.4, 0), (0.0, 0.2, 1)])
+def test_a_small_heap_comes_to_rest(method, ledger, restitution, friction, seed):
+    count = 5
+    sim = Simulation(heap(count, restitution, friction, seed), method)
+    least = 0.0
+    for t in np.linspace(0.0, 1.5, 31)[1:]:
+        sim.advance(float(t))
+        sim.sample()
+        least = min(least, *(sim.gap(k) for k in range(len(sim.assembly.contacts))))
+    values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    dropped = values["energy.dissipation"] + values["energy.impact_loss"]
+    assert least > -1e-9
+    assert np.max(np.abs(sim.workspace.arrays["v"][: 3 * count])) < 1e-3
+    assert abs(values["energy.balance"]) < ledger * dropped
+    assert values["energy.kinetic"] < 1e-6 * dropped
+    assert sum(event.kind == "impact" for event in sim.events) > count
