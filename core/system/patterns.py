@@ -38,8 +38,11 @@ class Patterns:
         new._own[key] = structure
         return new
 
-    def get(self, assembly: Assembly, key: Key) -> tuple[Structure, bool]:
-        """The structure of `key`: kept, or built; and whether it is a new one."""
+    def get(self, assembly: Assembly, key: Key, present: Structure | None) -> tuple[Structure, bool]:
+        """The structure of `key`: kept, or built; and whether it is a new one. The `present` one, whose memory compiled
+        code works on, is not given up."""
+        if present is not None:
+            self.at(present.record.address)
         found = self._own.pop(key, None)
         structure = found or self._new(assembly, key)
         while len(self._own) >= MOST_STRUCTURES:

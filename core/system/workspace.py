@@ -279,7 +279,8 @@ class Workspace:
 
     def structure_of(self, *key: frozenset[int]) -> Structure:
         """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
-        structure, new = self.patterns.get(self.assembly, key)
+        present = self.structure if self.record.word(_STRUCTURE) else None
+        structure, new = self.patterns.get(self.assembly, key, present)
         if structure.units is not self.units:
             structure.use_units(self.units, self.assembly.n)
         if new:
