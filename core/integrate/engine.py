@@ -1,4 +1,4 @@
-"""Engine: the arrays, records and structure of one run, and what the contact state machine may do with them."""
+"""Engine: the arrays, records and structure of one run, its start, and what Python does at its events."""
 
 import logging
 import math

@@ -38,7 +38,7 @@ class Batch:
 
 @dataclass
 class ContactInfo:
-    """What the contact state machine knows of a contact."""
+    """What the handling of events knows of a contact."""
 
     name: str
     row: int
