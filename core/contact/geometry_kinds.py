@@ -36,6 +36,8 @@ _KINDS: dict[Any, int] = {
     bristle_disk_on_line_kernel: LINE,
     disk_on_cable_kernel: CABLE,
 }
+MAY_SLEEP = (DISKS, PLANE, SEGMENT)
+"""Kinds whose kernels leave out contacts that sleep (`integrate/asleep.py`), but those with bristles."""
 
 
 def kind_of(kernel: Any) -> int:

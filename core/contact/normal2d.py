@@ -8,13 +8,19 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
-from ..compiled.views import imat, mat, vec
+from ..compiled.views import imat, ivec, mat, vec
 from ..elements.geometry2d import add_hessian, add_product, along, constrain, distance, height_over_line, levels
 from .laws import call_law
 from .modes import ACTIVE, APPROACH_SPEED, CLOSED, MEMORY_SIZE, MODE
 
 LAW_ADDRESS = 1
 """Column of `extra` with the address of a force law's formula; 0: the contact is a constraint."""
+
+
+@internal
+def asleep(b: Any, e: int) -> bool:
+    """True if element e of a batch of contacts is too far from touching to be evaluated."""
+    return ivec(b.asleep, b.n_memory)[imat(b.extra, b.count, b.nextra)[e, 0]] != 0
 
 
 @internal
@@ -90,6 +96,8 @@ def disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, b.npar)
     coord = imat(b.coord, b.count, 6)
     for e in range(b.count):
+        if asleep(b, e):
+            continue
         g, gradient, hessian = height_over_line(
             vec(b.q, b.n_extended), coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4]
         )
@@ -101,5 +109,7 @@ def disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, b.npar)
     coord = imat(b.coord, b.count, 6)
     for e in range(b.count):
+        if asleep(b, e):
+            continue
         d, gradient, hessian = distance(vec(b.q, b.n_extended), coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])
         act(b, job, e, d - par[e, 5], gradient, hessian)

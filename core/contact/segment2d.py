@@ -21,7 +21,7 @@ from ..model.base import NonNegative, Positive, Record
 from ..model.markers import Marker2D
 from .bristle2d import act_bristles
 from .contact2d import Contact2D, Disk2D
-from .normal2d import act
+from .normal2d import act, asleep
 from .sliding2d import QUARTER_TURN, act_sliding
 
 LENGTH = 16
@@ -98,6 +98,8 @@ def slide_on_segment(q: Any, coord: Any, par: Any) -> Any:
 def disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6), vec(b.q, b.n_extended)
     for e in range(b.count):
+        if asleep(b, e):
+            continue
         g, gradient, hessian = gap_to_segment(q, coord[e], par[e])
         act(b, job, e, g, gradient, hessian)
 
@@ -106,6 +108,8 @@ def disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
 def sliding_disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
+        if asleep(b, e):
+            continue
         g, g_gradient, g_hessian = gap_to_segment(q, coord[e], par[e])
         s, gradient, hessian = slide_on_segment(q, coord[e], par[e])
         period = 2.0 * par[e, LENGTH] + 2.0 * np.pi * par[e, 5]

@@ -25,7 +25,7 @@ from ..elements.geometry2d import (
 )
 from .friction import call_friction
 from .modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
-from .normal2d import LAW_ADDRESS, act, evaluate_law
+from .normal2d import LAW_ADDRESS, act, asleep, evaluate_law
 
 FRICTION = 11
 """First friction parameter in the table of parameters."""
@@ -182,6 +182,8 @@ def slide_on_disk(q: Any, coord: Any, par: Any) -> Any:
 def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
+        if asleep(b, e):
+            continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_half_plane(q, coord[e], par[e])
         act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 0.0)
 
@@ -190,5 +192,7 @@ def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
 def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
+        if asleep(b, e):
+            continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_disk(q, coord[e], par[e])
         act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * par[e, 5])

@@ -103,7 +103,9 @@ def _look(ev: Any, ms: Any) -> None:
         if whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED:
             # one that did not slide by itself, since others held it, may already go the other way by a little
             turned = ms.exact != 0 and slid[i] * slide_rate[i] < -rounding[i]
-            slides = abs(slid[i]) == 1.0 and (turned or col(ev, STOPS)[i] == 0.0)
+            # what the forces were before this instant says nothing of one that hardly moves
+            moves = abs(slide_rate[i]) > rounding[i] and col(ev, STOPS)[i] == 0.0
+            slides = abs(slid[i]) == 1.0 and (turned or moves)
             way = np.sign(slide_rate[i]) if turned else slid[i]
             known[i] = way if slides else 0.0
 

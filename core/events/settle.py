@@ -23,6 +23,7 @@ from ..contact.modes import (
 from ..contact.modes import STICKS as STUCK
 from ..contact.progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
 from ..contact.progress import COUNT as GUARDED
+from ..integrate.asleep import look_at_all
 from ..integrate.records import (
     CLOSE,
     COUNTS_SIZE,
@@ -207,6 +208,7 @@ def _count(dr: Any, t: float) -> None:
 def _sample(dr: Any, ws: Any, lc: Any) -> None:
     if lc.capacity > 0:
         cursor = ivec(lc.cursor, 1)
+        look_at_all(ws, lc)
         call_sample(dr.write_sample, ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
         cursor[0] += 1
 

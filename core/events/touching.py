@@ -51,9 +51,9 @@ def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
     memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
     pending, rows = ivec(dr.pending, ws.n_contacts), ivec(ws.contact_rows, ws.n_contacts)
     phi, scale, contacts = vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
-    level, count = GAP_ROUNDING * position_level(ws), 0
+    level, count, asleep = GAP_ROUNDING * position_level(ws), 0, ivec(ws.asleep, ws.n_contacts)
     for k in range(ws.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS:
+        if law[k] == FORCE or law[k] == MASSLESS or asleep[k] != 0:
             continue
         if pending[k] != 0 or memory[k, MODE] == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == ev.most:

@@ -93,6 +93,15 @@ def advance_to(
 ) -> None:
     """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending.
     `came`: the step count at the beginning, and what `drive_on` has returned a moment ago."""
+    try:
+        _advance_to(sim, t, stop, hold, came)
+    except BaseException:
+        # it may have been on the way back to compiled code, which had let some sleep
+        sim.drive.wake()
+        raise
+
+
+def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tuple[int, int] | None) -> None:
     first, code = (step_count(sim), None) if came is None else came
     repaired_at = math.nan
     chunk = steps_at_once(sim.assembly.n)

@@ -30,6 +30,7 @@ from ..rounding import NO_STEP
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
 from ..system.records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
+from .asleep import wake_all
 from .loop import accept, run, trial_step
 from .records import (
     ACCELERATIONS_SIGNATURE,
@@ -77,6 +78,9 @@ from .sliding import any_slides, may_have_jammed
 if TYPE_CHECKING:
     from .engine import Engine
 
+MANY = 6
+"""Contacts from which on it pays to let those sleep that are far from touching."""
+
 logger = logging.getLogger(__name__)
 workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
 
@@ -105,6 +109,17 @@ def _aim(dr: Any, ms: Any, lc: Any) -> int:
 @internal
 def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
     """Steps and events up to the goal; `hold`: only up to where events are pending."""
+    lc.may_sleep = 1 if ws.n_contacts >= MANY else 0
+    code = _drive_on(dr, ws, ms, lc, hold)
+    lc.may_sleep = 0
+    # whoever builds what is wanted does not look at gaps, and comes back at once
+    if code != WANTED:
+        wake_all(ws, ms, lc)
+    return code
+
+
+@internal
+def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
     counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
     last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
     while True:
@@ -158,6 +173,12 @@ def drive(dr: Any, hold: bool) -> int:
 def aim_now(dr: Any) -> int:
     """`_aim`, for Python."""
     return _aim(dr, method_at(dr.method), loop_at(dr.loop))
+
+
+@compiled
+def wake_now(dr: Any) -> None:
+    """`wake_all`, for Python."""
+    wake_all(workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
 
 
 @compiled
@@ -278,6 +299,10 @@ class Drive:
         """Set the clock of the loop for the way to `t` (s); no step goes beyond `stop`."""
         self.goals[GOAL], self.goals[LAST_STOP] = t, stop
         aim_now(self._record.record)
+
+    def wake(self) -> None:
+        """Let no contact sleep any more (`asleep.py`)."""
+        wake_now(self._record.record)
 
     def settle(self, pending: list[int]) -> int:
         """Let the events of the contacts `pending` happen at the newest row: a status of `events/records.py`. With any

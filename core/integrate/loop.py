@@ -39,6 +39,7 @@ from ..system.records import (
     STEPS,
     WORST_CONDITION,
 )
+from .asleep import doze, look_at_all
 from .records import (
     BREAK_TIME,
     CHUNK,
@@ -156,11 +157,13 @@ def accept(ws: Any, ms: Any, lc: Any) -> None:
     """The current point becomes the newest row, and a sample and a step record if they are wanted."""
     push(ws, ms)
     remember(ws, lc)
+    doze(ws, lc)
     ivec(ws.counters, COUNTERS_SIZE)[STEPS] += 1
     if lc.log_capacity > 0:
         _write_log(ws, ms, lc)
     if lc.capacity > 0 and ivec(ws.counters, COUNTERS_SIZE)[STEPS] % lc.stride == 0:
         cursor = ivec(lc.cursor, 1)
+        look_at_all(ws, lc)
         write_sample(ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
         cursor[0] += 1
 

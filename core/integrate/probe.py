@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from ..compiled.jit import internal
 from ..compiled.kernels import BATCH, RESIDUAL, batch_at, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
-from ..contact.geometry_kinds import EQUATIONS
+from ..contact.geometry_kinds import EQUATIONS, MAY_SLEEP
 from ..methods.history import history_row, history_time
 from ..system.evaluate import evaluate_residuals
 from ..system.workspace import Workspace
 
-NEAR_SIZE = 2
-KIND, KERNEL = range(NEAR_SIZE)
-"""Columns of `near`."""
+NEAR_SIZE = 3
+KIND, KERNEL, SLEEPS = range(NEAR_SIZE)
+"""Columns of `near`; SLEEPS: 1 for contacts that may fall asleep."""
 BRACKET = 4
 HAPPENS = 3
 """Columns of `brackets`: the place before an event, one beyond it and the deepest after it, in parts of the step; and
@@ -38,13 +38,14 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
     own |= {name: np.zeros(m_ext) for name in ("lam", "phi", "phid", "phidd")}
     own["monitor"] = np.zeros(len(arrays["monitor"]))
     count = max(len(assembly.contacts), 1)
+    own["asleep"] = np.zeros(count, dtype=np.int64)
     near, probes = np.zeros((count, NEAR_SIZE), dtype=np.int64), np.zeros(count, BATCH)
     near[:, KIND] = EQUATIONS
     for number, batch in enumerate(assembly.batches):
         for k in np.unique(batch.contact[batch.contact >= 0]):
             elements = np.flatnonzero(batch.contact == k)
             if probes[k]["count"] or elements[-1] - elements[0] != len(elements) - 1:
-                near[k] = EQUATIONS, 0  # in pieces here and there
+                near[k] = EQUATIONS, 0, 0  # in pieces here and there
                 continue
             probes[k] = workspace.batch_table(number)
             probes[k]["count"] = len(elements)
@@ -52,11 +53,12 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
                 probes[k][name] = table[elements[0]].ctypes.data
             for name, array in own.items():
                 probes[k][name] = array.ctypes.data
-            near[k] = assembly.contacts[k].kind, batch.address
+            kind = assembly.contacts[k].kind
+            near[k] = kind, batch.address, kind in MAY_SLEEP and k not in assembly.massless_contacts
     return {
         "near": near, "probes": probes.view(np.int64).reshape(count, -1),
         **{f"probe_{name}": array for name, array in own.items()},
-        "travel": np.zeros((2, n_ext)), "brackets": np.zeros((count, BRACKET)),
+        "travel": np.zeros((2, n_ext)), "brackets": np.zeros((count, BRACKET)), "margin": np.zeros(count),
     }  # fmt: skip
 
 

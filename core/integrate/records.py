@@ -20,7 +20,9 @@ LOOP = np.dtype(
             "leap",                             # (n,) float64: how far a step may move each coordinate
             "watch",                            # (n_contacts, WATCH) float64: what `remember` says of the newest row
             "near", "probes",                   # (n_contacts, NEAR_SIZE) int64, and a BATCH for each contact
-            *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor")),
+            *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor", "asleep")),
+            "may_sleep",                        # 1: contacts may fall asleep (`asleep.py`)
+            "margin",                           # (n_contacts,) float64: of those that do
             "travel",                           # (2, n_ext) float64: bounds of the coordinates' ways within a step
             "brackets",                         # (n_contacts, BRACKET) float64: where in a step events are
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing

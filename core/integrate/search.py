@@ -26,6 +26,9 @@ AT_ONCE = 1e-6
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
 SAME = 1e-12
 """Of a step: events nearer than this are at one instant."""
+LATER = 1.001
+"""Events that the dense output puts this much later than the first one are searched for only if they turn out to lie
+before it: each search makes the step several times."""
 
 NEAREST = 3
 """Sizes of steps before and beyond the last event that was searched for, and the size that ends there."""
@@ -34,7 +37,7 @@ NEAREST = 3
 GAP, FORCE, OVERLAP, CLOSING = range(4)
 # columns of `found`
 SIZE, STATE, PLACES = range(3)
-UNKNOWN, HAPPENED, SAFE = 0.0, 1.0, 2.0
+UNKNOWN, HAPPENED, SAFE, CANDIDATE = 0.0, 1.0, 2.0, 3.0
 
 
 @internal
@@ -327,7 +330,7 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         found[k, STATE] = UNKNOWN
     step, least = h, NO_STEP * abs(history_time(ms, 0))
     while call_find_events(lc.find_events, ws, ms, lc, step, True):
-        late, first = False, step
+        late, first, soonest = False, step, np.inf
         for k in range(ws.n_contacts):
             if brackets[k, HAPPENS] == 0.0 or found[k, STATE] != UNKNOWN:
                 continue
@@ -338,12 +341,17 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
             for i in range(3):
                 places[1 + i] = step * brackets[k, i]
             places[4] = _guess(ws, ms, lc, k, step, places)
-            found[k, STATE] = -1.0
+            if places[4] >= 0.0:
+                soonest = min(soonest, places[4])
+            found[k, STATE] = CANDIDATE
         if not late:
             break
+        for k in range(ws.n_contacts):
+            if found[k, STATE] == CANDIDATE and found[k, PLACES + 4] > LATER * soonest:
+                found[k, STATE] = UNKNOWN
         nearest = np.inf
         for k in range(ws.n_contacts):
-            if found[k, STATE] == -1.0:
+            if found[k, STATE] == CANDIDATE:
                 status, size, happens = _event_step(dr, ws, ms, lc, k, step, found[k, PLACES:])
                 if status != OK:
                     return status

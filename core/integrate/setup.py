@@ -119,6 +119,7 @@ def build_loop(
             "fine_starter": step_address(FINE_STARTER),
             "rows": formula.rows,
             "capacity": capacity,
+            "may_sleep": 0,
             "stride": max(int(record), 1),
             "sample_length": length,
         },

@@ -17,6 +17,7 @@ from ..contact.modes import (
 )
 from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
 from ..system.levels import force_level, position_level, rate_level
+from .asleep import sleeps_on
 from .certain import first_root, way_of_gap
 from .force_watch import forces_may_vanish, forces_vanish, sliding_turns
 from .probe import BRACKET, HAPPENS, set_travel
@@ -138,7 +139,7 @@ def find_events(ws: Any, ms: Any, lc: Any, h: float, everyone: bool) -> bool:
     set_travel(ws, ms, lc, h)
     brackets, found, none = mat(lc.brackets, ws.n_contacts, BRACKET), False, FORCE_ROUNDING * force_level(ws)
     for k in range(ws.n_contacts):
-        inside = _event_inside(ws, ms, lc, k, h, none)
+        inside = not sleeps_on(ws, ms, lc, k) and _event_inside(ws, ms, lc, k, h, none)
         if inside and not everyone:
             return True
         brackets[k, HAPPENS] = 1.0 if inside else 0.0

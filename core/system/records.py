@@ -18,6 +18,7 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_sticking",
+            "asleep",  # (contacts,) int64: 1 where a contact is not evaluated (`integrate/asleep.py`)
             # (contacts,) codes of `switch.py`; the present structure, all that are kept, and how many
             "wanted", "structure", "known", "n_known",
             "wanted_dependent",  # (m_act,) int64: the partition that compiled code has chosen

@@ -188,10 +188,11 @@ class Structure:
     def make_wanted(self) -> None:
         """Make what compiled code has asked for to choose pivots."""
         factorizations = [self.kkt, self.kkt_query, *(partition.lu_d for partition in self.known.values())]
-        for factorization in factorizations:
-            if factorization.wants:
-                factorization.make_wanted()
-        for factorization in factorizations:
+        wanting = [factorization for factorization in factorizations if factorization.wants]
+        for factorization in wanting:
+            factorization.make_wanted()
+        # what one gets to know its siblings may take
+        for factorization in factorizations if wanting else ():
             factorization.have_room()
 
     def share(self) -> None:

@@ -30,6 +30,7 @@ from .switch import key_of, use_partition, use_structure
 
 _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
+    "asleep",
 )  # fmt: skip
 
 _OF_STRUCTURE = (
@@ -86,6 +87,7 @@ class Workspace:
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
             "contact_sticking": sticking(a),
             "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
+            "asleep": np.zeros(max(contacts, 1), dtype=np.int64),
             "probe": np.zeros(0),
             **{
                 name: np.zeros(0, dtype=np.int64)
