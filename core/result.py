@@ -30,6 +30,7 @@ class Result:
         fallbacks: Sequence[Fallback] = (),
         step_log: NDArray[np.float64] | None = None,
         redundant: Sequence[RedundantRow] = (),
+        system: Any = None,
     ) -> None:
         self._samples = samples
         self._table = table
@@ -44,6 +45,8 @@ class Result:
         self.redundant = tuple(redundant)
         """Constraint rows that others imply (`RedundantRow`): left out of the equations but checked. Multipliers of
         these joints and of those they repeat are not unique; those of the rows left out are zero."""
+        self.system = system
+        """The Model or EquationSystem of the run; None if it is not known."""
 
     @property
     def t(self) -> NDArray[np.float64]:

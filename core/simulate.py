@@ -104,7 +104,7 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
     samples = np.concatenate(blocks) if blocks else np.zeros((0, sim.buffer.shape[1]))
     steps = np.concatenate(sim.step_logs) if sim.step_logs else None
     stats = {**sim.stats, "wall_time": wall_time}
-    return Result(samples, sim.table, sim.events, stats, sim.fallbacks, steps, sim.redundant)
+    return Result(samples, sim.table, sim.events, stats, sim.fallbacks, steps, sim.redundant, sim.system)
 
 
 def _check_stride(record: bool | int) -> int:

@@ -1,0 +1,171 @@
+"""Bodies as parts of a scene: frames with the shapes that drawings make up, flexible bodies as coloured bands."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..core.elements import (
+    AxialRod,
+    BodyElement,
+    FlexibleBody,
+    LinearSystem,
+    MaterialPoint2D,
+    MovingFrame2D,
+    PlanarFrame,
+    ReducedBody2D,
+)
+from ..core.elements.flexible_body import along_axis
+from .drawing.bodies import draw_body, standing
+from .drawing.shapes import INK, STEEL, Circle, Drawing, Label, Path, Point, turned
+from .motion import Motion
+from .scene import Anchor, Band, Field, Floats, Frame, Gauge, Part, Scene, Shape
+
+MOST_POINTS = 120
+"""Points of a flexible body's line."""
+ROD, BEAM = 4.0, 1.4
+"""Widths of flexible bodies, in hundredths of the scene's size."""
+
+
+class Stage:
+    """A scene that is being set up, and what its makers need to know."""
+
+    def __init__(self, scene: Scene, motion: Motion) -> None:
+        self.scene, self.motion = scene, motion
+        self.size = scene.size
+        self._numbers: dict[str, int] = {}
+
+    def add_frame(self, frame: Frame) -> int:
+        """Put a frame into the scene; gives its number."""
+        self._numbers[frame.name] = len(self.scene.frames)
+        self.scene.frames.append(frame)
+        return self._numbers[frame.name]
+
+    def number(self, body: str) -> int:
+        """Number of a body's frame."""
+        return self._numbers[body]
+
+    def anchor(self, body: str, point: Point) -> Anchor:
+        """A point of a body."""
+        return Anchor(self.number(body), point)
+
+    def add_part(self, body: str, layer: int, drawing: Drawing) -> None:
+        """Put shapes that are drawn where the body starts onto its frame."""
+        origin, angle = self.start(body)
+        shapes = [in_frame(s, origin, angle) for s in (*drawing.behind, *drawing.shapes) if not isinstance(s, Label)]
+        if shapes:
+            self.scene.parts.append(Part(self.number(body), layer, tuple(shapes)))
+
+    def start(self, body: str) -> tuple[Point, float]:
+        """Where the frame of a body is in a drawing of the model's start."""
+        found = self.motion.bodies.get(body)
+        if isinstance(found, LinearSystem):
+            x = standing(found)
+            return ((x or 0.0), 0.0), 0.0
+        return self.motion.places.frame(body)
+
+
+def in_frame(shape: Shape, origin: Point, angle: float) -> Shape:
+    """A shape of the inertial frame in a frame that stands at `origin` and `angle`."""
+
+    def local(p: Point) -> Point:
+        return turned((p[0] - origin[0], p[1] - origin[1]), -angle)
+
+    if isinstance(shape, Circle):
+        return Circle(local(shape.centre), shape.radius, shape.stroke, shape.fill, shape.width)
+    points = tuple(local(p) for p in shape.points)
+    return Path(points, shape.stroke, shape.fill, shape.width, shape.closed, shape.dashed)
+
+
+def add_bodies(stage: Stage, outlines: Mapping[str, Sequence[Point]]) -> None:
+    """Frames, shapes and bands of all bodies; `outlines` are polygons in the frames of bodies, in place of shapes that
+    are made up."""
+    for body in stage.motion.model.bodies:
+        if isinstance(body, PlanarFrame):
+            _planar(stage, body, outlines.get(body.name))
+        if isinstance(body, FlexibleBody):
+            _flexible(stage, body)
+        elif isinstance(body, LinearSystem):
+            _generalised(stage, body)
+
+
+def _planar(stage: Stage, body: PlanarFrame, outline: Sequence[Point] | None) -> None:
+    motion = stage.motion
+    solid = not isinstance(body, MaterialPoint2D | MovingFrame2D | FlexibleBody)
+    velocity = motion.velocity(body.name) if solid and motion.moves else None
+    drawing, name = Drawing(stage.size), None
+    if solid:
+        label = draw_body(drawing, motion.places, body)
+        origin, angle = motion.places.frame(body.name)
+        name = turned((label.at[0] - origin[0], label.at[1] - origin[1]), -angle)
+    stage.add_frame(Frame(body.name, motion.frame(body.name), velocity, name))
+    if outline is not None:
+        stage.scene.parts.append(Part(stage.number(body.name), 1, (outline_shape(outline),)))
+    elif solid:
+        stage.add_part(body.name, 1, drawing)
+
+
+def outline_shape(points: Sequence[Point]) -> Path:
+    """A polygon in the colours of bodies."""
+    return Path(tuple((float(x), float(y)) for x, y in points), INK, STEEL, 0.5, closed=True)
+
+
+def _flexible(stage: Stage, body: FlexibleBody) -> None:
+    motion = stage.motion
+    points = _points_along(body)
+    if len(points) < 2:
+        return
+    s = np.array([x for x, _ in points])
+    places = motion.points(body, points)
+    stage.scene.bands.append(
+        Band(body.name, places, ROD if isinstance(body, AxialRod) else BEAM, tuple(fields_of(motion, body, s)))
+    )
+
+
+def _points_along(body: FlexibleBody) -> list[Point]:
+    """Material points that show a body bent: more than a drawing at rest needs."""
+    drawn = list(body.drawn_points())
+    if isinstance(body, ReducedBody2D) or len(drawn) < 2:
+        return drawn
+    elements = getattr(body, "elements", None) or 1
+    pieces = min(elements if isinstance(body, AxialRod) else max(40, 4 * elements), MOST_POINTS)
+    return along_axis(drawn[-1][0], pieces)
+
+
+def fields_of(motion: Motion, body: FlexibleBody, s: Floats) -> list[Field]:
+    """What colours can show along a body: axial force and bending moment, the one that does more first."""
+    section = motion.section(body, s) if motion.moves else None
+    if section is None:
+        return []
+    found = []
+    for name, unit, values, strain in (
+        ("axial force", "N", section.axial_force, section.axial_strain),
+        ("bending moment", "N.m", section.bending_moment, section.curvature),
+    ):
+        limit = float(np.max(np.abs(values), initial=0.0))
+        if limit > 0.0 and np.all(np.isfinite(values)):
+            work = float(np.sum(np.abs(values * strain)))
+            found.append((work, Field(name, unit, values, limit)))
+    return [field for _, field in sorted(found, key=lambda pair: -pair[0])]
+
+
+def _generalised(stage: Stage, body: LinearSystem) -> None:
+    """A coordinate along x moves a block; what has no place in the plane is shown by gauges."""
+    motion, x = stage.motion, standing(body)
+    if x is None:
+        names = body.coordinates[:8]
+        units = {record.name: record.unit for record in body.coordinate_records()}
+        stage.scene.gauges += [Gauge(f"{body.name}.{n}", units[n], motion.coordinate(body.name, n)) for n in names]
+        return
+    values = motion.coordinate(body.name, body.coordinates[0])
+    path = np.stack([values, 0.0 * values, 0.0 * values], axis=1)
+    rates = motion.table(body.name)[1]
+    drawing = Drawing(stage.size)
+    label = draw_body(drawing, motion.places, body)
+    velocity = np.hstack([rates, 0.0 * rates]) if motion.moves else None
+    stage.add_frame(Frame(body.name, path, velocity, (label.at[0] - x, label.at[1])))
+    stage.add_part(body.name, 1, drawing)
+
+
+def has_place(body: BodyElement) -> bool:
+    """True of bodies that have a frame in the scene."""
+    return isinstance(body, PlanarFrame) or (isinstance(body, LinearSystem) and standing(body) is not None)

@@ -1,0 +1,112 @@
+"""From a model and a result to a scene."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..core.description import Model
+from ..core.errors import ModelError
+from ..core.model.markers import GROUND
+from .bodies import Stage, add_bodies
+from .drawing.shapes import Circle, Point
+from .fixtures import add_fixtures
+from .forces import add_forces
+from .motion import Motion
+from .scene import Frame, Part, Scene
+from .timing import EVEN, choose_frames
+from .tracks import Tracks
+
+if TYPE_CHECKING:
+    from ..core.result import Result
+
+MOST_EVENTS = 2000
+Outlines = Mapping[str, Sequence[Point]]
+
+
+def scene_of_start(model: Model, title: str = "", outlines: Outlines | None = None) -> Scene:
+    """The start of `model` as a scene of one frame.
+
+    Raises
+    ------
+    ModelError : for an outline of a body that the model does not have.
+    """
+    return _build(Motion.at_start(model), title or f"{model.name}, as it starts", None, outlines or {})
+
+
+def scene_of_result(
+    model: Model,
+    result: "Result",
+    title: str = "",
+    channels: Iterable[str] | None = None,
+    outlines: Outlines | None = None,
+    frames: int = EVEN,
+) -> Scene:
+    """A run as a scene.
+
+    Parameters
+    ----------
+    channels : names of the channels to plot at first; left out: the last body's motion and forces of contacts.
+    outlines : polygons in the frames of bodies, m, in place of the shapes that are made up.
+    frames : how many at equal intervals, besides those of the solver's steps.
+
+    Raises
+    ------
+    ModelError : for an outline of a body that the model does not have, or a result without samples.
+    KeyError : for a channel that the result does not have.
+    """
+    if len(result.t) == 0:
+        raise ModelError("the result has no samples: record some (record=True, or t_eval) to see them")
+    among = choose_frames(result.t, (event.t for event in result.events), frames)
+    tracks = Tracks(result, model, among)
+    scene = _build(Motion.of_result(model, result, among), title or model.name, tracks, outlines or {})
+    wanted = tuple(channels) if channels is not None else tracks.interesting()
+    for name in wanted:
+        tracks.values(name)  # an unknown one is refused
+    scene.plots = list(wanted)
+    scene.tracks = tracks.chosen(wanted)
+    scene.events = [event.to_dict() for event in result.events[:MOST_EVENTS]]
+    if len(result.events) > MOST_EVENTS:
+        scene.notes.append(f"The first {MOST_EVENTS} of {len(result.events)} events are marked.")
+    return scene
+
+
+def _build(motion: Motion, title: str, tracks: Tracks | None, outlines: Outlines) -> Scene:
+    unknown = sorted(set(outlines) - set(motion.bodies))
+    if unknown:
+        raise ModelError(f"outlines are given for {unknown}, but the bodies are {sorted(motion.bodies)}")
+    scene = Scene(motion.model.name, title, motion.t, motion.places.size)
+    stage = Stage(scene, motion)
+    stage.add_frame(Frame(GROUND, np.zeros((1, 3))))
+    add_bodies(stage, outlines)
+    add_fixtures(stage)
+    if tracks is not None:
+        add_forces(stage, tracks.values_or_none, tracks.struck)
+    scene.box = box_of(scene)
+    return scene
+
+
+def box_of(scene: Scene) -> tuple[float, float, float, float]:
+    """Left, bottom, right and top of all shapes over all frames, m."""
+    clouds = [band.points.reshape(-1, 2) for band in scene.bands]
+    for part in scene.parts:
+        motion = scene.frames[part.frame].motion
+        c, s = np.cos(motion[:, 2]), np.sin(motion[:, 2])
+        for x, y in _corners(part):
+            clouds.append(np.stack([motion[:, 0] + c * x - s * y, motion[:, 1] + s * x + c * y], axis=1))
+    clouds += [frame.motion[:, :2] for frame in scene.frames[1:]]
+    every = np.concatenate(clouds) if clouds else np.zeros((1, 2))
+    every = every[np.all(np.isfinite(every), axis=1)]
+    (x0, y0), (x1, y1) = every.min(axis=0), every.max(axis=0)
+    return float(x0), float(y0), float(x1), float(y1)
+
+
+def _corners(part: Part) -> list[Point]:
+    found: list[Point] = []
+    for shape in part.shapes:
+        if isinstance(shape, Circle):
+            (x, y), r = shape.centre, shape.radius
+            found += [(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)]
+        else:
+            found += shape.points
+    return list(dict.fromkeys((float(x), float(y)) for x, y in found))

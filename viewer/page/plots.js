@@ -1,0 +1,105 @@
+// Channels over time, beside the picture; the cursor is the present time.
+
+const CURVES = ["#1f5fbf", "#b3402a", "#1f7a5c", "#6d4aa3", "#c96a00", "#00798c"];
+const cards = [];
+
+function addCard(name) {
+  const card = document.createElement("div"), head = document.createElement("div");
+  const select = document.createElement("select"), value = document.createElement("output");
+  const close = document.createElement("button"), canvas = document.createElement("canvas");
+  card.className = "card";
+  select.setAttribute("aria-label", "Channel of this plot");
+  for (const track of scene.tracks) select.add(new Option(track.unit === "1" ? track.name : `${track.name} (${track.unit})`, track.name));
+  select.value = name;
+  close.textContent = "×";
+  close.title = "Remove this plot";
+  close.setAttribute("aria-label", "Remove this plot");
+  head.append(select, value, close);
+  card.append(head, canvas);
+  document.getElementById("cards").append(card);
+  const made = { card, canvas, value, select, picture: null, colour: CURVES[cards.length % CURVES.length] };
+  cards.push(made);
+  select.addEventListener("change", () => { made.picture = null; redraw(); });
+  close.addEventListener("click", () => {
+    cards.splice(cards.indexOf(made), 1);
+    card.remove();
+    resized();
+  });
+  watchTime(canvas, (x) => timeAt(x, made));
+  resizes.observe(canvas);
+}
+
+const LEFT = 46, RIGHT = 8, TOP = 6, BOTTOM = 6;
+
+function timeAt(x, card) {
+  const wide = card.canvas.clientWidth - LEFT - RIGHT;
+  return first + ((x - LEFT) / wide) * (last - first);
+}
+
+function plotCurve(card) {
+  const track = scene.tracks.find((t) => t.name === card.select.value), n = track.values.numbers;
+  const ratio = window.devicePixelRatio || 1, wide = card.canvas.clientWidth, high = card.canvas.clientHeight;
+  if (!wide || !high) return null;
+  card.canvas.width = Math.round(wide * ratio);
+  card.canvas.height = Math.round(high * ratio);
+  let low = Infinity, up = -Infinity;
+  for (const v of n) { if (v < low) low = v; if (v > up) up = v; }
+  if (!(up - low > 1e-9 * Math.max(Math.abs(up), Math.abs(low)))) [low, up] = [low - (Math.abs(low) || 1) * 0.5, up + (Math.abs(up) || 1) * 0.5];
+  const x = (t) => LEFT + ((t - first) / (last - first || 1)) * (wide - LEFT - RIGHT);
+  const y = (v) => TOP + (1 - (v - low) / (up - low)) * (high - TOP - BOTTOM);
+  const picture = document.createElement("canvas");
+  picture.width = card.canvas.width;
+  picture.height = card.canvas.height;
+  const g = picture.getContext("2d"), soft = style("--soft"), edge = style("--edge");
+  g.scale(ratio, ratio);
+  g.font = "10.5px system-ui, sans-serif";
+  g.fillStyle = soft;
+  g.textAlign = "right";
+  g.textBaseline = "middle";
+  const step = round((up - low) / Math.max(1, Math.floor(high / 38)));
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= up * (1 + 1e-12) + 1e-9 * step; k++) {
+    const at = Math.round(y(k * step)) + 0.5;
+    strokeLine(g, [[LEFT, at], [wide - RIGHT, at]], k === 0 ? soft : edge, k === 0 ? 0.9 : 0.6);
+    g.fillText(short(k * step, step), LEFT - 5, at);
+  }
+  g.beginPath();
+  for (let k = 0; k < n.length; k++) {
+    if (k && track.steps) g.lineTo(x(times[k]), y(n[k - 1]));
+    if (k) g.lineTo(x(times[k]), y(n[k])); else g.moveTo(x(times[k]), y(n[k]));
+  }
+  g.strokeStyle = card.colour;
+  g.lineWidth = 1.5;
+  g.lineJoin = "round";
+  g.stroke();
+  return { picture, track, x, y, high, ratio };
+}
+
+function short(value, step) {
+  const zero = Math.abs(value) < 1e-9 * step ? 0 : value;
+  if (zero !== 0 && (Math.abs(zero) >= 1e5 || Math.abs(zero) < 1e-3)) return zero.toExponential(0).replace("-", "−");
+  return String(Number(zero.toPrecision(3))).replace("-", "−");
+}
+
+function drawPlots(time) {
+  const where = place(time);
+  for (const card of cards) {
+    card.picture = card.picture || plotCurve(card);
+    if (!card.picture) continue;
+    const { picture, track, x, y, high, ratio } = card.picture, g = card.canvas.getContext("2d");
+    g.setTransform(1, 0, 0, 1, 0, 0);
+    g.clearRect(0, 0, card.canvas.width, card.canvas.height);
+    g.drawImage(picture, 0, 0);
+    g.scale(ratio, ratio);
+    const value = at(track.values, track.steps ? { k: where.k, x: 0 } : where, 1, 0);
+    strokeLine(g, [[x(time), 2], [x(time), high - 2]], style("--soft"), 1);
+    g.beginPath();
+    g.arc(x(time), y(value), 3.5, 0, 2 * Math.PI);
+    g.fillStyle = card.colour;
+    g.fill();
+    card.value.textContent = shown(value, track.unit);
+  }
+}
+
+function style(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
