@@ -17,11 +17,13 @@ from ..core.elements import (
 from ..core.elements.flexible_body import along_axis
 from .drawing.bodies import draw_body, standing
 from .drawing.shapes import INK, STEEL, Circle, Drawing, Label, Path, Point, turned
+from .magnify import Magnified
 from .motion import Motion
 from .scene import Anchor, Band, Field, Floats, Frame, Gauge, Part, Scene, Shape
 
 MOST_POINTS = 120
 """Points of a flexible body's line."""
+MOST_GAUGES = 4
 ROD, BEAM = 4.0, 1.4
 """Widths of flexible bodies, in hundredths of the scene's size."""
 
@@ -32,6 +34,9 @@ class Stage:
     def __init__(self, scene: Scene, motion: Motion) -> None:
         self.scene, self.motion = scene, motion
         self.size = scene.size
+        self.magnified = Magnified(motion)
+        self.walls: dict[tuple[bool, float, float], tuple[float, float]] = {}
+        """Walls of coordinates: (along y, place, side) to where they begin and end."""
         self._numbers: dict[str, int] = {}
 
     def add_frame(self, frame: Frame) -> int:
@@ -116,6 +121,8 @@ def _flexible(stage: Stage, body: FlexibleBody) -> None:
         return
     s = np.array([x for x, _ in points])
     places = motion.points(body, points)
+    if isinstance(body, AxialRod):
+        places[:, :, 0] = stage.magnified.rod(body.name, places[:, :, 0])
     stage.scene.bands.append(
         Band(body.name, places, ROD if isinstance(body, AxialRod) else BEAM, tuple(fields_of(motion, body, s)))
     )
@@ -152,11 +159,13 @@ def _generalised(stage: Stage, body: LinearSystem) -> None:
     """A coordinate along x moves a block; what has no place in the plane is shown by gauges."""
     motion, x = stage.motion, standing(body)
     if x is None:
-        names = body.coordinates[:8]
+        names = body.coordinates[:MOST_GAUGES]
         units = {record.name: record.unit for record in body.coordinate_records()}
         stage.scene.gauges += [Gauge(f"{body.name}.{n}", units[n], motion.coordinate(body.name, n)) for n in names]
         return
-    values = motion.coordinate(body.name, body.coordinates[0])
+    values = stage.magnified.beside(body.name)
+    if values is None:
+        values = motion.coordinate(body.name, body.coordinates[0])
     path = np.stack([values, 0.0 * values, 0.0 * values], axis=1)
     rates = motion.table(body.name)[1]
     drawing = Drawing(stage.size)

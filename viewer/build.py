@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.description import Model
+from ..core.elements import PlanarFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
 from .bodies import Stage, add_bodies
@@ -13,7 +14,7 @@ from .drawing.shapes import Circle, Point
 from .fixtures import add_fixtures
 from .forces import add_forces
 from .motion import Motion
-from .scene import Frame, Part, Scene
+from .scene import Floats, Frame, Part, Scene
 from .timing import EVEN, choose_frames
 from .tracks import Tracks
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from ..core.result import Result
 
 MOST_EVENTS = 2000
+WAY = 0.4
+"""Symbols are made for this part of the way that bodies go, where the mechanism is smaller."""
 Outlines = Mapping[str, Sequence[Point]]
 
 
@@ -75,8 +78,10 @@ def _build(motion: Motion, title: str, tracks: Tracks | None, outlines: Outlines
     unknown = sorted(set(outlines) - set(motion.bodies))
     if unknown:
         raise ModelError(f"outlines are given for {unknown}, but the bodies are {sorted(motion.bodies)}")
-    scene = Scene(motion.model.name, title, motion.t, motion.places.size)
+    scene = Scene(motion.model.name, title, motion.t, _size(motion))
     stage = Stage(scene, motion)
+    if stage.magnified.note:
+        scene.notes.append(stage.magnified.note)
     stage.add_frame(Frame(GROUND, np.zeros((1, 3))))
     add_bodies(stage, outlines)
     add_fixtures(stage)
@@ -84,6 +89,22 @@ def _build(motion: Motion, title: str, tracks: Tracks | None, outlines: Outlines
         add_forces(stage, tracks.values_or_none, tracks.struck)
     scene.box = box_of(scene)
     return scene
+
+
+def _size(motion: Motion) -> float:
+    """What symbols are drawn for, m: the mechanism's size at its start, or a part of the way that it goes."""
+    ways = [motion.frame(body.name)[:, :2] for body in motion.model.bodies if isinstance(body, PlanarFrame)]
+    if not ways:
+        return motion.places.size
+    points = {marker.point for element in motion.model.elements() for marker in element.markers()}
+    if motion.places.size == 1.0 and len(points) < 2:  # a model that is one point has no size: its way from the origin
+        return _diagonal([*ways, np.zeros((1, 2))]) or 1.0
+    return max(motion.places.size, WAY * _diagonal(ways))
+
+
+def _diagonal(clouds: list[Floats]) -> float:
+    every = np.concatenate(clouds)
+    return float(np.linalg.norm(every.max(axis=0) - every.min(axis=0)))
 
 
 def box_of(scene: Scene) -> tuple[float, float, float, float]:

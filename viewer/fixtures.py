@@ -11,14 +11,14 @@ from ..core.contact.coordinate_contact import CoordinateContact
 from ..core.contact.disk_on_cable import DiskOnCable2D
 from ..core.contact.disk_on_line import DiskOnLine2D
 from ..core.contact.segment2d import DiskOnSegment2D
-from ..core.elements import Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
+from ..core.elements import AxialRod, Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
 from ..core.model.markers import GROUND, Marker2D
 from .bodies import Stage, has_place
 from .drawing import symbols
 from .drawing.interactions import draw_interaction
 from .drawing.shapes import GROUND as GROUND_COLOUR
 from .drawing.shapes import INK, STEEL, TOUCH, Circle, Drawing, Path, Point, moved, turned
-from .scene import Floats, Line, Link, Part
+from .scene import Floats, Frame, Line, Link, Part
 
 GRIP = 0.13
 """How far walls go beyond what touches them, in parts of the scene's size."""
@@ -34,6 +34,7 @@ def add_fixtures(stage: Stage) -> None:
     model = stage.motion.model
     for element in (*model.contacts, *model.joints, *model.forces):
         place(element, stage)
+    _add_walls(stage)
 
 
 @singledispatch
@@ -184,24 +185,51 @@ def _(element: DiskOnCable2D, stage: Stage) -> None:
 
 @place.register
 def _(element: CoordinateContact, stage: Stage) -> None:
-    """A wall, if the gap is that of one place along x or y."""
-    (term, *others) = element.terms
-    if others or not term.factor:
+    """A wall, if the gap is that of one place along x or y; what moves with other coordinates is a line that moves."""
+    term = next((t for t in element.terms if t.factor and coordinate_place(stage, t.body, t.coordinate) is not None), None)
+    if term is None:
         return
+    others = [t for t in element.terms if t is not term]
+    if any(has_place(stage.motion.bodies[t.body]) or isinstance(stage.motion.bodies[t.body], AxialRod) for t in others):
+        return
+    face = np.full(len(stage.motion.t), -element.offset / term.factor)
+    for t in others:
+        face = face - t.factor / term.factor * stage.motion.coordinate(t.body, t.coordinate)
+    touched = stage.magnified.touched(element)
+    if touched is not None:
+        face = touched[1]
     node = coordinate_place(stage, term.body, term.coordinate)
-    if node is None:
+    along_y, half = term.coordinate.startswith("y"), 0.08 * stage.size
+    across = np.zeros(1) if node is None else node[:, 0 if along_y else 1]
+    low, high = float(across.min()) - half, float(across.max()) + half
+    side = math.copysign(1.0, term.factor)
+    if others:
+        _moving_face(stage, element.name, face, (low, high), along_y)
         return
-    limit, along_y = -element.offset / term.factor, term.coordinate.startswith("y")
-    drawing, half = Drawing(stage.size), 0.08 * stage.size
-    s = math.copysign(half, term.factor)
-    if along_y:
-        low, high = _span(node[:, 0], half)
-        ends = ((low, limit), (high, limit)) if s > 0.0 else ((high, limit), (low, limit))
+    key = (along_y, float(face[0]), side)
+    known = stage.walls.get(key, (low, high))
+    stage.walls[key] = min(low, known[0]), max(high, known[1])
+
+
+def _moving_face(stage: Stage, name: str, face: Floats, span: tuple[float, float], along_y: bool) -> None:
+    """A line that moves along an axis: the surface of something that is not drawn."""
+    zero = np.zeros(len(face))
+    motion = np.stack([zero, face, zero] if along_y else [face, zero, zero], axis=1)
+    number = stage.add_frame(Frame(f"surface of {name}", motion))
+    ends = ((span[0], 0.0), (span[1], 0.0)) if along_y else ((0.0, span[0]), (0.0, span[1]))
+    stage.scene.parts.append(Part(number, 1, (Path(ends, TOUCH, width=0.8),)))
+
+
+def _add_walls(stage: Stage) -> None:
+    """Walls at places of coordinates; those of many nodes on one ground are one."""
+    for (along_y, at, side), (low, high) in stage.walls.items():
+        drawing = Drawing(stage.size)
+        if along_y:
+            ends = ((low, at), (high, at)) if side > 0.0 else ((high, at), (low, at))
+        else:
+            ends = ((at, high), (at, low)) if side > 0.0 else ((at, low), (at, high))
         symbols.wall(drawing, *ends, TOUCH)
-    else:
-        symbols.wall(drawing, (limit, s), (limit, -s), TOUCH)
-    shapes = tuple(x for x in (*drawing.behind, *drawing.shapes) if isinstance(x, Path | Circle))
-    if not any(set(shapes) & set(part.shapes) for part in stage.scene.parts):
+        shapes = tuple(x for x in (*drawing.behind, *drawing.shapes) if isinstance(x, Path | Circle))
         stage.scene.parts.append(Part(stage.number(GROUND), 0, shapes))
 
 
@@ -212,18 +240,17 @@ def coordinate_place(stage: Stage, body: str, coordinate: str) -> Floats | None:
     if has_place(record):
         if coordinate == "angle" or coordinate.startswith("mode"):
             return None
-        frame = motion.frame(body)[:, :2]
-        return frame if names[:2] == ("x", "y") else np.stack([motion.coordinate(body, coordinate), frame[:, 1]], 1)
+        if names[:2] == ("x", "y"):
+            return motion.frame(body)[:, :2]
+        return stage.scene.frames[stage.number(body)].motion[:, :2]
     number = coordinate[1:]
     if coordinate[:1] not in ("x", "y") or not number.isdigit():
         return None
     zero = np.zeros(len(motion.t))
     x, y = (motion.coordinate(body, f"{c}{number}") if f"{c}{number}" in names else zero for c in "xy")
+    if isinstance(record, AxialRod):
+        x = stage.magnified.node(body, coordinate, x)
     return np.stack([x, y], axis=1)
-
-
-def _span(x: Floats, margin: float) -> tuple[float, float]:
-    return float(x.min()) - margin, float(x.max()) + margin
 
 
 def _disk(disk: Disk2D, stage: Stage) -> None:

@@ -65,7 +65,7 @@ function shown(value, unit) {
   if (!Number.isFinite(value)) return "–";
   const known = ["N", "m", "m/s", "J", "N.m", "N.s", "Pa", "s"].includes(unit);
   const size = Math.abs(value);
-  if (known && size > 0 && (size >= 1e4 || size < 1e-2)) {
+  if (known && size >= 1e-12 && (size >= 1e4 || size < 1e-2)) {
     const power = Math.max(-4, Math.min(3, Math.floor(Math.log10(size) / 3)));
     const prefix = ["p", "n", "µ", "m", "", "k", "M", "G"][power + 4];
     return `${Number((value / 10 ** (3 * power)).toPrecision(4))} ${prefix}${unit}`.replace("-", "−");

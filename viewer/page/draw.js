@@ -203,7 +203,7 @@ function drawForces(g, where, time) {
     if (arrow.kind === "joint" ? !shows.joints : !shows.forces) continue;
     const from = [at(arrow.at, where, 2, 0), at(arrow.at, where, 2, 1)];
     const x = at(arrow.vector, where, 2, 0), y = at(arrow.vector, where, 2, 1), size = Math.hypot(x, y);
-    if (arrow.kind === "contact") drawBlows(g, arrow.name, from, time);
+    if (arrow.kind === "contact") drawBlows(g, arrow, time);
     if (!(size > 1e-3 * reach[arrow.kind])) continue;
     const to = toScreen(arrowTip(from, x, y, reach[arrow.kind]));
     drawArrow(g, toScreen(from), to, ARROWS[arrow.kind]);
@@ -212,12 +212,13 @@ function drawForces(g, where, time) {
 }
 
 // An impact of a constraint has no force but an impulse: a ring that fades for a third of a second of playing.
-function drawBlows(g, contact, at, time) {
+function drawBlows(g, arrow, time) {
   const fade = 0.35 * Math.max(state.speed, 1e-12);
-  for (const event of blows.get(contact) || []) {
+  for (const event of blows.get(arrow.name) || []) {
     const age = (time - event.t) / fade;
     if (age < -1e-9 || age > 1) continue;
-    const [x, y] = toScreen(at), strength = 1 - Math.max(age, 0);
+    const there = place(event.t);
+    const [x, y] = toScreen([at(arrow.at, there, 2, 0), at(arrow.at, there, 2, 1)]), strength = 1 - Math.max(age, 0);
     g.beginPath();
     g.arc(x, y, 6 + 16 * (1 - strength), 0, 2 * Math.PI);
     g.strokeStyle = `rgba(179,64,42,${strength.toFixed(3)})`;
@@ -252,24 +253,23 @@ function drawScale(g) {
   drawText(g, shown(length, "m"), 18 + wide, y - 2, "#6b7280");
 }
 
-// Coordinates without a place in the plane: pointers on scales of their own.
+// Coordinates without a place in the plane: pointers on scales of their own, in the middle if there is nothing else.
 function drawGauges(g, where) {
   const count = scene.gauges.length;
   if (!count) return;
-  const high = Math.max(80, camera.height - 190), top = 96, step = Math.min(130, (camera.width - 60) / count);
-  const left = 0.5 * (camera.width - step * count);
+  const alone = scene.frames.length < 2 && !scene.bands.length;
+  const high = alone ? Math.max(80, camera.height - 230) : 90, top = alone ? 130 : camera.height - 150;
+  const step = Math.min(130, (camera.width - 40) / count), left = alone ? 0.5 * (camera.width - step * count) : 10;
   scene.gauges.forEach((gauge, k) => {
-    const x = left + (k + 0.5) * step, n = gauge.values.numbers;
-    let low = Math.min(...n), up = Math.max(...n);
-    if (up - low < 1e-12 * Math.max(Math.abs(up), 1)) [low, up] = [low - 1, up + 1];
-    const y = (v) => top + high * (1 - (v - low) / (up - low));
+    const x = left + (k + 0.4) * step, n = gauge.values.numbers;
+    let low = Infinity, up = -Infinity;
+    for (const v of n) { if (v < low) low = v; if (v > up) up = v; }
+    if (!(up - low > 1e-12 * Math.max(Math.abs(up), Math.abs(low)))) [low, up] = [low - 1, up + 1];
+    const y = (v) => top + high * (1 - (v - low) / (up - low)), value = at(gauge.values, where, 1, 0);
     strokeLine(g, [[x, top], [x, top + high]], "#c5ccd6", 6);
     if (low < 0 && up > 0) strokeLine(g, [[x - 10, y(0)], [x + 10, y(0)]], "#6b7280", 1);
-    const value = at(gauge.values, where, 1, 0);
     strokeLine(g, [[x - 13, y(value)], [x + 13, y(value)]], FLEX, 5);
-    drawText(g, gauge.name, x, top - 26, INK, "center");
-    drawText(g, shown(value, gauge.unit), x, top - 11, FLEX, "center");
-    drawText(g, shown(up, ""), x + 16, top, "#6b7280");
-    drawText(g, shown(low, ""), x + 16, top + high, "#6b7280");
+    drawText(g, gauge.name, x, top - 30, INK, "center");
+    drawText(g, shown(value, gauge.unit), x, top - 14, FLEX, "center");
   });
 }

@@ -29,7 +29,7 @@ function addCard(name) {
   resizes.observe(canvas);
 }
 
-const LEFT = 46, RIGHT = 8, TOP = 6, BOTTOM = 6;
+const LEFT = 50, RIGHT = 8, TOP = 6, BOTTOM = 6;
 
 function timeAt(x, card) {
   const wide = card.canvas.clientWidth - LEFT - RIGHT;
@@ -44,7 +44,10 @@ function plotCurve(card) {
   card.canvas.height = Math.round(high * ratio);
   let low = Infinity, up = -Infinity;
   for (const v of n) { if (v < low) low = v; if (v > up) up = v; }
-  if (!(up - low > 1e-9 * Math.max(Math.abs(up), Math.abs(low)))) [low, up] = [low - (Math.abs(low) || 1) * 0.5, up + (Math.abs(up) || 1) * 0.5];
+  // rounding is no curve
+  const least = ["m", "rad", "m/s", "rad/s"].includes(track.unit) ? 1e-12 * (track.unit[0] === "m" ? scene.size : 1) : 0;
+  if (up - low < least && Math.abs(up) < 1e-9) [low, up] = [-1e-9, 1e-9];
+  else if (!(up - low > 1e-9 * Math.max(Math.abs(up), Math.abs(low)))) [low, up] = [low - (Math.abs(low) || 1) * 0.5, up + (Math.abs(up) || 1) * 0.5];
   const x = (t) => LEFT + ((t - first) / (last - first || 1)) * (wide - LEFT - RIGHT);
   const y = (v) => TOP + (1 - (v - low) / (up - low)) * (high - TOP - BOTTOM);
   const picture = document.createElement("canvas");
@@ -57,10 +60,16 @@ function plotCurve(card) {
   g.textAlign = "right";
   g.textBaseline = "middle";
   const step = round((up - low) / Math.max(1, Math.floor(high / 38)));
+  // a small change of a large number: the axis shows the change
+  const base = step < 1e-4 * Math.max(Math.abs(low), Math.abs(up)) ? step * Math.round(low / step) : null;
   for (let k = Math.ceil(low / step - 1e-9); k * step <= up * (1 + 1e-12) + 1e-9 * step; k++) {
     const at = Math.round(y(k * step)) + 0.5;
     strokeLine(g, [[LEFT, at], [wide - RIGHT, at]], k === 0 ? soft : edge, k === 0 ? 0.9 : 0.6);
-    g.fillText(short(k * step, step), LEFT - 5, at);
+    g.fillText(base === null ? short(k * step, step) : short(k * step - base, step), LEFT - 5, at);
+  }
+  if (base !== null) {
+    g.textAlign = "left";
+    g.fillText(`${shown(base, track.unit)} +`, LEFT + 3, TOP + 4);
   }
   g.beginPath();
   for (let k = 0; k < n.length; k++) {
@@ -74,10 +83,12 @@ function plotCurve(card) {
   return { picture, track, x, y, high, ratio };
 }
 
+// A number on an axis, with as many digits as its neighbours need.
 function short(value, step) {
-  const zero = Math.abs(value) < 1e-9 * step ? 0 : value;
-  if (zero !== 0 && (Math.abs(zero) >= 1e5 || Math.abs(zero) < 1e-3)) return zero.toExponential(0).replace("-", "−");
-  return String(Number(zero.toPrecision(3))).replace("-", "−");
+  const zero = Math.abs(value) < 1e-9 * step ? 0 : value, digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const plain = zero.toFixed(Math.min(digits, 20));
+  const text = plain.length <= 8 && Math.abs(zero) < 1e6 ? plain : zero === 0 ? "0" : zero.toExponential(Math.min(4, Math.max(0, Math.floor(Math.log10(Math.abs(zero)) + 1e-9) - Math.floor(Math.log10(step) + 1e-9))));
+  return text.replace("-", "−");
 }
 
 function drawPlots(time) {

@@ -23,7 +23,7 @@ function drawLink(g, kind, a, b, u) {
     if (both) strokeLine(g, [along(0.9 * length, y), along(0.9 * length, 0)], SPRING, width);
     const start = both ? 0.1 * length : 0, end = both ? 0.9 * length : length;
     if (zigzag) {
-      const turns = 8, points = [along(start, y), along(from, y)];
+      const turns = 12, points = [along(start, y), along(from, y)];
       for (let k = 0; k < turns; k++) points.push(along(from + ((to - from) * (k + 0.5)) / turns, y + (k % 2 ? w : -w)));
       points.push(along(to, y), along(end, y));
       strokeLine(g, points, SPRING, width);
