@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..core.errors import ModelError
+from ..core.extras import require
 from .drawing.png import to_image
 from .scene import Scene
 from .still import still
@@ -19,9 +19,7 @@ MOST_PICTURES = 3000
 BACKGROUND = (251, 252, 254)
 
 
-def write_film(
-    scene: Scene, path: Path, *, fps: int = 25, seconds: float | None = None, width: int = 640
-) -> None:
+def write_film(scene: Scene, path: Path, *, fps: int = 25, seconds: float | None = None, width: int = 640) -> None:
     """Write a scene as a GIF or MP4, as the suffix of `path` says.
 
     Parameters
@@ -42,23 +40,15 @@ def write_film(
     count = round(length * fps) if math.isfinite(length) else 0
     if not (fps > 0 and width >= 16 and 2 <= count <= MOST_PICTURES):
         raise ModelError(
-            f"fps = {fps!r}, seconds = {length!r} and width = {width!r} give {count} pictures of {width} pixels: needed "
-            f"are 2 to {MOST_PICTURES} of at least 16"
+            f"fps = {fps!r}, seconds = {length!r} and width = {width!r} give {count} pictures of {width} pixels: "
+            f"needed are 2 to {MOST_PICTURES} of at least 16"
         )
-    _require("pillow", "PIL", path)
+    require(f"'{path.name}'", "film", PIL="pillow")
     if path.suffix.lower() == ".gif":
         _gif(_pictures(scene, count, width), path, fps)
     else:
-        _require("imageio-ffmpeg", "imageio_ffmpeg", path)
+        require(f"'{path.name}'", "film", imageio_ffmpeg="imageio-ffmpeg")
         _mp4(_pictures(scene, count, width), path, fps)
-
-
-def _require(package: str, module: str, path: Path) -> None:
-    if find_spec(module) is None:
-        raise ImportError(
-            f"to write '{path.name}' takes {package}, which this Python does not have: pip install 'tlismni[film]', or "
-            "write a page (.html), which takes nothing"
-        )
 
 
 def _pictures(scene: Scene, count: int, width: int) -> Iterator[Any]:

@@ -186,7 +186,9 @@ def _(element: DiskOnCable2D, stage: Stage) -> None:
 @place.register
 def _(element: CoordinateContact, stage: Stage) -> None:
     """A wall, if the gap is that of one place along x or y; what moves with other coordinates is a line that moves."""
-    term = next((t for t in element.terms if t.factor and coordinate_place(stage, t.body, t.coordinate) is not None), None)
+    term = next(
+        (t for t in element.terms if t.factor and coordinate_place(stage, t.body, t.coordinate) is not None), None
+    )
     if term is None:
         return
     others = [t for t in element.terms if t is not term]

@@ -54,9 +54,7 @@ def add_forces(stage: Stage, values: Values, struck: Collection[str]) -> None:
     start = np.array([x for channel in model.inputs for x in (channel.start, *[0.0] * (INPUT_SIZE - 1))])
     for load in model.forces:
         if isinstance(load, AppliedForce2D):
-            vector = np.stack(
-                [signal_values(s, inputs, start, motion.t) for s in (load.force_x, load.force_y)], axis=1
-            )
+            vector = np.stack([signal_values(s, inputs, start, motion.t) for s in (load.force_x, load.force_y)], axis=1)
             if load.follower:
                 vector = _turned(vector, motion.direction(load.marker))
             if np.any(vector != 0.0):

@@ -15,8 +15,8 @@ class Magnified:
     """How places along x are drawn in a model with rods.
 
     A rod's node is drawn at its place at the start plus `factor` times its displacement. Rods that follow one another
-    are drawn apart by the magnified gap, and what touches a rod where the rod's node would be if the gap were closed, so
-    that things touch in the picture when they touch.
+    are drawn apart by the magnified gap, and what touches a rod where the rod's node would be if the gap were closed,
+    so that things touch in the picture when they touch.
     """
 
     def __init__(self, motion: Motion) -> None:

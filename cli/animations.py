@@ -1,0 +1,47 @@
+"""Animations as files, and on the screen."""
+
+import tempfile
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..core import Result
+from ..viewer import Animation, animate
+from .errors import Failure
+from .result_files import replace_whole
+from .screen import say
+
+
+def write_animation(result: Result, path: Path, channels: Sequence[str] = ()) -> Path:
+    """Write the motion of a run; `channels` are plotted at first, those of them that there are."""
+    return save_animation(animate_result(result, channels), path)
+
+
+def animate_result(result: Result, channels: Sequence[str] = ()) -> Animation:
+    """The motion of a run."""
+    wanted = [name for name in channels if name in result.channels]
+    return animate(result, channels=wanted or None)
+
+
+def save_animation(animation: Animation, path: Path, **film: Any) -> Path:
+    """Write an animation, whole or not at all."""
+    return replace_whole(path, lambda name: animation.save(name, **film))
+
+
+def deliver(animation: Animation, output: Path | None, name: str) -> None:
+    """Write an animation to `output`; without one, open it in the browser.
+
+    Raises
+    ------
+    Failure : if there is no browser; says where the page is.
+    """
+    if output is not None:
+        save_animation(animation, output)
+        say(f"wrote {output}")
+        return
+    page = Path(tempfile.mkdtemp(prefix="tlismni-")) / f"{name}.html"
+    animation.save(page)
+    if not webbrowser.open(page.as_uri()):
+        raise Failure(f"no browser could be opened: the page is '{page}'; --output writes it where you want it")
+    say(f"opened {page}")
