@@ -24,6 +24,8 @@ from .scene import Anchor, Band, Field, Floats, Frame, Gauge, Part, Scene, Shape
 MOST_POINTS = 120
 """Points of a flexible body's line."""
 MOST_GAUGES = 4
+ROOMY = 0.03
+"""A disk of this radius, in parts of the scene's size, has room for its name."""
 ROD, BEAM = 4.0, 1.4
 """Widths of flexible bodies, in hundredths of the scene's size."""
 
@@ -102,6 +104,8 @@ def _planar(stage: Stage, body: PlanarFrame, outline: Sequence[Point] | None) ->
         label = draw_body(drawing, motion.places, body)
         origin, angle = motion.places.frame(body.name)
         name = turned((label.at[0] - origin[0], label.at[1] - origin[1]), -angle)
+        if any(isinstance(s, Circle) and s.centre == origin and s.radius > ROOMY * stage.size for s in drawing.shapes):
+            name = (0.0, 0.0)
     stage.add_frame(Frame(body.name, motion.frame(body.name), velocity, name))
     if outline is not None:
         stage.scene.parts.append(Part(stage.number(body.name), 1, (outline_shape(outline),)))

@@ -47,19 +47,20 @@ function addLegend() {
   const box = document.getElementById("legend"), select = document.createElement("select");
   const bar = document.createElement("i"), ends = document.createElement("div");
   select.setAttribute("aria-label", "What the colours of flexible bodies mean");
-  for (const name of names) select.add(new Option(name, name));
+  const unitOf = (name) => banded.flatMap((band) => band.fields).find((field) => field.name === name).unit;
+  for (const name of names) select.add(new Option(`${name} (${unitOf(name)})`, name));
   select.add(new Option("no colours", ""));
   select.value = banded[0].fields[0].name;
   const choose = () => {
-    let limit = 0, unit = "";
+    let limit = 0;
     for (const band of banded) {
       const k = band.fields.findIndex((field) => field.name === select.value);
       chosen.set(band, k);
-      if (k >= 0) [limit, unit] = [Math.max(limit, band.fields[k].limit), band.fields[k].unit];
+      if (k >= 0) limit = Math.max(limit, band.fields[k].limit);
     }
     // one scale for all bodies
     for (const band of banded) if (band.fields[chosen.get(band)]) band.fields[chosen.get(band)].limit = limit;
-    ends.replaceChildren(...(select.value ? [-limit, 0, limit] : []).map((v) => Object.assign(document.createElement("span"), { textContent: shown(v, unit) })));
+    ends.replaceChildren(...(select.value ? [-limit, 0, limit] : []).map((v) => Object.assign(document.createElement("span"), { textContent: shown(v, "") })));
     bar.hidden = !select.value;
     redraw();
   };

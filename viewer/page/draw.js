@@ -172,7 +172,8 @@ function drawNames(g, where) {
   scene.frames.forEach((frame, k) => {
     if (!frame.label || scene.frames.length > 26) return;
     const [x, y] = toScreen(anchored({ frame: k, point: frame.label }, where));
-    drawText(g, frame.name, x + 4, y, INK);
+    const middle = !frame.label[0] && !frame.label[1];
+    drawText(g, frame.name, middle ? x : x + 4, y, INK, middle ? "center" : "left");
   });
   for (const band of scene.bands) {
     const [x, y] = toScreen(bandPoint(band, where, band.points.shape[1] >> 1));

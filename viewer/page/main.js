@@ -98,7 +98,7 @@ document.getElementById("more").addEventListener("click", () => {
 document.getElementById("more").hidden = !scene.tracks.length;
 for (const name of scene.plots) addCard(name);
 resizes.observe(view);
-window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", resized);
+dark.addEventListener("change", resized);
 resized();
 
 // #t=0.5 opens the page at that time; without it it plays, unless the reader wants no movement

@@ -1,7 +1,12 @@
 // Channels over time, beside the picture; the cursor is the present time.
 
-const CURVES = ["#1f5fbf", "#b3402a", "#1f7a5c", "#6d4aa3", "#c96a00", "#00798c"];
+const CURVES = {
+  light: ["#1f5fbf", "#b3402a", "#1f7a5c", "#6d4aa3", "#c96a00", "#00798c"],
+  dark: ["#7db0ff", "#ff8a73", "#5fd0a5", "#c3a2ff", "#ffb057", "#55cfe0"],
+};
+const dark = window.matchMedia("(prefers-color-scheme: dark)");
 const cards = [];
+let added = 0;
 
 function addCard(name) {
   const card = document.createElement("div"), head = document.createElement("div");
@@ -17,7 +22,7 @@ function addCard(name) {
   head.append(select, value, close);
   card.append(head, canvas);
   document.getElementById("cards").append(card);
-  const made = { card, canvas, value, select, picture: null, colour: CURVES[cards.length % CURVES.length] };
+  const made = { card, canvas, value, select, picture: null, number: added++ };
   cards.push(made);
   select.addEventListener("change", () => { made.picture = null; redraw(); });
   close.addEventListener("click", () => {
@@ -76,7 +81,7 @@ function plotCurve(card) {
     if (k && track.steps) g.lineTo(x(times[k]), y(n[k - 1]));
     if (k) g.lineTo(x(times[k]), y(n[k])); else g.moveTo(x(times[k]), y(n[k]));
   }
-  g.strokeStyle = card.colour;
+  g.strokeStyle = curveColour(card);
   g.lineWidth = 1.5;
   g.lineJoin = "round";
   g.stroke();
@@ -105,10 +110,15 @@ function drawPlots(time) {
     strokeLine(g, [[x(time), 2], [x(time), high - 2]], style("--soft"), 1);
     g.beginPath();
     g.arc(x(time), y(value), 3.5, 0, 2 * Math.PI);
-    g.fillStyle = card.colour;
+    g.fillStyle = curveColour(card);
     g.fill();
     card.value.textContent = shown(value, track.unit);
   }
+}
+
+function curveColour(card) {
+  const colours = CURVES[dark.matches ? "dark" : "light"];
+  return colours[card.number % colours.length];
 }
 
 function style(name) {

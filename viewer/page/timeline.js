@@ -1,6 +1,6 @@
 // The line of time with the events on it.
 
-const MARKS = { impact: "#b3402a", close: "#c96a00", open: "#1f7a5c", rest: "#17202c", graze: "#8a6d00", stick: "#6d4aa3", slip: "#00798c" };
+const MARKS = { impact: "#b3402a", close: "#c96a00", open: "#1f7a5c", rest: "#6b7280", graze: "#8a6d00", stick: "#6d4aa3", slip: "#00798c" };
 const stops = [...new Set(scene.events.map((event) => event.t))].sort((a, b) => a - b);
 const blows = new Map();
 for (const event of scene.events) {
