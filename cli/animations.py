@@ -2,26 +2,22 @@
 
 import tempfile
 import webbrowser
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from ..core import Result
+from ..models import Scenario
 from ..viewer import Animation, animate
 from .errors import Failure
 from .result_files import replace_whole
 from .screen import say
 
 
-def write_animation(result: Result, path: Path, channels: Sequence[str] = ()) -> Path:
-    """Write the motion of a run; `channels` are plotted at first, those of them that there are."""
-    return save_animation(animate_result(result, channels), path)
-
-
-def animate_result(result: Result, channels: Sequence[str] = ()) -> Animation:
-    """The motion of a run."""
-    wanted = [name for name in channels if name in result.channels]
-    return animate(result, channels=wanted or None)
+def write_animation(result: Result, scenario: Scenario, path: Path) -> Path:
+    """Write the motion of a run, beside the channels that the scenario looks at."""
+    wanted = [name for name in scenario.compare if name in result.channels]
+    made = animate(result, title=scenario.name, channels=wanted or None, sketches=scenario.sketches)
+    return save_animation(made, path)
 
 
 def save_animation(animation: Animation, path: Path, **film: Any) -> Path:

@@ -5,5 +5,7 @@ The scene is data (`scene.py`: shapes, where they are in every frame, events, ch
 """
 
 from .animation import Animation, animate, show
+from .fields import CrossSection
+from .sketches import Sketch
 
-__all__ = ["Animation", "animate", "show"]
+__all__ = ["Animation", "CrossSection", "Sketch", "animate", "show"]

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 from ..core.description import Model
 from ..core.errors import ModelError
 from .build import scene_of_result, scene_of_start
+from .fields import CrossSection
 from .page_text import page_text
 from .scene import Scene
+from .sketches import Sketch
 from .timing import EVEN
 
 if TYPE_CHECKING:
@@ -76,6 +78,8 @@ def animate(
     title: str = "",
     channels: Iterable[str] | None = None,
     outlines: Mapping[str, Sequence[tuple[float, float]]] | None = None,
+    sections: Mapping[str, CrossSection] | None = None,
+    sketches: Sequence[Sketch] = (),
     frames: int = EVEN,
 ) -> Animation:
     """A run as an animation; parameters as those of `scene_of_result`.
@@ -91,11 +95,15 @@ def animate(
             f"this result is of {what}: there are no bodies to draw; give the Model as `model`, or plot channels with "
             "result.plot(...)"
         )
-    return Animation(scene_of_result(found, result, title, channels, outlines, frames))
+    return Animation(scene_of_result(found, result, title, channels, outlines, sections, sketches, frames))
 
 
 def show(
-    model: Model, *, title: str = "", outlines: Mapping[str, Sequence[tuple[float, float]]] | None = None
+    model: Model,
+    *,
+    title: str = "",
+    outlines: Mapping[str, Sequence[tuple[float, float]]] | None = None,
+    sketches: Sequence[Sketch] = (),
 ) -> Animation:
     """The start of a model as a picture of the same kind."""
-    return Animation(scene_of_start(model, title, outlines))
+    return Animation(scene_of_start(model, title, outlines, sketches))

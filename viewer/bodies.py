@@ -17,9 +17,10 @@ from ..core.elements import (
 from ..core.elements.flexible_body import along_axis
 from .drawing.bodies import draw_body, standing
 from .drawing.shapes import INK, STEEL, Circle, Drawing, Label, Path, Point, turned
+from .fields import CrossSection, fields_of
 from .magnify import Magnified
 from .motion import Motion
-from .scene import Anchor, Band, Field, Floats, Frame, Gauge, Part, Scene, Shape
+from .scene import Anchor, Band, Frame, Gauge, Part, Scene, Shape
 
 MOST_POINTS = 120
 """Points of a flexible body's line."""
@@ -83,14 +84,14 @@ def in_frame(shape: Shape, origin: Point, angle: float) -> Shape:
     return Path(points, shape.stroke, shape.fill, shape.width, shape.closed, shape.dashed)
 
 
-def add_bodies(stage: Stage, outlines: Mapping[str, Sequence[Point]]) -> None:
+def add_bodies(stage: Stage, outlines: Mapping[str, Sequence[Point]], sections: Mapping[str, CrossSection]) -> None:
     """Frames, shapes and bands of all bodies; `outlines` are polygons in the frames of bodies, in place of shapes that
-    are made up."""
+    are made up, `sections` those of flexible bodies, for the stress."""
     for body in stage.motion.model.bodies:
         if isinstance(body, PlanarFrame):
             _planar(stage, body, outlines.get(body.name))
         if isinstance(body, FlexibleBody):
-            _flexible(stage, body)
+            _flexible(stage, body, sections.get(body.name))
         elif isinstance(body, LinearSystem):
             _generalised(stage, body)
 
@@ -118,7 +119,7 @@ def outline_shape(points: Sequence[Point]) -> Path:
     return Path(tuple((float(x), float(y)) for x, y in points), INK, STEEL, 0.5, closed=True)
 
 
-def _flexible(stage: Stage, body: FlexibleBody) -> None:
+def _flexible(stage: Stage, body: FlexibleBody, section: CrossSection | None) -> None:
     motion = stage.motion
     points = _points_along(body)
     if len(points) < 2:
@@ -128,7 +129,7 @@ def _flexible(stage: Stage, body: FlexibleBody) -> None:
     if isinstance(body, AxialRod):
         places[:, :, 0] = stage.magnified.rod(body.name, places[:, :, 0])
     stage.scene.bands.append(
-        Band(body.name, places, ROD if isinstance(body, AxialRod) else BEAM, tuple(fields_of(motion, body, s)))
+        Band(body.name, places, ROD if isinstance(body, AxialRod) else BEAM, tuple(fields_of(motion, body, s, section)))
     )
 
 
@@ -140,23 +141,6 @@ def _points_along(body: FlexibleBody) -> list[Point]:
     elements = getattr(body, "elements", None) or 1
     pieces = min(elements if isinstance(body, AxialRod) else max(40, 4 * elements), MOST_POINTS)
     return along_axis(drawn[-1][0], pieces)
-
-
-def fields_of(motion: Motion, body: FlexibleBody, s: Floats) -> list[Field]:
-    """What colours can show along a body: axial force and bending moment, the one that does more first."""
-    section = motion.section(body, s) if motion.moves else None
-    if section is None:
-        return []
-    found = []
-    for name, unit, values, strain in (
-        ("axial force", "N", section.axial_force, section.axial_strain),
-        ("bending moment", "N.m", section.bending_moment, section.curvature),
-    ):
-        limit = float(np.max(np.abs(values), initial=0.0))
-        if limit > 0.0 and np.all(np.isfinite(values)):
-            work = float(np.sum(np.abs(values * strain)))
-            found.append((work, Field(name, unit, values, limit)))
-    return [field for _, field in sorted(found, key=lambda pair: -pair[0])]
 
 
 def _generalised(stage: Stage, body: LinearSystem) -> None:

@@ -6,35 +6,45 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.description import Model
-from ..core.elements import PlanarFrame
+from ..core.elements import FlexibleBody, PlanarFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
 from .bodies import Stage, add_bodies
 from .drawing.shapes import Circle, Point
+from .fields import NO_SECTIONS, CrossSection
 from .fixtures import add_fixtures
 from .forces import add_forces
 from .motion import Motion
 from .scene import Floats, Frame, Part, Scene
-from .timing import EVEN, choose_frames
+from .sketches import Sketch, add_sketches
+from .timing import EVEN, MOST_SAMPLES, choose_frames
 from .tracks import Tracks
 
 if TYPE_CHECKING:
     from ..core.result import Result
 
 MOST_EVENTS = 2000
+MOST_NUMBERS = 2_000_000
+"""Of bodies' places in one page: 10 MB."""
+LEAST = 60
+"""Frames, however large the model is."""
 WAY = 0.4
 """Symbols are made for this part of the way that bodies go, where the mechanism is smaller."""
 Outlines = Mapping[str, Sequence[Point]]
 
 
-def scene_of_start(model: Model, title: str = "", outlines: Outlines | None = None) -> Scene:
+def scene_of_start(
+    model: Model, title: str = "", outlines: Outlines | None = None, sketches: Sequence[Sketch] = ()
+) -> Scene:
     """The start of `model` as a scene of one frame.
 
     Raises
     ------
     ModelError : for an outline of a body that the model does not have.
     """
-    return _build(Motion.at_start(model), title or f"{model.name}, as it starts", None, outlines or {})
+    return _build(
+        Motion.at_start(model), title or f"{model.name}, as it starts", None, outlines or {}, sketches=sketches
+    )
 
 
 def scene_of_result(
@@ -43,6 +53,8 @@ def scene_of_result(
     title: str = "",
     channels: Iterable[str] | None = None,
     outlines: Outlines | None = None,
+    sections: Mapping[str, CrossSection] | None = None,
+    sketches: Sequence[Sketch] = (),
     frames: int = EVEN,
 ) -> Scene:
     """A run as a scene.
@@ -51,6 +63,8 @@ def scene_of_result(
     ----------
     channels : names of the channels to plot at first; left out: the last body's motion and forces of contacts.
     outlines : polygons in the frames of bodies, m, in place of the shapes that are made up.
+    sections : cross-sections of flexible bodies, which are then coloured by their stress.
+    sketches : polygons that move with generalised coordinates.
     frames : how many at equal intervals, besides those of the solver's steps.
 
     Raises
@@ -60,9 +74,11 @@ def scene_of_result(
     """
     if len(result.t) == 0:
         raise ModelError("the result has no samples: record some (record=True, or t_eval) to see them")
-    among = choose_frames(result.t, (event.t for event in result.events), frames)
+    frames, most = affordable(model, frames)
+    among = choose_frames(result.t, (event.t for event in result.events), frames, most)
     tracks = Tracks(result, model, among)
-    scene = _build(Motion.of_result(model, result, among), title or model.name, tracks, outlines or {})
+    motion = Motion.of_result(model, result, among)
+    scene = _build(motion, title or model.name, tracks, outlines or {}, sections or {}, sketches)
     wanted = tuple(channels) if channels is not None else tracks.interesting()
     for name in wanted:
         tracks.values(name)  # an unknown one is refused
@@ -74,16 +90,27 @@ def scene_of_result(
     return scene
 
 
-def _build(motion: Motion, title: str, tracks: Tracks | None, outlines: Outlines) -> Scene:
-    unknown = sorted(set(outlines) - set(motion.bodies))
-    if unknown:
-        raise ModelError(f"outlines are given for {unknown}, but the bodies are {sorted(motion.bodies)}")
-    scene = Scene(motion.model.name, title, motion.t, _size(motion))
+def _build(
+    motion: Motion,
+    title: str,
+    tracks: Tracks | None,
+    outlines: Outlines,
+    sections: Mapping[str, CrossSection] = NO_SECTIONS,
+    sketches: Sequence[Sketch] = (),
+) -> Scene:
+    flexible = [name for name, body in motion.bodies.items() if isinstance(body, FlexibleBody)]
+    for what, given, known in (("outlines", outlines, list(motion.bodies)), ("sections", sections, flexible)):
+        unknown = sorted(set(given) - set(known))
+        if unknown:
+            whose = "bodies" if what == "outlines" else "flexible bodies"
+            raise ModelError(f"{what} are given for {unknown}, but the {whose} are {sorted(known)}")
+    scene = Scene(motion.model.name, title, motion.t, _size(motion, sketches))
     stage = Stage(scene, motion)
     if stage.magnified.note:
         scene.notes.append(stage.magnified.note)
     stage.add_frame(Frame(GROUND, np.zeros((1, 3))))
-    add_bodies(stage, outlines)
+    add_bodies(stage, outlines, sections)
+    add_sketches(stage, sketches)
     add_fixtures(stage)
     if tracks is not None:
         add_forces(stage, tracks.values_or_none, tracks.struck)
@@ -91,11 +118,20 @@ def _build(motion: Motion, title: str, tracks: Tracks | None, outlines: Outlines
     return scene
 
 
-def _size(motion: Motion) -> float:
+def affordable(model: Model, frames: int) -> tuple[int, int]:
+    """Even frames, and samples that become frames, of a model: less than wanted where it is so large that the page
+    would be."""
+    width = 5 * len(model.bodies) + 200 * sum(isinstance(body, FlexibleBody) for body in model.bodies)
+    part = min(1.0, MOST_NUMBERS / (width * (frames + MOST_SAMPLES)))
+    return max(LEAST, round(part * frames)) if part < 1.0 else frames, max(LEAST, round(part * MOST_SAMPLES))
+
+
+def _size(motion: Motion, sketches: Sequence[Sketch]) -> float:
     """What symbols are drawn for, m: the mechanism's size at its start, or a part of the way that it goes."""
     ways = [motion.frame(body.name)[:, :2] for body in motion.model.bodies if isinstance(body, PlanarFrame)]
+    drawn = [np.array(sketch.outline) + np.array(sketch.at[:2]) for sketch in sketches]
     if not ways:
-        return motion.places.size
+        return _diagonal(drawn) if drawn else motion.places.size
     points = {marker.point for element in motion.model.elements() for marker in element.markers()}
     if motion.places.size == 1.0 and len(points) < 2:  # a model that is one point has no size: its way from the origin
         return _diagonal([*ways, np.zeros((1, 2))]) or 1.0

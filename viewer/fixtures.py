@@ -14,6 +14,7 @@ from ..core.contact.segment2d import DiskOnSegment2D
 from ..core.elements import AxialRod, Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
 from ..core.model.markers import GROUND, Marker2D
 from .bodies import Stage, has_place
+from .coordinates import coordinate_place
 from .drawing import symbols
 from .drawing.interactions import draw_interaction
 from .drawing.shapes import GROUND as GROUND_COLOUR
@@ -233,26 +234,6 @@ def _add_walls(stage: Stage) -> None:
         symbols.wall(drawing, *ends, TOUCH)
         shapes = tuple(x for x in (*drawing.behind, *drawing.shapes) if isinstance(x, Path | Circle))
         stage.scene.parts.append(Part(stage.number(GROUND), 0, shapes))
-
-
-def coordinate_place(stage: Stage, body: str, coordinate: str) -> Floats | None:
-    """Places (F, 2) of what a coordinate x, y, x3, y3 ... moves; None of one that has no place in the plane."""
-    motion, record = stage.motion, stage.motion.bodies[body]
-    names = record.coordinate_names
-    if has_place(record):
-        if coordinate == "angle" or coordinate.startswith("mode"):
-            return None
-        if names[:2] == ("x", "y"):
-            return motion.frame(body)[:, :2]
-        return stage.scene.frames[stage.number(body)].motion[:, :2]
-    number = coordinate[1:]
-    if coordinate[:1] not in ("x", "y") or not number.isdigit():
-        return None
-    zero = np.zeros(len(motion.t))
-    x, y = (motion.coordinate(body, f"{c}{number}") if f"{c}{number}" in names else zero for c in "xy")
-    if isinstance(record, AxialRod):
-        x = stage.magnified.node(body, coordinate, x)
-    return np.stack([x, y], axis=1)
 
 
 def _disk(disk: Disk2D, stage: Stage) -> None:

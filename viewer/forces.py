@@ -15,7 +15,7 @@ from ..core.contact.segment2d import DiskOnSegment2D
 from ..core.elements import AppliedForce2D, Distance2D, Revolute2D
 from ..core.model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .bodies import Stage
-from .fixtures import coordinate_place
+from .coordinates import coordinate_place
 from .scene import Arrow, Floats
 
 Values = Callable[[str], Floats | None]

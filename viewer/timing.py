@@ -13,10 +13,12 @@ MOST_SAMPLES = 1200
 """Samples of the result that become frames too."""
 
 
-def choose_frames(samples: NDArray[np.float64], events: Iterable[float], even: int = EVEN) -> Between:
-    """Frames of a result with samples at these times (N,), s, and events.
+def choose_frames(
+    samples: NDArray[np.float64], events: Iterable[float], even: int = EVEN, most: int = MOST_SAMPLES
+) -> Between:
+    """Frames of a result with samples at these times (N,), s, and events; at most about `even` + `most`.
 
-    Both samples of an impact are kept, so that jumps stay jumps. Of more than MOST_SAMPLES samples those are kept that
+    Both samples of an impact are kept, so that jumps stay jumps. Of more than `most` samples those are kept that
     divide them evenly by number and not by time: short contacts keep their shape.
     """
     count = len(samples)
@@ -25,8 +27,8 @@ def choose_frames(samples: NDArray[np.float64], events: Iterable[float], even: i
     twice = np.flatnonzero(np.diff(samples) <= 0.0)
     near = np.searchsorted(samples, np.fromiter(events, dtype=float))
     important = np.concatenate([[0, count - 1], twice, twice + 1, np.clip(near, 0, count - 1)]).astype(np.intp)
-    if len(important) > MOST_SAMPLES:
-        important = important[np.linspace(0, len(important) - 1, MOST_SAMPLES).astype(np.intp)]
-    spread = np.linspace(0, count - 1, min(count, MOST_SAMPLES)).astype(np.intp)
+    if len(important) > most:
+        important = important[np.linspace(0, len(important) - 1, most).astype(np.intp)]
+    spread = np.linspace(0, count - 1, min(count, most)).astype(np.intp)
     rows = np.unique(np.concatenate([important, spread]))
     return Between.merged(samples, rows, np.linspace(samples[0], samples[-1], even + 1))

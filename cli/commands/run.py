@@ -101,7 +101,7 @@ def run(
     if animate is not None:
         from ..animations import write_animation
 
-        files.append(write_animation(result, animate, scenario.compare))
+        files.append(write_animation(result, scenario, animate))
     figures = {**summarise(scenario, result), "files": [str(path) for path in files]}
     if json:
         print_json(figures)

@@ -18,4 +18,6 @@ def show(source: Source, sets: Set = None, output: PageFile = None, debug: Debug
     from ..source import ANY_END, read_source
 
     scenario = read_source(source, sets, t_end=ANY_END)
-    deliver(draw(scenario.model, title=f"{scenario.name}, as it starts"), output, scenario.name)
+    deliver(
+        draw(scenario.model, title=f"{scenario.name}, as it starts", sketches=scenario.sketches), output, scenario.name
+    )

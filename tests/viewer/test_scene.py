@@ -20,11 +20,12 @@ from tlismni.core import (
     Sine,
     SpringDamper2D,
     axial_force,
+    bending_stress,
     deformed_shape,
     simulate,
 )
 from tlismni.models import load, names
-from tlismni.viewer import animate, show
+from tlismni.viewer import CrossSection, animate, show
 from tlismni.viewer.packing import unpack
 from tlismni.viewer.scene import Scene
 
@@ -182,3 +183,27 @@ def test_equations_have_no_bodies_to_draw() -> None:
     result = simulate(system, 0.5)
     with pytest.raises(ModelError, match=r"user-written equations.*result\.plot"):
         result.animate()
+
+
+def test_stress_is_that_of_the_outermost_fibre() -> None:
+    result = run("hub_beam_stop")
+    beam = next(body for body in result.system.bodies if body.name == "beam")
+    section = CrossSection(area=1e-4, second_moment=0.02 * 0.005**3 / 12.0, height=0.0025)
+    (band,) = animate(result, sections={"beam": section}).scene.bands
+    field, *others = band.fields
+    assert field.name == "stress" and [other.name for other in others] == ["bending moment"]
+    s = np.linspace(0.0, beam.length, band.points.shape[1])
+    expected = np.abs(bending_stress(result, beam, s, second_moment=section.second_moment, height=section.height))
+    assert field.limit == pytest.approx(expected.max(), rel=1e-3)
+    with pytest.raises(ModelError, match="flexible bodies are"):
+        animate(result, sections={"hub": section})
+    with pytest.raises(ModelError, match="give both"):
+        CrossSection(area=1.0, height=1.0)
+
+
+def test_the_page_of_a_large_model_stays_small() -> None:
+    chain = load("chain", links=300)
+    result = simulate(chain.model, 0.05, "hht", step=1e-4)
+    animation = animate(result)
+    assert 60 <= len(animation.scene.t) < 1500
+    assert len(animation.html()) < 20e6
