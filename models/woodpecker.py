@@ -120,14 +120,14 @@ def _sketches() -> tuple[Sketch, ...]:
     box = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
     # the sleeve is open: two plates, and the arm that carries the spring
     plates = ((-SLEEVE_RADIUS - 6e-4, -SLEEVE_RADIUS), (SLEEVE_RADIUS, SLEEVE_RADIUS + 6e-4))
-    moving = {"y": {"toy.y": 1.0}, "angle": {"toy.sleeve": 1.0}}
+    y, turn = {"toy.y": 1.0}, {"toy.sleeve": 1.0}
     return (
         Sketch("pole", tuple((POLE_RADIUS * x, 0.075 * y) for x, y in box), at=(0.0, -0.03, 0.0)),
         *(
-            Sketch(name, ((low, -height), (high, -height), (high, height), (low, height)), **moving)
+            Sketch(name, ((low, -height), (high, -height), (high, height), (low, height)), y=y, angle=turn)
             for name, (low, high) in zip(("left plate", "right plate"), plates, strict=True)
         ),
-        Sketch("arm", ((inner, -4e-4), (SPRING_ARM, -4e-4), (SPRING_ARM, 4e-4), (inner, 4e-4)), **moving),
+        Sketch("arm", ((inner, -4e-4), (SPRING_ARM, -4e-4), (SPRING_ARM, 4e-4), (inner, 4e-4)), y=y, angle=turn),
         Sketch(
             "bird", bird, at=(arm, 0.0, 0.0), y={"toy.y": 1.0, "toy.sleeve": SPRING_ARM, "toy.bird": BIRD_ARM},
             angle={"toy.bird": 1.0},

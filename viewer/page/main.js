@@ -12,7 +12,7 @@ function redraw() {
 function paint(now) {
   state.drawn = false;
   if (state.playing) {
-    const passed = state.since === undefined ? 0 : Math.min(0.1, (now - state.since) / 1000);
+    const passed = state.since === undefined ? 0 : Math.max(0, Math.min(0.1, (now - state.since) / 1000));
     state.since = now;
     state.time += passed * state.speed;
     if (state.time >= last) {
@@ -107,4 +107,4 @@ if (asked !== null) seek(Number(asked));
 else if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) play();
 
 // For whoever drives the page from outside: tests, slides.
-window.tlismni = { scene, state, camera, play, pause, seek, place, pose, toScreen };
+window.tlismni = { scene, state, camera, play, pause, seek, paint, place, pose, toScreen };
