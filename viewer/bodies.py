@@ -15,8 +15,10 @@ from ..core.elements import (
     ReducedBody2D,
 )
 from ..core.elements.flexible_body import along_axis
+from ..core.model.markers import Marker2D
+from ..core.model.outputs import MarkerOutput2D
 from .drawing.bodies import draw_body, standing
-from .drawing.shapes import INK, STEEL, Circle, Drawing, Label, Path, Point, turned
+from .drawing.shapes import INK, PORT, STEEL, Circle, Drawing, Label, Path, Point, turned
 from .fields import CrossSection, fields_of
 from .magnify import Magnified
 from .motion import Motion
@@ -40,6 +42,8 @@ class Stage:
         self.magnified = Magnified(motion)
         self.walls: dict[tuple[bool, float, float], tuple[float, float]] = {}
         """Walls of coordinates: (along y, place, side) to where they begin and end."""
+        self.planes: dict[Marker2D, tuple[float, float]] = {}
+        """Half-planes that disks come near: from where to where along their lines."""
         self._numbers: dict[str, int] = {}
 
     def add_frame(self, frame: Frame) -> int:
@@ -161,6 +165,15 @@ def _generalised(stage: Stage, body: LinearSystem) -> None:
     velocity = np.hstack([rates, 0.0 * rates]) if motion.moves else None
     stage.add_frame(Frame(body.name, path, velocity, (label.at[0] - x, label.at[1])))
     stage.add_part(body.name, 1, drawing)
+
+
+def add_output(stage: Stage, output: MarkerOutput2D) -> None:
+    """A dot where a marker is, with its name, its velocity and its trail."""
+    motion, marker = stage.motion, output.marker
+    path = np.hstack([motion.at(marker), motion.direction(marker)[:, None]])
+    velocity = motion.velocity_at(marker) if motion.moves else None
+    number = stage.add_frame(Frame(output.name, path, velocity, (0.012 * stage.size, 0.0)))
+    stage.scene.parts.append(Part(number, 2, (Circle((0.0, 0.0), 0.006 * stage.size, PORT, PORT, 0.2),)))
 
 
 def has_place(body: BodyElement) -> bool:

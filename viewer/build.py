@@ -9,7 +9,7 @@ from ..core.description import Model
 from ..core.elements import FlexibleBody, PlanarFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
-from .bodies import Stage, add_bodies
+from .bodies import Stage, add_bodies, add_output
 from .drawing.shapes import Circle, Point
 from .fields import NO_SECTIONS, CrossSection
 from .fixtures import add_fixtures
@@ -112,6 +112,8 @@ def _build(
     add_bodies(stage, outlines, sections)
     add_sketches(stage, sketches)
     add_fixtures(stage)
+    for output in motion.model.outputs:
+        add_output(stage, output)
     if tracks is not None:
         add_forces(stage, tracks.values_or_none, tracks.struck)
     scene.box = box_of(scene)

@@ -148,9 +148,8 @@ def _drawn_ends(element: Distance2D, stage: Stage) -> None:
 def _(element: DiskOnHalfPlane2D, stage: Stage) -> None:
     marker = element.plane.marker
     near, far = _touched(stage, element)
-    drawing = Drawing(stage.size)
-    symbols.wall(drawing, (near, 0.0), (far, 0.0), TOUCH)
-    _on_marker(stage, marker, 0, drawing)
+    known = stage.planes.get(marker, (near, far))
+    stage.planes[marker] = min(near, known[0]), max(far, known[1])
     _disk(element.disk, stage)
 
 
@@ -224,7 +223,11 @@ def _moving_face(stage: Stage, name: str, face: Floats, span: tuple[float, float
 
 
 def _add_walls(stage: Stage) -> None:
-    """Walls at places of coordinates; those of many nodes on one ground are one."""
+    """Half-planes and walls at places of coordinates; what many disks or nodes touch is one."""
+    for marker, (near, far) in stage.planes.items():
+        drawing = Drawing(stage.size)
+        symbols.wall(drawing, (near, 0.0), (far, 0.0), TOUCH)
+        _on_marker(stage, marker, 0, drawing)
     for (along_y, at, side), (low, high) in stage.walls.items():
         drawing = Drawing(stage.size)
         if along_y:

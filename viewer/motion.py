@@ -90,6 +90,15 @@ class Motion:
         """Of a body's origin (F, 2), m/s."""
         return self._tables[body][1][:, :2]
 
+    def velocity_at(self, marker: Marker2D) -> Floats:
+        """Of a marker (F, 2), m/s."""
+        if marker.body == GROUND:
+            return np.zeros((len(self.t), 2))
+        x, y = (self.at(marker) - self.frame(marker.body)[:, :2]).T
+        rates = self._tables[marker.body][1]
+        turning = rates[:, 2] if "angle" in self.bodies[marker.body].coordinate_names else np.zeros(len(self.t))
+        return rates[:, :2] + np.stack([-turning * y, turning * x], axis=1)
+
     def at(self, marker: Marker2D) -> Floats:
         """Places of a marker (F, 2)."""
         x, y, angle = self.frame(marker.body).T

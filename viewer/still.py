@@ -21,13 +21,13 @@ def still(scene: Scene, frame: int) -> Drawing:
     for layer in (0, 1, 2):
         _parts(drawing, scene, frame, layer)
         if layer == 0:
+            for band in scene.bands:
+                _band(drawing, band, frame)
+        if layer == 1:
             for line in scene.lines:
                 nodes = [_place(scene, node, frame) for node in line.nodes]
                 width = max(100.0 * line.thickness / scene.size, 0.6)
                 drawing.shapes.append(Path(nodes, TOUCH, width=width, closed=line.closed))
-            for band in scene.bands:
-                _band(drawing, band, frame)
-        if layer == 1:
             for link in scene.links:
                 a, b = _place(scene, link.a, frame), _place(scene, link.b, frame)
                 if link.kind == "rod":

@@ -44,7 +44,9 @@ def draw_body(drawing: Drawing, places: Places, body: BodyElement) -> Label:
         return _rigid(drawing, places, body)
     if isinstance(body, PointMass2D):
         centre = places.frame(body.name)[0]
-        radius = max(_disk_radius(places, body.name), 2.0 * u)
+        # its disk as it is, unless that would hardly be seen
+        radius = _disk_radius(places, body.name)
+        radius = radius if radius > 0.6 * u else 2.0 * u
         drawing.shapes.append(Circle(centre, radius, INK, STEEL, 0.5))
         return Label(moved(centre, (1.0, 0.0), radius + u), body.name)
     if isinstance(body, LinearSystem):
@@ -87,6 +89,8 @@ def _rigid(drawing: Drawing, places: Places, body: RigidBody2D) -> Label:
         drawing.shapes.append(Circle(centre, radius, INK, STEEL, 0.5))
     elif len(corners) == 2:
         drawing.shapes += [Path(corners, INK, width=LINK + 0.9), Path(corners, STEEL, width=LINK)]
+    elif any(m.body == body.name for contact in places.model.contacts for m in contact.markers()):
+        drawing.shapes.append(Path(corners, INK, STEEL, 0.5, closed=True))  # what touches ends where it touches
     else:
         drawing.shapes += [
             Path(corners, INK, INK, LINK + 0.9, closed=True),

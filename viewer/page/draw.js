@@ -34,9 +34,9 @@ function drawScene(g, time) {
   drawGrid(g);
   if (shows.trails && !still) drawTrails(g, where);
   drawParts(g, 0, where, u);
-  for (const line of scene.lines) drawLine(g, line, where, u);
   for (const band of scene.bands) drawBand(g, band, where, u);
   drawParts(g, 1, where, u);
+  for (const line of scene.lines) drawLine(g, line, where, u);
   for (const link of scene.links) {
     drawLink(g, link.kind, toScreen(anchored(link.a, where)), toScreen(anchored(link.b, where)), u);
   }

@@ -15,7 +15,7 @@ function drawLink(g, kind, a, b, u) {
   const dx = b[0] - a[0], dy = b[1] - a[1], length = Math.hypot(dx, dy) || 1e-9;
   const along = (x, y) => [a[0] + (dx * x) / length - (dy * y) / length, a[1] + (dy * x) / length + (dx * y) / length];
   if (kind === "rod") return strokeLine(g, [a, b], INK, Math.max(1.4, 0.5 * u));
-  const width = Math.max(1.2, 0.4 * u), w = Math.max(4, 2 * u);
+  const width = Math.max(1.2, 0.4 * u), w = Math.min(Math.max(4, 2 * u), 0.2 * length);
   const both = kind === "spring-damper", lanes = both ? [[1.3 * w, true], [-1.3 * w, false]] : [[0, kind === "spring"]];
   for (const [y, zigzag] of lanes) {
     const from = 0.2 * length, to = 0.8 * length;
