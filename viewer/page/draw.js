@@ -149,31 +149,45 @@ function drawTrails(g, where) {
   for (const [packed, width, index] of paths.slice(0, 24)) {
     const rows = packed.shape[0];
     if (rows < 2) continue;
+    const point = (k) => toScreen([packed.numbers[k * width + index], packed.numbers[k * width + index + 1]]);
+    const stride = Math.ceil(rows / 400);
     g.beginPath();
-    for (let k = 0; k < rows; k++) {
-      const [x, y] = toScreen([packed.numbers[k * width + index], packed.numbers[k * width + index + 1]]);
+    for (let k = 0; k < rows; k += stride) {
+      const [x, y] = point(k);
       if (k) g.lineTo(x, y); else g.moveTo(x, y);
     }
     g.strokeStyle = "#9fb2c855";
     g.lineWidth = 1;
     g.stroke();
-    const from = place(Math.max(first, times[where.k] - 0.12 * (last - first))).k;
-    for (let k = from; k <= where.k; k++) {
-      const next = k < where.k ? { k: k + 1, x: 0 } : where;
-      const a = toScreen([packed.numbers[k * width + index], packed.numbers[k * width + index + 1]]);
-      const b = toScreen([at(packed, next, width, index), at(packed, next, width, index + 1)]);
-      const part = (k - from + 1) / (where.k - from + 1);
-      strokeLine(g, [a, b], `rgba(31,95,191,${(0.75 * part).toFixed(3)})`, 1 + 1.2 * part);
+    // the newest part, in pieces that fade
+    const from = place(Math.max(first, times[where.k] - 0.12 * (last - first))).k, pieces = 24;
+    const now = toScreen([at(packed, where, width, index), at(packed, where, width, index + 1)]);
+    const each = Math.max(1, Math.ceil((where.k - from) / pieces));
+    for (let k = from; k <= where.k; k += each) {
+      const end = Math.min(k + each, where.k), points = [];
+      for (let i = k; i <= end; i += Math.max(1, Math.floor(each / 4))) points.push(point(i));
+      points.push(end === where.k ? now : point(end));
+      const part = (k - from + each) / (where.k - from + each);
+      strokeLine(g, points, `rgba(31,95,191,${(0.75 * part).toFixed(3)})`, 1 + 1.2 * part);
     }
   }
 }
 
 function drawNames(g, where) {
+  const taken = [];
+  // a name that would cover another one is left out
+  const free = (text, x, y, middle) => {
+    const wide = 7 * text.length, left = middle ? x - 0.5 * wide : x;
+    if (taken.some((box) => left < box[1] && left + wide > box[0] && Math.abs(y - box[2]) < 13)) return false;
+    taken.push([left, left + wide, y]);
+    return true;
+  };
   scene.frames.forEach((frame, k) => {
-    if (!frame.label || scene.frames.length > 26) return;
+    if (!frame.label) return;
     const [x, y] = toScreen(anchored({ frame: k, point: frame.label }, where));
     const middle = !frame.label[0] && !frame.label[1];
-    drawText(g, frame.name, middle ? x : x + 4, y, INK, middle ? "center" : "left");
+    const from = middle ? x : x + 4;
+    if (free(frame.name, from, y, middle)) drawText(g, frame.name, from, y, INK, middle ? "center" : "left");
   });
   for (const band of scene.bands) {
     const [x, y] = toScreen(bandPoint(band, where, band.points.shape[1] >> 1));

@@ -64,7 +64,7 @@ function plotCurve(card) {
   g.fillStyle = soft;
   g.textAlign = "right";
   g.textBaseline = "middle";
-  const step = round((up - low) / Math.max(1, Math.floor(high / 38)));
+  const step = round((up - low) / Math.max(1, Math.floor(high / 28)));
   // a small change of a large number: the axis shows the change
   const base = step < 1e-4 * Math.max(Math.abs(low), Math.abs(up)) ? step * Math.round(low / step) : null;
   for (let k = Math.ceil(low / step - 1e-9); k * step <= up * (1 + 1e-12) + 1e-9 * step; k++) {
