@@ -10,6 +10,7 @@ import numpy as np
 from ..core.errors import ModelError
 from ..core.extras import require
 from .drawing.png import to_image
+from .drawing.shapes import INK
 from .scene import Scene
 from .still import still
 
@@ -53,6 +54,8 @@ def write_film(scene: Scene, path: Path, *, fps: int = 25, seconds: float | None
 
 def _pictures(scene: Scene, count: int, width: int) -> Iterator[Any]:
     """Pictures at equal intervals, all of one size."""
+    from PIL import ImageDraw
+
     x0, y0, x1, y1 = scene.box
     margin = 0.06 * max(x1 - x0, y1 - y0, 0.3 * scene.size)
     high = max(y1 - y0 + 2.0 * margin, 0.4 * (x1 - x0 + 2.0 * margin))
@@ -64,7 +67,16 @@ def _pictures(scene: Scene, count: int, width: int) -> Iterator[Any]:
     size = 2 * max(8, round(0.5 * (box[1][0] - box[0][0]) * scale)), 2 * max(8, round(0.5 * high * scale))
     for t in np.linspace(scene.t[0], scene.t[-1], count):
         frame = int(np.clip(np.searchsorted(scene.t, t, side="right") - 1, 0, len(scene.t) - 1))
-        yield to_image(still(scene, frame), box, size, BACKGROUND)
+        picture = to_image(still(scene, frame), box, size, BACKGROUND)
+        ImageDraw.Draw(picture).text((8, 6), _time(float(t), scene), INK)
+        yield picture
+
+
+def _time(t: float, scene: Scene) -> str:
+    """A time with as many digits as the run's length needs, in the unit that suits it."""
+    length = max(abs(float(scene.t[0])), abs(float(scene.t[-1])))
+    power, unit = next(((p, u) for p, u in ((1.0, "s"), (1e3, "ms"), (1e6, "us")) if length * p >= 1.0), (1e9, "ns"))
+    return f"{t * power:.{3 - len(str(int(length * power))) if length * power < 100.0 else 0}f} {unit}"
 
 
 def _gif(pictures: Iterator[Any], path: Path, fps: int) -> None:

@@ -11,6 +11,7 @@ from .scene import Anchor, Band, Floats, Scene, Shape
 ARROW = 0.125
 """Length of the usual arrow, in parts of the scene's size."""
 LONGEST = 2.2
+EDGE = "#123f30"
 BLUE, GREY, RED = (33, 84, 194), (205, 212, 220), (196, 38, 32)
 COLOURS = {"contact": TOUCH, "load": "#c96a00"}
 
@@ -83,16 +84,23 @@ def _moved(shape: Shape, pose: Floats) -> Shape:
 
 
 def _band(drawing: Drawing, band: Band, frame: int) -> None:
-    points = [(float(x), float(y)) for x, y in band.points[frame]]
-    drawing.shapes.append(Path(points, "#123f30", width=band.width + 0.5))
+    """A strip of quadrilaterals, each in the colour of its piece."""
+    points = band.points[frame]
+    way = np.gradient(points, axis=0)
+    size = np.linalg.norm(way, axis=1, keepdims=True)
+    way = np.divide(way, size, out=np.zeros_like(way), where=size > 0.0)
+    across = 0.005 * band.width * drawing.size * np.stack([-way[:, 1], way[:, 0]], axis=1)
+    left, right = (points + across).tolist(), (points - across).tolist()
+    outline = [(x, y) for x, y in [*left, *right[::-1]]]
+    drawing.shapes.append(Path(outline, EDGE, FLEX, 0.4, closed=True))
     if not band.fields:
-        drawing.shapes.append(Path(points, FLEX, width=band.width))
         return
     field = band.fields[0]
     values = field.values[frame] / field.limit
     for k in range(len(points) - 1):
+        corners = [(x, y) for x, y in (left[k], left[k + 1], right[k + 1], right[k])]
         colour = _colour(float(0.5 * (values[k] + values[k + 1])))
-        drawing.shapes.append(Path((points[k], points[k + 1]), colour, width=band.width))
+        drawing.shapes.append(Path(corners, None, colour, closed=True))
 
 
 def _colour(part: float) -> str:

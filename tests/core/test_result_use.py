@@ -157,3 +157,11 @@ def test_a_result_of_no_length_can_be_asked() -> None:
         empty.model_at()
     with pytest.raises(ModelError, match="no samples"):
         empty.animate()
+
+
+def test_start_values_keep_the_scales_of_the_model_where_it_is_a_point_at_the_origin_now() -> None:
+    model = load("bouncing_ball").model
+    result = simulate(model, 5.0)
+    again = simulate(model, 6.0, t0=5.0, start=result.start_at())
+    assert np.abs(again["ball.y"]).max() < 1e-12
+    assert again["floor.normal_force"][-1] == pytest.approx(9.81 * model.bodies[0].mass)
