@@ -5,9 +5,9 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
-from ..core import Result
-from ..models import Scenario
-from ..viewer import Animation, animate
+from ..core import Model, Result
+from ..models import Scenario, load, names
+from ..viewer import Animation, Sketch, animate
 from .errors import Failure
 from .result_files import replace_whole
 from .screen import say
@@ -18,6 +18,17 @@ def write_animation(result: Result, scenario: Scenario, path: Path) -> Path:
     wanted = [name for name in scenario.compare if name in result.channels]
     made = animate(result, title=scenario.name, channels=wanted or None, sketches=scenario.sketches)
     return save_animation(made, path)
+
+
+def sketches_for(result: Result) -> tuple[Sketch, ...]:
+    """Sketches of the scenario that a stored result's model is of, if they fit the model still."""
+    model = result.system
+    if not isinstance(model, Model) or model.name not in names():
+        return ()
+    coordinates = {f"{body.name}.{name}" for body in model.bodies for name in body.coordinate_names}
+    sketches = load(model.name).sketches
+    used = {name for sketch in sketches for factors in (sketch.x, sketch.y, sketch.angle) for name in factors}
+    return sketches if used <= coordinates else ()
 
 
 def save_animation(animation: Animation, path: Path, **film: Any) -> Path:

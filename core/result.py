@@ -186,8 +186,9 @@ class Result:
         ----------
         path : where to write it; left out: nowhere.
         model : of the run, where the result does not know it.
-        options : title, channels (to plot at first), outlines (polygons of bodies, m), sections (for stress), frames;
-            of films fps, seconds and width. See `tlismni.viewer.animate` and `tlismni.viewer.film.write_film`.
+        options : title, channels (to plot at first), outlines (polygons of bodies, m), sections (for stress), sketches,
+            points (by their channels), frames; of films fps, seconds and width. See `tlismni.viewer.animate` and
+            `tlismni.viewer.film.write_film`.
 
         Raises
         ------

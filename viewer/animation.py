@@ -80,6 +80,7 @@ def animate(
     outlines: Mapping[str, Sequence[tuple[float, float]]] | None = None,
     sections: Mapping[str, CrossSection] | None = None,
     sketches: Sequence[Sketch] = (),
+    points: Mapping[str, tuple[str, str]] | None = None,
     frames: int = EVEN,
 ) -> Animation:
     """A run as an animation; parameters as those of `scene_of_result`.
@@ -89,13 +90,15 @@ def animate(
     ModelError : if it is not known of which model the result is, or for what `scene_of_result` refuses.
     """
     found = result.system if model is None else model
+    if not isinstance(found, Model) and points:
+        found = Model(name="equations" if result.system is not None else "run")
     if not isinstance(found, Model):
         what = "user-written equations" if found is not None else "a model that it does not know"
         raise ModelError(
-            f"this result is of {what}: there are no bodies to draw; give the Model as `model`, or plot channels with "
-            "result.plot(...)"
+            f"this result is of {what}: there are no bodies to draw; give the Model as `model`, or points by their "
+            "channels, points={'name': ('x', 'y')}, or plot channels with result.plot(...)"
         )
-    return Animation(scene_of_result(found, result, title, channels, outlines, sections, sketches, frames))
+    return Animation(scene_of_result(found, result, title, channels, outlines, sections, sketches, points, frames))
 
 
 def show(

@@ -172,8 +172,13 @@ def add_output(stage: Stage, output: MarkerOutput2D) -> None:
     motion, marker = stage.motion, output.marker
     path = np.hstack([motion.at(marker), motion.direction(marker)[:, None]])
     velocity = motion.velocity_at(marker) if motion.moves else None
-    number = stage.add_frame(Frame(output.name, path, velocity, (0.012 * stage.size, 0.0)))
-    stage.scene.parts.append(Part(number, 2, (Circle((0.0, 0.0), 0.006 * stage.size, PORT, PORT, 0.2),)))
+    add_dot(stage, Frame(output.name, path, velocity, (0.012 * stage.size, 0.0)))
+
+
+def add_dot(stage: Stage, frame: Frame) -> None:
+    """A frame that is seen as a dot."""
+    dot = Circle((0.0, 0.0), 0.006 * stage.size, PORT, PORT, 0.2)
+    stage.scene.parts.append(Part(stage.add_frame(frame), 2, (dot,)))
 
 
 def has_place(body: BodyElement) -> bool:

@@ -1,6 +1,7 @@
 """From a model and a result to a scene."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ from ..core.description import Model
 from ..core.elements import FlexibleBody, PlanarFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
-from .bodies import Stage, add_bodies, add_output
+from .bodies import Stage, add_bodies, add_dot, add_output
 from .drawing.shapes import Circle, Point
 from .fields import NO_SECTIONS, CrossSection
 from .fixtures import add_fixtures
@@ -55,6 +56,7 @@ def scene_of_result(
     outlines: Outlines | None = None,
     sections: Mapping[str, CrossSection] | None = None,
     sketches: Sequence[Sketch] = (),
+    points: Mapping[str, tuple[str, str]] | None = None,
     frames: int = EVEN,
 ) -> Scene:
     """A run as a scene.
@@ -65,6 +67,7 @@ def scene_of_result(
     outlines : polygons in the frames of bodies, m, in place of the shapes that are made up.
     sections : cross-sections of flexible bodies, which are then coloured by their stress.
     sketches : polygons that move with generalised coordinates.
+    points : channels that are the x and y of points to draw besides, by the points' names.
     frames : how many at equal intervals, besides those of the solver's steps.
 
     Raises
@@ -78,7 +81,8 @@ def scene_of_result(
     among = choose_frames(result.t, (event.t for event in result.events), frames, most)
     tracks = Tracks(result, model, among)
     motion = Motion.of_result(model, result, among)
-    scene = _build(motion, title or model.name, tracks, outlines or {}, sections or {}, sketches)
+    dots = points_of(tracks, points or {})
+    scene = _build(motion, title or model.name, tracks, outlines or {}, sections or {}, sketches, dots)
     wanted = tuple(channels) if channels is not None else tracks.interesting()
     for name in wanted:
         tracks.values(name)  # an unknown one is refused
@@ -97,6 +101,7 @@ def _build(
     outlines: Outlines,
     sections: Mapping[str, CrossSection] = NO_SECTIONS,
     sketches: Sequence[Sketch] = (),
+    points: Sequence[Frame] = (),
 ) -> Scene:
     flexible = [name for name, body in motion.bodies.items() if isinstance(body, FlexibleBody)]
     for what, given, known in (("outlines", outlines, list(motion.bodies)), ("sections", sections, flexible)):
@@ -104,7 +109,7 @@ def _build(
         if unknown:
             whose = "bodies" if what == "outlines" else "flexible bodies"
             raise ModelError(f"{what} are given for {unknown}, but the {whose} are {sorted(known)}")
-    scene = Scene(motion.model.name, title, motion.t, _size(motion, sketches))
+    scene = Scene(motion.model.name, title, motion.t, _size(motion, sketches, points))
     stage = Stage(scene, motion)
     if stage.magnified.note:
         scene.notes.append(stage.magnified.note)
@@ -114,28 +119,42 @@ def _build(
     add_fixtures(stage)
     for output in motion.model.outputs:
         add_output(stage, output)
+    for point in points:
+        add_dot(stage, replace(point, label=(0.012 * stage.size, 0.0)))
     if tracks is not None:
         add_forces(stage, tracks.values_or_none, tracks.struck)
     scene.box = box_of(scene)
     return scene
 
 
+def points_of(tracks: Tracks, points: Mapping[str, tuple[str, str]]) -> list[Frame]:
+    """Points whose x and y are channels, as frames; with velocities where their rates are channels too."""
+    found = []
+    for name, (x, y) in points.items():
+        places = np.stack([tracks.values(x), tracks.values(y)], axis=1)
+        rates = [rate for rate in (tracks.rate(x), tracks.rate(y)) if rate is not None]
+        velocity = np.stack(rates, axis=1) if len(rates) == 2 else np.zeros_like(places)
+        found.append(Frame(name, np.hstack([places, np.zeros((len(places), 1))]), velocity))
+    return found
+
+
 def affordable(model: Model, frames: int) -> tuple[int, int]:
     """Even frames, and samples that become frames, of a model: less than wanted where it is so large that the page
     would be."""
     width = 5 * len(model.bodies) + 200 * sum(isinstance(body, FlexibleBody) for body in model.bodies)
-    part = min(1.0, MOST_NUMBERS / (width * (frames + MOST_SAMPLES)))
+    part = min(1.0, MOST_NUMBERS / (max(width, 1) * (frames + MOST_SAMPLES)))
     return max(LEAST, round(part * frames)) if part < 1.0 else frames, max(LEAST, round(part * MOST_SAMPLES))
 
 
-def _size(motion: Motion, sketches: Sequence[Sketch]) -> float:
+def _size(motion: Motion, sketches: Sequence[Sketch], points: Sequence[Frame]) -> float:
     """What symbols are drawn for, m: the mechanism's size at its start, or a part of the way that it goes."""
     ways = [motion.frame(body.name)[:, :2] for body in motion.model.bodies if isinstance(body, PlanarFrame)]
     drawn = [np.array(sketch.outline) + np.array(sketch.at[:2]) for sketch in sketches]
+    drawn += [point.motion[:, :2] for point in points]
     if not ways:
-        return _diagonal(drawn) if drawn else motion.places.size
-    points = {marker.point for element in motion.model.elements() for marker in element.markers()}
-    if motion.places.size == 1.0 and len(points) < 2:  # a model that is one point has no size: its way from the origin
+        return (_diagonal(drawn) if drawn else 0.0) or motion.places.size
+    attached = {marker.point for element in motion.model.elements() for marker in element.markers()}
+    if motion.places.size == 1.0 and len(attached) < 2:  # a model that is one point has no size: its way from the origin
         return _diagonal([*ways, np.zeros((1, 2))]) or 1.0
     return max(motion.places.size, WAY * _diagonal(ways))
 

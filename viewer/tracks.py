@@ -25,6 +25,8 @@ class Tracks:
         self.struck = frozenset(event.contact for event in result.events)
         """Contacts with events."""
         self._rates: dict[str, str] = {}
+        for name in getattr(result.system, "coordinates", ()):  # of user-written equations
+            self._rates |= {name: f"d_{name}", f"d_{name}": f"dd_{name}"}
         for body in model.bodies:
             for c in body.coordinate_records():
                 self._rates |= {f"{body.name}.{c.name}": f"{body.name}.{c.rate}"}
@@ -43,6 +45,10 @@ class Tracks:
         rate = self._rates.get(name)
         return self._frames.line(y) if rate is None else self._frames.cubic(y, self._result[rate])
 
+    def rate(self, name: str) -> Floats | None:
+        """Rate of a channel (F,); None if it is not a channel too."""
+        return self.values_or_none(self._rates.get(name, ""))
+
     def values_or_none(self, name: str) -> Floats | None:
         """The same; None for a channel that there is not."""
         return self.values(name) if name in self._records else None
@@ -52,7 +58,8 @@ class Tracks:
         bodies = [b for b in self._model.bodies if not isinstance(b, MaterialPoint2D)]
         points = [b for b in self._model.bodies if isinstance(b, MaterialPoint2D)]
         shown = (points or bodies)[-1:]
-        found = [f"{body.name}.{name}" for body in shown for name in body.coordinate_names[:3]]
+        found = list(getattr(self._result.system, "coordinates", ()))[:4]
+        found += [f"{body.name}.{name}" for body in shown for name in body.coordinate_names[:3]]
         found += [f"{contact.name}.normal_force" for contact in self._model.contacts[:2]]
         return tuple(name for name in (*found, "energy.kinetic") if name in self._records)
 

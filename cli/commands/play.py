@@ -25,6 +25,7 @@ def play(path: StoredResult, channels: Channels = None, output: PageFile = None,
 
     from ...core import load_result
     from ...viewer import animate
-    from ..animations import deliver
+    from ..animations import deliver, sketches_for
 
-    deliver(animate(load_result(path), channels=channels), output, path.stem)
+    result = load_result(path)
+    deliver(animate(result, channels=channels, sketches=sketches_for(result)), output, path.stem)

@@ -207,3 +207,22 @@ def test_the_page_of_a_large_model_stays_small() -> None:
     animation = animate(result)
     assert 60 <= len(animation.scene.t) < 1500
     assert len(animation.html()) < 20e6
+
+
+def test_points_of_equations_move_as_their_channels_say() -> None:
+    system = EquationSystem(
+        mass=np.eye(2),
+        force=lambda t, q, v: np.array([0.0, -9.81]),
+        constraint=lambda t, q: q[0] ** 2 + q[1] ** 2 - 1.0,
+        q0=[1.0, 0.0],
+        v0=[0.0, 0.0],
+        coordinates=("x", "y"),
+    )
+    result = simulate(system, 1.0)
+    scene = animate(result, points={"bob": ("x", "y")}).scene
+    bob = frame(scene, "bob")
+    rows = np.searchsorted(scene.t, result.t)
+    assert np.array_equal(bob.motion[rows, 0], result["x"]) and np.array_equal(bob.velocity[rows, 1], result["d_y"])
+    assert scene.plots[:2] == ["x", "y"] and 1.0 < scene.size < 3.0
+    with pytest.raises(KeyError, match="no channel 'z'"):
+        animate(result, points={"bob": ("x", "z")})
