@@ -154,7 +154,9 @@ def _size(motion: Motion, sketches: Sequence[Sketch], points: Sequence[Frame]) -
     if not ways:
         return (_diagonal(drawn) if drawn else 0.0) or motion.places.size
     attached = {marker.point for element in motion.model.elements() for marker in element.markers()}
-    if motion.places.size == 1.0 and len(attached) < 2:  # a model that is one point has no size: its way from the origin
+    if (
+        motion.places.size == 1.0 and len(attached) < 2
+    ):  # a model that is one point has no size: its way from the origin
         return _diagonal([*ways, np.zeros((1, 2))]) or 1.0
     return max(motion.places.size, WAY * _diagonal(ways))
 

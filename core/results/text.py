@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..description import Model
 from .names import owners
 
 if TYPE_CHECKING:
@@ -37,10 +38,16 @@ def facts(result: "Result") -> list[tuple[str, str]]:
     names = [owner for owner in owners(result.channels) if owner]
     shown = ", ".join(names[:MOST_OWNERS]) + (" ..." if len(names) > MOST_OWNERS else "")
     found.append(("channels", f"{len(result.channels)}{' of ' + shown if shown else ''}"))
-    if len(t) and "energy.balance" in result.channels:
-        largest = float(np.max(np.abs(result["energy.balance"])))
-        residual = float(np.max(np.abs(result["residual.position"]))) if "residual.position" in result.channels else 0.0
-        found.append(("errors", f"energy balance {largest:.1e} J, constraints {residual:.1e} at most"))
+    errors = [("constraints", "residual.position", "m")]
+    if isinstance(result.system, Model):  # nobody knows the potential energy of user-written equations
+        errors.insert(0, ("energy balance", "energy.balance", "J"))
+    sizes = [
+        f"{what} {float(np.max(np.abs(result[name]))):.1e} {unit}"
+        for what, name, unit in errors
+        if len(t) and name in result.channels
+    ]
+    if sizes:
+        found.append(("errors", f"{', '.join(sizes)} at most"))
     if result.redundant:
         found.append(("redundant", f"{len(result.redundant)} constraint rows that others imply"))
     return found
