@@ -174,7 +174,7 @@ def box_of(scene: Scene) -> tuple[float, float, float, float]:
         c, s = np.cos(motion[:, 2]), np.sin(motion[:, 2])
         for x, y in _corners(part):
             clouds.append(np.stack([motion[:, 0] + c * x - s * y, motion[:, 1] + s * x + c * y], axis=1))
-    clouds += [frame.motion[:, :2] for frame in scene.frames[1:]]
+    clouds += [frame.motion[:, :2] for frame in scene.frames if frame.velocity is not None]
     every = np.concatenate(clouds) if clouds else np.zeros((1, 2))
     every = every[np.all(np.isfinite(every), axis=1)]
     (x0, y0), (x1, y1) = every.min(axis=0), every.max(axis=0)

@@ -6,8 +6,9 @@ function fit() {
   const [x0, y0, x1, y1] = scene.box;
   const least = 0.25 * scene.size;
   const wide = Math.max(x1 - x0, least), high = Math.max(y1 - y0, least);
-  // room for the buttons above and the scale below
-  const margin = { x: 34, top: camera.width < 600 ? 92 : 52, bottom: 44 };
+  // room for the buttons above, the scale below, and gauges if there are any
+  const gauged = scene.gauges.length && (scene.frames.length > 1 || scene.bands.length);
+  const margin = { x: 34, top: camera.width < 600 ? 92 : 52, bottom: gauged ? 190 : 44 };
   camera.scale = Math.min((camera.width - 2 * margin.x) / wide, (camera.height - margin.top - margin.bottom) / high);
   camera.scale = Math.max(camera.scale, 1e-9);
   camera.x = 0.5 * (x0 + x1);

@@ -270,13 +270,13 @@ function drawScale(g) {
 
 // Coordinates without a place in the plane: pointers on scales of their own, in the middle if there is nothing else.
 function drawGauges(g, where) {
-  const count = scene.gauges.length;
+  const count = Math.min(scene.gauges.length, Math.floor((camera.width - 20) / 110));
   if (!count) return;
   const alone = scene.frames.length < 2 && !scene.bands.length;
   const high = alone ? Math.max(80, camera.height - 230) : 90, top = alone ? 130 : camera.height - 150;
   const step = Math.min(130, (camera.width - 40) / count), left = alone ? 0.5 * (camera.width - step * count) : 10;
-  scene.gauges.forEach((gauge, k) => {
-    const x = left + (k + 0.4) * step, n = gauge.values.numbers;
+  scene.gauges.slice(0, count).forEach((gauge, k) => {
+    const x = left + (k + 0.45) * step, n = gauge.values.numbers;
     let low = Infinity, up = -Infinity;
     for (const v of n) { if (v < low) low = v; if (v > up) up = v; }
     if (!(up - low > 1e-12 * Math.max(Math.abs(up), Math.abs(low)))) [low, up] = [low - 1, up + 1];

@@ -92,7 +92,7 @@ function plotCurve(card) {
 function short(value, step) {
   const zero = Math.abs(value) < 1e-9 * step ? 0 : value, digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const plain = zero.toFixed(Math.min(digits, 20));
-  const text = plain.length <= 8 && Math.abs(zero) < 1e6 ? plain : zero === 0 ? "0" : zero.toExponential(Math.min(4, Math.max(0, Math.floor(Math.log10(Math.abs(zero)) + 1e-9) - Math.floor(Math.log10(step) + 1e-9))));
+  const text = plain.length <= 7 && Math.abs(zero) < 1e6 ? plain : zero === 0 ? "0" : zero.toExponential(Math.min(4, Math.max(0, Math.floor(Math.log10(Math.abs(zero)) + 1e-9) - Math.floor(Math.log10(step) + 1e-9))));
   return text.replace("-", "−");
 }
 
