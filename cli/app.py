@@ -2,7 +2,7 @@
 
 import typer
 
-from .commands import cosim, crosscheck, export, info, lyapunov, methods, run, study, warm
+from .commands import cosim, crosscheck, export, info, lyapunov, methods, play, run, show, study, warm
 from .commands import list as list_command
 
 app = typer.Typer(
@@ -42,6 +42,8 @@ def tlismni(
 app.command("list", epilog=list_command.EXAMPLES)(list_command.list_scenarios)
 app.command("methods", epilog=methods.EXAMPLES)(methods.methods)
 app.command("run", epilog=run.EXAMPLES)(run.run)
+app.command("show", epilog=show.EXAMPLES)(show.show)
+app.command("play", epilog=play.EXAMPLES)(play.play)
 app.command("export", epilog=export.EXAMPLES)(export.export)
 app.command("info", epilog=info.EXAMPLES)(info.info)
 app.command("warm", epilog=warm.EXAMPLES)(warm.warm)

@@ -58,6 +58,10 @@ def check_suffix(path: Path | None, suffixes: tuple[str, ...], option: str) -> N
         raise typer.BadParameter(f"'{path}' must end in {' or '.join(suffixes)}", param_hint=option)
 
 
+RESULT_KINDS = (".npz", ".csv", ".json", ".parquet", ".nc", ".h5")
+"""Of files of results: the first one holds everything, `tlismni play` and `load_result` read it."""
+ANIMATION_KINDS = (".html", ".gif", ".mp4")
+
 _SOLVER, _OUTPUT = "Solver", "Output"
 
 Source = Annotated[
@@ -161,11 +165,28 @@ Every = Annotated[
 ]  # fmt: skip
 ResultFile = Annotated[
     Path | None,
-    typer.Option("--output", "-o", help="Write all channels: .csv, .json or .npz.", rich_help_panel=_OUTPUT),
+    typer.Option(
+        "--output",
+        "-o",
+        rich_help_panel=_OUTPUT,
+        help="Write the result, .npz (see `tlismni play`), or all channels: .csv, .json, .parquet, .nc or .h5.",
+    ),
 ]
 StepsFile = Annotated[
     Path | None,
     typer.Option("--steps", help="Write size, error and iterations of every step: .csv.", rich_help_panel=_OUTPUT),
+]
+AnimationFile = Annotated[
+    Path | None,
+    typer.Option("--animate", help="Write the motion: .html to play, or .gif, .mp4.", rich_help_panel=_OUTPUT),
+]
+PageFile = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", help="Write it here and open nothing.", rich_help_panel=_OUTPUT),
+]
+StoredResult = Annotated[
+    Path,
+    typer.Argument(metavar="RESULT", exists=True, dir_okay=False, help="A result, .npz, of `tlismni run --output`."),
 ]
 PlotFile = Annotated[
     Path | None,

@@ -1,12 +1,12 @@
 """Figures of the command line, drawn without a display."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..core import Result
+from ..core.results.plots import curve, mark_events, panels
 from ..models import Scenario
 from .cosimulation import Comparison
 from .result_files import replace_whole
@@ -14,13 +14,6 @@ from .summary import LEVELS
 
 FLOOR = 1e-18
 """Smallest residual that is drawn: zero has no logarithm."""
-
-RATES = {
-    "x": "vx", "y": "vy", "angle": "angular_velocity", "gap": "gap_rate",
-    "vx": "ax", "vy": "ay", "angular_velocity": "angular_acceleration",
-}  # fmt: skip
-POINTS = 12
-"""Points drawn in a step: a high-order method's steps are long, straight lines between their ends mislead."""
 
 
 def units_of(result: Result) -> dict[str, str]:
@@ -48,41 +41,6 @@ def plot_result(result: Result, scenario: Scenario, path: Path) -> Path:
         mark_events(axis, [event.t for event in result.events])
     figure.suptitle(f"{scenario.name}, {scenario.method}", fontsize=10)
     return save(figure, path)
-
-
-def curve(result: Result, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Times and values of a channel, cubic between samples where its rate is recorded too."""
-    owner, _, quantity = name.rpartition(".")
-    t, y = result.t, result[name]
-    rate = f"{owner}.{RATES.get(quantity, '')}"
-    if rate not in result.channels or len(t) < 2:
-        return t, y
-    s = np.linspace(0.0, 1.0, POINTS)
-    # impacts have two samples at one time: an interval of length zero draws the jump
-    h = np.diff(t)[:, None]
-    a, b, da, db = y[:-1, None], y[1:, None], h * result[rate][:-1, None], h * result[rate][1:, None]
-    values = (2 * s**3 - 3 * s**2 + 1) * a + (s**3 - 2 * s**2 + s) * da + (3 * s**2 - 2 * s**3) * b + (s**3 - s**2) * db
-    return (t[:-1, None] + h * s).ravel(), values.ravel()
-
-
-def panels(count: int) -> tuple[Any, Any]:
-    """A figure with `count` panels over one time axis, and the panels' axes."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8.0, 1.0 + 1.6 * count), layout="constrained")
-    axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-    for axis in axes:
-        axis.grid(alpha=0.3)
-        axis.yaxis.label.set_fontsize(8)
-    axes[-1].set_xlabel("time, s")
-    return figure, axes
-
-
-def mark_events(axis: Any, times: Sequence[float], most: int = 60) -> None:
-    """Thin vertical lines where contacts change; none if they would fill the panel."""
-    if len(times) <= most:
-        for t in times:
-            axis.axvline(t, color="0.7", lw=0.5, zorder=0)
 
 
 def save(figure: Any, path: Path) -> Path:

@@ -1,50 +1,35 @@
-"""A result as a file: CSV, JSON or NPZ. Each is written whole or not at all."""
+"""A result as a file, written whole or not at all."""
 
-import csv
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..core import Result
+from ..core.results.files import export, write_arrays, write_csv
 from .errors import Failure
 from .screen import plain
 
 
-def write_result(result: Result, path: Path) -> Path:
-    """Write all channels of `result`; the kind of file follows from the suffix."""
-    columns = {"time": result.t, **{name: result[name] for name in result.channels}}
-    if path.suffix.lower() == ".csv":
-        return write_csv(path, columns)
-    events = [event.to_dict() for event in result.events]
-    if path.suffix.lower() == ".npz":
-        # the events as JSON text: an archive without pickled objects opens everywhere
-        texts = {"events": np.array(json.dumps(plain(events)))}
-        return replace_whole(path, lambda name: np.savez(name, allow_pickle=False, **columns, **texts))
-    units = {"time": "s", **{channel.name: channel.unit for channel in result.channel_records}}
-    data = plain({"units": units, "columns": columns, "events": events, "statistics": result.stats})
-    return replace_whole(path, lambda name: Path(name).write_text(json.dumps(data), encoding="utf-8"))
+def write_result(result: Any, path: Path) -> Path:
+    """Write a result, or what has columns and events as a result has; the kind of file follows from the suffix."""
+    if path.suffix.lower() != ".npz":
+        return replace_whole(path, lambda name: export(result, name))
+    if isinstance(result, Result):
+        return replace_whole(path, result.save)
+    # the events as JSON text: an archive without pickled objects opens everywhere
+    events = np.array(json.dumps(plain([event.to_dict() for event in result.events])))
+    arrays = {"time": result.t, **{name: result[name] for name in result.channels}, "events": events}
+    return replace_whole(path, lambda name: write_arrays(Path(name), arrays))
 
 
-def write_csv(path: Path, columns: dict[str, Any]) -> Path:
-    """Columns of equal length, with a line of names. Numbers read back as the same doubles."""
-
-    def write(name: str) -> None:
-        with open(name, "w", newline="", encoding="utf-8") as stream:
-            writer = csv.writer(stream)
-            writer.writerow(columns)
-            writer.writerows(_rows(list(columns.values())))
-
-    return replace_whole(path, write)
-
-
-def _rows(columns: Sequence[Any]) -> Iterable[Sequence[Any]]:
-    # tolist gives Python floats, whose text is the shortest that reads back as the same number
-    return zip(*(np.asarray(column).tolist() for column in columns), strict=True)
+def write_table(path: Path, columns: dict[str, Any]) -> Path:
+    """Columns of equal length as CSV, with a line of names."""
+    return replace_whole(path, lambda name: write_csv(Path(name), columns))
 
 
 def replace_whole(path: Path, write: Callable[[str], Any]) -> Path:

@@ -43,6 +43,10 @@ RUN_OPTIONS: Mapping[str, tuple[str, str]] = {
 """Options of a run that every method takes: default and meaning."""
 
 
+ANY_END = 1.0
+"""An end time for those who do not run, s."""
+
+
 def read_source(
     source: str,
     sets: Iterable[str] | None = None,

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from ..core.results.plots import panels
 from ..fmu_wrapper.master import Connection, SystemDescription, SystemResult, read_system, simulate_system
 from ..models import load
-from .plots import panels, save
+from .plots import save
 from .result_files import write_result
 from .screen import compile_notice, number, print_json, print_table, progress_bar, say, stdout
 
@@ -27,7 +28,7 @@ def run_system(path: Path, changes: dict[str, Any], output: Path | None, plot: P
         result = simulate_system(description, path.parent, load_scenario=load, progress=progress)
     files = []
     if output is not None:
-        files.append(write_result(result, output))  # type: ignore[arg-type]  # it has what a Result has of columns
+        files.append(write_result(result, output))
     if plot is not None:
         files.append(plot_system(description, result, plot))
     figures = _figures(description, result, files)

@@ -91,6 +91,7 @@ from .model.markers import Marker2D
 from .model.outputs import MarkerOutput2D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
 from .result import Result
+from .results.stored import load_result
 from .runs import Runs
 from .simulate import simulate
 from .simulate_many import simulate_many
@@ -201,6 +202,7 @@ __all__ = [
     "curvature",
     "deformed_shape",
     "force_formula",
+    "load_result",
     "scalar_constraint",
     "scalar_contact",
     "scalar_force",

@@ -11,6 +11,13 @@ class ModelError(TlismniError, ValueError):
     """A model, or something said about one, is wrong."""
 
 
+class UnknownNameError(TlismniError, KeyError):
+    """A name that there is not. Says near ones."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # a KeyError shows the text in quotes
+
+
 class ConsistencyError(TlismniError):
     """No consistent start could be found from the given q0, v0, or the constraints contradict each other."""
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from numbers import Integral, Real
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .compiled.watch import RunWatch
+from .compiled_model import compile_model
 from .errors import ModelError, SimulationError, TlismniError
 from .integrate.simulation import Simulation
 from .result import Result
@@ -30,6 +32,7 @@ def simulate(
     t0: float = 0.0,
     record: bool | int = True,
     progress: Callable[[float], None] | None = None,
+    start: Mapping[str, float] | None = None,
     **options: Any,
 ) -> Result:
     """Integrate a `Model` or `EquationSystem` from t0 to t_end.
@@ -47,6 +50,8 @@ def simulate(
     record : False records only start and end (for timing); a number k records every k-th step, what happens at
         contacts, and the end: for models so large that all steps would fill the memory.
     progress : called with the time reached, now and then.
+    start : coordinates and rates at the start by the names of their channels ("ball.y", "ball.vy"), in place of those
+        of the model; `Result.start_at` gives those of another run, to go on from there.
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
         `outer`, `acceleration`, `depth`, `fallback`, `controller`, `newton_tolerance`, `start_tolerance`,
@@ -68,9 +73,11 @@ def simulate(
             f"step = {step!r} would take {(t_end - t0) / step:.3g} steps from t0 to t_end: use a larger one"
         )
     times = None if t_eval is None else check_times(t_eval, t0, t_end)
-    sim = Simulation(
-        system, method, rtol, atol, step=step, t0=t0, record=_check_stride(record) if times is None else 0, **options
-    )
+    settings = {"step": step, "t0": t0, "record": _check_stride(record) if times is None else 0, **options}
+    if start is None:
+        sim = Simulation(system, method, rtol, atol, **settings)
+    else:
+        sim = compile_model(system, method, rtol, atol, **settings).simulation(start=start)
     sim.progress = progress
     watch = RunWatch()
     rows = []
@@ -104,7 +111,9 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
     samples = np.concatenate(blocks) if blocks else np.zeros((0, sim.buffer.shape[1]))
     steps = np.concatenate(sim.step_logs) if sim.step_logs else None
     stats = {**sim.stats, "wall_time": wall_time}
-    return Result(samples, sim.table, sim.events, stats, sim.fallbacks, steps, sim.redundant)
+    return Result(
+        samples, sim.table, sim.events, stats, sim.fallbacks, steps, sim.redundant, sim.system, asdict(sim.settings)
+    )
 
 
 def _check_stride(record: bool | int) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .version import VERSION_FILE, package_version
 
-CARRIED = ("core", "fmu_wrapper", "models")
+CARRIED = ("core", "fmu_wrapper", "models", "viewer")
 """What a slave needs; it is imported from its archive under another name than `tlismni`, by relative imports."""
 _ROOT = Path(__file__).resolve().parents[1]
 

@@ -6,9 +6,9 @@ from typing import Any
 from ..core.description import Model
 from ..core.elements import Element
 from ..core.model.markers import GROUND
+from ..viewer.drawing import add_surroundings, draw, to_svg
 from .dependencies import bodies_of
 from .description_parts import About
-from .drawing import add_surroundings, draw, to_svg
 from .settings import Settings
 from .terminals import terminals
 from .variables import Variable, VariableTable

@@ -15,11 +15,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from ..viewer.drawing import draw, to_png, to_svg
 from .bundle import package_archive
 from .dependencies import Dependencies
 from .description_parts import About
 from .documentation import documentation
-from .drawing import draw, to_png, to_svg
 from .embedded import MODEL_FILE, PYTHON_FILE, SETTINGS_FILE
 from .errors import ExportError
 from .extras import require

@@ -8,7 +8,7 @@ from ..core.description import Model
 from ..core.model.base import Record
 from ..core.model.channels import Parameter
 from ..core.model.units import parse_unit
-from .drawing.places import Places
+from ..viewer.drawing.places import Places
 
 
 @dataclass(frozen=True)

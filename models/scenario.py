@@ -7,6 +7,7 @@ from typing import Any
 
 from ..core.description import Model
 from ..core.tolerances import DEFAULT_ATOL
+from ..viewer.sketches import Sketch
 
 
 def _no_entries() -> Mapping[str, Any]:
@@ -23,6 +24,7 @@ class Scenario:
     method, rtol, atol, options : what `simulate` is called with.
     parameters : values of all parameters of the builder, defaults included.
     given : what the builder was called with: as `parameters`, but None where it was left to the builder.
+    sketches : outlines that show generalised coordinates, for animations.
     compare : channels that a cross-check compares and plots.
     """
 
@@ -36,6 +38,7 @@ class Scenario:
     options: Mapping[str, Any] = field(default_factory=_no_entries)
     parameters: Mapping[str, Any] = field(default_factory=_no_entries)
     compare: tuple[str, ...] = ()
+    sketches: tuple[Sketch, ...] = ()
     given: Mapping[str, Any] = field(default_factory=_no_entries)
 
     def __post_init__(self) -> None:

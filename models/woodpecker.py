@@ -6,6 +6,7 @@ from ..core.contact.laws import NewtonImpact
 from ..core.description import Model
 from ..core.elements import LinearSystem
 from ..core.model.channels import Parameter
+from ..viewer.sketches import Sketch
 from .frictions import friction_model_parameter
 from .parameters import ScenarioParameter
 from .registry import scenario
@@ -104,4 +105,31 @@ def woodpecker(*, friction: float, restitution: float, gravity: float) -> Scenar
         rtol=1e-8,
         atol=1e-10,
         compare=("toy.y", "toy.sleeve", "toy.bird", "toy.d_bird"),
+        sketches=_sketches(),
     )
+
+
+def _sketches() -> tuple[Sketch, ...]:
+    """Pole, sleeve and bird, to first order in the angles, as the model is."""
+    height, inner, arm = SLEEVE_HALF_HEIGHT, SLEEVE_RADIUS, SPRING_ARM + BIRD_ARM
+    beak = (-BEAK_ARM, BEAK_HEIGHT)
+    bird = (
+        (-BIRD_ARM, -4e-4), (-4e-3, -1e-3), (-1e-3, -22e-3), (3e-3, -23e-3), (6e-3, -4e-3), (3e-3, 14e-3),
+        (-2e-3, 23e-3), (-9e-3, 23.5e-3), beak, (-9e-3, 17.5e-3), (-5e-3, 9e-3), (-5e-3, 1e-3), (-BIRD_ARM, 4e-4),
+    )  # fmt: skip
+    box = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
+    # the sleeve is open: two plates, and the arm that carries the spring
+    plates = ((-SLEEVE_RADIUS - 6e-4, -SLEEVE_RADIUS), (SLEEVE_RADIUS, SLEEVE_RADIUS + 6e-4))
+    y, turn = {"toy.y": 1.0}, {"toy.sleeve": 1.0}
+    return (
+        Sketch("pole", tuple((POLE_RADIUS * x, 0.075 * y) for x, y in box), at=(0.0, -0.03, 0.0)),
+        *(
+            Sketch(name, ((low, -height), (high, -height), (high, height), (low, height)), y=y, angle=turn)
+            for name, (low, high) in zip(("left plate", "right plate"), plates, strict=True)
+        ),
+        Sketch("arm", ((inner, -4e-4), (SPRING_ARM, -4e-4), (SPRING_ARM, 4e-4), (inner, 4e-4)), y=y, angle=turn),
+        Sketch(
+            "bird", bird, at=(arm, 0.0, 0.0), y={"toy.y": 1.0, "toy.sleeve": SPRING_ARM, "toy.bird": BIRD_ARM},
+            angle={"toy.bird": 1.0},
+        ),
+    )  # fmt: skip

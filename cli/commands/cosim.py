@@ -184,10 +184,10 @@ def _print(figures: dict[str, Any]) -> None:
 
 def _write(folder: Path, scenario: Any, found: Any) -> list[Path]:
     from ..plots import plot_cosimulation
-    from ..result_files import write_csv
+    from ..result_files import write_table
 
     return [
-        write_csv(folder / f"{scenario.name}_fmu.csv", {"time": found.times, **found.fmu}),
-        write_csv(folder / f"{scenario.name}_slave.csv", {"time": found.times, **found.slave}),
+        write_table(folder / f"{scenario.name}_fmu.csv", {"time": found.times, **found.fmu}),
+        write_table(folder / f"{scenario.name}_slave.csv", {"time": found.times, **found.slave}),
         plot_cosimulation(scenario, found, folder / f"{scenario.name}_cosim.png"),
     ]

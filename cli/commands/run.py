@@ -2,6 +2,9 @@
 
 from ..errors import one_line_errors
 from ..options import (
+    ANIMATION_KINDS,
+    RESULT_KINDS,
+    AnimationFile,
     Atol,
     Debug,
     EndTime,
@@ -25,7 +28,8 @@ from ..targets import check_file
 EXAMPLES = (
     "Examples:\n\n  tlismni run pendulum_stop --set restitution=0.5 --plot swing.png\n\n"
     "  tlismni run chain --set links=20 --method hht --option alpha=-0.1 --step 1e-3\n\n"
-    "  tlismni run my_model.json --t-end 2 --output result.csv --json"
+    "  tlismni run my_model.json --t-end 2 --output result.csv --json\n\n"
+    "  tlismni run hub_beam_stop --animate motion.html --output result.npz"
 )
 
 
@@ -43,14 +47,16 @@ def run(
     output: ResultFile = None,
     plot: PlotFile = None,
     steps: StepsFile = None,
+    animate: AnimationFile = None,
     json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Run a scenario or a model file, and print events, constraint residuals, energy balance and statistics."""
-    check_suffix(output, (".csv", ".json", ".npz"), "--output")
+    check_suffix(output, RESULT_KINDS, "--output")
+    check_suffix(animate, ANIMATION_KINDS, "--animate")
     check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
     check_suffix(steps, (".csv",), "--steps")
-    for path in (output, plot, steps):
+    for path in (output, plot, steps, animate):
         check_file(path)
 
     from ...core import simulate
@@ -89,9 +95,13 @@ def run(
 
         files.append(plot_result(result, scenario, plot))
     if steps is not None:
-        from ..result_files import write_csv
+        from ..result_files import write_table
 
-        files.append(write_csv(steps, result.steps))
+        files.append(write_table(steps, result.steps))
+    if animate is not None:
+        from ..animations import write_animation
+
+        files.append(write_animation(result, scenario, animate))
     figures = {**summarise(scenario, result), "files": [str(path) for path in files]}
     if json:
         print_json(figures)

@@ -8,35 +8,43 @@ A body takes part by two methods of `FlexibleBody`: `material_point` tells how i
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..between import Between
 from ..elements.flexible_body import FlexibleBody, Section
 from ..errors import ModelError
-from ..result import Result
+
+if TYPE_CHECKING:
+    from ..result import Result
 
 Floats = NDArray[np.float64]
 
 
-def deformed_shape(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+def deformed_shape(result: "Result", body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
     """Places x, y of the points over time, (N, points, 2), m. Raises ModelError for a point outside the body."""
     q, _ = _history(result, body, times)
+    return places(body, [(float(s), 0.0) for s in _points(points)], q)
+
+
+def places(body: FlexibleBody, points: Sequence[tuple[float, float]], q: Floats) -> Floats:
+    """Places (N, points, 2), m, of material points from the history of the body's coordinates (N, n)."""
     index = {name: k for k, name in enumerate(body.coordinate_names)}
-    places = []
-    for s in _points(points):
-        shape = body.material_point((float(s), 0.0))
-        w = q[:, [index[name] for name in shape.local]]
-        x, y = shape.local_place(w)
+    found = []
+    for point in points:
+        shape = body.material_point(point)
+        x, y = shape.local_place(q[:, [index[name] for name in shape.local]])
         if shape.frame is not None:
             rx, ry, angle = (q[:, index[name]] for name in shape.frame)
             c, sn = np.cos(angle), np.sin(angle)
             x, y = rx + c * x - sn * y, ry + sn * x + c * y
-        places.append(np.stack([x, y], axis=1))
-    return np.stack(places, axis=1)
+        found.append(np.stack([x, y], axis=1))
+    return np.stack(found, axis=1)
 
 
-def section(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Section:
+def section(result: "Result", body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Section:
     """Strain, curvature, axial force and bending moment at once, each (N, points).
 
     Raises
@@ -46,28 +54,28 @@ def section(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayL
     return body.section(_points(points), *_history(result, body, times))
 
 
-def axial_strain(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+def axial_strain(result: "Result", body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
     """Strain of the axis (N, points), 1."""
     return section(result, body, points, times).axial_strain
 
 
-def curvature(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+def curvature(result: "Result", body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
     """Curvature (N, points), 1/m: turning of the cross-section per undeformed length."""
     return section(result, body, points, times).curvature
 
 
-def axial_force(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+def axial_force(result: "Result", body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
     """Axial force (N, points), N, tension positive, damping included."""
     return section(result, body, points, times).axial_force
 
 
-def bending_moment(result: Result, body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
+def bending_moment(result: "Result", body: FlexibleBody, points: ArrayLike, times: ArrayLike | None = None) -> Floats:
     """Bending moment (N, points), N m, positive where it turns the far side counter-clockwise, damping included."""
     return section(result, body, points, times).bending_moment
 
 
 def stress(
-    result: Result,
+    result: "Result",
     body: FlexibleBody,
     points: ArrayLike,
     *,
@@ -100,7 +108,7 @@ def stress(
 
 
 def bending_stress(
-    result: Result,
+    result: "Result",
     body: FlexibleBody,
     points: ArrayLike,
     *,
@@ -131,7 +139,7 @@ def _points(points: ArrayLike) -> Floats:
     return found
 
 
-def _history(result: Result, body: FlexibleBody, times: ArrayLike | None) -> tuple[Floats, Floats]:
+def _history(result: "Result", body: FlexibleBody, times: ArrayLike | None) -> tuple[Floats, Floats]:
     """Coordinates and rates of the body (N, n): at the samples, or at `times` by cubics between them."""
     records = body.coordinate_records()
     q = _columns(result, body.name, [record.name for record in records])
@@ -145,14 +153,9 @@ def _history(result: Result, body: FlexibleBody, times: ArrayLike | None) -> tup
     if len(t) == 0 or not (wanted.min() >= t[0] and wanted.max() <= t[-1]):
         raise ModelError(f"times reach from {wanted.min():g} to {wanted.max():g} s, but the result from "
                          f"{t[0] if len(t) else 0.0:g} to {t[-1] if len(t) else 0.0:g} s")  # fmt: skip
-    # at an impact, where two samples have the same time, the one after it counts
-    k = np.clip(np.searchsorted(t, wanted, side="right") - 1, 0, len(t) - 1)
-    nxt = np.minimum(k + 1, len(t) - 1)
-    h = (t[nxt] - t[k])[:, None]
-    x = np.divide((wanted - t[k])[:, None], h, out=np.zeros_like(h), where=h > 0.0)
-    a = (1 + 2 * x) * (1 - x) ** 2 * q[k] + x**2 * (3 - 2 * x) * q[nxt]
-    return a + h * (x * (1 - x) ** 2 * v[k] - x**2 * (1 - x) * v[nxt]), (1 - x) * v[k] + x * v[nxt]
+    among = Between.at(t, wanted)
+    return among.cubic(q, v), among.line(v)
 
 
-def _columns(result: Result, body: str, names: Sequence[str]) -> Floats:
+def _columns(result: "Result", body: str, names: Sequence[str]) -> Floats:
     return np.stack([result[f"{body}.{name}"] for name in names], axis=1)

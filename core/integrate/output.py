@@ -198,6 +198,16 @@ class ChannelTable:
         ):
             self._formulas.append((Channel(f"energy.{name}", "J", description), formula))
 
+    @property
+    def parts(self) -> dict[str, slice]:
+        """Where q, v, a and the multipliers stand in a sample."""
+        layout = self.layout
+        return {"q": layout.q, "v": layout.v, "a": layout.a, "multipliers": layout.multipliers}
+
+    def plain_columns(self) -> dict[str, int]:
+        """Channels that stand in a sample as they are, with their columns."""
+        return {channel.name: formula for channel, formula in self._formulas if isinstance(formula, int)}
+
     def column(self, samples: NDArray[np.float64], name: str) -> NDArray[np.float64]:
         """One channel over all samples (N,). Raises KeyError for an unknown name."""
         k = self.index[name]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("core", "models", "fmu_wrapper", "validation", "cli")
+PACKAGES = ("core", "models", "viewer", "fmu_wrapper", "validation", "cli")
 
 
 def modules(package):

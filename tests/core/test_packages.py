@@ -11,7 +11,7 @@ def test_every_folder_with_code_is_a_package_of_the_distribution():
     listed = set(tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"])
     found = {
         ".".join(("tlismni", *path.parent.relative_to(ROOT).parts))
-        for top in ("core", "models", "fmu_wrapper", "validation", "cli")
+        for top in ("core", "models", "viewer", "fmu_wrapper", "validation", "cli")
         for path in (ROOT / top).rglob("*.py")
     }
     assert found == listed

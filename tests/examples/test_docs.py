@@ -93,6 +93,30 @@ def test_the_page_on_co_simulation_runs(tmp_path: Path, monkeypatch: pytest.Monk
     assert (tmp_path / "system.ssp").is_file()
 
 
+def test_the_page_of_results_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("matplotlib", "pandas", "xarray"):
+        pytest.importorskip(module)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks("results.md", "python"):
+        exec(block, names)
+    result = names["result"]
+    assert np.array_equal(names["again"]["stop.gap"], result["stop.gap"])
+    assert names["rest"].q[-1] == pytest.approx(names["same"].q[-1], abs=1e-6)
+    assert {path.name for path in tmp_path.iterdir()} == {"swing.png", "swing.html", "swing.npz", "swing.csv"}
+    # what the page shows of `print(result)`, but for numbers
+    shown = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
+    for line in str(result).splitlines():
+        assert re.sub(r"[\d.e+-]+", "#", f"    {line}") in re.sub(r"[\d.e+-]+", "#", shown)
+
+
+def test_the_page_of_animations_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for block in blocks("animations.md", "python"):
+        exec(block, {})
+    assert {path.name for path in tmp_path.iterdir()} == {"crank.html", "hub.html", "toy.html"}
+
+
 def test_the_page_of_exponents_runs() -> None:
     names: dict[str, Any] = {}
     for block in blocks("lyapunov.md", "python"):

@@ -160,3 +160,16 @@ def test_a_late_force_gives_energy_to_the_blow_and_one_in_time_does_not() -> Non
         gained[algorithm] = sum(r[f"{i}.energy.{k}"][-1] for i in ("striker", "wall") for k in ("kinetic", "strain"))
         gained[algorithm] -= whole
     assert gained["jacobi"] > 0.01 and abs(gained["newton"]) < 0.1 * gained["jacobi"]
+
+
+def test_the_trolley_loses_at_the_buffer_what_the_buffer_pushes(tmp_path: Path) -> None:
+    f = figures("see_it_move")
+    assert f["momentum_before"] == pytest.approx(np.full(len(f["momentum_before"]), f["expected_momentum"]), rel=1e-9)
+    assert f["result"].events[0].t == pytest.approx(f["expected_strike"], abs=1e-9)
+    assert len(f["impulses"]) > 1
+    assert f["losses"][: len(f["impulses"])] == pytest.approx(f["impulses"], rel=1e-6, abs=1e-9)
+    assert f["largest_energy_balance"] < 1e-4
+    assert np.array_equal(f["stored"]["load.angle"], f["result"]["load.angle"])
+    assert f["rest"].q[-1] == pytest.approx(f["result"].q[-1], abs=1e-5)
+    example("see_it_move").animate(f, tmp_path / "crane.html")
+    assert "A trolley strikes a buffer" in (tmp_path / "crane.html").read_text(encoding="utf-8")

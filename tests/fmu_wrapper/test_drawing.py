@@ -8,10 +8,10 @@ from fmu_helpers import ball_model
 from tlismni.core.description import Model
 from tlismni.core.elements import Gear2D, RigidBody2D
 from tlismni.core.model.markers import Marker2D
-from tlismni.fmu_wrapper.drawing import draw, to_png, to_svg
-from tlismni.fmu_wrapper.drawing.mechanism import add_surroundings, round_length
-from tlismni.fmu_wrapper.drawing.shapes import TOUCH, Circle, Label, Path, hull
 from tlismni.models import load, names
+from tlismni.viewer.drawing import draw, to_png, to_svg
+from tlismni.viewer.drawing.mechanism import add_surroundings, round_length
+from tlismni.viewer.drawing.shapes import TOUCH, Circle, Label, Path, hull
 
 
 @pytest.mark.parametrize("name", names())

@@ -27,28 +27,30 @@ def draw_bodies(drawing: Drawing, places: Places) -> None:
     named = {b.name for b in (shown if len(shown) <= MOST_NAMES else (shown[0], shown[-1]))}
     boxes, labels = 0, []
     for body in shown:
-        if isinstance(body, LinearSystem) and _along_x(body) is None:
+        if isinstance(body, LinearSystem) and standing(body) is None:
             _coordinates(drawing, places, body, boxes)
             boxes += 1
             continue
-        label = _draw(drawing, places, body)
+        label = draw_body(drawing, places, body)
         if body.name in named:
             labels.append(label)
     drawing.shapes += labels
 
 
-def _draw(drawing: Drawing, places: Places, body: BodyElement) -> Label:
+def draw_body(drawing: Drawing, places: Places, body: BodyElement) -> Label:
     """Draw a body; gives its name."""
     u = 0.01 * drawing.size
     if isinstance(body, RigidBody2D):
         return _rigid(drawing, places, body)
     if isinstance(body, PointMass2D):
         centre = places.frame(body.name)[0]
-        radius = max(_disk_radius(places, body.name), 2.0 * u)
+        # its disk as it is, unless that would hardly be seen
+        radius = _disk_radius(places, body.name)
+        radius = radius if radius > 0.6 * u else 2.0 * u
         drawing.shapes.append(Circle(centre, radius, INK, STEEL, 0.5))
         return Label(moved(centre, (1.0, 0.0), radius + u), body.name)
     if isinstance(body, LinearSystem):
-        centre = (_along_x(body) or 0.0) - 4.0 * u, 0.0
+        centre = (standing(body) or 0.0) - 4.0 * u, 0.0
         _block(drawing, centre, 0.0, 4.0 * u, 3.0 * u)
         return Label((centre[0], centre[1] + 5.0 * u), body.name)
     if isinstance(body, FlexibleBody):
@@ -74,7 +76,7 @@ def _flexible(drawing: Drawing, places: Places, body: FlexibleBody) -> Label:
 def _rigid(drawing: Drawing, places: Places, body: RigidBody2D) -> Label:
     centre = places.frame(body.name)[0]
     u = 0.01 * drawing.size
-    corners = hull(p for p in (*places.points_on(body.name), centre))
+    corners = _outline(places.points_on(body.name), centre)
     guide = next((j for j in places.model.joints if isinstance(j, Prismatic2D) and j.b.body == body.name), None)
     if guide is not None:
         along = turned((1.0, 0.0), -places.direction(guide.a))
@@ -87,6 +89,8 @@ def _rigid(drawing: Drawing, places: Places, body: RigidBody2D) -> Label:
         drawing.shapes.append(Circle(centre, radius, INK, STEEL, 0.5))
     elif len(corners) == 2:
         drawing.shapes += [Path(corners, INK, width=LINK + 0.9), Path(corners, STEEL, width=LINK)]
+    elif any(m.body == body.name for contact in places.model.contacts for m in contact.markers()):
+        drawing.shapes.append(Path(corners, INK, STEEL, 0.5, closed=True))  # what touches ends where it touches
     else:
         drawing.shapes += [
             Path(corners, INK, INK, LINK + 0.9, closed=True),
@@ -100,6 +104,16 @@ def _rigid(drawing: Drawing, places: Places, body: RigidBody2D) -> Label:
     if normal[1] < -0.1 or (normal[1] < 0.1 and normal[0] < 0.0):
         normal = -normal[0], -normal[1]
     return Label(moved(centre, normal, 4.0 * u), body.name, INK, "left" if normal[0] < -0.3 else "right")
+
+
+def _outline(points: list[Point], centre: Point) -> list[Point]:
+    """Hull of what is known of a body: of its points, and where its centre of mass would be a corner of these, of their
+    mirror images too, as a centre of mass lies within."""
+    corners = hull((*points, centre))
+    if centre in corners and len(corners) > 1:
+        (cx, cy), known = centre, list(corners)
+        corners = hull((*known, *((2.0 * cx - x, 2.0 * cy - y) for x, y in known)))
+    return corners
 
 
 def _block(
@@ -117,7 +131,7 @@ def _disk_radius(places: Places, body: str) -> float:
     return max(radii, default=0.0)
 
 
-def _along_x(body: LinearSystem) -> float | None:
+def standing(body: LinearSystem) -> float | None:
     """Where a single coordinate in m stands along x; None for generalised coordinates that have no place."""
     if len(body.coordinates) == 1 and body.coordinate_records()[0].unit == "m":
         return body.position[0] if body.position else 0.0

@@ -32,7 +32,7 @@ def pin(drawing: Drawing, at: Point) -> None:
 def spring(drawing: Drawing, a: Point, b: Point, damped: bool, stiff: bool = True) -> None:
     """A zigzag from `a` to `b`, a dashpot, or both side by side."""
     direction, length = between(a, b)
-    normal, u = turned(direction, 0.5 * math.pi), 0.02 * drawing.size
+    normal, u = turned(direction, 0.5 * math.pi), min(0.02 * drawing.size, 0.2 * length)
     lanes = [(0.0, stiff)] if stiff != damped else [(1.3 * u, True), (-1.3 * u, False)]
     for offset, zigzag in lanes:
         start, end = moved(a, normal, offset), moved(b, normal, offset)

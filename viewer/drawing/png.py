@@ -1,6 +1,7 @@
 """A drawing as PNG: the icon that FMI wants beside a drawing in SVG."""
 
 import io
+from typing import Any
 
 from .shapes import Circle, Drawing, Label, Point
 
@@ -14,18 +15,34 @@ def to_png(drawing: Drawing, pixels: int = 256) -> bytes:
     ------
     ImportError : without Pillow.
     """
+    out = io.BytesIO()
+    to_image(drawing, drawing.box(), (pixels, pixels), (255, 255, 255, 0)).save(out, "PNG", optimize=True)
+    return out.getvalue()
+
+
+def to_image(drawing: Drawing, box: tuple[Point, Point], size: tuple[int, int], ground: tuple[int, ...]) -> Any:
+    """What lies in `box` (lower left and upper right corner, m) as a Pillow image without names.
+
+    Parameters
+    ----------
+    size : width and height, pixels. ground : colour, red, green, blue and, for a transparent one, alpha.
+
+    Raises
+    ------
+    ImportError : without Pillow.
+    """
     from PIL import Image, ImageDraw
 
-    (x0, y0), (x1, y1) = drawing.box()
-    full = pixels * FINER
-    scale = full / max(x1 - x0, y1 - y0)
-    left, top = 0.5 * (full - (x1 - x0) * scale), 0.5 * (full - (y1 - y0) * scale)
-    unit = max(0.01 * drawing.size * scale, full / 95.0)
+    (x0, y0), (x1, y1) = box
+    wide, high = FINER * size[0], FINER * size[1]
+    scale = min(wide / (x1 - x0), high / (y1 - y0))
+    left, top = 0.5 * (wide - (x1 - x0) * scale), 0.5 * (high - (y1 - y0) * scale)
+    unit = max(0.01 * drawing.size * scale, max(wide, high) / 95.0 if len(ground) == 4 else 1.5 * FINER)
 
     def place(p: Point) -> Point:
         return left + (p[0] - x0) * scale, top + (y1 - p[1]) * scale
 
-    image = Image.new("RGBA", (full, full), (255, 255, 255, 0))
+    image = Image.new("RGBA" if len(ground) == 4 else "RGB", (wide, high), ground)
     canvas = ImageDraw.Draw(image)
     for shape in (*drawing.behind, *drawing.shapes):
         if isinstance(shape, Label):
@@ -44,7 +61,4 @@ def to_png(drawing: Drawing, pixels: int = 256) -> bytes:
             r = 0.5 * width
             for x, y in points:  # round ends and corners
                 canvas.ellipse((x - r, y - r, x + r, y + r), shape.stroke)
-    small = image.resize((pixels, pixels), Image.Resampling.LANCZOS)
-    out = io.BytesIO()
-    small.save(out, "PNG", optimize=True)
-    return out.getvalue()
+    return image.resize(size, Image.Resampling.LANCZOS)

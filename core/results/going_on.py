@@ -1,0 +1,153 @@
+"""A model that starts where a run was."""
+
+from functools import singledispatch
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..description import Model
+from ..elements import (
+    AxialRod,
+    BodyElement,
+    Cable2D,
+    FloatingBody2D,
+    LinearSystem,
+    MaterialPoint2D,
+    MovingFrame2D,
+    PointMass2D,
+    RigidBody2D,
+)
+from ..errors import ModelError
+
+if TYPE_CHECKING:
+    from ..result import Result
+
+Floats = NDArray[np.float64]
+REMEDY = "go on with simulate(model, t_end, t0=result.t[-1], start=result.start_at())"
+RIGID = 1e-9
+"""How near velocities must be to those of a rigid motion, relative, to count as one."""
+
+
+def row_at(result: "Result", t: float | None) -> int:
+    """The sample at `t`, the last one if left out; of two at one time, the later.
+
+    Raises
+    ------
+    ModelError : for a time that was not recorded.
+    """
+    times = result.t
+    if len(times) == 0:
+        raise ModelError("the result has no samples: record some (record=True, or t_eval) to go on from there")
+    if t is None:
+        return len(times) - 1
+    k = int(np.searchsorted(times, t, side="right")) - 1
+    near = 1e-12 * max(abs(float(times[0])), abs(float(times[-1])))
+    for row in (min(k + 1, len(times) - 1), max(k, 0)):
+        if abs(float(times[row]) - t) <= near:
+            return row
+    around = sorted({float(times[max(k, 0)]), float(times[min(k + 1, len(times) - 1)])})
+    raise ModelError(f"t = {t!r} s was not recorded; around it are {around}: take one of these, or record it (t_eval)")
+
+
+def start_at(result: "Result", t: float | None = None) -> dict[str, float]:
+    """Coordinates and rates at a recorded time by the names of their channels, for `simulate(..., start=...)`."""
+    row, layout = row_at(result, t), result.layout
+    every = np.arange(result.samples.shape[1])
+    states = {int(column) for part in ("q", "v") for column in every[layout[part]]}
+    return {name: float(result[name][row]) for name, column in result.plain_columns().items() if column in states}
+
+
+def model_at(result: "Result", t: float | None = None) -> Model:
+    """The model of a run, starting where the run was at a recorded time.
+
+    Raises
+    ------
+    ModelError : for a result without a model, a time that was not recorded, or a body whose record cannot say where it
+        is, such as a cable that swings.
+    """
+    model = result.system
+    if not isinstance(model, Model):
+        raise ModelError(f"this result is not of a Model, or comes without it: {REMEDY}")
+    start = start_at(result, t)
+    bodies = []
+    for body in model.bodies:
+        records = body.coordinate_records()
+        q = np.array([start[f"{body.name}.{c.name}"] for c in records])
+        v = np.array([start[f"{body.name}.{c.rate}"] for c in records])
+        bodies.append(type(body).model_validate({**body.model_dump(), **moved(body, q, v)}))
+    return Model(**{**{name: getattr(model, name) for name in Model.model_fields}, "bodies": tuple(bodies)})
+
+
+@singledispatch
+def moved(body: BodyElement, q: Floats, v: Floats) -> dict[str, Any]:
+    """The fields of a body's record that make it start at coordinates q and rates v.
+
+    Raises
+    ------
+    ModelError : if it has none for that.
+    """
+    raise ModelError(f"a {type(body).__name__} ('{body.name}') cannot say in its record where it is now: {REMEDY}")
+
+
+@moved.register
+def _(body: PointMass2D, q: Floats, v: Floats) -> dict[str, Any]:
+    return {"position": tuple(q.tolist()), "velocity": tuple(v.tolist())}
+
+
+@moved.register
+def _(body: RigidBody2D, q: Floats, v: Floats) -> dict[str, Any]:
+    return _frame(q, v)
+
+
+@moved.register
+def _(body: FloatingBody2D, q: Floats, v: Floats) -> dict[str, Any]:
+    return {**_frame(q, v), "amplitudes": tuple(q[3:].tolist()), "amplitude_rates": tuple(v[3:].tolist())}
+
+
+@moved.register
+def _(body: LinearSystem, q: Floats, v: Floats) -> dict[str, Any]:
+    return {"position": tuple(q.tolist()), "velocity": tuple(v.tolist())}
+
+
+@moved.register(MaterialPoint2D)
+@moved.register(MovingFrame2D)
+def _(body: BodyElement, q: Floats, v: Floats) -> dict[str, Any]:
+    return {}  # they are where their body is, or where they are told to be
+
+
+@moved.register
+def _(body: AxialRod, q: Floats, v: Floats) -> dict[str, Any]:
+    """It starts unstrained, all of it with one velocity."""
+    strained = float(np.max(np.abs(np.diff(q) * body.elements / body.length - 1.0)))
+    if strained > RIGID or float(np.ptp(v)) > RIGID * float(np.max(np.abs(v), initial=1.0)):
+        raise ModelError(
+            f"rod '{body.name}' is strained or moves in waves, and its record has no place for that: {REMEDY}"
+        )
+    return {"position": float(q[0]), "velocity": float(v[0])}
+
+
+@moved.register
+def _(body: Cable2D, q: Floats, v: Floats) -> dict[str, Any]:
+    """It starts in any shape, but turning as if rigid."""
+    nodes, rates = q.reshape(-1, 4), v.reshape(-1, 4)
+    arm = np.stack([-nodes[:, 1], nodes[:, 0], -nodes[:, 3], nodes[:, 2]], axis=1)
+    matrix = np.zeros((v.size, 3))
+    matrix[0::4, 0] = matrix[1::4, 1] = 1.0
+    matrix[:, 2] = arm.ravel()
+    (vx, vy, turn), *_ = np.linalg.lstsq(matrix, v, rcond=None)
+    off = float(np.max(np.abs(matrix @ np.array([vx, vy, turn]) - v)))
+    if off > RIGID * max(float(np.max(np.abs(rates))), 1e-300) or body.relaxed == "start":
+        raise ModelError(
+            f"cable '{body.name}' swings, or is free of stress where it started, and its record has no place for that: "
+            f"{REMEDY}"
+        )
+    shape = tuple(tuple(node) for node in nodes.tolist())
+    return {"shape": shape, "position": (0.0, 0.0), "angle": 0.0, "velocity": (vx, vy), "angular_velocity": turn}
+
+
+def _frame(q: Floats, v: Floats) -> dict[str, Any]:
+    return {
+        "position": tuple(q[:2].tolist()), "angle": float(q[2]),
+        "velocity": tuple(v[:2].tolist()), "angular_velocity": float(v[2]),
+    }  # fmt: skip

@@ -1,0 +1,292 @@
+"""Joints, forces and the shapes that contacts touch, as parts of a scene."""
+
+import math
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from ..core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.contact.coordinate_contact import CoordinateContact
+from ..core.contact.disk_on_cable import DiskOnCable2D
+from ..core.contact.disk_on_line import DiskOnLine2D
+from ..core.contact.segment2d import DiskOnSegment2D
+from ..core.elements import AxialRod, Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
+from ..core.model.markers import GROUND, Marker2D
+from .bodies import Stage, has_place
+from .coordinates import coordinate_place
+from .drawing import symbols
+from .drawing.interactions import draw_interaction
+from .drawing.shapes import GROUND as GROUND_COLOUR
+from .drawing.shapes import INK, STEEL, TOUCH, Circle, Drawing, Path, Point, moved, turned
+from .scene import Floats, Frame, Line, Link, Part
+
+GRIP = 0.13
+"""How far walls go beyond what touches them, in parts of the scene's size."""
+CLOSE = 0.15
+"""How near a disk must come to a half-plane for its line to be drawn there, in parts of the scene's size."""
+SPOKES = 6
+NEAR = 0.08
+"""Markers of a bushing nearer than this, in parts of the scene's size, are one place."""
+
+
+def add_fixtures(stage: Stage) -> None:
+    """All joints, forces and shapes of contacts that have a symbol; the others stay out of the scene."""
+    model = stage.motion.model
+    for element in (*model.contacts, *model.joints, *model.forces):
+        place(element, stage)
+    _add_walls(stage)
+
+
+@singledispatch
+def place(element: Any, stage: Stage) -> None:
+    """Put an element into the scene; what has no symbol stays out."""
+
+
+# joints and forces
+
+
+@place.register
+def _(element: Revolute2D, stage: Stage) -> None:
+    _drawn(element, element.a.body if element.b.body == GROUND else element.b.body, stage, 2)
+    if GROUND in (element.a.body, element.b.body):
+        drawing = Drawing(stage.size)
+        symbols.bearing(drawing, stage.motion.places.at(element.a))
+        stage.add_part(GROUND, 0, drawing)
+
+
+@place.register
+def _(element: Clamp2D, stage: Stage) -> None:
+    grounded = GROUND in (element.a.body, element.b.body)
+    _drawn(element, GROUND if grounded else element.b.body, stage, 0 if grounded else 2)
+
+
+@place.register
+def _(element: Prismatic2D, stage: Stage) -> None:
+    """The line that b slides on, as long as its way, with the ground below it."""
+    marker = element.a
+    near, far = _reach(stage, marker, stage.motion.at(element.b), 0.16)
+    drawing = Drawing(stage.size)
+    drawing.behind.append(Path(((near, 0.0), (far, 0.0)), GROUND_COLOUR, width=0.4))
+    if marker.body == GROUND:
+        foot = -0.036 * stage.size
+        symbols.wall(drawing, (near, foot), (far, foot))
+    _on_marker(stage, marker, 0, drawing)
+
+
+@place.register
+def _(element: Distance2D, stage: Stage) -> None:
+    stage.scene.links.append(Link(element.name, "rod", _anchor(stage, element.a), _anchor(stage, element.b)))
+    _drawn_ends(element, stage)
+
+
+@place.register
+def _(element: SpringDamper2D, stage: Stage) -> None:
+    _link(element, stage)
+
+
+@place.register
+def _(element: Bushing2D, stage: Stage) -> None:
+    a, b = (stage.motion.at(marker) for marker in (element.a, element.b))
+    if float(np.max(np.linalg.norm(b - a, axis=1))) > NEAR * stage.size:
+        _link(element, stage)
+        return
+    drawing = Drawing(stage.size)
+    drawing.shapes.append(Circle(stage.motion.places.at(element.b), 0.022 * stage.size, symbols.SPRING, None, 0.6))
+    stage.add_part(element.b.body, 2, drawing)
+
+
+@place.register
+def _(element: Gear2D, stage: Stage) -> None:
+    """Two wheels with spokes, so that they are seen to turn."""
+    for marker, radius in ((element.a, element.radius_a), (element.b, element.radius_b)):
+        drawing = Drawing(stage.size)
+        r = abs(radius)
+        drawing.shapes.append(Circle((0.0, 0.0), r, INK, STEEL if radius > 0.0 else None, 0.4))
+        ends = [turned((r, 0.0), 2.0 * math.pi * k / SPOKES) for k in range(SPOKES)]
+        drawing.shapes += [Path(((0.0, 0.0), end), INK, width=0.3) for end in ends]
+        _on_marker(stage, marker, 0, drawing)
+
+
+def _link(element: SpringDamper2D | Bushing2D, stage: Stage) -> None:
+    damped, stiff = element.damping > 0.0, element.stiffness > 0.0
+    kind = "spring-damper" if damped and stiff else "damper" if damped else "spring"
+    stage.scene.links.append(Link(element.name, kind, _anchor(stage, element.a), _anchor(stage, element.b)))
+    for marker, other in ((element.a, element.b), (element.b, element.a)):
+        if marker.body == GROUND:
+            at, far = stage.motion.places.at(marker), stage.motion.places.at(other)
+            across = turned((0.0, 1.0), math.atan2(far[1] - at[1], far[0] - at[0]))
+            drawing, reach = Drawing(stage.size), 0.05 * stage.size
+            symbols.wall(drawing, moved(at, across, -reach), moved(at, across, reach))
+            stage.add_part(GROUND, 0, drawing)
+
+
+def _drawn(element: Any, body: str, stage: Stage, layer: int) -> None:
+    """What a drawing shows of an element, on a body."""
+    drawing = Drawing(stage.size)
+    if isinstance(element, Revolute2D):
+        symbols.pin(drawing, stage.motion.places.at(element.b if body == element.b.body else element.a))
+    else:
+        draw_interaction(element, drawing, stage.motion.places)
+    stage.add_part(body, layer, drawing)
+
+
+def _drawn_ends(element: Distance2D, stage: Stage) -> None:
+    for marker in (element.a, element.b):
+        if marker.body == GROUND:
+            at, drawing = stage.motion.places.at(marker), Drawing(stage.size)
+            reach = 0.03 * stage.size
+            symbols.wall(drawing, moved(at, (1.0, 0.0), reach), moved(at, (1.0, 0.0), -reach))
+            symbols.pin(drawing, at)
+            stage.add_part(GROUND, 0, drawing)
+
+
+# shapes of contacts
+
+
+@place.register
+def _(element: DiskOnHalfPlane2D, stage: Stage) -> None:
+    marker = element.plane.marker
+    near, far = _touched(stage, element)
+    known = stage.planes.get(marker, (near, far))
+    stage.planes[marker] = min(near, known[0]), max(far, known[1])
+    _disk(element.disk, stage)
+
+
+@place.register
+def _(element: DiskOnDisk2D, stage: Stage) -> None:
+    _disk(element.a, stage)
+    _disk(element.b, stage)
+
+
+@place.register
+def _(element: DiskOnSegment2D, stage: Stage) -> None:
+    drawing, segment = Drawing(stage.size), element.segment
+    width = max(0.8, 200.0 * segment.radius / stage.size)
+    drawing.shapes.append(Path(((0.0, 0.0), (segment.length, 0.0)), TOUCH, width=width))
+    _on_marker(stage, segment.marker, 1, drawing)
+    _disk(element.disk, stage)
+
+
+@place.register
+def _(element: DiskOnLine2D, stage: Stage) -> None:
+    line = element.line
+    nodes = tuple(_anchor(stage, node) for node in line.corners)
+    found = Line(element.name, nodes, 2.0 * line.radius, line.rounding, line.closed)
+    if all(found.nodes != other.nodes for other in stage.scene.lines):
+        stage.scene.lines.append(found)
+    _disk(element.disk, stage)
+
+
+@place.register
+def _(element: DiskOnCable2D, stage: Stage) -> None:
+    _disk(element.disk, stage)
+
+
+@place.register
+def _(element: CoordinateContact, stage: Stage) -> None:
+    """A wall, if the gap is that of one place along x or y; what moves with other coordinates is a line that moves."""
+    term = next(
+        (t for t in element.terms if t.factor and coordinate_place(stage, t.body, t.coordinate) is not None), None
+    )
+    if term is None:
+        return
+    others = [t for t in element.terms if t is not term]
+    if any(has_place(stage.motion.bodies[t.body]) or isinstance(stage.motion.bodies[t.body], AxialRod) for t in others):
+        return
+    face = np.full(len(stage.motion.t), -element.offset / term.factor)
+    for t in others:
+        face = face - t.factor / term.factor * stage.motion.coordinate(t.body, t.coordinate)
+    touched = stage.magnified.touched(element)
+    if touched is not None:
+        face = touched[1]
+    node = coordinate_place(stage, term.body, term.coordinate)
+    along_y, half = term.coordinate.startswith("y"), 0.08 * stage.size
+    across = np.zeros(1) if node is None else node[:, 0 if along_y else 1]
+    low, high = float(across.min()) - half, float(across.max()) + half
+    side = math.copysign(1.0, term.factor)
+    if others:
+        _moving_face(stage, element.name, face, (low, high), along_y)
+        return
+    key = (along_y, float(face[0]), side)
+    known = stage.walls.get(key, (low, high))
+    stage.walls[key] = min(low, known[0]), max(high, known[1])
+
+
+def _moving_face(stage: Stage, name: str, face: Floats, span: tuple[float, float], along_y: bool) -> None:
+    """A line that moves along an axis: the surface of something that is not drawn."""
+    zero = np.zeros(len(face))
+    motion = np.stack([zero, face, zero] if along_y else [face, zero, zero], axis=1)
+    number = stage.add_frame(Frame(f"surface of {name}", motion))
+    ends = ((span[0], 0.0), (span[1], 0.0)) if along_y else ((0.0, span[0]), (0.0, span[1]))
+    stage.scene.parts.append(Part(number, 1, (Path(ends, TOUCH, width=0.8),)))
+
+
+def _add_walls(stage: Stage) -> None:
+    """Half-planes and walls at places of coordinates; what many disks or nodes touch is one."""
+    for marker, (near, far) in stage.planes.items():
+        drawing = Drawing(stage.size)
+        symbols.wall(drawing, (near, 0.0), (far, 0.0), TOUCH)
+        _on_marker(stage, marker, 0, drawing)
+    for (along_y, at, side), (low, high) in stage.walls.items():
+        drawing = Drawing(stage.size)
+        if along_y:
+            ends = ((low, at), (high, at)) if side > 0.0 else ((high, at), (low, at))
+        else:
+            ends = ((at, high), (at, low)) if side > 0.0 else ((at, low), (at, high))
+        symbols.wall(drawing, *ends, TOUCH)
+        shapes = tuple(x for x in (*drawing.behind, *drawing.shapes) if isinstance(x, Path | Circle))
+        stage.scene.parts.append(Part(stage.number(GROUND), 0, shapes))
+
+
+def _disk(disk: Disk2D, stage: Stage) -> None:
+    """A disk, unless another contact has shown it."""
+    drawing, u = Drawing(stage.size), stage.size
+    if disk.radius > 0.004 * u:
+        drawing.shapes.append(Circle((0.0, 0.0), disk.radius, TOUCH, None, 0.5))
+    else:
+        drawing.shapes.append(Circle((0.0, 0.0), 0.008 * u, TOUCH, TOUCH, 0.2))
+    _on_marker(stage, disk.marker, 2, drawing)
+
+
+def _on_marker(stage: Stage, marker: Marker2D, layer: int, drawing: Drawing) -> None:
+    """Shapes in a marker's frame, put on its body; the same ones only once."""
+    (x, y), angle = marker.point, marker.angle
+
+    def there(p: Point) -> Point:
+        dx, dy = turned(p, angle)
+        return x + dx, y + dy
+
+    shapes: list[Path | Circle] = []
+    for s in (*drawing.behind, *drawing.shapes):
+        if isinstance(s, Circle):
+            shapes.append(Circle(there(s.centre), s.radius, s.stroke, s.fill, s.width))
+        elif isinstance(s, Path):
+            points = tuple(there(p) for p in s.points)
+            shapes.append(Path(points, s.stroke, s.fill, s.width, s.closed, s.dashed))
+    part = Part(stage.number(marker.body), layer, tuple(shapes))
+    if part not in stage.scene.parts:
+        stage.scene.parts.append(part)
+
+
+def _reach(stage: Stage, marker: Marker2D, places: Floats, margin: float) -> tuple[float, float]:
+    """From where to where places (F, 2) go along a marker's first axis, its origin included, with a margin; m."""
+    angle, away = stage.motion.direction(marker), places - stage.motion.at(marker)
+    along = away[:, 0] * np.cos(angle) + away[:, 1] * np.sin(angle)
+    return min(0.0, float(along.min())) - margin * stage.size, max(0.0, float(along.max())) + margin * stage.size
+
+
+def _touched(stage: Stage, element: DiskOnHalfPlane2D) -> tuple[float, float]:
+    """The part of a half-plane's line where the disk comes near it, with a margin; m along the line."""
+    marker = element.plane.marker
+    places, angle = stage.motion.at(element.disk.marker), stage.motion.direction(marker)
+    away = places - stage.motion.at(marker)
+    height = away[:, 1] * np.cos(angle) - away[:, 0] * np.sin(angle) - element.disk.radius
+    near = height <= max(float(height.min()), 0.0) + CLOSE * stage.size
+    along = (away[:, 0] * np.cos(angle) + away[:, 1] * np.sin(angle))[near]
+    margin = GRIP * stage.size
+    return float(along.min()) - margin, float(along.max()) + margin
+
+
+def _anchor(stage: Stage, marker: Marker2D) -> Any:
+    return stage.anchor(marker.body, marker.point)

@@ -1,0 +1,143 @@
+"""Forces as arrows: of contacts, joints and applied loads."""
+
+from collections.abc import Callable, Collection
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from ..core.compiled.jit import interpreted
+from ..core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.contact.coordinate_contact import CoordinateContact
+from ..core.contact.disk_on_cable import DiskOnCable2D
+from ..core.contact.disk_on_line import DiskOnLine2D
+from ..core.contact.segment2d import DiskOnSegment2D
+from ..core.elements import AppliedForce2D, Distance2D, Revolute2D
+from ..core.model.signals import INPUT_SIZE, Signal, evaluate_signal
+from .bodies import Stage
+from .coordinates import coordinate_place
+from .scene import Arrow, Floats
+
+Values = Callable[[str], Floats | None]
+"""A channel over the frames by name, None where there is none."""
+Touch = tuple[Floats, Floats]
+"""Places (F, 2) of contact, and unit normals (F, 2) onto the disk (of two, disk b)."""
+
+
+def add_forces(stage: Stage, values: Values, struck: Collection[str]) -> None:
+    """Arrows of everything whose force has a place; contacts that never touch have none, those that are `struck` have
+    one although their blows are impulses."""
+    model, motion = stage.motion.model, stage.motion
+    for contact in model.contacts:
+        force, found = values(f"{contact.name}.normal_force"), None
+        if force is not None and (contact.name in struck or np.any(force != 0.0)):
+            found = touch(contact, stage)
+        if force is None or found is None:
+            continue
+        at, normal = found
+        vector = force[:, None] * normal
+        friction = values(f"{contact.name}.friction_force")
+        if friction is not None and not isinstance(contact, CoordinateContact):
+            vector = vector + friction[:, None] * np.stack([normal[:, 1], -normal[:, 0]], axis=1)
+        stage.scene.arrows.append(Arrow(contact.name, "contact", "N", at, vector))
+    for joint in model.joints:
+        if isinstance(joint, Revolute2D):
+            x, y = values(f"{joint.name}.force_x"), values(f"{joint.name}.force_y")
+            if x is not None and y is not None:
+                vector = np.stack([x, y], axis=1)
+                stage.scene.arrows.append(Arrow(joint.name, "joint", "N", motion.at(joint.b), vector))
+        tension = values(f"{joint.name}.tension") if isinstance(joint, Distance2D) else None
+        if isinstance(joint, Distance2D) and tension is not None:
+            pull = _unit(motion.at(joint.a) - motion.at(joint.b))
+            stage.scene.arrows.append(Arrow(joint.name, "joint", "N", motion.at(joint.b), tension[:, None] * pull))
+    inputs = {channel.name: k for k, channel in enumerate(model.inputs)}
+    start = np.array([x for channel in model.inputs for x in (channel.start, *[0.0] * (INPUT_SIZE - 1))])
+    for load in model.forces:
+        if isinstance(load, AppliedForce2D):
+            vector = np.stack([signal_values(s, inputs, start, motion.t) for s in (load.force_x, load.force_y)], axis=1)
+            if load.follower:
+                vector = _turned(vector, motion.direction(load.marker))
+            if np.any(vector != 0.0):
+                stage.scene.arrows.append(Arrow(load.name, "load", "N", motion.at(load.marker), vector))
+
+
+def signal_values(signal: Signal, inputs: dict[str, int], start: Floats, t: Floats) -> Floats:
+    """A time function at times (F,); inputs keep their start values."""
+    pool, evaluate = np.array(signal.pool(inputs), dtype=float), interpreted(evaluate_signal)
+    return np.array([evaluate(pool, start, 0, float(x))[0] for x in t])
+
+
+@singledispatch
+def touch(contact: Any, stage: Stage) -> Touch | None:
+    """Where a contact touches, and along which normal; None of one without a place in the plane."""
+    return None
+
+
+@touch.register
+def _(contact: DiskOnHalfPlane2D, stage: Stage) -> Touch:
+    angle = stage.motion.direction(contact.plane.marker) + 0.5 * np.pi
+    normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return stage.motion.at(contact.disk.marker) - contact.disk.radius * normal, normal
+
+
+@touch.register
+def _(contact: DiskOnDisk2D, stage: Stage) -> Touch:
+    a, b = stage.motion.at(contact.a.marker), stage.motion.at(contact.b.marker)
+    normal = _unit(b - a)
+    return a + contact.a.radius * normal, normal
+
+
+@touch.register
+def _(contact: DiskOnSegment2D, stage: Stage) -> Touch:
+    marker = contact.segment.marker
+    start, angle = stage.motion.at(marker), stage.motion.direction(marker)
+    end = start + contact.segment.length * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return _nearest(stage, contact.disk, np.stack([start, end], axis=1))
+
+
+@touch.register
+def _(contact: DiskOnLine2D, stage: Stage) -> Touch:
+    return _nearest(stage, contact.disk, np.stack([stage.motion.at(node) for node in contact.line.nodes], axis=1))
+
+
+@touch.register
+def _(contact: DiskOnCable2D, stage: Stage) -> Touch | None:
+    bands = [band for band in stage.scene.bands if band.name == contact.cable]
+    return _nearest(stage, contact.disk, bands[0].points) if bands else None
+
+
+@touch.register
+def _(contact: CoordinateContact, stage: Stage) -> Touch | None:
+    """Of the last coordinate with a place; the force on it goes its way if its factor is positive."""
+    for term in reversed(contact.terms):
+        at = coordinate_place(stage, term.body, term.coordinate)
+        if at is not None and term.factor:
+            axis = (0.0, np.sign(term.factor)) if term.coordinate.startswith("y") else (np.sign(term.factor), 0.0)
+            return at, np.tile(axis, (len(at), 1))
+    return None
+
+
+def _nearest(stage: Stage, disk: Disk2D, line: Floats) -> Touch:
+    """Of a disk on a line through points (F, P, 2), as it is drawn."""
+    centre = stage.motion.at(disk.marker)
+    a, d = line[:, :-1], np.diff(line, axis=1)
+    square = np.sum(d * d, axis=2)
+    along = np.sum((centre[:, None] - a) * d, axis=2)
+    part = np.clip(np.divide(along, square, out=np.zeros_like(along), where=square > 0.0), 0.0, 1.0)
+    places = a + part[..., None] * d
+    best = np.argmin(np.sum((places - centre[:, None]) ** 2, axis=2), axis=1)
+    rows = np.arange(len(centre))
+    foot = places[rows, best]
+    normal = _unit(centre - foot)
+    return centre - disk.radius * normal, normal
+
+
+def _unit(x: Floats) -> Floats:
+    """Unit vectors; zero of what has no direction."""
+    size = np.linalg.norm(x, axis=1, keepdims=True)
+    return np.divide(x, size, out=np.zeros_like(x), where=size > 0.0)
+
+
+def _turned(vector: Floats, angle: Floats) -> Floats:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * vector[:, 0] - s * vector[:, 1], s * vector[:, 0] + c * vector[:, 1]], axis=1)
