@@ -71,8 +71,9 @@ instant_at = record_view(INSTANT_TYPE)
     FIRST_IMPULSE, FIRST_FRICTION, FIRST_LOSS, FIRST_APPROACH, FIRST_SEPARATION,  # of the impact with all restitution
     RATE_BEFORE, SLIDE_BEFORE, WANTED, RIGHT_N, RIGHT_T, NOW_N, NOW_T,
     FLAG, OTHER_FLAG, SPARE, APART, LOADED,
-) = range(66)  # fmt: skip
-COLUMNS = 66
+    SLOW,                              # sliding below it counts as none, m/s
+) = range(67)  # fmt: skip
+COLUMNS = 67
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

@@ -59,6 +59,7 @@ from .records import (
     SLIDE_RATE,
     SLIPPING,
     SLIPS,
+    SLOW,
     SPARE,
     STATIC,
     STICKS,
@@ -97,14 +98,15 @@ ten times farther at each of the following ones, but not beyond."""
 @internal
 def _look(ev: Any, ms: Any) -> None:
     """What the rates say: +-1 in `KNOWN` where the contact slides, 0 where friction decides."""
-    rounding, slide_rate, known, slid = col(ev, ROUNDING), col(ev, SLIDE_RATE), col(ev, KNOWN), col(ev, SLID)
+    slide_rate, known, slid = col(ev, SLIDE_RATE), col(ev, KNOWN), col(ev, SLID)
     for i in range(whole(ev)[COUNT]):
-        known[i] = np.sign(slide_rate[i]) if abs(slide_rate[i]) > rounding[i] else 0.0
+        slow = max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
+        known[i] = np.sign(slide_rate[i]) if abs(slide_rate[i]) > slow else 0.0
         if whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED:
             # one that did not slide by itself, since others held it, may already go the other way by a little
-            turned = ms.exact != 0 and slid[i] * slide_rate[i] < -rounding[i]
+            turned = ms.exact != 0 and slid[i] * slide_rate[i] < -slow
             # what the forces were before this instant says nothing of one that hardly moves
-            moves = abs(slide_rate[i]) > rounding[i] and col(ev, STOPS)[i] == 0.0
+            moves = abs(slide_rate[i]) > slow and col(ev, STOPS)[i] == 0.0
             slides = abs(slid[i]) == 1.0 and (turned or moves)
             way = np.sign(slide_rate[i]) if turned else slid[i]
             known[i] = way if slides else 0.0
@@ -122,10 +124,31 @@ def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         if whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED:
             at_rest[i] = 1.0
         slow = slow or abs(rates[i]) <= PERHAPS_REST * rate_size(ws, contacts[i])
+    _stop_slow(ev, ws, ms)
     whole(ev)[READY] = 0
     if not slow:
         return SETTLED
     return _prepare(ev, dr, ws, ms, real(ev)[ACCELERATIONS])
+
+
+@internal
+def _stop_slow(ev: Any, ws: Any, ms: Any) -> None:
+    """Where instants crowd, take away what is left of sliding that counts as none (`crowding.py`)."""
+    some = False
+    for i in range(whole(ev)[COUNT]):
+        none = col(ev, KNOWN)[i] == 0.0 and col(ev, AT_REST)[i] != 0.0 and col(ev, STATIC)[i] > 0.0
+        some = some or (none and abs(col(ev, SLIDE_RATE)[i]) > col(ev, ROUNDING)[i])
+    if some and ms.exact != 0:
+        _stop(ev, ws, ms)
+
+
+@internal
+def _stop(ev: Any, ws: Any, ms: Any) -> None:
+    """Take away the rates of the contacts at rest, and of their sliding where friction decides."""
+    normal, along = col(ev, SPARE), col(ev, OTHER_FLAG)
+    remove_rates(ev, normal, along)
+    push(ev, ws, normal, along)
+    _look(ev, ms)
 
 
 @internal
@@ -183,10 +206,7 @@ def _hold_back(ev: Any, ws: Any, ms: Any, motion: Any) -> bool:
         at_rest[i] = 1.0 if back[i] != 0.0 else at_rest[i]
     if ms.exact == 0:
         return True
-    normal, along = col(ev, SPARE), col(ev, OTHER_FLAG)
-    remove_rates(ev, normal, along)
-    push(ev, ws, normal, along)
-    _look(ev, ms)
+    _stop(ev, ws, ms)
     return True
 
 

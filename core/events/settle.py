@@ -25,8 +25,10 @@ from ..contact.progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL,
 from ..contact.progress import COUNT as GUARDED
 from ..integrate.asleep import look_at_all
 from ..integrate.records import (
+    CLOCK_SIZE,
     CLOSE,
     COUNTS_SIZE,
+    CROWDED,
     EVENTS,
     GOALS_SIZE,
     GRAZE,
@@ -48,10 +50,11 @@ from ..system.levels import position_level
 from ..system.records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, structure_at
 from ..system.switch import take_partition, take_structure
 from .blow import impact
+from .crowding import count_instant
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
 from .meeting import meet_constraints
-from .reading import largest_acceleration, read_before
+from .reading import largest_acceleration, rate_size, read_before
 from .records import (
     ACCELERATIONS,
     COUNT,
@@ -75,6 +78,7 @@ from .records import (
     SLID,
     SLIDE_RATE,
     SLIDE_VALUE,
+    SLOW,
     STATIC,
     STRUCK,
     WANT_ROOM,
@@ -126,7 +130,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     goals[HANDLED_AT] = t
     status = settle_massless(ev, dr, ws, ms)
     if status == SETTLED and _any_constraint(dr, ws):
-        status = _decide(ev, dr, ws, ms)
+        status = _decide(ev, dr, ws, ms, lc)
     if status == SETTLED:
         status = find_pending(ev, dr, ws, ms, lc)
     if status != SETTLED:
@@ -140,6 +144,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         return status
     begin_anew(ws, ms, lc)
     _count(dr, t)
+    count_instant(ws, lc, t)
     copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
     _sample(dr, ws, lc)
     return SETTLED
@@ -214,19 +219,21 @@ def _sample(dr: Any, ws: Any, lc: Any) -> None:
 
 
 @internal
-def _decide(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     """Impacts, forces, and what they mean."""
     if not find_touching(ev, dr, ws):
         return WANT_ROOM
     read_before(ev, dr, ws)
     read_values(ev, ws)
     count, contacts, accelerations = whole(ev)[COUNT], ivec(ev.contacts, ev.most), largest_acceleration(ws)
+    crowded = vec(lc.clock, CLOCK_SIZE)[CROWDED] != 0.0
     friction, static = vec(dr.friction, ws.n_contacts), vec(ws.contact_sticking, ws.n_contacts)
     for i in range(count):
         k = contacts[i]
         col(ev, KINETIC)[i], col(ev, STATIC)[i] = friction[k], static[k]
         col(ev, RESTITUTION)[i] = vec(dr.restitution, ws.n_contacts)[k]
         col(ev, RESTS)[i] = 0.0
+        col(ev, SLOW)[i] = vec(dr.rest_ratio, ws.n_contacts)[k] * rate_size(ws, k) if crowded else 0.0
     status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status != SETTLED:
         return status

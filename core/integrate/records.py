@@ -68,7 +68,9 @@ PREVIOUS_NORM = 11  # of one-step formulas: error norm of the last accepted step
 PREVIOUS_RATIO = 12  # and by how much the step changed after it
 B1, B2, A2 = 13, 14, 15  # coefficients of the step-size controller
 REJECTED_HERE = 16  # trials that failed since the last accepted step
-CLOCK_SIZE = 17
+WINDOW_START, WINDOW_COUNT = 17, 18  # since when instants with events are counted, and how many there were
+CROWDED = 19  # 1: the last of these windows was next to no time (`events/crowding.py`)
+CLOCK_SIZE = 20
 
 # columns of a per-step record
 LOG_COLUMNS = ("t", "h", "error", "k", "rejected", "outer", "inner", "factorizations", "evaluations", "krylov")

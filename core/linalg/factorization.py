@@ -231,6 +231,22 @@ class Factorization:
         else:
             self.have_room()
 
+    def order_columns(self, other: "Factorization | None" = None) -> None:
+        """Have the order of the columns, which compiled code would ask for first: chosen now, or taken from `other`,
+        of the same pattern, if that has one."""
+        if self.dense or "order" in self.arrays:
+            return
+        if other is None:
+            self._order_columns()
+            return
+        if "order" not in other.arrays:
+            return
+        self._perm_c = other._perm_c
+        shared = ("order", "column_start", "column_row", "column_of", "column_slot")
+        self._set(**{name: other.arrays[name] for name in shared}, wanted=np.zeros(self.n, dtype=np.int64))
+        self._point_to_known()
+        self._make_room(2 * len(self.rows) + 2 * self.n + 16)
+
     def _order_columns(self) -> None:
         perm_c = order_columns(self.n, self.rows, self.cols)
         col_at = np.argsort(perm_c)

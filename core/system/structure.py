@@ -162,10 +162,15 @@ class Structure:
             return  # most impacts come back to the same partition
         self._choose(self.known.get(dependent.tobytes()) or self._new_partition(dependent))
 
+    def order_columns(self) -> None:
+        """Have ready what compiled code needs first to choose pivots."""
+        self.kkt.order_columns()
+        self.kkt_query.order_columns(self.kkt)
+
     def know_partition(self, dependent: NDArray[np.int64]) -> None:
         """Have the partition with these dependent coordinates (m_act,) ready for compiled code."""
         if dependent.tobytes() not in self.known:
-            self._new_partition(dependent)
+            self._new_partition(dependent).lu_d.order_columns()
 
     def _new_partition(self, dependent: NDArray[np.int64]) -> Partition:
         n, key = int(self.kkt.n) - len(self.active), dependent.tobytes()
@@ -187,6 +192,7 @@ class Structure:
 
     def make_wanted(self) -> None:
         """Make what compiled code has asked for to choose pivots."""
+        self.kkt_query.order_columns(self.kkt)
         factorizations = [self.kkt, self.kkt_query, *(partition.lu_d for partition in self.known.values())]
         wanting = [factorization for factorization in factorizations if factorization.wants]
         for factorization in wanting:

@@ -253,7 +253,7 @@ class Workspace:
 
     def engage_wanted(self) -> None:
         """Build the structure that compiled code has asked for (`switch.py`) and does not know."""
-        self.structure_of(*key_of(self.arrays["wanted"][: len(self.assembly.contacts)]), self.dropped)
+        self.structure_of(*key_of(self.arrays["wanted"][: len(self.assembly.contacts)]), self.dropped).order_columns()
 
     def partition_wanted(self) -> None:
         """Build the partition that compiled code has asked for, of the structure that it wanted."""
