@@ -19,6 +19,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tlismni.core.ahead", description=__doc__)
     parser.add_argument("--target", action="append", help="platform, of this machine unless given; can be repeated")
     parser.add_argument("--output", type=Path, help=f"folder for the libraries; '{USUAL_PLACE}' unless given")
+    parser.add_argument("--only", action="append", help="only functions whose names contain this text, for trying")
     given = parser.parse_args()
     if any(os.environ.get(name) != value for name, value in FRESH.items()):
         # numba reads its settings, and the core looks for a library, when they are imported
@@ -27,7 +28,7 @@ def main() -> int:
     from .make import make
 
     try:
-        make(given.target or [], given.output)
+        make(given.target or [], given.output, given.only or [""])
     except TlismniError as error:
         print(error, file=sys.stderr)
         return 1

@@ -29,7 +29,7 @@ class UndefinedError(TlismniError):
 
 
 def own_target() -> Target:
-    """That of this machine. Raises KeyError for one that is unknown."""
+    """That of this machine. Raises TlismniError for one that is unknown."""
     machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
     system = {"win32": "windows", "darwin": "macos"}.get(sys.platform, "linux")
     name = f"{system}-{machine}"
@@ -38,12 +38,12 @@ def own_target() -> Target:
     return TARGETS[name]
 
 
-def whole_module() -> tuple[Any, dict[str, str], dict[str, str]]:
+def whole_module(only: Sequence[str]) -> tuple[Any, dict[str, str], dict[str, str]]:
     """The module of everything, not optimised; its symbols by LLVM's names; and these by what they are asked for."""
     symbols: dict[str, str] = {}
     keys: dict[str, str] = {}
     with recording():
-        found, compilations = entries(), []
+        found, compilations = [x for x in entries() if any(part in x.name for part in only)], []
         for number, entry in enumerate(found):
             made = compile_for(entry.function, entry.signature)
             plain = entry.name.removeprefix("tlismni.core.").split(":")[0].replace(".", "_")
@@ -62,17 +62,25 @@ def form_tables() -> dict[str, Any]:
     }
 
 
-def make(targets: Sequence[str], folder: Path | None) -> list[Path]:
+def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",)) -> list[Path]:
     """Make the libraries of these targets, or that of this machine.
+
+    Parameters
+    ----------
+    folder : where to write them; beside the sources unless given, those of other platforms to `build`.
+    only : functions whose names contain one of these.
 
     Raises
     ------
-    LinkError : without a linker. UndefinedError : if compiled code needs more than ALLOWED. KeyError : for an unknown
-    target.
+    LinkError : without a linker. UndefinedError : if compiled code needs more than ALLOWED.
+    TlismniError : for an unknown target.
     """
     own, began = own_target(), time.perf_counter()
+    unknown = set(targets) - set(TARGETS)
+    if unknown:
+        raise TlismniError(f"there is no target {sorted(unknown)}: known are {sorted(TARGETS)}")
     wanted = [TARGETS[name] for name in targets] or [own]
-    whole, symbols, keys = whole_module()
+    whole, symbols, keys = whole_module(only)
     constants = {DIGEST: core_digest(), MANIFEST: manifest_text(keys, form_tables())}
     logger.info("%d functions taken from numba in %.0f s", len(keys), time.perf_counter() - began)
     made = []
@@ -82,10 +90,8 @@ def make(targets: Sequence[str], folder: Path | None) -> list[Path]:
         missing = sorted(set(undefined(module)) - ALLOWED)
         if missing:
             raise UndefinedError(f"compiled code needs {missing}, which no C library has")
-        if folder is None and target is own:
-            path = USUAL_PLACE
-        else:
-            path = (folder or Path("build")) / target.name / f"tlismni_core{target.suffix}"
+        beside = folder is None and target is own
+        path = USUAL_PLACE if beside else (folder or Path("build")) / target.name / f"tlismni_core{target.suffix}"
         link_shared(machine.emit_object(module), target, path, target is own)
         logger.info("%s: %d bytes in %.0f s", path, path.stat().st_size, time.perf_counter() - began)
         made.append(path)

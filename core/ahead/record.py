@@ -15,6 +15,11 @@ from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 
 from ..compiled.kept import KeptCode
+from ..errors import TlismniError
+
+
+class RecordError(TlismniError):
+    """Something was not recorded."""
 
 
 class RecordedLibrary(JITCodeLibrary):
@@ -67,13 +72,15 @@ def compile_for(function: Any, signature: Any) -> Any:
 
 
 def texts_of(compilations: Iterable[Any]) -> list[str]:
-    """The texts of all that these compilations call."""
+    """The texts of all that these compilations call. Raises RecordError if one of them is machine code already."""
     found: list[str] = []
     seen: set[Any] = set()
 
     def visit(library: Any) -> None:
-        if library in seen or not isinstance(library, RecordedLibrary):
-            return  # what is not recorded is numba's runtime: `module.py` has its own
+        if library in seen or library is rtsys.library:  # in whose place `module.py` has its own
+            return
+        if not isinstance(library, RecordedLibrary):
+            raise RecordError(f"{library!r} was compiled before recording began: record in a new process")
         seen.add(library)
         for other in library._linking_libraries:
             visit(other)

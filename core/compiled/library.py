@@ -25,11 +25,15 @@ _CORE = Path(__file__).resolve().parents[1]
 
 @cache
 def core_digest() -> str:
-    """Digest of every source of the core: constants of any of them may be in the code."""
-    digest = hashlib.sha256()
-    for path in sorted(Path(folder, file) for folder, _, files in os.walk(_CORE) for file in files):
-        if path.suffix == ".py":
-            digest.update(path.relative_to(_CORE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    """Digest of every source of the core but those that make the library: constants of any may be in the code."""
+    digest, root = hashlib.sha256(), str(_CORE)
+    for folder, folders, files in os.walk(root):
+        folders[:] = sorted(set(folders) - {"__pycache__", "ahead"} if folder == root else set(folders) - {"__pycache__"})
+        for file in sorted(files):
+            if file.endswith(".py"):
+                with open(os.path.join(folder, file), "rb", buffering=0) as source:
+                    name = os.path.join(folder[len(root) :], file).replace(os.sep, "/")
+                    digest.update(name.encode() + b"\0" + source.read() + b"\0")
     return digest.hexdigest()[:32]
 
 
