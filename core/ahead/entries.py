@@ -164,7 +164,8 @@ def _of_one_kind() -> Iterator[tuple[Any, Any]]:
                 yield value, STEP_SIGNATURE
             elif name.startswith("solve_") and name.endswith("_stage"):
                 yield value, STAGE_SIGNATURE
-    for base, signature in ((ForceLaw, LAW_SIGNATURE), (FrictionLaw, FRICTION_SIGNATURE)):
+    laws: tuple[tuple[type, Any], ...] = ((ForceLaw, LAW_SIGNATURE), (FrictionLaw, FRICTION_SIGNATURE))
+    for base, signature in laws:
         for kind in _kinds(base):
             formula = vars(kind).get("formula")
             if isinstance(formula, Dispatcher):

@@ -27,10 +27,10 @@ class Target:
 TARGETS = {
     target.name: target
     for target in (
-        Target("linux-x86_64", "x86_64-unknown-linux-gnu", "x86-64-v3", "", ".so", "x86_64-linux-gnu.2.17"),
+        Target("linux-x86_64", "x86_64-unknown-linux-gnu", "x86-64-v2", "", ".so", "x86_64-linux-gnu.2.17"),
         Target("linux-aarch64", "aarch64-unknown-linux-gnu", "generic", "", ".so", "aarch64-linux-gnu.2.17"),
-        Target("windows-x86_64", "x86_64-pc-windows-gnu", "x86-64-v3", "", ".dll", "x86_64-windows-gnu"),
-        Target("macos-x86_64", "x86_64-apple-macosx11.0.0", "x86-64-v3", "", ".dylib", "x86_64-macos.11.0"),
+        Target("windows-x86_64", "x86_64-pc-windows-gnu", "x86-64-v2", "", ".dll", "x86_64-windows-gnu"),
+        Target("macos-x86_64", "x86_64-apple-macosx11.0.0", "x86-64-v2", "", ".dylib", "x86_64-macos.11.0"),
         Target("macos-aarch64", "arm64-apple-macosx11.0.0", "apple-m1", "", ".dylib", "aarch64-macos.11.0"),
     )
 }

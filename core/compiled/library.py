@@ -28,7 +28,7 @@ def core_digest() -> str:
     """Digest of every source of the core but those that make the library: constants of any may be in the code."""
     digest, root = hashlib.sha256(), str(_CORE)
     for folder, folders, files in os.walk(root):
-        folders[:] = sorted(set(folders) - {"__pycache__", "ahead"} if folder == root else set(folders) - {"__pycache__"})
+        folders[:] = sorted(set(folders) - {"__pycache__", "ahead"})
         for file in sorted(files):
             if file.endswith(".py"):
                 with open(os.path.join(folder, file), "rb", buffering=0) as source:

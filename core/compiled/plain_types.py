@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from .signatures import split_types
+
 
 @dataclass(frozen=True)
 class PlainType:
@@ -20,6 +22,11 @@ class PlainType:
 
     def __call__(self, *arguments: "PlainType") -> "PlainSignature":
         return PlainSignature(self, arguments)
+
+    @property
+    def count(self) -> int:
+        """How many types a tuple has."""
+        return len(split_types(self.text[1:-1]))
 
     def for_numba(self) -> Any:
         """numba's type. Raises ModelError where numba is missing."""

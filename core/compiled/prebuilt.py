@@ -14,7 +14,7 @@ from .crossing import Unfit, crossing
 from .library import LIBRARY
 from .needed import numba_module
 from .plain_types import PlainSignature, PlainType
-from .signatures import signature_text
+from .signatures import signature_text, type_text
 
 logger = logging.getLogger(__name__)
 
@@ -58,8 +58,8 @@ class Prebuilt:
             self._call = self.dispatcher
         return self._call
 
-    def address(self, signature: PlainSignature) -> int:
-        """Machine address for a signature, compiled now if the library has none."""
+    def address(self, signature: Any) -> int:
+        """Machine address for a signature, plain or numba's, compiled now if the library has none."""
         assert LIBRARY is not None
         text = signature_text(signature.return_type, signature.args)
         found = LIBRARY.address(self.name, text)
@@ -67,17 +67,16 @@ class Prebuilt:
             return found
         from . import compiler
 
-        return compiler.address_of(self.dispatcher, signature.for_numba())
+        return compiler.address_of(self.dispatcher, for_numba(signature))
 
-    def compile(self, arguments: tuple[PlainType, ...] | PlainSignature) -> None:
-        """Nothing where the library has it, else what numba's function of this name does."""
+    def compile(self, signature: Any) -> None:
+        """Nothing where the library has it, else what numba's function of this name does with a signature, or with the
+        types of the arguments alone."""
         assert LIBRARY is not None
-        if isinstance(arguments, PlainSignature):
-            self.address(arguments)
-            return
-        text = signature_text_of_arguments(arguments)
+        arguments = tuple(getattr(signature, "args", signature))
+        text = f"({''.join(map(type_text, arguments))})"
         if not any(known.endswith(text) for known in LIBRARY.signatures(self.name)):
-            self.dispatcher.compile(tuple(x.for_numba() for x in arguments))
+            self.dispatcher.compile(tuple(map(for_numba, arguments)))
 
     @cached_property
     def dispatcher(self) -> Any:
@@ -96,9 +95,9 @@ class Prebuilt:
         return self.py_func.__qualname__
 
 
-def signature_text_of_arguments(arguments: tuple[PlainType, ...]) -> str:
-    """The text of a signature without its result."""
-    return f"({''.join(x.text for x in arguments)})"
+def for_numba(plain: Any) -> Any:
+    """numba's type or signature for a plain one, or what is numba's already."""
+    return plain.for_numba() if isinstance(plain, PlainType | PlainSignature) else plain
 
 
 class Deferred:
@@ -118,8 +117,9 @@ class Deferred:
         numba_module()
         from numba.core.registry import cpu_target
 
-        cpu_target.target_context.refresh()
-        return cpu_target.typing_context.resolve_value_type(self.intrinsic)
+        intrinsic = self.intrinsic
+        cpu_target.typing_context.refresh()  # or it does not know what has been made since
+        return cpu_target.typing_context.resolve_value_type(intrinsic)
 
 
 def later(module: str, name: str) -> Deferred:
@@ -161,7 +161,7 @@ def address_of(function: Any, signature: Any) -> int:
         raise TypeError(f"{function!r} must be a numba function: decorate it with @compiled")
     from . import compiler
 
-    return compiler.address_of(function, signature.for_numba())
+    return compiler.address_of(function, for_numba(signature))
 
 
 def caller(signature: Any) -> Any:
@@ -170,7 +170,7 @@ def caller(signature: Any) -> Any:
     def make() -> Any:
         from . import compiler
 
-        return compiler.caller(signature.for_numba())
+        return compiler.caller(for_numba(signature))
 
     return Deferred(make)
 
@@ -181,6 +181,6 @@ def record_view(record_type: Any) -> Any:
     def make() -> Any:
         from . import compiler
 
-        return compiler.record_view(record_type.for_numba())
+        return compiler.record_view(for_numba(record_type))
 
     return Deferred(make)
