@@ -14,6 +14,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from .needed import numba_module
+
 logger = logging.getLogger(__name__)
 
 PLACE = "TLISMNI_LIBRARY"
@@ -105,3 +107,5 @@ def _find() -> Library | None:
 
 LIBRARY = _find()
 """The library of this process; None where functions are compiled when they are first used."""
+if LIBRARY is None:
+    numba_module()  # rather than an error of the first module that imports it, which would not say what to do

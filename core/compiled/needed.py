@@ -9,22 +9,33 @@ EXTRA = "own"
 """The extra of the package that brings numba."""
 
 
+class NumbaMissingError(ModelError, ImportError):
+    """Something has to be compiled, and numba is not installed."""
+
+
 def numba_module() -> Any:
     """The module numba.
 
     Raises
     ------
-    ModelError : where it is not installed; the message says how to have it.
+    NumbaMissingError : where it is not installed; the message says how to have it.
     """
     try:
         import numba
     except ImportError as error:
-        raise ModelError(missing(error)) from error
+        raise NumbaMissingError(_missing(error)) from error
     return numba
 
 
-def missing(error: ImportError) -> str:
-    """What to say where numba is missing."""
+def compiler_module() -> Any:
+    """The module `compiler`, which imports numba. Raises NumbaMissingError."""
+    numba_module()
+    from . import compiler
+
+    return compiler
+
+
+def _missing(error: ImportError) -> str:
     return (
         f"this needs a compiler ({error}): own laws, elements and formulas are compiled when they are first used, and "
         "so is everything where the package has no machine code for this platform: "

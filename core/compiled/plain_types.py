@@ -29,7 +29,7 @@ class PlainType:
         return len(split_types(self.text[1:-1]))
 
     def for_numba(self) -> Any:
-        """numba's type. Raises ModelError where numba is missing."""
+        """numba's type. Raises NumbaMissingError where numba is missing."""
         return self._numba(_numba())
 
 
@@ -41,7 +41,7 @@ class PlainSignature:
     args: tuple[PlainType, ...]
 
     def for_numba(self) -> Any:
-        """numba's signature. Raises ModelError where numba is missing."""
+        """numba's signature. Raises NumbaMissingError where numba is missing."""
         return self.return_type.for_numba()(*(x.for_numba() for x in self.args))
 
 

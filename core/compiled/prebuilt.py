@@ -12,7 +12,7 @@ from typing import Any
 
 from .crossing import Unfit, crossing
 from .library import LIBRARY
-from .needed import numba_module
+from .needed import compiler_module, numba_module
 from .plain_types import PlainSignature, PlainType
 from .signatures import signature_text, type_text
 
@@ -65,9 +65,7 @@ class Prebuilt:
         found = LIBRARY.address(self.name, text)
         if found is not None:
             return found
-        from . import compiler
-
-        return compiler.address_of(self.dispatcher, for_numba(signature))
+        return compiler_module().address_of(self.dispatcher, for_numba(signature))
 
     def compile(self, signature: Any) -> None:
         """Nothing where the library has it, else what numba's function of this name does with a signature, or with the
@@ -80,10 +78,8 @@ class Prebuilt:
 
     @cached_property
     def dispatcher(self) -> Any:
-        """numba's function of the same source. Raises ModelError where numba is missing."""
-        numba_module()
-        from . import compiler
-
+        """numba's function of the same source. Raises NumbaMissingError where numba is missing."""
+        compiler = compiler_module()
         logger.info("%s is compiled in this process", self.name)
         return getattr(compiler, self._decorator)(self.py_func)
 
@@ -108,7 +104,7 @@ class Deferred:
 
     @cached_property
     def intrinsic(self) -> Any:
-        """numba's own. Raises ModelError where numba is missing."""
+        """numba's own. Raises NumbaMissingError where numba is missing."""
         numba_module()
         return self._make()
 
@@ -153,34 +149,22 @@ def address_of(function: Any, signature: Any) -> int:
     Raises
     ------
     TypeError : if it is not a compiled function, or returns something else.
-    ModelError : if it has to be compiled, and numba is missing.
+    NumbaMissingError : if it has to be compiled, and numba is missing.
     """
     if isinstance(function, Prebuilt):
         return function.address(signature)
     if not hasattr(function, "get_compile_result"):
         raise TypeError(f"{function!r} must be a numba function: decorate it with @compiled")
-    from . import compiler
-
-    return compiler.address_of(function, for_numba(signature))
+    return compiler_module().address_of(function, for_numba(signature))
 
 
 def caller(signature: Any) -> Any:
     """Intrinsic call(address, *arguments) of compiled functions of one signature."""
 
-    def make() -> Any:
-        from . import compiler
-
-        return compiler.caller(for_numba(signature))
-
-    return Deferred(make)
+    return Deferred(lambda: compiler_module().caller(for_numba(signature)))
 
 
 def record_view(record_type: Any) -> Any:
     """Intrinsic view(address): the record of `record_type` at an address."""
 
-    def make() -> Any:
-        from . import compiler
-
-        return compiler.record_view(for_numba(record_type))
-
-    return Deferred(make)
+    return Deferred(lambda: compiler_module().record_view(for_numba(record_type)))

@@ -162,6 +162,8 @@ except ModelError as error:
     done = run(code, part)
     assert done.returncode == 0, done.stderr[-2000:]
     assert "tlismni[own]" in done.stdout
+    nothing = run("import sys; sys.modules['numba'] = None; import tlismni.core", "none")
+    assert nothing.returncode != 0 and "tlismni[own]" in nothing.stderr
 
 
 def test_what_compiled_code_raises_reaches_python(part: Path) -> None:
@@ -183,7 +185,7 @@ def test_a_library_of_other_sources_is_left_alone(part: Path, tmp_path: Path) ->
     content = part.read_bytes()
     digest = answer(
         run("import json; from tlismni.core.compiled.library import core_digest as d; print(json.dumps(d()))", "none")
-    )  # noqa: E501
+    )
     assert content.count(digest.encode()) == 1
     stale = tmp_path / part.name
     stale.write_bytes(content.replace(digest.encode(), digest[::-1].encode()))
