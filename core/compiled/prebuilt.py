@@ -71,16 +71,21 @@ class Prebuilt:
         """Nothing where the library has it, else what numba's function of this name does with a signature, or with the
         types of the arguments alone."""
         assert LIBRARY is not None
-        arguments = tuple(getattr(signature, "args", signature))
-        text = f"({''.join(map(type_text, arguments))})"
-        if not any(known.endswith(text) for known in LIBRARY.signatures(self.name)):
-            self.dispatcher.compile(tuple(map(for_numba, arguments)))
+        known = LIBRARY.signatures(self.name)
+        if hasattr(signature, "args"):
+            if signature_text(signature.return_type, signature.args) not in known:
+                self.dispatcher.compile(for_numba(signature))
+            return
+        arguments = f"({''.join(map(type_text, signature))})"
+        if not any(text.endswith(arguments) for text in known):
+            self.dispatcher.compile(tuple(map(for_numba, signature)))
 
     @cached_property
     def dispatcher(self) -> Any:
         """numba's function of the same source. Raises NumbaMissingError where numba is missing."""
         compiler = compiler_module()
-        logger.info("%s is compiled in this process", self.name)
+        # whoever listens to `notices.py` hears of it once it really is
+        logger.debug("%s is to be compiled in this process", self.name)
         return getattr(compiler, self._decorator)(self.py_func)
 
     @property
