@@ -42,20 +42,27 @@ def raise_from(status: int, place: ctypes.c_void_p) -> NoReturn:
 
 def record_address(record: Any) -> int:
     """Address of a record, in whatever shape it is handed over."""
-    address = getattr(record, "address", None)
-    if address is not None:
-        return int(address)
-    if isinstance(record, np.void | np.ndarray):
-        return int(record.__array_interface__["data"][0])
-    raise Unfit
+    try:
+        return int(record.address)
+    except AttributeError:
+        if not isinstance(record, np.void | np.ndarray):
+            raise Unfit from None
+    return int(record.__array_interface__["data"][0])
 
 
 def array_words(array: Any, dtype: np.dtype, ndim: int) -> tuple[Any, ...]:
     """The arguments that one array is."""
-    if not isinstance(array, np.ndarray) or array.dtype != dtype or array.ndim != ndim or not array.flags.c_contiguous:
-        raise Unfit
-    begin = array.__array_interface__["data"][0]
-    return (None, None, array.size, array.itemsize, begin, *array.shape, *array.strides)
+    try:
+        fits = array.dtype is dtype or array.dtype == dtype  # the first is ten times as fast, and nearly always so
+        if not fits or array.ndim != ndim or not array.flags.c_contiguous:
+            raise Unfit
+    except AttributeError:
+        raise Unfit from None
+    try:
+        begin = ctypes.addressof(ctypes.c_char.from_buffer(array))
+    except (TypeError, ValueError):  # nobody may write into it, or it is empty
+        begin = array.__array_interface__["data"][0]  # takes five times as long
+    return (None, None, array.size, dtype.itemsize, begin, *array.shape, *array.strides)
 
 
 def _whole(number: Any) -> int:
