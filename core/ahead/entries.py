@@ -11,10 +11,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from numba import typeof
 from numba.core.dispatcher import Dispatcher
+from numba.types import Tuple
 
 from .. import compiled as _compiled
-from ..analysis import linearise
+from ..analysis import flight, flow, linearise
 from ..compiled import types
 from ..compiled.kernels import KERNEL_SIGNATURE
 from ..compiled.signatures import signature_text
@@ -141,6 +143,12 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield linearise.gap_hessian, (_WS, _WHOLE, _WHOLES, _MATRIX)
     yield linearise.matrix_at, (_WS, _WHOLES, _WHOLES, _MATRIX, _MATRIX, _REAL)
     yield linearise.tangent_rate, (_WS, _MS, _REALS, _WHOLES, _WHOLES, _BLOCKS)
+    work = typeof(flow.make_work(2, 1, 1))
+    matrices, variations = (_BLOCKS,) * 6, (_MATRIX, _MATRIX)
+    yield flow.carry, (_REAL, *matrices, _WHOLES, _WHOLES, *variations, _MATRIX, work)
+    layout = Tuple((_WHOLES,) * 5)
+    room = Tuple((_REALS, *(_BLOCKS,) * 5, _MATRIX, _BLOCKS, _MATRIX, *variations))
+    yield flight.fly, (_WS, _MS, _LC, _WHOLE, layout, room, work, *variations, _REALS, _REALS)
 
 
 def _modules() -> Iterator[Any]:
@@ -190,6 +198,7 @@ def forms() -> dict[str, Form]:
 
 
 def _kinds(base: type) -> Iterator[type]:
+    kind: type
     for kind in base.__subclasses__():
         yield kind
         yield from _kinds(kind)

@@ -62,7 +62,9 @@ def formula_address(record: FormulaRecord, signature: Any) -> int:
     """
     try:
         return address_of(type(record).formula, signature)
-    except (TypeError, *compile_errors()) as error:
+    except Exception as error:
+        if not isinstance(error, (TypeError, *compile_errors())):
+            raise
         # numba goes on with where it was when it failed: only its first paragraphs say what is wrong
         cause = str(error).split("\n\nDuring:")[0]
         raise ModelError(f"the formula of {type(record).__name__} is not usable: {cause}") from error
