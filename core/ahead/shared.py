@@ -1,9 +1,10 @@
-"""A shared library from an object file, by the machine's own linker or by zig's for another platform."""
+"""A shared library from an object file, by zig's linker, or by the machine's own."""
 
 import shutil
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import TlismniError
@@ -17,18 +18,17 @@ class LinkError(TlismniError):
 
 
 def _command(target: Target, native: bool) -> list[str]:
-    """A compiler that links for a target. Raises LinkError."""
+    """A compiler that links for a target; zig's if it is there, since that links with an old C library (glibc 2.17), so
+    that the result runs on older systems than this one. Raises LinkError."""
+    if find_spec("ziglang") is not None:
+        return [sys.executable, "-m", "ziglang", "cc", "-target", target.linker, "-shared", "-s"]
     found = next(filter(None, map(shutil.which, LINKERS)), None) if native else None
-    if found is not None:
-        return [found, "-shared", "-s"]
-    try:
-        import ziglang  # type: ignore[import-not-found, unused-ignore]  # noqa: F401
-    except ImportError as error:
+    if found is None:
         raise LinkError(
             f"nothing links a library for {target.name} here: install ziglang (pip install ziglang)"
             + (f", or one of {', '.join(LINKERS)}" if native else "")
-        ) from error
-    return [sys.executable, "-m", "ziglang", "cc", "-target", target.linker, "-shared", "-s"]
+        )
+    return [found, "-shared", "-s"]
 
 
 def link_shared(machine_code: bytes, target: Target, path: Path, native: bool) -> None:
