@@ -1,13 +1,19 @@
-"""Builds the FMU shim (fmu_wrapper/shim/*.c) with a C compiler; everything else stands in pyproject.toml.
+"""Builds the FMU shim (fmu_wrapper/shim/*.c) with a C compiler, and the library of machine code of the core where it is
+asked for; everything else stands in pyproject.toml.
 
 The shim is a plain shared library, no extension module: it is not tied to a Python version. It is compiled with
 $CC, or cc, gcc, clang, or where there is none with `python -m ziglang cc`, which is then a build requirement.
+
+The machine code takes two minutes and needs the core's own packages and numba, so it is made only with TLISMNI_AHEAD=1
+(`TLISMNI_AHEAD=1 pip wheel . --no-build-isolation --no-deps`). A wheel that has it does not depend on numba.
 """
 
 import os
 import shlex
 import shutil
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from setuptools import Extension, setup
@@ -18,6 +24,10 @@ SHIM = Path("fmu_wrapper", "shim")
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 FLAGS = ["-std=c11", "-O2", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra"]
 SYSTEM_FLAGS = {"win32": [], "darwin": ["-fPIC"]}.get(sys.platform, ["-fPIC", "-ldl", "-lpthread"])
+
+
+AHEAD = os.environ.get("TLISMNI_AHEAD") == "1"
+NEEDED = ["numpy>=2.0", "scipy>=1.13", "pydantic>=2.9", *([] if AHEAD else ["numba>=0.61"])]
 
 
 def compiler() -> list[str]:
@@ -42,6 +52,27 @@ class BuildShim(build_ext):
         command = compiler() or [sys.executable, "-m", "ziglang", "cc"]
         self.spawn([*command, *FLAGS, "-o", str(target), *ext.sources, *SYSTEM_FLAGS])
 
+    def run(self) -> None:
+        """The shim, and the machine code of the sources that are in the wheel."""
+        super().run()
+        if AHEAD and not self.inplace:
+            self.make_machine_code(Path(self.build_lib).resolve())
+
+    def make_machine_code(self, root: Path) -> None:
+        """Let the copied sources make their library, and put it beside them."""
+        with tempfile.TemporaryDirectory() as folder:
+            command = [sys.executable, "-m", "tlismni.core.ahead", "--output", folder]
+            environment = {**os.environ, "PYTHONPATH": str(root)}
+            # the package has no __init__.py: its parts could come from an installation
+            ask = [sys.executable, "-c", "import tlismni.core; print(tlismni.core.__file__)"]
+            found = subprocess.run(ask, check=True, capture_output=True, text=True, env=environment).stdout.strip()
+            if not Path(found).is_relative_to(root):
+                raise SystemExit(f"machine code would be made of '{found}', not of '{root}': uninstall tlismni before")
+            self.announce(" ".join(command), level=2)
+            subprocess.run(command, check=True, env=environment)
+            (made,) = Path(folder).rglob("tlismni_core.*")
+            shutil.copy(made, root / "tlismni" / "core" / "compiled" / made.name)
+
 
 class PlatformWheel(bdist_wheel):
     """A wheel for any Python 3 of one platform."""
@@ -52,6 +83,7 @@ class PlatformWheel(bdist_wheel):
 
 
 setup(
+    install_requires=NEEDED,
     ext_modules=[
         Extension(
             "tlismni.fmu_wrapper.tlismni_shim",

@@ -8,10 +8,9 @@ so that both are cached on disk.
 
 from typing import Any
 
-import numba as nb
 import numpy as np
-from numba import types
 
+from . import types
 from .jit import address_of, caller, record_view
 
 # What a kernel is asked to do.
@@ -46,7 +45,7 @@ BATCH = np.dtype(
     ]
 )  # fmt: skip
 
-BATCH_TYPE = nb.from_dtype(BATCH)
+BATCH_TYPE = types.from_dtype(BATCH)
 KERNEL_SIGNATURE = types.void(types.int64, types.float64, BATCH_TYPE)
 
 

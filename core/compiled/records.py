@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
 from .image import Take
+from .library import LIBRARY
+from .types import from_dtype
 
 _KINDS = frozenset((np.dtype(np.float64).char, np.dtype(np.int64).char))
 
@@ -21,7 +22,8 @@ def words_of(dtype: np.dtype) -> dict[str, int]:
 
 @cache
 def _type_of(dtype: np.dtype) -> Any:
-    return nb.from_dtype(dtype)
+    found = from_dtype(dtype)
+    return found if LIBRARY is None else found.for_numba()
 
 
 class Record:
@@ -31,12 +33,21 @@ class Record:
     with a record of 70 fields. Of this it asks the same questions by the same names, and has the answers at once.
     """
 
-    __slots__ = ("_numba_type_", "_table", "_words", "data")
+    __slots__ = ("_numba_type_", "_table", "_words", "address", "data")
 
     def __init__(self, table: NDArray[Any]) -> None:
         self._table, self._words = table, table.view(np.int64)
         self.data = table.view(np.uint8)
-        self._numba_type_ = _type_of(table.dtype)
+        self.address = int(self._words.__array_interface__["data"][0])  # that of a structured array describes its type
+        if LIBRARY is None:
+            self._numba_type_ = _type_of(table.dtype)
+
+    def __getattr__(self, name: str) -> Any:
+        # with a library numba is asked only if a function is compiled in this process after all
+        if name != "_numba_type_":
+            raise AttributeError(name)
+        self._numba_type_ = _type_of(self._table.dtype)
+        return self._numba_type_
 
     def __getitem__(self, field: str) -> int:
         return int(self._table[field][0])
@@ -81,7 +92,7 @@ class ArrayRecord:
         self.table, self._words, self._place = table, table.view(np.int64), words_of(table.dtype)
         self.record = Record(table)
         """What to hand to a compiled function."""
-        self.address = int(self._words.__array_interface__["data"][0])  # that of a structured array describes its type
+        self.address = self.record.address
         """Address of the record itself, to be stored in another record."""
 
     def set_array(self, name: str, array: NDArray) -> None:

@@ -6,10 +6,9 @@ and addresses; `Cones` builds one with memory for up to so many contacts. What t
 
 from typing import Any
 
-import numba as nb
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import address_of, caller, compiled
 from ..compiled.records import ArrayRecord
 from ..compiled.views import mat, vec
@@ -64,7 +63,7 @@ CONES = np.dtype(
         )
     ]
 )  # fmt: skip
-CONES_TYPE = nb.from_dtype(CONES)
+CONES_TYPE = types.from_dtype(CONES)
 WAY_SIGNATURE = types.int64(CONES_TYPE, types.Array(types.float64, 1, "C"), types.int64)
 call_way = caller(WAY_SIGNATURE)
 """call_way(address, cn, mu, work): one of the two ways to solutions."""

@@ -3,8 +3,8 @@
 from typing import Any
 
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import caller, compiled
 from ..linalg.small import add, dot
 

@@ -2,9 +2,8 @@
 
 from typing import Any, ClassVar
 
-from numba.core.errors import NumbaError
-
 from ..compiled.jit import address_of
+from ..compiled.needed import compile_errors
 from ..errors import ModelError
 from ..model.open_union import OpenRecord
 
@@ -63,7 +62,9 @@ def formula_address(record: FormulaRecord, signature: Any) -> int:
     """
     try:
         return address_of(type(record).formula, signature)
-    except (TypeError, NumbaError) as error:
+    except Exception as error:
+        if not isinstance(error, (TypeError, *compile_errors())):
+            raise
         # numba goes on with where it was when it failed: only its first paragraphs say what is wrong
         cause = str(error).split("\n\nDuring:")[0]
         raise ModelError(f"the formula of {type(record).__name__} is not usable: {cause}") from error

@@ -8,9 +8,9 @@ a solution if one exists.
 from typing import Any
 
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
+from ..compiled import types
 from ..compiled.jit import address_of, caller, compiled, internal
 from ..compiled.views import ivec, mat
 from ..linalg.small import LEAST_NORM_SIGNATURE, add, call_least_norm, dot, least_norm, least_norm_size

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, ClassVar
 
-from ..compiled.formula_code import formula_internal
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.base import Form, Numbering, Row
@@ -59,6 +58,7 @@ def _period(b: Any, e: int) -> float:
 
 @cache
 def _kernel(gap: Callable[..., Any], arguments: Arguments) -> Any:
+    from ..compiled.formula_code import formula_internal
     from ..compiled.jet_functions import gradient_of, hessian_of, value_of
 
     call = caller_of(gap, arguments, FIRST)
@@ -74,6 +74,7 @@ def _kernel(gap: Callable[..., Any], arguments: Arguments) -> Any:
 
 @cache
 def _rubbing_kernel(gap: Callable[..., Any], slide: Callable[..., Any], arguments: Arguments, bristles: bool) -> Any:
+    from ..compiled.formula_code import formula_internal
     from ..compiled.jet_functions import gradient_of, hessian_of, value_of
 
     call, call_slide = caller_of(gap, arguments, FIRST), caller_of(slide, arguments, FIRST)

@@ -10,11 +10,10 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numba.np.unsafe.ndarray import to_fixed_tuple
 from pydantic import model_validator
 
 from ..compiled.jit import internal
-from ..compiled.views import imat, mat, vec
+from ..compiled.views import imat, mat, to_fixed_tuple, vec
 from ..elements.base import Numbering, Row
 from ..elements.geometry2d import arms, bearing, distance, height_over_line
 from ..model.base import NonNegative, Positive, Record

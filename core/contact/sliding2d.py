@@ -8,11 +8,10 @@ F_T = RATIO F_N). A contact that acts as a force gets F_T from a regularised law
 from typing import Any
 
 import numpy as np
-from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
-from ..compiled.views import imat, mat, vec
+from ..compiled.views import imat, mat, to_fixed_tuple, vec
 from ..elements.geometry2d import (
     add_hessian,
     add_product,

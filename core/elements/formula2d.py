@@ -12,15 +12,13 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from numba import njit, types
-from numba.core.errors import NumbaError
-
-from ..compiled.formula_code import formula_internal
 from ..compiled.jit import inlined
+from ..compiled.library import LIBRARY
+from ..compiled.needed import compile_errors, numba_module
 from ..errors import ModelError
 from ..model.base import Record
 from ..model.markers import Marker2D
-from .base import Numbering
+from .base import Form, Numbering
 
 MARKER_COLUMNS = 5
 """Of each marker in the table of parameters: point (2), angle, its cosine and sine."""
@@ -119,6 +117,7 @@ class Arguments:
 def _placing(count: int, k: int) -> Any:
     """(intrinsic, type of its result) that makes the frame of marker k of `count`."""
     # numba learns the type of jets here and not before: not everyone differentiates
+    from numba import types
     from numba.extending import intrinsic
 
     from ..compiled.jets import JetType, Parts, made_of
@@ -167,6 +166,9 @@ def _placing(count: int, k: int) -> Any:
 
 @cache
 def _function(formula: Callable[..., Any]) -> Any:
+    numba_module()
+    from ..compiled.formula_code import formula_internal
+
     return formula_internal(formula, (formula,))
 
 
@@ -178,6 +180,9 @@ def derivatives(formula: Callable[..., Any], arguments: Arguments) -> Any:
     ------
     ModelError : if it cannot be compiled, or depends on no coordinate.
     """
+    numba_module()
+    from numba import types
+
     from ..compiled import jet_functions  # noqa: F401, the functions of math learn jets
     from ..compiled.jets import JetType
 
@@ -187,7 +192,7 @@ def derivatives(formula: Callable[..., Any], arguments: Arguments) -> Any:
     function = _function(formula)
     try:
         function.compile(signature)
-    except NumbaError as error:
+    except compile_errors() as error:
         # numba goes on with where it was when it failed: only its first paragraphs say what is wrong
         cause = str(error).split("\n\nDuring:")[0]
         raise ModelError(
@@ -201,6 +206,25 @@ def derivatives(formula: Callable[..., Any], arguments: Arguments) -> Any:
             "return a number that is computed from their x, y, angle, ex or ey"
         )
     return found
+
+
+def form_name(kind: str, formulas: Sequence[Callable[..., Any]], arguments: Arguments) -> str:
+    """What the library of machine code calls the kernel of such formulas."""
+    names = "+".join(f"{formula.__module__}.{formula.__qualname__}" for formula in formulas)
+    return f"{kind}:{names}:{','.join(arguments.markers)};{','.join(arguments.numbers)}"
+
+
+@cache
+def form_ahead(kind: str, formulas: tuple[Callable[..., Any], ...], arguments: Arguments) -> Form | None:
+    """Kernel and patterns of formulas of the package itself, from the library of machine code; None without it."""
+    name = form_name(kind, formulas, arguments)
+    found = None if LIBRARY is None else LIBRARY.forms.get(name)
+    if found is None:
+        return None
+    from ..compiled.prebuilt import Prebuilt
+
+    patterns = (tuple((i, j) for i, j in found[pattern]) for pattern in ("tangent", "jacobian"))
+    return Form(Prebuilt(formulas[0], "internal", name), found["rows"], *patterns)
 
 
 def caller_of(formula: Callable[..., Any], arguments: Arguments, first: int) -> Any:
@@ -221,6 +245,8 @@ def caller_of(formula: Callable[..., Any], arguments: Arguments, first: int) -> 
     ]
     body = "\n    ".join([*lines, f"return formula({', '.join(given)})"])
     exec(f"def call(q, coord, par):\n    {body}\n", names)
+    from numba import njit
+
     return njit(error_model="numpy", forceinline=True)(names["call"])
 
 

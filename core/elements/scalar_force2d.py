@@ -4,9 +4,6 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, ClassVar
 
-from numba import njit
-
-from ..compiled.formula_code import formula_internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
@@ -68,6 +65,8 @@ def _caller_of_law(function: Function, known: int, arguments: Arguments) -> Any:
     begin = MARKER_COLUMNS * len(arguments.markers)
     given = ", ".join(f"x{k}" for k in range(known))
     more = "".join(f", par[{begin + arguments.numbers.index(n)}]" for n in argument_names(function)[known:])
+    from numba import njit
+
     names: dict[str, Any] = {"function": njit(error_model="numpy")(function)}
     exec(f"def call({given}, par):\n    return function({given}{more})\n", names)
     return njit(error_model="numpy")(names["call"])
@@ -76,6 +75,7 @@ def _caller_of_law(function: Function, known: int, arguments: Arguments) -> Any:
 @cache
 def _kernel(law: ScalarForce, arguments: Arguments) -> Any:
     from ..compiled.dual import dual, lift
+    from ..compiled.formula_code import formula_internal
     from ..compiled.jet_functions import gradient_of, hessian_of, value_of
 
     call, force = caller_of(law.measure, arguments, 0), _caller_of_law(law.force, 2, arguments)

@@ -4,14 +4,16 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Any, ClassVar
 
-from ..compiled.formula_code import formula_internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
 from ..model.markers import Marker2D
 from .base import Form, JointElement, Numbering, Row
-from .formula2d import NO_NUMBERS, Arguments, argument_names, caller_of, derivatives, plain_function
+from .formula2d import NO_NUMBERS, Arguments, argument_names, caller_of, derivatives, form_ahead, plain_function
 from .geometry2d import constrain
+
+KIND = "scalar_joint2d"
+"""Of its kernels in the library of machine code."""
 
 
 class ScalarConstraint:
@@ -27,6 +29,9 @@ class ScalarConstraint:
 
     def form(self, arguments: Arguments) -> Form:
         """Kernel and patterns: those derivatives that the formula has."""
+        ahead = form_ahead(KIND, (self.formula,), arguments)
+        if ahead is not None:
+            return ahead
         found = derivatives(self.formula, arguments)
         tangent = {*found.second, *((j, i) for i, j in found.second)}
         return Form(_kernel(self.formula, arguments), 1, tuple(sorted(tangent)), tuple((0, j) for j in found.first))
@@ -48,6 +53,7 @@ def scalar_constraint(formula: Callable[..., Any]) -> ScalarConstraint:
 
 @cache
 def _kernel(formula: Callable[..., Any], arguments: Arguments) -> Any:
+    from ..compiled.formula_code import formula_internal
     from ..compiled.jet_functions import gradient_of, hessian_of, value_of
 
     call, n = caller_of(formula, arguments, 0), arguments.size

@@ -5,10 +5,9 @@ All of it is scratch: an instant is settled from the state alone, and leaves beh
 
 from typing import Any
 
-import numba as nb
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import caller, internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..integrate.records import DRIVE_TYPE
@@ -44,7 +43,7 @@ INSTANT = np.dtype(
         )
     ]
 )  # fmt: skip
-INSTANT_TYPE = nb.from_dtype(INSTANT)
+INSTANT_TYPE = types.from_dtype(INSTANT)
 PART_SIGNATURE = types.int64(INSTANT_TYPE, DRIVE_TYPE, WORKSPACE_TYPE, METHOD_TYPE)
 call_part = caller(PART_SIGNATURE)
 """call_part(address, ev, dr, ws, ms): the larger parts are called by address, so that each is compiled once and not

@@ -10,11 +10,10 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import numba as nb
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
+from ..compiled import types
 from ..compiled.jit import address_of, caller, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
@@ -231,7 +230,7 @@ class Exchange:
             },
         )  # fmt: skip
         self.record = self._record.record
-        exchange.compile((nb.from_dtype(EXCHANGE),))  # not at the first step
+        exchange.compile((types.from_dtype(EXCHANGE),))  # not at the first step
         # whose elements are written in half the time of those of the array
         self.clock: Any = self.times.data
         self.reads = False

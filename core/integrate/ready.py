@@ -7,8 +7,7 @@ called from Python, at steps and at events; a test looks whether any of it is mi
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from numba import types
-
+from ..compiled import types
 from ..compiled.jit import address_of
 from ..contact.cones import CONES_TYPE, Cones, solve_cones
 from ..contact.directions import farthest_directions, independent_directions

@@ -1,9 +1,8 @@
 """The loop record: clock, sample buffer and what the watch over contacts remembers."""
 
-import numba as nb
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import caller
 from ..methods.records import METHOD_TYPE
 from ..system.records import WORKSPACE_TYPE
@@ -34,7 +33,7 @@ LOOP = np.dtype(
     ]
 )  # fmt: skip
 
-LOOP_TYPE = nb.from_dtype(LOOP)
+LOOP_TYPE = types.from_dtype(LOOP)
 FIND_EVENTS_SIGNATURE = types.boolean(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64, types.boolean)
 call_find_events = caller(FIND_EVENTS_SIGNATURE)
 """call_find_events(address, ws, ms, lc, h, all of them)."""
@@ -113,7 +112,7 @@ DRIVE = np.dtype(
         )
     ]
 )  # fmt: skip
-DRIVE_TYPE = nb.from_dtype(DRIVE)
+DRIVE_TYPE = types.from_dtype(DRIVE)
 SETTLE_SIGNATURE = types.int64(DRIVE_TYPE)
 call_settle = caller(SETTLE_SIGNATURE)
 

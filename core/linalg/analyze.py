@@ -6,8 +6,8 @@ What follows from values and pattern alone, whatever was analysed before: the sa
 from typing import Any
 
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import caller, compiled, internal
 from ..compiled.views import ivec, uvec, vec
 from .choice import choose_rows

@@ -1,9 +1,8 @@
 """The record of sizes and addresses through which compiled code reaches a factorisation."""
 
-import numba as nb
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import record_view
 
 # Returned by `factor`.
@@ -56,7 +55,7 @@ LU = np.dtype(
     ]
 )  # fmt: skip
 
-LU_TYPE = nb.from_dtype(LU)
+LU_TYPE = types.from_dtype(LU)
 
 OF_ANALYSIS = (
     "factor_function", "solve_function", "nl", "nu", "l_start", "u_start", "l_row", "l_col", "u_row", "u_col",
@@ -66,7 +65,7 @@ OF_ANALYSIS = (
 """Fields of LU that an analysis sets."""
 ANALYSIS = np.dtype([(name, np.int64) for name in ("perm_r", "size", *OF_ANALYSIS)])
 """Place of each row in the pivot sequence (n,) int64, numbers that are stored, and what LU takes over."""
-ANALYSIS_TYPE = nb.from_dtype(ANALYSIS)
+ANALYSIS_TYPE = types.from_dtype(ANALYSIS)
 analysis_at = record_view(ANALYSIS_TYPE)
 MOST_ANALYSES = 64
 """Kept for one pattern in a run, and shared among runs."""

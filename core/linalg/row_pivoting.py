@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import types
 from numpy.typing import ArrayLike, NDArray
 
+from ..compiled import types
 from ..compiled.jit import compiled_unlocked, internal, interpreted
 
 Ints = NDArray[np.int64]

@@ -9,8 +9,8 @@ Reflections from the right then give what is least (complete orthogonal decompos
 from typing import Any
 
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import caller, internal
 from ..compiled.views import ivec, mat, vec
 

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-import numba as nb
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import address_of, caller
 from ..system.records import WORKSPACE_TYPE
 
@@ -25,7 +24,7 @@ METHOD = np.dtype(
         )
     ]
 )  # fmt: skip
-METHOD_TYPE = nb.from_dtype(METHOD)
+METHOD_TYPE = types.from_dtype(METHOD)
 
 MAX_NODES = 12
 """Most rows of history that a formula uses, and the width of `weights`."""

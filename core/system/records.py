@@ -1,9 +1,8 @@
 """The workspace record: sizes and addresses of everything that the compiled loop works on."""
 
-import numba as nb
 import numpy as np
-from numba import types
 
+from ..compiled import types
 from ..compiled.jit import caller, record_view
 
 WORKSPACE = np.dtype(
@@ -41,7 +40,7 @@ WORKSPACE = np.dtype(
         )
     ]
 )  # fmt: skip
-WORKSPACE_TYPE = nb.from_dtype(WORKSPACE)
+WORKSPACE_TYPE = types.from_dtype(WORKSPACE)
 
 STRUCTURE = np.dtype(
     [
@@ -58,12 +57,12 @@ STRUCTURE = np.dtype(
         )
     ]
 )  # fmt: skip
-STRUCTURE_TYPE = nb.from_dtype(STRUCTURE)
+STRUCTURE_TYPE = types.from_dtype(STRUCTURE)
 
 PARTITION = np.dtype(
     [(name, np.int64) for name in ("dependent", "n_free", "free_row", "free_col", "free_slot", "lu_d")]
 )
-PARTITION_TYPE = nb.from_dtype(PARTITION)
+PARTITION_TYPE = types.from_dtype(PARTITION)
 structure_at, partition_at = record_view(STRUCTURE_TYPE), record_view(PARTITION_TYPE)
 
 # Called by address, so that their code is compiled once and not again inside each caller.

@@ -8,9 +8,9 @@ so F_t is odd in v_t and F_t v_t <= 0.
 
 from typing import Annotated, ClassVar
 
-from numba import types
 from pydantic import Field
 
+from ...compiled import types
 from ...compiled.jit import caller
 from ..formula import FormulaRecord, formula_address
 

@@ -7,8 +7,7 @@ approach speed at first contact in m/s; F > 0 pushes the bodies apart, N.
 
 from typing import ClassVar, Literal
 
-from numba import types
-
+from ...compiled import types
 from ...compiled.jit import caller
 from ...rounding import LEAST_APPROACH
 from ..formula import FormulaRecord, formula_address

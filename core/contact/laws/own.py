@@ -5,8 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from ...compiled.needed import numba_module
 from ...errors import ModelError
 from .base import ForceLaw
 
@@ -36,7 +36,10 @@ def force_formula(force: Callable[..., float]) -> Any:
             f"{plain.__name__} takes {count} arguments; a force takes (delta, delta_dot, v0) and up to "
             f"{ForceLaw.parameter_count} parameters"
         )
+    numba_module()
     # numba learns the type of dual numbers here and not before: not everyone differentiates
+    from numba import njit
+
     from ...compiled.dual import dual, lift
     from ...compiled.formula_code import FormulaCode
 

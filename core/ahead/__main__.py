@@ -1,0 +1,39 @@
+"""`python -m tlismni.core.ahead`: make the library of machine code."""
+
+import argparse
+import logging
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from ..compiled.library import PLACE, USUAL_PLACE
+from ..errors import TlismniError
+
+FRESH = {PLACE: "none", "NUMBA_OPT": "0", "OPENBLAS_NUM_THREADS": "1"}
+"""Environment of the process that makes it: without a library, and numba's own optimiser, whose work is not used."""
+
+
+def main() -> int:
+    """Read the arguments, make what they ask for."""
+    parser = argparse.ArgumentParser(prog="python -m tlismni.core.ahead", description=__doc__)
+    parser.add_argument("--target", action="append", help="platform, of this machine unless given; can be repeated")
+    parser.add_argument("--output", type=Path, help=f"folder for the libraries; '{USUAL_PLACE}' unless given")
+    parser.add_argument("--only", action="append", help="only functions whose names contain this text, for trying")
+    given = parser.parse_args()
+    if any(os.environ.get(name) != value for name, value in FRESH.items()):
+        # numba reads its settings, and the core looks for a library, when they are imported
+        return subprocess.call([sys.executable, "-m", str(__package__), *sys.argv[1:]], env={**os.environ, **FRESH})
+    logging.basicConfig(level=logging.INFO, format="%(message)s")
+    from .make import make
+
+    try:
+        make(given.target or [], given.output, given.only or [""])
+    except TlismniError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,215 @@
+"""What goes into the library: functions that Python calls, and functions that are called by their addresses.
+
+Functions of one kind (kernels, steps, stages, laws) are found by their names and arguments, so that a new one needs no
+entry. The others stand here with their signatures. `tests/core/test_ahead.py` looks whether any is missing.
+"""
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from numba import typeof
+from numba.core.dispatcher import Dispatcher
+from numba.types import Tuple
+
+from .. import compiled as _compiled
+from ..analysis import flight, flow, linearise
+from ..compiled import types
+from ..compiled.kernels import KERNEL_SIGNATURE
+from ..compiled.signatures import signature_text
+from ..contact import cones, directions, joints, lcp
+from ..contact.friction.base import FRICTION_SIGNATURE, FrictionLaw
+from ..contact.laws.base import LAW_SIGNATURE, ForceLaw
+from ..elements.base import Form
+from ..elements.distance2d import Distance2D
+from ..elements.formula2d import form_name
+from ..elements.gear2d import Gear2D
+from ..elements.scalar_joint2d import KIND, ScalarJoint2D
+from ..events import instant
+from ..integrate import dense_output, drive, exchange, loop, sample, watch
+from ..integrate import records as run_records
+from ..linalg import dense, record, row_pivoting, small, sparse, symbolic
+from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, follow, use_analysis
+from ..linalg.solve import _no_solution, _not_analysed, factor, solve
+from ..methods import adams, history, order_selection, park
+from ..methods.records import METHOD_TYPE, STEP_SIGNATURE
+from ..model.markers import Marker2D
+from ..stage import accelerations
+from ..system import evaluate, levels, measure, projection, switch
+from ..system.records import EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
+
+_WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE
+_LU = record.LU_TYPE
+_REAL, _WHOLE, _FLAG = types.float64, types.int64, types.boolean
+_REALS, _WHOLES, _PLACES = (types.Array(kind, 1, "C") for kind in (_REAL, _WHOLE, types.uint32))
+_MATRIX, _BLOCKS = types.Array(_REAL, 2, "C"), types.Array(_REAL, 3, "C")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A function of the library."""
+
+    name: str
+    function: Any
+    """numba's."""
+    signature: Any
+    """numba's, or the types of the arguments alone."""
+
+    def key(self, result: Any) -> str:
+        """What `compiled/library.py` finds it by, once the type of its result is known."""
+        return f"{self.name} {signature_text(result, getattr(self.signature, 'args', self.signature))}"
+
+
+def _called_by_address() -> Iterator[tuple[Any, Any]]:
+    """Functions whose addresses stand in records."""
+    yield evaluate.all_kernels, EVALUATE_SIGNATURE
+    yield analyze, ANALYZE_SIGNATURE
+    yield drive.settle_pending, run_records.SETTLE_SIGNATURE
+    yield loop.run, run_records.RUN_SIGNATURE
+    yield loop.trial_step, run_records.TRIAL_SIGNATURE
+    yield loop.accept, run_records.ACCEPT_SIGNATURE
+    yield sample.write_sample, run_records.SAMPLE_SIGNATURE
+    yield accelerations.solve_accelerations, run_records.ACCELERATIONS_SIGNATURE
+    yield watch.find_events, run_records.FIND_EVENTS_SIGNATURE
+    yield dense_output.query, exchange.QUERY_SIGNATURE
+    for part in instant.PARTS:
+        yield part, instant.PART_SIGNATURE
+    for _, function, signature in instant._OTHERS:
+        yield function, signature
+    for way in (cones.by_pivoting, cones.by_limit):
+        yield way, cones.WAY_SIGNATURE
+    yield lcp.find_complementary, lcp.FIND_SIGNATURE
+    yield small.least_norm, small.LEAST_NORM_SIGNATURE
+    for way in (_not_analysed, dense.dense_factor, sparse.program_factor, sparse.columns_factor):
+        yield way, record.FACTOR_SIGNATURE
+    for way in (_no_solution, dense.dense_solve, sparse.sparse_solve):
+        yield way, record.SOLVE_SIGNATURE
+    yield order_selection.select_k, STEP_SIGNATURE
+
+
+def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
+    """Functions that Python calls, with the types of their arguments."""
+    yield drive.drive, (_DR, _FLAG)
+    for function in (drive.aim_now, drive.settle_pending, drive.unsettled_now, drive.open_now):
+        yield function, (_DR,)
+    yield exchange.exchange, (types.from_dtype(exchange.EXCHANGE),)
+    yield dense_output.interpolate, (_WS, _MS, _REAL)
+    yield history.recall, (_WS, _MS, _WHOLE)
+    yield history.restart, (_WS, _MS)
+    yield watch.remember, (_WS, _LC)
+    yield watch.friction_margin, (_WS, _WHOLE)
+    yield loop.set_weights_at, (_WS, _MS)
+    yield loop.violates_redundant, (_WS, _REAL)
+    for function in (
+        evaluate.evaluate_residuals, evaluate.evaluate_power, evaluate.evaluate_energy, levels.position_level,
+        levels.rate_level, levels.acceleration_level, levels.force_level, joints.evaluate_joints,
+        joints.factor_joints, joints.solve_joints,
+    ):  # fmt: skip
+        yield function, (_WS,)
+    yield evaluate.evaluate_tangent, (_WS, _REAL, _REAL)
+    yield evaluate.constraint_norm, (_WS, _WHOLE)
+    yield measure.measure_rows, (_WS, _REALS, _REALS)
+    yield measure.measure_motion, (_WS, _REALS, _REALS, _REALS, _WHOLE, _REALS, _REALS)
+    yield projection.meet, (_WS, _FLAG)
+    for function in (switch.use_structure, switch.use_partition):
+        yield function, (_WS, _WHOLE)
+    yield factor, record.FACTOR_SIGNATURE.args
+    yield solve, record.SOLVE_SIGNATURE.args
+    yield use_analysis, (_LU, _WHOLE)
+    yield follow, (_LU, _LU)
+    yield cones.solve_cones, (cones.CONES_TYPE,)
+    yield lcp._find, (_WHOLE, _WHOLE, _MATRIX, _REALS, _REALS, _REALS)
+    yield directions.independent_directions, (_MATRIX, _MATRIX, _WHOLES, _REAL, _WHOLES, _REALS)
+    yield directions.farthest_directions, (_MATRIX, _WHOLES, _WHOLES, _REALS)
+    matrix = (_WHOLE, _WHOLE, _WHOLES, _WHOLES, _REALS, _REALS, _REAL)
+    factors = (_REALS, _WHOLES, _WHOLES, _REALS, _WHOLES, _WHOLES, _REALS)
+    yield row_pivoting.eliminate, (*matrix, *(_WHOLES,) * 5, *factors)
+    yield symbolic._search, (_WHOLE, *(_WHOLES,) * 9)
+    tables = types.Array(types.uint32, 2, "C")
+    yield (
+        symbolic._write_operations,
+        (_WHOLE, *(_WHOLES,) * 4, _PLACES, tables, _PLACES, tables, _WHOLES),
+    )
+    yield adams.adams_coefficients, (_REALS, _WHOLE, _REALS, _REALS, _REALS)
+    yield park.park_coefficients, (_REALS, _REALS, _REALS)
+    yield (
+        linearise.linearise,
+        (_WS, _MS, _REALS, _WHOLES, _WHOLES, _WHOLES, _BLOCKS, _BLOCKS, _BLOCKS, _BLOCKS, _BLOCKS, _MATRIX),
+    )
+    yield linearise.all_rows, (_WS, _MATRIX, _MATRIX, _REALS)
+    yield linearise.gap_hessian, (_WS, _WHOLE, _WHOLES, _MATRIX)
+    yield linearise.matrix_at, (_WS, _WHOLES, _WHOLES, _MATRIX, _MATRIX, _REAL)
+    yield linearise.tangent_rate, (_WS, _MS, _REALS, _WHOLES, _WHOLES, _BLOCKS)
+    work = typeof(flow.make_work(2, 1, 1))
+    matrices, variations = (_BLOCKS,) * 6, (_MATRIX, _MATRIX)
+    yield flow.carry, (_REAL, *matrices, _WHOLES, _WHOLES, *variations, _MATRIX, work)
+    layout = Tuple((_WHOLES,) * 5)
+    room = Tuple((_REALS, *(_BLOCKS,) * 5, _MATRIX, _BLOCKS, _MATRIX, *variations))
+    yield flight.fly, (_WS, _MS, _LC, _WHOLE, layout, room, work, *variations, _REALS, _REALS)
+
+
+def _modules() -> Iterator[Any]:
+    package = __package__.rsplit(".", 1)[0]
+    root = importlib.import_module(package)
+    for found in pkgutil.walk_packages(root.__path__, f"{package}."):
+        if not found.name.startswith((__package__, f"{_compiled.__name__}.")):
+            yield importlib.import_module(found.name)
+
+
+def _of_one_kind() -> Iterator[tuple[Any, Any]]:
+    """Kernels, steps and stages of all modules, laws of all records."""
+    for module in _modules():
+        for name, value in vars(module).items():
+            if not isinstance(value, Dispatcher) or value.py_func.__module__ != module.__name__:
+                continue
+            arguments = tuple(inspect.signature(value.py_func).parameters)
+            if arguments == ("job", "t", "b"):
+                yield value, KERNEL_SIGNATURE
+            elif name.endswith("_step") and name[0] != "_" and arguments == ("ws", "ms", "h"):
+                yield value, STEP_SIGNATURE
+            elif name.startswith("solve_") and name.endswith("_stage"):
+                yield value, STAGE_SIGNATURE
+    laws: tuple[tuple[type, Any], ...] = ((ForceLaw, LAW_SIGNATURE), (FrictionLaw, FRICTION_SIGNATURE))
+    for base, signature in laws:
+        for kind in _kinds(base):
+            formula = vars(kind).get("formula")
+            if isinstance(formula, Dispatcher):
+                yield formula, signature
+
+
+def _joints() -> Iterator[ScalarJoint2D]:
+    """Joints that are formulas, one of each kind of the package."""
+    a, b = Marker2D(), Marker2D(body="b")
+    yield Distance2D(name="distance", a=a, b=b, length=1.0)
+    yield Gear2D(name="gear", a=a, b=b, radius_a=1.0, radius_b=1.0)
+
+
+def forms() -> dict[str, Form]:
+    """Kernels that are made from formulas, with their patterns, by their names in the library."""
+    found = {}
+    for joint in _joints():
+        arguments = joint.arguments()
+        name = form_name(KIND, (joint.formula.formula,), arguments)
+        found[name] = joint.formula.form(arguments)
+    return found
+
+
+def _kinds(base: type) -> Iterator[type]:
+    kind: type
+    for kind in base.__subclasses__():
+        yield kind
+        yield from _kinds(kind)
+
+
+def entries() -> list[Entry]:
+    """All of them, each once."""
+    found: dict[Any, Entry] = {name: Entry(name, form.kernel, KERNEL_SIGNATURE) for name, form in forms().items()}
+    for function, signature in (*_of_one_kind(), *_called_by_address(), *_called_by_python()):
+        source = function.py_func
+        arguments = tuple(getattr(signature, "args", signature))
+        entry = Entry(f"{source.__module__}.{source.__qualname__}", function, signature)
+        found.setdefault((source, arguments), entry)
+    return list(found.values())

@@ -1,0 +1,187 @@
+"""One LLVM module of all recorded texts, optimised as a whole, and its machine code for a target."""
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import llvmlite.binding as llvm
+
+DIGEST, MANIFEST = "tlismni_digest", "tlismni_manifest"
+
+
+@dataclass(frozen=True)
+class Target:
+    """What machine code is for."""
+
+    name: str
+    triple: str
+    cpu: str
+    features: str
+    suffix: str
+    """Of a shared library there."""
+    linker: str
+    """Name of the target as zig writes it."""
+
+
+TARGETS = {
+    target.name: target
+    for target in (
+        Target("linux-x86_64", "x86_64-unknown-linux-gnu", "x86-64-v2", "", ".so", "x86_64-linux-gnu.2.17"),
+        Target("linux-aarch64", "aarch64-unknown-linux-gnu", "generic", "", ".so", "aarch64-linux-gnu.2.17"),
+        Target("windows-x86_64", "x86_64-pc-windows-gnu", "x86-64-v2", "", ".dll", "x86_64-windows-gnu"),
+        Target("macos-x86_64", "x86_64-apple-macosx11.0.0", "x86-64-v2", "", ".dylib", "x86_64-macos.11.0"),
+        Target("macos-aarch64", "arm64-apple-macosx11.0.0", "apple-m1", "", ".dylib", "aarch64-macos.11.0"),
+    )
+}
+
+# What compiled code takes from numba's runtime. The few arrays that it allocates are counted as numba does it; those
+# of views have no owner. They never leave the call that makes them, so counting needs no lock. What is raised is read
+# by Python (`compiled/crossing.py`), and not made into objects by functions of the library.
+_RUNTIME = """
+declare ptr @malloc(i64)
+declare void @free(ptr)
+declare double @nextafter(double, double)
+
+%owner = type { i64, ptr, ptr, ptr, i64, ptr }
+
+define weak_odr ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %alignment) {
+  %wide = zext i32 %alignment to i64
+  %head = add i64 %wide, 48
+  %room = add i64 %head, %size
+  %new = call ptr @malloc(i64 %room)
+  %missing = icmp eq ptr %new, null
+  br i1 %missing, label %none, label %there
+none:
+  ret ptr null
+there:
+  %begin = ptrtoint ptr %new to i64
+  %after = add i64 %begin, %head
+  %down = sub i64 0, %wide
+  %place = and i64 %after, %down
+  %data = inttoptr i64 %place to ptr
+  store %owner { i64 1, ptr null, ptr null, ptr null, i64 0, ptr null }, ptr %new
+  %at = getelementptr %owner, ptr %new, i32 0, i32 3
+  store ptr %data, ptr %at
+  ret ptr %new
+}
+
+define weak_odr ptr @NRT_MemInfo_alloc(i64 %size) {
+  %new = call ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 16)
+  ret ptr %new
+}
+
+define weak_odr ptr @NRT_MemInfo_data_fast(ptr %x) alwaysinline {
+  %at = getelementptr %owner, ptr %x, i32 0, i32 3
+  %data = load ptr, ptr %at
+  ret ptr %data
+}
+
+define weak_odr void @NRT_incref(ptr %x) alwaysinline {
+  %nobody = icmp eq ptr %x, null
+  br i1 %nobody, label %done, label %count
+count:
+  %old = load i64, ptr %x
+  %more = add i64 %old, 1
+  store i64 %more, ptr %x
+  br label %done
+done:
+  ret void
+}
+
+define weak_odr void @NRT_decref(ptr %x) alwaysinline {
+  %nobody = icmp eq ptr %x, null
+  br i1 %nobody, label %done, label %count
+count:
+  %old = load i64, ptr %x
+  %less = sub i64 %old, 1
+  store i64 %less, ptr %x
+  %last = icmp eq i64 %less, 0
+  br i1 %last, label %free, label %done
+free:
+  call void @free(ptr %x)
+  br label %done
+done:
+  ret void
+}
+
+define weak_odr ptr @NRT_Allocate(i64 %size) {
+  %new = call ptr @malloc(i64 %size)
+  ret ptr %new
+}
+
+define weak_odr void @NRT_Free(ptr %x) {
+  call void @free(ptr %x)
+  ret void
+}
+
+define weak_odr double @numba_nextafter(double %x, double %y) alwaysinline {
+  %z = call double @nextafter(double %x, double %y)
+  ret double %z
+}
+
+define weak_odr void @PyErr_SetString(ptr %kind, ptr %text) {
+  ret void
+}
+@PyExc_RuntimeError = weak_odr constant ptr null
+"""
+
+
+def link(texts: Iterable[str]) -> Any:
+    """One module of them all. The same helper in several of them is one."""
+    whole = llvm.parse_assembly("")
+    for text in (*texts, _RUNTIME):
+        part = llvm.parse_assembly(text)
+        for function in part.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.external:
+                function.linkage = "weak_odr"
+        whole.link_in(part)
+    return whole
+
+
+def _text_constant(name: str, content: str) -> str:
+    data = content.encode() + b"\0"
+    codes = "".join(f"\\{byte:02x}" for byte in data)
+    return f'@{name} = constant [{len(data)} x i8] c"{codes}"\n'
+
+
+def optimised(whole: Any, symbols: Mapping[str, str], texts: Mapping[str, str], target: Target) -> tuple[Any, Any]:
+    """The module for a target, of which only `symbols` (new names by LLVM's) and `texts` (constants) are seen from
+    outside; and LLVM's machine of that target."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    machine = llvm.Target.from_triple(target.triple).create_target_machine(
+        cpu=target.cpu, features=target.features, opt=3, reloc="pic", codemodel="default"
+    )
+    module = whole.clone()
+    module.triple, module.data_layout = target.triple, str(machine.target_data)
+    for function in module.functions:
+        if function.name in symbols:
+            function.linkage = "external"
+            function.name = symbols[function.name]
+        elif not function.is_declaration:
+            function.linkage = "internal"
+    for variable in module.global_variables:
+        if not variable.is_declaration:
+            variable.linkage = "internal"
+    module.link_in(llvm.parse_assembly("".join(_text_constant(*pair) for pair in texts.items())))
+    options = llvm.create_pipeline_tuning_options(speed_level=3)
+    options.loop_vectorization = options.slp_vectorization = options.loop_interleaving = True
+    builder = llvm.create_pass_builder(machine, options)
+    # what nobody calls goes first: half of it makes Python objects
+    first = llvm.create_new_module_pass_manager()
+    first.add_global_dead_code_eliminate_pass()
+    first.run(module, builder)
+    builder.getModulePassManager().run(module, builder)
+    module.verify()
+    return module, machine
+
+
+def undefined(module: Any) -> list[str]:
+    """What a module takes from elsewhere, LLVM's own intrinsics left out."""
+    return sorted(f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm."))
+
+
+def manifest_text(entries: Mapping[str, str], forms: Mapping[str, Any]) -> str:
+    """What `compiled/library.py` reads."""
+    return json.dumps({"entries": dict(entries), "forms": dict(forms)}, separators=(",", ":"))

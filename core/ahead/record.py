@@ -1,0 +1,91 @@
+"""LLVM's text of everything that numba compiles, before it optimises or links any of it.
+
+numba makes machine code of each function together with all that it calls, and its code generator changes a module while
+it does so: what can be taken later is neither whole nor as it was. Here no machine code is made at all. This leans on
+numba's internals, of 0.68 (`tests/core/test_ahead.py` looks whether they are still so).
+"""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from numba.core import cgutils
+from numba.core.codegen import JITCodeLibrary
+from numba.core.registry import cpu_target
+from numba.core.runtime import rtsys
+
+from ..compiled.kept import KeptCode
+from ..errors import TlismniError
+
+
+class RecordError(TlismniError):
+    """Something was not recorded."""
+
+
+class RecordedLibrary(JITCodeLibrary):
+    """The functions of one compilation, as text."""
+
+    def __init__(self, codegen: Any, name: str) -> None:
+        super().__init__(codegen, name)
+        self.texts: list[str] = []
+
+    def add_ir_module(self, ir_module: Any) -> None:
+        self.texts.append(cgutils.normalize_ir_text(str(ir_module)))
+
+    def add_linking_library(self, library: Any) -> None:
+        self._linking_libraries.append(library)
+
+    def finalize(self) -> None:
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """None: nothing is run."""
+        return 0
+
+
+@contextmanager
+def recording() -> Iterator[None]:
+    """numba makes text instead of machine code meanwhile. What it has compiled before stays as it is."""
+    context = cpu_target.target_context
+    rtsys.initialize(context)  # its own helpers are machine code
+    codegen = context.codegen()
+    kept = KeptCode.load_overload, KeptCode.save_overload
+    codegen._library_class = RecordedLibrary
+    codegen.set_env = lambda name, environment: None  # would write into the code
+    KeptCode.load_overload = lambda self, sig, target_context: None  # type: ignore[method-assign]
+    KeptCode.save_overload = lambda self, sig, data: None  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        KeptCode.load_overload, KeptCode.save_overload = kept  # type: ignore[method-assign]
+        del codegen._library_class, codegen.set_env
+
+
+def compile_for(function: Any, signature: Any) -> Any:
+    """The compilation of a numba function, without what Python would need to call it."""
+    for options in (function.targetoptions, function._compiler.targetoptions):
+        options.update(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    arguments = tuple(getattr(signature, "args", signature))
+    function.compile(arguments)
+    (made,) = [found for taken, found in function.overloads.items() if taken == arguments]
+    return made
+
+
+def texts_of(compilations: Iterable[Any]) -> list[str]:
+    """The texts of all that these compilations call. Raises RecordError if one of them is machine code already."""
+    found: list[str] = []
+    seen: set[Any] = set()
+
+    def visit(library: Any) -> None:
+        if library in seen or library is rtsys.library:  # in whose place `module.py` has its own
+            return
+        if not isinstance(library, RecordedLibrary):
+            raise RecordError(f"{library!r} was compiled before recording began: record in a new process")
+        seen.add(library)
+        for other in library._linking_libraries:
+            visit(other)
+        found.extend(library.texts)
+
+    for compilation in compilations:
+        visit(compilation.library)
+    return found

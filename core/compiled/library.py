@@ -1,0 +1,111 @@
+"""The library of machine code that was made ahead of time: found, held against the sources, asked for addresses.
+
+`python -m tlismni.core.ahead` makes it. It holds a digest of all sources of the core; with any other digest it is left
+alone, and functions are compiled when they are first used, as where there is no library.
+"""
+
+import ctypes
+import hashlib
+import json
+import logging
+import os
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from .needed import numba_module
+
+logger = logging.getLogger(__name__)
+
+PLACE = "TLISMNI_LIBRARY"
+"""Environment variable: path of a library; "none": without one."""
+SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+USUAL_PLACE = Path(__file__).with_name(f"tlismni_core{SUFFIX}")
+_CORE = Path(__file__).resolve().parents[1]
+
+
+@cache
+def core_digest() -> str:
+    """Digest of every source of the core but those that make the library: constants of any may be in the code."""
+    digest, root = hashlib.sha256(), str(_CORE)
+    for folder, folders, files in os.walk(root):
+        folders[:] = sorted(set(folders) - {"__pycache__", "ahead"})
+        for file in sorted(files):
+            if file.endswith(".py"):
+                with open(os.path.join(folder, file), "rb", buffering=0) as source:
+                    name = os.path.join(folder[len(root) :], file).replace(os.sep, "/")
+                    digest.update(name.encode() + b"\0" + source.read() + b"\0")
+    return digest.hexdigest()[:32]
+
+
+class Library:
+    """A loaded library.
+
+    Attributes
+    ----------
+    entries : symbols by "name signature", the signature as `signatures.py` writes it.
+    forms : of kernels made from formulas: which derivatives there are.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._holding, self._releasing = ctypes.PyDLL(str(path)), ctypes.CDLL(str(path))
+        self.digest = self._text("tlismni_digest")
+        manifest = json.loads(self._text("tlismni_manifest"))
+        self.entries: dict[str, str] = manifest["entries"]
+        self.forms: dict[str, dict[str, Any]] = manifest["forms"]
+        self._signatures: dict[str, list[str]] = {}
+        for entry in self.entries:
+            name, signature = entry.rsplit(" ", 1)
+            self._signatures.setdefault(name, []).append(signature)
+
+    def _text(self, symbol: str) -> str:
+        return ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self._holding, symbol))).decode()
+
+    def signatures(self, name: str) -> list[str]:
+        """Signatures for which there is code of the function `name`."""
+        return self._signatures.get(name, [])
+
+    def address(self, name: str, signature: str) -> int | None:
+        """Machine address of a function; None if it is not in the library."""
+        symbol = self.entries.get(f"{name} {signature}")
+        if symbol is None:
+            return None
+        return ctypes.cast(getattr(self._holding, symbol), ctypes.c_void_p).value
+
+    def function(self, name: str, signature: str, unlocked: bool) -> Any:
+        """A new ctypes function; `unlocked`: other threads of Python run on meanwhile."""
+        symbol = self.entries[f"{name} {signature}"]
+        # by index, which gives a new object at each time: by attribute they would share their argument types
+        return (self._releasing if unlocked else self._holding)[symbol]
+
+
+def _place() -> Path | None:
+    given = os.environ.get(PLACE)
+    if given is None:
+        return USUAL_PLACE if USUAL_PLACE.is_file() else None
+    return None if given.lower() == "none" else Path(given)
+
+
+def _find() -> Library | None:
+    """The library of these sources. Raises OSError if the one that PLACE names cannot be loaded."""
+    path = _place()
+    if path is None:
+        logger.info("no library of machine code: functions are compiled when they are first used")
+        return None
+    found = Library(path)
+    if found.digest == core_digest():
+        return found
+    logger.warning(
+        "the machine code in '%s' is of other sources (%s) than these (%s): functions are compiled when they are first "
+        "used; `python -m tlismni.core.ahead` makes it anew",
+        path, found.digest, core_digest(),
+    )  # fmt: skip
+    return None
+
+
+LIBRARY = _find()
+"""The library of this process; None where functions are compiled when they are first used."""
+if LIBRARY is None:
+    numba_module()  # rather than an error of the first module that imports it, which would not say what to do

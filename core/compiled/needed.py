@@ -1,0 +1,52 @@
+"""numba where it is needed: for what a user writes, and for what is in no library of machine code."""
+
+import sys
+from typing import Any
+
+from ..errors import ModelError
+
+EXTRA = "own"
+"""The extra of the package that brings numba."""
+
+
+class NumbaMissingError(ModelError, ImportError):
+    """Something has to be compiled, and numba is not installed."""
+
+
+def numba_module() -> Any:
+    """The module numba.
+
+    Raises
+    ------
+    NumbaMissingError : where it is not installed; the message says how to have it.
+    """
+    try:
+        import numba
+    except ImportError as error:
+        raise NumbaMissingError(_missing(error)) from error
+    return numba
+
+
+def compiler_module() -> Any:
+    """The module `compiler`, which imports numba. Raises NumbaMissingError."""
+    numba_module()
+    from . import compiler
+
+    return compiler
+
+
+def _missing(error: ImportError) -> str:
+    return (
+        f"this needs a compiler ({error}): own laws, elements and formulas are compiled when they are first used, and "
+        "so is everything where the package has no machine code for this platform: "
+        f'pip install "tlismni[{EXTRA}]"'
+    )
+
+
+def compile_errors() -> tuple[type[Exception], ...]:
+    """What numba raises for what it cannot compile; nothing as long as it is not loaded."""
+    if "numba" not in sys.modules:
+        return ()
+    from numba.core.errors import NumbaError
+
+    return (NumbaError,)

@@ -1,0 +1,257 @@
+"""The library of machine code: made, called, refused, and the same bits as what numba makes in the process."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tlismni.core.ahead.module import TARGETS, undefined
+from tlismni.core.compiled.library import PLACE
+from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
+
+PART = ("tsuji_formula", "position_level", "symbolic", "directions")
+"""Functions that take seconds to make a library of: numbers, a record, arrays."""
+
+
+def run(code: str, library: str | Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """A new process of Python with this library."""
+    return subprocess.run(
+        [sys.executable, "-c", code, *arguments],
+        env={**os.environ, PLACE: str(library), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def answer(done: subprocess.CompletedProcess[str]) -> Any:
+    """What it has printed, as JSON."""
+    assert done.returncode == 0, done.stderr[-3000:]
+    return json.loads(done.stdout)
+
+
+def make(folder: Path, *arguments: str) -> Path:
+    """A library of this machine."""
+    command = [sys.executable, "-m", "tlismni.core.ahead", "--output", str(folder), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-3000:]
+    (made,) = folder.rglob("tlismni_core.*")
+    return made
+
+
+@pytest.fixture(scope="session")
+def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A library of a few functions."""
+    only = [word for name in PART for word in ("--only", name)]
+    return make(tmp_path_factory.mktemp("part"), *only)
+
+
+def test_types_as_texts() -> None:
+    from numba import types
+
+    vector = types.Array(types.float64, 1, "C")
+    signature = types.UniTuple(types.float64, 2)(types.int64, vector, types.boolean)
+    text = signature_text(signature.return_type, signature.args)
+    assert text == "(dd)(qAd1?)"
+    assert split_signature(text) == ("(dd)", ["q", "Ad1", "?"])
+    assert split_types("R(d(qq))AI2v") == ["R", "(d(qq))", "AI2", "v"]
+    with pytest.raises(TypeError, match="no place"):
+        signature_text(types.complex128, ())
+
+
+def test_plain_types_have_the_texts_of_numbas() -> None:
+    import numba
+    import numpy as np
+    from tlismni.core.compiled import plain_types as plain
+    from tlismni.core.compiled.signatures import type_text
+
+    record = np.dtype([("n", np.int64), ("x", np.int64)])
+    of_numba, of_ours = numba.types, plain
+    for kinds, make_record in ((of_numba, numba.from_dtype), (of_ours, plain.from_dtype)):
+        made = [kinds.float64, kinds.int64, kinds.uint32, kinds.boolean, kinds.void]
+        made += [kinds.Array(kinds.float64, 2, "C"), kinds.UniTuple(kinds.float64, 3), make_record(record)]
+        assert [type_text(kind) for kind in made] == ["d", "q", "I", "?", "v", "Ad2", "(ddd)", "R"]
+    signature = plain.void(plain.int64, plain.Array(plain.float64, 1, "C"))
+    assert signature.for_numba() == numba.types.void(numba.types.int64, numba.types.float64[::1])
+
+
+CALLS = """
+import json, sys
+import numpy as np
+from tlismni.core.contact.directions import farthest_directions
+from tlismni.core.contact.laws.viscoelastic import tsuji_formula
+from tlismni.core.linalg.symbolic import fill_pattern, operation_list
+
+force = tsuji_formula(0.003, -0.7, 1.1, 2e5, 30.0, 1.5, 0.0)
+row, col = np.array([0, 2, 1, 2, 0, 1, 3, 3]), np.array([0, 0, 1, 1, 2, 2, 3, 0])
+l, u = fill_pattern(4, row, col)
+steps = operation_list(4, l, u)
+matrix = np.array([[4.0, 1.0, 0.5], [1.0, 3.0, 0.2], [0.5, 0.2, 1e-9]])
+kept, work = np.zeros(3, np.int64), np.zeros(64)
+found = farthest_directions(matrix, np.arange(3), kept, work)
+print(json.dumps([[x.hex() for x in force], l.row.tolist(), u.row.tolist(), steps.steps.tolist(), found, kept.tolist(),
+                  "numba" in sys.modules]))
+"""
+
+
+def test_the_same_bits_as_compiled_in_the_process(part: Path) -> None:
+    *ahead, loaded = answer(run(CALLS, part))
+    *here, needed = answer(run(CALLS, "none"))
+    assert ahead == here
+    assert (loaded, needed) == (False, True)
+
+
+def test_other_arguments_are_compiled_in_the_process(part: Path) -> None:
+    code = """
+import json, sys
+import numpy as np
+from tlismni.core.contact.directions import farthest_directions
+matrix = np.array([[4.0, 1.0], [1.0, 3.0]])
+kept, work = np.zeros(2, np.int64), np.zeros(64)
+print(json.dumps([farthest_directions(np.asfortranarray(matrix), np.arange(2), kept, work), "numba" in sys.modules]))
+"""
+    found, loaded = answer(run(code, part))
+    assert found == 2 and loaded
+
+
+def test_own_code_next_to_the_library(part: Path) -> None:
+    """A user's kernel calls our helpers, which numba then compiles with it from their sources."""
+    code = """
+import json
+import numpy as np, numba
+from tlismni.core.compiled.jit import address_of, compiled, internal
+from tlismni.core.compiled.kernels import KERNEL_SIGNATURE, kernel_address
+from tlismni.core.compiled.views import vec
+from tlismni.core.methods.history import restart
+
+@internal
+def own_kernel(job, t, b):
+    vec(b.r, b.n_extended)[0] += t
+
+@numba.njit
+def twice(address):
+    return 2.0 * vec(address, 1)[0]
+
+x = np.array([1.5])
+print(json.dumps([kernel_address(own_kernel) != 0, twice(x.ctypes.data)]))
+"""
+    assert answer(run(code, part)) == [True, 3.0]
+
+
+def test_without_numba_the_error_names_the_extra(part: Path) -> None:
+    code = """
+import sys
+sys.modules["numba"] = None
+import tlismni.core
+from tlismni.core.compiled.jit import internal
+from tlismni.core.compiled.kernels import kernel_address
+from tlismni.core import ModelError
+
+@internal
+def own_kernel(job, t, b):
+    pass
+
+try:
+    kernel_address(own_kernel)
+except ModelError as error:
+    print(repr(str(error)))
+"""
+    done = run(code, part)
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert "tlismni[own]" in done.stdout
+    nothing = run("import sys; sys.modules['numba'] = None; import tlismni.core", "none")
+    assert nothing.returncode != 0 and "tlismni[own]" in nothing.stderr
+
+
+def test_what_compiled_code_raises_reaches_python(part: Path) -> None:
+    code = """
+import pickle, ctypes, json
+from tlismni.core.compiled import crossing
+text = pickle.dumps((ValueError, ("no such row",), None))
+raised = crossing._Raised(ctypes.cast(ctypes.c_char_p(text), ctypes.c_void_p).value, len(text), None, None, 0)
+place = ctypes.c_void_p(ctypes.addressof(raised))
+try:
+    crossing.raise_from(1, place)
+except ValueError as error:
+    print(json.dumps(str(error)))
+"""
+    assert answer(run(code, part)) == "no such row"
+
+
+def test_a_library_of_other_sources_is_left_alone(part: Path, tmp_path: Path) -> None:
+    content = part.read_bytes()
+    digest = answer(
+        run("import json; from tlismni.core.compiled.library import core_digest as d; print(json.dumps(d()))", "none")
+    )
+    assert content.count(digest.encode()) == 1
+    stale = tmp_path / part.name
+    stale.write_bytes(content.replace(digest.encode(), digest[::-1].encode()))
+    code = "import logging; logging.basicConfig(); from tlismni.core.compiled.library import LIBRARY; print(LIBRARY)"
+    done = run(code, stale)
+    assert done.stdout.strip() == "None" and "of other sources" in done.stderr and digest in done.stderr
+
+
+def test_every_target_is_known_to_llvm() -> None:
+    import llvmlite.binding as llvm
+
+    llvm.initialize_all_targets()
+    for target in TARGETS.values():
+        assert llvm.Target.from_triple(target.triple).name
+    module = llvm.parse_assembly("declare double @sin(double)\ndeclare double @llvm.fabs.f64(double)")
+    assert undefined(module) == ["sin"]
+
+
+SCENARIOS = """
+import hashlib, json, sys
+import numpy as np
+from tlismni.core import simulate
+from tlismni.core.methods.registry import METHODS
+from tlismni.models import load, names
+
+found = {}
+for name in names():
+    scenario = load(name)
+    for method in METHODS if name in ("pendulum_stop", "slider_crank_stop", "chain") else (scenario.method,):
+        options = scenario.options if method == scenario.method else {}
+        end = min(scenario.t_end, 0.5)
+        try:
+            result = simulate(scenario.model, end, method, scenario.rtol, scenario.atol, **options)
+        except Exception as error:
+            found[f"{name} {method}"] = f"{type(error).__name__}: {error}"
+            continue
+        digest = hashlib.sha256()
+        for numbers in (result.t, result.q, result.v, result.a, result.multipliers):
+            digest.update(np.ascontiguousarray(numbers).tobytes())
+        digest.update(repr([(e.t.hex(), e.kind, e.contact, e.impulse) for e in result.events]).encode())
+        found[f"{name} {method}"] = digest.hexdigest()
+print(json.dumps([found, "numba" in sys.modules]))
+"""
+
+
+@pytest.fixture(scope="session")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The whole library."""
+    return make(tmp_path_factory.mktemp("whole"))
+
+
+@pytest.mark.full
+def test_scenarios_give_the_same_bits_and_need_no_numba(whole: Path) -> None:
+    ahead, loaded = answer(run(SCENARIOS, whole))
+    here, _ = answer(run(SCENARIOS, "none"))
+    assert {name for name in ahead if ahead[name] != here[name]} == set()
+    assert len(ahead) > 40
+    assert not loaded
+
+
+@pytest.mark.full
+@pytest.mark.skipif(sys.platform != "linux", reason="reads symbols as binutils write them")
+def test_the_library_takes_nothing_but_numbers_and_memory_from_elsewhere(whole: Path) -> None:
+    from tlismni.core.ahead.make import ALLOWED
+
+    listed = subprocess.run(["nm", "-D", "--undefined-only", str(whole)], capture_output=True, text=True, check=True)
+    strong = {line.split()[1].split("@")[0] for line in listed.stdout.splitlines() if line.split()[0] == "U"}
+    assert strong <= ALLOWED | {"sincos"}
+    assert whole.stat().st_size < 1_500_000
