@@ -254,7 +254,7 @@ class Result:
         return export(self, path, channels)
 
     def start_at(self, t: float | None = None) -> dict[str, float]:
-        """Coordinates and rates at a recorded time (the last one if left out), for `simulate(..., start=...)`."""
+        """Coordinates and rates at a recorded time (left out: the last), for `simulate(..., start_values=...)`."""
         from .results.going_on import start_at
 
         return start_at(self, t)

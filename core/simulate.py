@@ -32,7 +32,7 @@ def simulate(
     t0: float = 0.0,
     record: bool | int = True,
     progress: Callable[[float], None] | None = None,
-    start: Mapping[str, float] | None = None,
+    start_values: Mapping[str, float] | None = None,
     **options: Any,
 ) -> Result:
     """Integrate a `Model` or `EquationSystem` from t0 to t_end.
@@ -50,8 +50,8 @@ def simulate(
     record : False records only start and end (for timing); a number k records every k-th step, what happens at
         contacts, and the end: for models so large that all steps would fill the memory.
     progress : called with the time reached, now and then.
-    start : coordinates and rates at the start by the names of their channels ("ball.y", "ball.vy"), in place of those
-        of the model; `Result.start_at` gives those of another run, to go on from there.
+    start_values : coordinates and rates at the start by the names of their channels ("ball.y", "ball.vy"), in place of
+        those of the model; `Result.start_at` gives those of another run, to go on from there.
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
         `outer`, `acceleration`, `depth`, `fallback`, `controller`, `newton_tolerance`, `start_tolerance`,
@@ -74,10 +74,10 @@ def simulate(
         )
     times = None if t_eval is None else check_times(t_eval, t0, t_end)
     settings = {"step": step, "t0": t0, "record": _check_stride(record) if times is None else 0, **options}
-    if start is None:
+    if start_values is None:
         sim = Simulation(system, method, rtol, atol, **settings)
     else:
-        sim = compile_model(system, method, rtol, atol, **settings).simulation(start=start)
+        sim = compile_model(system, method, rtol, atol, **settings).simulation(start=start_values)
     sim.progress = progress
     watch = RunWatch()
     rows = []

@@ -93,7 +93,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
 def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     """Functions that Python calls, with the types of their arguments."""
     yield drive.drive, (_DR, _FLAG)
-    for function in (drive.aim_now, drive.settle_pending, drive.unsettled_now, drive.open_now):
+    for function in (drive.aim_now, drive.wake_now, drive.settle_pending, drive.unsettled_now, drive.open_now):
         yield function, (_DR,)
     yield exchange.exchange, (types.from_dtype(exchange.EXCHANGE),)
     yield dense_output.interpolate, (_WS, _MS, _REAL)

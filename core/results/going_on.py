@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..result import Result
 
 Floats = NDArray[np.float64]
-REMEDY = "go on with simulate(model, t_end, t0=result.t[-1], start=result.start_at())"
+REMEDY = "go on with simulate(model, t_end, t0=result.t[-1], start_values=result.start_at())"
 RIGID = 1e-9
 """How near velocities must be to those of a rigid motion, relative, to count as one."""
 
@@ -51,7 +51,7 @@ def row_at(result: "Result", t: float | None) -> int:
 
 
 def start_at(result: "Result", t: float | None = None) -> dict[str, float]:
-    """Coordinates and rates at a recorded time by the names of their channels, for `simulate(..., start=...)`."""
+    """Coordinates and rates at a recorded time by the names of channels, for `simulate(..., start_values=...)`."""
     row, layout = row_at(result, t), result.layout
     every = np.arange(result.samples.shape[1])
     states = {int(column) for part in ("q", "v") for column in every[layout[part]]}

@@ -36,19 +36,13 @@ def billiard(law, friction):
     rod = RigidBody2D(name="rod", mass=1.0, inertia=0.05, position=(0.0, 1.4), velocity=(0.0, -0.5), angular_velocity=1)
     rims = [Disk2D(marker=Marker2D(body=disk.name, point=(0.01, 0.0)), radius=RADIUS) for disk in disks]
     shape = Segment2D(marker=Marker2D(body="rod", point=(-0.4, 0.0)), length=0.8, radius=0.02)
-    contacts = [
-        DiskOnDisk2D(name=f"pair{i}{j}", a=rims[i], b=rims[j], law=law, friction=friction)
-        for i in range(4)
-        for j in range(i)
-    ]
+    how = {"law": law, "friction": friction}
+    floor, plane = HalfPlane2D(marker=Marker2D(point=(0.0, -1.5))), HalfPlane2D(marker=Marker2D(body="paddle"))
+    contacts = [DiskOnDisk2D(name=f"pair{i}{j}", a=rims[i], b=rims[j], **how) for i in range(4) for j in range(i)]
     for k, rim in enumerate(rims):
-        contacts.append(DiskOnHalfPlane2D(
-            name=f"floor{k}", plane=HalfPlane2D(marker=Marker2D(point=(0.0, -1.5))), disk=rim, law=law, friction=friction
-        ))  # fmt: skip
-        contacts.append(DiskOnHalfPlane2D(
-            name=f"paddle{k}", plane=HalfPlane2D(marker=Marker2D(body="paddle")), disk=rim, law=law, friction=friction
-        ))  # fmt: skip
-        contacts.append(DiskOnSegment2D(name=f"rod{k}", segment=shape, disk=rim, law=law, friction=friction))
+        contacts.append(DiskOnHalfPlane2D(name=f"floor{k}", plane=floor, disk=rim, **how))
+        contacts.append(DiskOnHalfPlane2D(name=f"paddle{k}", plane=plane, disk=rim, **how))
+        contacts.append(DiskOnSegment2D(name=f"rod{k}", segment=shape, disk=rim, **how))
     return Model(gravity=(0.0, -9.81), bodies=[*disks, paddle, rod], contacts=contacts)
 
 

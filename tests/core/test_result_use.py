@@ -83,7 +83,7 @@ def test_a_run_goes_on_from_where_another_ended(swing: Result) -> None:
     model = half.model_at()
     assert model.bodies[0].angle == half["pendulum.angle"][-1]
     by_model = simulate(model, 2.5, t0=1.2, **TIGHT)
-    by_values = simulate(swing.system, 2.5, t0=1.2, start=half.start_at(), **TIGHT)
+    by_values = simulate(swing.system, 2.5, t0=1.2, start_values=half.start_at(), **TIGHT)
     for rest in (by_model, by_values):
         assert rest.t[0] == 1.2 and len(rest.events) == 2
         assert rest.q[-1] == pytest.approx(swing.q[-1], abs=1e-8)
@@ -116,9 +116,9 @@ def test_a_resting_body_stays_at_rest() -> None:
 def test_what_a_record_cannot_say_is_refused_with_a_way_out() -> None:
     cable = load("cable_pendulum")
     result = simulate(cable.model, 0.05, cable.method, cable.rtol, cable.atol, **cable.options)
-    with pytest.raises(ModelError, match=r"cable .* swings.*start=result\.start_at"):
+    with pytest.raises(ModelError, match=r"cable .* swings.*start_values=result\.start_at"):
         result.model_at()
-    rest = simulate(cable.model, 0.06, "irk", t0=0.05, start=result.start_at())
+    rest = simulate(cable.model, 0.06, "irk", t0=0.05, start_values=result.start_at())
     assert rest.q[0] == pytest.approx(result.q[-1], abs=1e-9)
     rod = load("rod_wall")
     with pytest.raises(ModelError, match="moves in waves"):
@@ -148,7 +148,7 @@ def test_rods_and_cables_that_fly_as_they_are_can_be_told() -> None:
 
 def test_start_values_of_unknown_names_are_refused(swing: Result) -> None:
     with pytest.raises(ModelError, match=r"no start value 'pendulum\.angel'"):
-        simulate(swing.system, 1.0, start={"pendulum.angel": 1.0})
+        simulate(swing.system, 1.0, start_values={"pendulum.angel": 1.0})
 
 
 def test_a_result_of_no_length_can_be_asked() -> None:
@@ -162,6 +162,6 @@ def test_a_result_of_no_length_can_be_asked() -> None:
 def test_start_values_keep_the_scales_of_the_model_where_it_is_a_point_at_the_origin_now() -> None:
     model = load("bouncing_ball").model
     result = simulate(model, 5.0)
-    again = simulate(model, 6.0, t0=5.0, start=result.start_at())
+    again = simulate(model, 6.0, t0=5.0, start_values=result.start_at())
     assert np.abs(again["ball.y"]).max() < 1e-12
     assert again["floor.normal_force"][-1] == pytest.approx(9.81 * model.bodies[0].mass)
