@@ -91,6 +91,7 @@ class Factorization:
         self.built: dict[bytes, Analysis] = {}
         self.known = Known(self.built)
         self._latest: Analysis | None = None
+        self._perm_c: Ints = _NO_PIVOTS  # until the columns are ordered
         self._set(
             n=self.n,
             nnz=len(self.rows),
