@@ -52,7 +52,7 @@ def mechanism(model: Model) -> Mechanism:
         if not isinstance(body, RigidBody2D):
             raise ValueError(f"body '{body.name}' is a {type(body).__name__}; only RigidBody2D is provided for")
         mass += [body.mass, body.mass, body.inertia]
-    gravity = np.tile([*model.gravity, 0.0], len(model.bodies))
+    gravity = np.tile([*model.gravity[:2], 0.0], len(model.bodies))
     start = [body.initial_state() for body in model.bodies]
     pins, held, bushings = [], [], []
     for element in (*model.joints, *model.forces):

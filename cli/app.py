@@ -2,7 +2,26 @@
 
 import typer
 
-from .commands import cosim, crosscheck, export, info, lyapunov, methods, play, run, show, study, warm
+from .commands import (
+    cache,
+    check,
+    cosim,
+    crosscheck,
+    equilibrium,
+    export,
+    info,
+    linearise,
+    lyapunov,
+    methods,
+    modes,
+    play,
+    run,
+    sensitivities,
+    show,
+    study,
+    sweep,
+    warm,
+)
 from .commands import list as list_command
 
 app = typer.Typer(
@@ -47,7 +66,14 @@ app.command("play", epilog=play.EXAMPLES)(play.play)
 app.command("export", epilog=export.EXAMPLES)(export.export)
 app.command("info", epilog=info.EXAMPLES)(info.info)
 app.command("warm", epilog=warm.EXAMPLES)(warm.warm)
+app.command("cache", epilog=cache.EXAMPLES)(cache.cache)
 app.command("cosim", epilog=cosim.EXAMPLES)(cosim.cosim)
 app.command("crosscheck", epilog=crosscheck.EXAMPLES)(crosscheck.crosscheck)
+app.command("check", epilog=check.EXAMPLES)(check.check)
+app.command("equilibrium", epilog=equilibrium.EXAMPLES)(equilibrium.equilibrium)
+app.command("modes", epilog=modes.EXAMPLES)(modes.modes)
+app.command("linearise", epilog=linearise.EXAMPLES)(linearise.linearise)
+app.command("sensitivities", epilog=sensitivities.EXAMPLES)(sensitivities.sensitivities)
+app.command("sweep", epilog=sweep.EXAMPLES)(sweep.sweep)
 app.command("lyapunov", epilog=lyapunov.EXAMPLES)(lyapunov.lyapunov)
 app.add_typer(study.app, name="study")

@@ -8,7 +8,12 @@ from typing import Any, TypeVar
 
 import typer
 
-EXTRAS = {"fmpy": "fmu", "lxml": "fmu", "exudyn": "validation", "jinja2": "validation", "matplotlib": "plot"}
+EXTRAS = {
+    "fmpy": "fmu", "lxml": "fmu", "exudyn": "validation", "jinja2": "validation", "plotly": "validation",
+    "matplotlib": "plot", "pandas": "data", "pyarrow": "data", "xarray": "data", "h5netcdf": "data", "h5py": "data",
+    "PIL": "film", "imageio_ffmpeg": "film", "dask": "sweep", "distributed": "sweep", "ziglang": "cross",
+    "numba": "own",
+}  # fmt: skip
 """Which extra of the package brings a module."""
 
 Command = TypeVar("Command", bound=Callable[..., None])

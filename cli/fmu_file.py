@@ -67,6 +67,7 @@ def read_fmu(fmu: Path) -> dict[str, Any]:
         "icon": bool({"model.png", "terminalsAndIcons/icon.png"} & set(names)),
         "documentation": "documentation/index.html" in names,
         "python": {key: python[key] for key in ("version", "prefix", "tlismni") if key in python},
+        "native": "resources/model.image" in names,
         "bundle": python.get("bundle"),
         "requires": [f"{name}>={least}" for name, least in python.get("requires", [])],
         "solver": {k: v for k, v in settings.get("solver", {}).items() if v is not None},

@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from . import completion
+
 
 def positive(value: float | None) -> float | None:
     """Refuse what is not a positive finite number (a wrong usage, exit code 2)."""
@@ -65,7 +67,12 @@ ANIMATION_KINDS = (".html", ".gif", ".mp4")
 _SOLVER, _OUTPUT = "Solver", "Output"
 
 Source = Annotated[
-    str, typer.Argument(metavar="SCENARIO_OR_MODEL", help="Name of a scenario (see `tlismni list`), or a model file.")
+    str,
+    typer.Argument(
+        metavar="SCENARIO_OR_MODEL",
+        help="Name of a scenario (see `tlismni list`), or a model file.",
+        autocompletion=completion.sources,
+    ),
 ]
 Set = Annotated[
     list[str] | None,
@@ -77,7 +84,13 @@ EndTime = Annotated[
 ]
 MethodName = Annotated[
     str | None,
-    typer.Option("--method", "-m", help="Integration method (see `tlismni methods`).", rich_help_panel=_SOLVER),
+    typer.Option(
+        "--method",
+        "-m",
+        help="Integration method (see `tlismni methods`).",
+        rich_help_panel=_SOLVER,
+        autocompletion=completion.methods,
+    ),
 ]
 Rtol = Annotated[
     float | None, typer.Option("--rtol", callback=positive, help="Relative tolerance.", rich_help_panel=_SOLVER)
@@ -119,6 +132,10 @@ FmuFile = Annotated[Path, typer.Option("--output", "-o", help="The FMU to write,
 Bundle = Annotated[
     bool,
     typer.Option("--bundle", help="Carry tlismni along; the machine then needs only numpy, scipy, numba, pydantic."),
+]
+Native = Annotated[
+    bool,
+    typer.Option("--native", help="An FMU that needs no Python where it runs; not every model can be one."),
 ]
 Arrays = Annotated[
     bool, typer.Option("--arrays", help="FMI 3: describe vectors as arrays too; not every master reads such FMUs.")
@@ -163,6 +180,24 @@ Every = Annotated[
         rich_help_panel=_OUTPUT,
     ),
 ]  # fmt: skip
+InputValues = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--input",
+        metavar="FILE.csv|NAME=VALUE",
+        help="Inputs: a CSV file with a column `time` and one for each input, or a number; may be repeated.",
+    ),
+]
+Hold = Annotated[bool, typer.Option("--hold", help="Inputs of a file keep their values until the next, without slope.")]
+ChannelNames = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--channel",
+        metavar="NAME[,NAME]",
+        help="Channels of tables and plots; may be repeated. All if none.",
+        rich_help_panel=_OUTPUT,
+    ),
+]
 ResultFile = Annotated[
     Path | None,
     typer.Option(

@@ -21,10 +21,10 @@ def units_of(result: Result) -> dict[str, str]:
     return {channel.name: channel.unit for channel in result.channel_records}
 
 
-def plot_result(result: Result, scenario: Scenario, path: Path) -> Path:
-    """The channels that the scenario looks at, the energies, and the residuals at three levels."""
+def plot_result(result: Result, scenario: Scenario, path: Path, channels: list[str] | None = None) -> Path:
+    """The `channels`, or those that the scenario looks at, the energies, and the residuals at three levels."""
     units = units_of(result)
-    names = [name for name in scenario.compare if name in units] or list(result.channels[:4])
+    names = channels or [name for name in scenario.compare if name in units] or list(result.channels[:4])
     figure, axes = panels(len(names) + 2)
     for axis, name in zip(axes, names, strict=False):
         axis.plot(*curve(result, name), lw=1.0)

@@ -15,10 +15,13 @@ from .errors import Failure
 from .screen import plain
 
 
-def write_result(result: Any, path: Path) -> Path:
-    """Write a result, or what has columns and events as a result has; the kind of file follows from the suffix."""
+def write_result(result: Any, path: Path, channels: list[str] | None = None) -> Path:
+    """Write a result, or what has columns and events as a result has; the kind of file follows from the suffix.
+
+    channels : of a table; None: all.
+    """
     if path.suffix.lower() != ".npz":
-        return replace_whole(path, lambda name: export(result, name))
+        return replace_whole(path, lambda name: export(result, name, channels))
     if isinstance(result, Result):
         return replace_whole(path, result.save)
     # the events as JSON text: an archive without pickled objects opens everywhere

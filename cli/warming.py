@@ -46,6 +46,8 @@ def warm_fmu(path: Path) -> Warmed:
             with zipfile.ZipFile(path) as archive:
                 archive.extractall(folder)
             resources = Path(folder, "resources")
+            if (resources / "model.image").is_file():
+                raise Failure(f"'{path}' has nothing to compile: it carries its machine code, and runs without Python")
             python = json.loads((resources / "python.json").read_text(encoding="utf-8"))
             settings = json.loads((resources / "settings.json").read_text(encoding="utf-8"))
         except (zipfile.BadZipFile, OSError, ValueError) as error:

@@ -10,13 +10,13 @@ from typing import Any, Literal
 from pydantic import ConfigDict, model_validator
 
 from .contact import Contact
-from .elements import Body, BodyElement, Element, Force, Joint, PlanarFrame, PointMass2D
+from .elements import Body, BodyElement, Element, Force, Joint
 from .errors import ModelError
-from .model.base import Record, Vector2
+from .model.base import Gravity, Record
 from .model.channels import Input, Parameter
-from .model.markers import GROUND, Marker2D
+from .model.markers import GROUND, Marker
 from .model.open_union import meaning
-from .model.outputs import MarkerOutput2D
+from .model.outputs import MarkerOutput
 from .model.own_types import find_classes, import_paths, own_classes
 from .model.signals import InputSignal
 
@@ -45,14 +45,14 @@ class Model(Record):
     format: Literal["tlismni-model-1"] = "tlismni-model-1"
     name: str = "model"
     description: str = ""
-    gravity: Vector2 = (0.0, -9.81)
-    """m/s^2."""
+    gravity: Gravity = (0.0, -9.81, 0.0)
+    """m/s^2; of two components, the third is zero."""
     bodies: tuple[Body, ...] = ()
     joints: tuple[Joint, ...] = ()
     forces: tuple[Force, ...] = ()
     contacts: tuple[Contact, ...] = ()
     inputs: tuple[Input, ...] = ()
-    outputs: tuple[MarkerOutput2D, ...] = ()
+    outputs: tuple[MarkerOutput, ...] = ()
     """Markers whose motion is shown beside what bodies, joints and contacts show by themselves."""
     parameters: tuple[Parameter, ...] = ()
 
@@ -100,20 +100,10 @@ class Model(Record):
         return value
 
     @classmethod
-    def _check_marker(cls, user: str, marker: Marker2D, bodies: Mapping[str, BodyElement]) -> None:
+    def _check_marker(cls, user: str, marker: Marker, bodies: Mapping[str, BodyElement]) -> None:
         body = cls._find(user, marker.body, bodies)
-        if body is not None and not isinstance(body, PlanarFrame):
-            raise ValueError(
-                f"'{user}' needs a point of '{body.name}', but a {type(body).__name__} has only its "
-                f"coordinates {list(body.coordinate_names[:12])}: act on one of these by name "
-                "(CoordinateDriver, CoordinateLoad), on a MaterialPoint2D of a flexible body, or use a "
-                "RigidBody2D"
-            )
-        if isinstance(body, PointMass2D) and marker.point != (0.0, 0.0):
-            raise ValueError(
-                f"'{user}' has a marker at {marker.point} of point mass '{marker.body}', "
-                "which has no extension: use (0, 0), or a RigidBody2D"
-            )
+        if body is not None:
+            body.check_marker(user, marker)
 
     @staticmethod
     def _find(user: str, name: str, bodies: Mapping[str, BodyElement]) -> BodyElement | None:
@@ -161,6 +151,11 @@ class Model(Record):
         for parameter in self.parameters:
             if parameter.name == name:
                 return parameter
+        if name in {record.name for record in self.inputs}:
+            raise ModelError(
+                f"'{name}' is an input of model '{self.name}', not a parameter: give it in `inputs` of simulate, or "
+                f"--input {name}=VALUE"
+            )
         raise ModelError(f"model '{self.name}' has no parameter '{name}'; it has {[p.name for p in self.parameters]}")
 
     def _place(self, target: str) -> Parameter:
@@ -257,6 +252,6 @@ class Model(Record):
 
     def coordinate_channels(self, assembly: Any, layout: Any) -> Any:
         """Channels of the bodies' coordinates."""
-        from .integrate.output import body_coordinate_channels
+        from .system.sample_layout import body_coordinate_channels
 
         return body_coordinate_channels(assembly, layout)

@@ -18,7 +18,7 @@ class Runs:
     values : (runs, times, channels), NaN where a run did not get; without `t_eval` there is one time, the end.
     reached : (runs,) time that each run reached, s.
     events, steps : (runs,) number of contact events, of steps.
-    failures : what went wrong, an exception for each row that failed.
+    failures : what went wrong, an exception for each row that failed, in the order of the rows.
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class Runs:
         self.values = np.full((count, 1 if t is None else len(t), len(channels)), np.nan)
         self.reached = np.full(count, np.nan)
         self.events, self.steps = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
-        self.failures: dict[int, Exception] = {}
+        self._failures: dict[int, Exception] = {}
 
     def put(self, row: int, k: int, values: NDArray[np.float64]) -> None:
         """Channels of one run at its k-th time."""
@@ -44,7 +44,12 @@ class Runs:
         if sim is not None:
             self.events[row], self.steps[row] = len(sim.events), sim.stats["steps"]
         if error is not None:
-            self.failures[row] = error.with_traceback(None)  # which would keep the run's memory
+            self._failures[row] = error.with_traceback(None)  # which would keep the run's memory
+
+    @property
+    def failures(self) -> dict[int, Exception]:
+        """What went wrong, by row, in the order of the rows: threads end in any order."""
+        return dict(sorted(self._failures.items()))
 
     def __len__(self) -> int:
         return len(self.reached)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from .compiled.watch import RunWatch
 from .compiled_model import compile_model
+from .courses import Courses, Given, courses
 from .errors import ModelError, SimulationError, TlismniError
 from .integrate.simulation import Simulation
 from .result import Result
@@ -33,6 +34,7 @@ def simulate(
     record: bool | int = True,
     progress: Callable[[float], None] | None = None,
     start_values: Mapping[str, float] | None = None,
+    inputs: Given | Courses | None = None,
     **options: Any,
 ) -> Result:
     """Integrate a `Model` or `EquationSystem` from t0 to t_end.
@@ -52,6 +54,8 @@ def simulate(
     progress : called with the time reached, now and then.
     start_values : coordinates and rates at the start by the names of their channels ("ball.y", "ball.vy"), in place of
         those of the model; `Result.start_at` gives those of another run, to go on from there.
+    inputs : for names of inputs the number that they keep, or (times, values) with straight lines between, or
+        `Courses`; left out: their start values.
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
         `outer`, `acceleration`, `depth`, `fallback`, `controller`, `newton_tolerance`, `start_tolerance`,
@@ -60,7 +64,8 @@ def simulate(
 
     Returns
     -------
-    Result. A failed run raises SimulationError, which carries the partial result as `.partial`.
+    Result. A failed run raises SimulationError, which carries the partial result as `.partial`; so does the
+    KeyboardInterrupt of Ctrl-C.
 
     Raises
     ------
@@ -79,26 +84,39 @@ def simulate(
     else:
         sim = compile_model(system, method, rtol, atol, **settings).simulation(start=start_values)
     sim.progress = progress
+    course = None if inputs is None else courses(inputs)
     watch = RunWatch()
     rows = []
+
+    def run_to(until: float) -> None:
+        if course is None:
+            sim.run_to(t_end, until=until)
+        else:
+            course.run_to(sim, t_end, until)
+
     try:
+        if course is not None:
+            course.begin(sim)
         if times is None:
             if not record:
                 rows.append(sim.sample())
-            sim.run_to(t_end)
+            run_to(t_end)
             if not record:
                 rows.append(sim.sample())
             elif record > 1:
                 sim.record_end()
         else:
             for t in times:
-                sim.run_to(t_end, until=float(t))
+                run_to(float(t))
                 rows.append(sim.sample())
                 sim.report_progress(float(t))
-            sim.run_to(t_end)
+            run_to(t_end)
     except TlismniError as error:
         if isinstance(error, SimulationError):
             error.partial = _result(sim, rows, watch.stop())
+        raise
+    except KeyboardInterrupt as stop:
+        stop.partial = _result(sim, rows, watch.stop())  # type: ignore[attr-defined]
         raise
     finally:
         watch.stop()

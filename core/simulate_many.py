@@ -1,17 +1,14 @@
 """simulate_many: many runs of one model on threads, results as one table."""
 
-import os
-import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from threading import Event as Flag
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .batch import in_threads, run_into
 from .compiled_model import CompiledModel, compile_model
-from .errors import ModelError, SimulationError
+from .errors import ModelError
 from .runs import Runs
 from .simulate import check_end, check_times
 
@@ -76,45 +73,14 @@ def simulate_many(
     variants = _checked(compiled, table)
     found = Runs(table.columns, wanted, table.count, None if times is None else times)
     place = [compiled.channels.index(name) for name in wanted]
-    stopped = Flag()
 
-    def work(rows: range) -> int:
-        for row in rows:
-            if stopped.is_set():
-                break
-            system = variants[row] if variants else _variant(compiled, table, row)
-            _run(compiled, system, table.row("start", row), float(t_end), times, place, found, row)
-        return len(rows)
+    def one(row: int) -> None:
+        system = variants[row] if variants else _variant(compiled, table, row)
+        start = table.row("start", row)
+        run_into(found, row, place, lambda: compiled.run_of(system, start), compiled.t0, float(t_end), times)
 
-    _in_threads(work, table.count, threads, progress, stopped)
+    in_threads(one, table.count, threads, progress)
     return found
-
-
-def _run(
-    compiled: CompiledModel,
-    system: Any,
-    start: dict[str, float],
-    t_end: float,
-    times: NDArray[np.float64] | None,
-    place: list[int],
-    found: Runs,
-    row: int,
-) -> None:
-    """One run, into its row."""
-    sim = None
-    try:
-        sim = compiled.run_of(system, start)
-        for k, t in enumerate(() if times is None else times.tolist()):
-            sim.run_to(t_end, until=t)
-            found.put(row, k, sim.values()[place])
-        sim.run_to(t_end)
-        if times is None:
-            found.put(row, 0, sim.values()[place])
-    except Exception as error:  # of own functions too: the other runs go on
-        reached = error.t if isinstance(error, SimulationError) else compiled.t0
-        found.close(row, reached, sim, error)
-    else:
-        found.close(row, t_end, sim, None)
 
 
 class _Rows:
@@ -204,35 +170,3 @@ def _checked(compiled: CompiledModel, table: _Rows) -> list[Any]:
         if kept is not None:
             kept.append(system)
     return kept or []
-
-
-def _processors() -> int:
-    """How many this process may use."""
-    if sys.platform == "linux":
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def _in_threads(
-    work: Callable[[range], int],
-    count: int,
-    threads: int | None,
-    progress: Callable[[int], None] | None,
-    stopped: Flag,
-) -> None:
-    """`work` on all rows in small parts, as threads become free."""
-    most = _processors() if threads is None else threads
-    if isinstance(most, bool) or not isinstance(most, int) or most < 1:
-        raise ModelError(f"threads must be a whole number of at least 1, not {threads!r}")
-    size = max(1, min(64, count // (4 * most)))
-    parts: Sequence[range] = [range(k, min(k + size, count)) for k in range(0, count, size)]
-    done = 0
-    with ThreadPoolExecutor(most, "simulate_many") as pool:
-        try:
-            for finished in pool.map(work, parts):
-                done += finished
-                if progress is not None:
-                    progress(done)
-        except BaseException:
-            stopped.set()
-            raise

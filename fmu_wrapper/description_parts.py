@@ -41,7 +41,8 @@ class About:
     """What a description says of the FMU as a whole. `identifier` is the file name of the binary, `token` ties the
     description to the resources; `derivatives` says whether there are those with respect to all inputs, `arrays`
     whether the vectors stand in it as arrays too (FMI 3.0). `version` is the model's, `date` that of the export, as FMI
-    writes it; `needs_tool` says whether running it takes more than the FMU, which a Python is."""
+    writes it; `needs_tool` says whether running it takes more than the FMU, which a Python is; `native` whether it runs
+    without one, and so can less (`WITHOUT_PYTHON` of the descriptions)."""
 
     identifier: str
     name: str
@@ -54,6 +55,7 @@ class About:
     version: str | None = None
     date: str | None = None
     needs_tool: bool = True
+    native: bool = False
 
 
 def start(version: str, token_name: str, about: About, **more: str) -> Any:

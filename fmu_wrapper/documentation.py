@@ -58,7 +58,7 @@ def documentation(model: Model, table: VariableTable, settings: Settings, about:
     parts = [(part.name, type(part).__name__, kind, _attached(part))
              for group, kind in PARTS.items() for part in getattr(model, group)]  # fmt: skip
     _table(body, ("name", "type", "kind", "at"), parts)
-    _add(body, "p", f"Gravity: ({model.gravity[0]:g}, {model.gravity[1]:g}) m/s².")
+    _add(body, "p", f"Gravity: ({', '.join(f'{g:g}' for g in model.gravity)}) m/s².")
     _add(body, "h2", "Solver")
     given = {k: v for k, v in settings.as_arguments().items() if v is not None}
     _table(body, ("setting", "value"), given.items())

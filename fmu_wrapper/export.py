@@ -7,15 +7,14 @@ import os
 import platform
 import re
 import sys
-import tempfile
 import uuid
-import zipfile
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from ..viewer.drawing import draw, to_png, to_svg
+from .archive import write_archive
 from .bundle import package_archive
 from .dependencies import Dependencies
 from .description_parts import About
@@ -26,6 +25,7 @@ from .extras import require
 from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
+from .native_export import native_binaries, native_resources, native_table
 from .nominal import with_nominals
 from .own_code import OwnCode
 from .platforms import PLATFORMS, choose, this_platform
@@ -56,6 +56,7 @@ def export_fmu(
     author: str | None = None,
     version: str | None = None,
     needs_execution_tool: bool = True,
+    native: bool = False,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
@@ -80,6 +81,8 @@ def export_fmu(
     version : version of the model; without it a digest of its content and settings.
     needs_execution_tool : what the FMU says of itself: True, since it takes a Python on the machine where it runs, with
         `bundle` too. Some masters refuse such FMUs, though the FMU finds its Python itself: say False for them.
+    native : an FMU that needs no Python where it runs (docs/native-fmu.md): it carries machine code and numbers, not
+        the model, and its parameters are constants. Not every model can be one.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -100,7 +103,13 @@ def export_fmu(
         raise ExportError(
             f"arrays were asked of FMI {fmi_version}, which has none: export for FMI 3.0, or without them"
         )
-    shim_path()  # before any work
+    if native and (bundle or arrays):
+        raise ExportError(
+            "an FMU without Python (native) has no package to bundle and describes no arrays: leave out "
+            f"{'bundle' if bundle else 'arrays'}, or native"
+        )
+    if not native:
+        shim_path()  # before any work
     require("export_fmu", "lxml", error=ExportError)
     if not path.parent.is_dir():
         raise ExportError(f"'{path}' cannot be written: there is no folder '{path.parent}'")
@@ -110,6 +119,8 @@ def export_fmu(
     if solver_data["communication_step"] is None:
         solver_data["communication_step"] = recommended_step(simulation, slave.model, slave.settings.t_end)
     variables = with_nominals(slave.variables, slave.model, slave.settings, simulation)
+    if native:
+        variables = native_table(variables)
     slave = Slave(slave.model, variables=variables, origin=slave.origin, **solver_data)
     identifier, code = c_identifier(slave.model.name), OwnCode.of(slave.model)
     content = slave.identity + (code.digest if code.types else "")
@@ -117,11 +128,19 @@ def export_fmu(
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
     generator = f"tlismni {package_version()}"
     about = About(
-        identifier, slave.model.name, token, text, generator, derivatives=True, arrays=arrays,
+        identifier, slave.model.name, token, text, generator, derivatives=not native, arrays=arrays, native=native,
         author=_user() if author is None else author, version=slave.identity[:12] if version is None else version,
-        date=_date(), needs_tool=needs_execution_tool,
+        date=_date(), needs_tool=needs_execution_tool and not native,
     )  # fmt: skip
-    description, _ = VERSIONS[fmi_version]
+    description, folder = VERSIONS[fmi_version]
+    described = description(slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables))
+    if native:
+        files = {
+            "modelDescription.xml": described,
+            **native_resources(slave.model, slave.settings, slave.variables, token),
+            **native_binaries(folder(), identifier, fmi_version, platforms),
+        }
+        return write_archive(path, files)
     settings = {
         "token": token,
         "tlismni": package_version(),
@@ -132,9 +151,7 @@ def export_fmu(
     }
     archive, digest = package_archive() if bundle else (None, None)
     files = {
-        "modelDescription.xml": description(
-            slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables)
-        ),
+        "modelDescription.xml": described,
         "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
         **_pictures(slave, fmi_version),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
@@ -152,7 +169,7 @@ def export_fmu(
             "set TLISMNI_PYTHON in the host's environment to one that has, or export with a Python that has libpython",
             sys.prefix,
         )
-    return _write(path, files)
+    return write_archive(path, files)
 
 
 def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> dict[str, bytes]:
@@ -267,29 +284,3 @@ def _json(data: Any) -> bytes:
         return json.dumps(data, indent=1, allow_nan=False).encode()
     except (TypeError, ValueError) as error:
         raise ExportError(f"the solver settings are no JSON data: {error}; use numbers and strings") from None
-
-
-def _write(path: Path, files: dict[str, bytes]) -> Path:
-    """Write the archive with fixed dates, so that equal content is an equal file; whole, or not at all."""
-    try:
-        return _write_beside(path, files)
-    except OSError as error:
-        # the system speaks of the temporary file beside it
-        raise ExportError(f"'{path}' cannot be written: {error.strerror or error}") from error
-
-
-def _write_beside(path: Path, files: dict[str, bytes]) -> Path:
-    handle, temporary = tempfile.mkstemp(suffix=".fmu", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream, zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name, data in files.items():
-                info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-                info.compress_type = zipfile.ZIP_DEFLATED
-                info.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
-                archive.writestr(info, data)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-    return path

@@ -11,11 +11,10 @@ from ctypes import c_double, c_int
 from typing import Any
 
 import numpy as np
-from fmpy.fmi2 import FMU2Slave
 
 from .calls import numbers_in
 from .fmi2_calls import Fmi2Calls
-from .in_process_base import Direct
+from .in_process_base import Direct, FMU2Slave
 
 
 class InProcess(Direct, FMU2Slave):

@@ -13,11 +13,9 @@ from collections.abc import Sequence
 from ctypes import addressof, c_uint8
 from typing import Any
 
-from fmpy.fmi3 import FMU3Slave
-
 from .errors import FmuValueError
 from .fmi3_calls import REFUSED, Fmi3Calls
-from .in_process_base import Direct
+from .in_process_base import Direct, FMU3Slave
 
 
 def _buffer(pointer: Any, size: Any) -> Any:

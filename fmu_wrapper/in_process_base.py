@@ -3,12 +3,20 @@
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
-from fmpy.fmi1 import FMICallException
-
 from .calls import Calls
 from .embedded import read_slave
 from .errors import Status
+from .extras import require
 from .slave import Slave
+
+require("driving an FMU's slave through fmpy", "fmpy")
+
+# after the line above, which says what to install
+from fmpy.fmi1 import FMICallException  # noqa: E402
+from fmpy.fmi2 import FMU2Slave  # noqa: E402
+from fmpy.fmi3 import FMU3Slave  # noqa: E402
+
+__all__ = ["Direct", "FMU2Slave", "FMU3Slave"]
 
 WARNING = int(Status.WARNING)
 

@@ -30,6 +30,9 @@ CAPABILITIES = {
     "canSerializeFMUstate": "true",
 }
 
+WITHOUT_PYTHON = {"canInterpolateInputs": "false", "maxOutputDerivativeOrder": "0"}
+"""Where an FMU without Python differs."""
+
 _TYPES = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "string": "String"}
 
 
@@ -38,8 +41,8 @@ def fmi2_description(table: VariableTable, settings: Settings, about: About, kno
     root = start("2.0", "guid", about, numberOfEventIndicators="0")
     derivatives = {"providesDirectionalDerivative": about.derivatives}
     add(
-        root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool, **CAPABILITIES,
-        **derivatives,
+        root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool,
+        **(CAPABILITIES | (WITHOUT_PYTHON if about.native else {})), **derivatives,
     )  # fmt: skip
     add_units(root, table)
     if types := enumerations(table):

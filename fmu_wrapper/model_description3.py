@@ -33,6 +33,12 @@ CAPABILITIES = {
     "providesEvaluateDiscreteStates": "false",
 }
 
+WITHOUT_PYTHON = {
+    "maxOutputDerivativeOrder": "0", "providesIntermediateUpdate": "false",
+    "canReturnEarlyAfterIntermediateUpdate": "false",
+}  # fmt: skip
+"""Where an FMU without Python differs."""
+
 _TYPES = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "string": "String"}
 
 
@@ -41,8 +47,8 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     root = start("3.0", "instantiationToken", about)
     derivatives = dict.fromkeys(("providesDirectionalDerivatives", "providesAdjointDerivatives"), about.derivatives)
     add(
-        root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool, **CAPABILITIES,
-        **derivatives,
+        root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool,
+        **(CAPABILITIES | (WITHOUT_PYTHON if about.native else {})), **derivatives,
     )  # fmt: skip
     add_units(root, table)
     if types := enumerations(table):
@@ -54,7 +60,7 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     variables = add(root, "ModelVariables")
     for variable in table.variables:
         own = attributes(variable)
-        if variable.role in ("input", "output"):
+        if variable.role in ("input", "output") and not about.native:
             own["intermediateUpdate"] = True
         if variable.kind == "string":
             element = add(variables, "String", **own)

@@ -5,6 +5,7 @@ A new scenario is one file with its parameter table and its builder, and its imp
 
 from . import (  # noqa: F401  (importing a scenario's file puts it in the catalogue)
     bouncing_ball,
+    bricard,
     cable_ground,
     cable_pendulum,
     cantilever,
@@ -12,6 +13,8 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     double_pendulum_wall,
     flexible_slider_crank_stop,
     four_bar,
+    free_body,
+    heavy_top,
     hub_beam_stop,
     impact_oscillator,
     mass_on_rod,
@@ -23,9 +26,11 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     rod_wall,
     slider_crank,
     slider_crank_stop,
+    spatial_slider_crank,
     sphere_beam,
     split_contact,
     stick_slip,
+    universal_pendulum,
     woodpecker,
 )
 from .parameters import ScenarioError, ScenarioParameter

@@ -8,8 +8,10 @@ import numpy as np
 from ..core import Result
 from ..core.contact.contact2d import DiskOnHalfPlane2D
 from ..core.description import Model
-from ..core.elements import AxialRod, Cable2D, FlexibleBody, LinearSystem, MaterialPoint2D
-from ..core.model.markers import GROUND, Marker2D
+from ..core.elements import AxialRod, Cable2D, FlexibleBody, LinearSystem, MaterialPoint2D, SpatialFrame
+from ..core.model.marker_channels3d import Frame3D
+from ..core.model.markers import GROUND, Marker2D, Marker3D
+from ..viewer.drawing.view import View, star
 from .rod_drawing import rod_lines
 
 MOST_FRAMES = 240
@@ -20,7 +22,7 @@ DIGITS = 5
 def drawing(model: Model, result: Result) -> dict[str, Any] | None:
     """Lines over time as plain data: {"t": [...], "lines": [{"kind", "x": [[...] per frame], "y": ...}], "box": [...]}.
 
-    None for a model without places in the plane.
+    Bodies in space are seen from a corner. None for a model without places.
     """
     keep = np.unique(np.linspace(0, len(result.t) - 1, min(MOST_FRAMES, len(result.t))).astype(int))
     lines: list[tuple[str, np.ndarray]] = []
@@ -70,6 +72,12 @@ def _body(body: Any, model: Model, result: Result, keep: np.ndarray) -> list[tup
         return []
     if isinstance(body, FlexibleBody):
         return _points_of(body, model, result, keep)
+    if isinstance(body, SpatialFrame):
+        names = body.coordinate_names
+        q = np.stack([track(name) for name in names], axis=1)
+        index = [k if k < len(names) else -1 for k in range(7)]
+        line = [Frame3D.of(Marker3D(point=(x, y, z)), index).point(q) for x, y, z in star(model, body).tolist()]
+        return [("body", View(model)(np.stack(line, axis=1)))]
     local = [(0.0, 0.0), *_markers_on(body.name, model)]
     if len(local) == 1 or "angle" not in body.coordinate_names:
         return [("mass", _place(Marker2D(body=body.name), result, keep)[:, None, :])]
@@ -91,7 +99,7 @@ def _markers_on(body: str, model: Model) -> list[tuple[float, float]]:
     found: list[tuple[float, float]] = []
     for element in model.elements():
         for marker in element.markers():
-            if marker.body == body and marker.point not in [(0.0, 0.0), *found]:
+            if marker.body == body and isinstance(marker, Marker2D) and marker.point not in [(0.0, 0.0), *found]:
                 found.append(marker.point)
     return found
 

@@ -60,9 +60,9 @@ def predictability(scenario: Scenario) -> Predictability:
 
 
 def _by_neighbours(scenario: Scenario) -> Predictability:
-    x, y = scenario.model.gravity
-    push = PUSH * max(math.hypot(x, y), 1.0)
-    pushed = scenario.model.model_copy(update={"gravity": (x + push, y + push)})
+    gravity = scenario.model.gravity
+    push = PUSH * max(math.hypot(*gravity), 1.0)
+    pushed = scenario.model.model_copy(update={"gravity": tuple(g + push for g in gravity)})
     times = np.linspace(0.0, scenario.t_end, 401)
     a, b = (our_run(chosen, times) for chosen in (scenario, replace(scenario, model=pushed)))
     known = np.intersect1d(a.t, b.t)

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.description import Model
-from ..core.elements import FlexibleBody, PlanarFrame
+from ..core.elements import FlexibleBody, PlanarFrame, SpatialFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
+from . import fixtures3d  # noqa: F401  (importing it teaches `place` its joints)
 from .bodies import Stage, add_bodies, add_dot, add_output
 from .drawing.shapes import Circle, Point
 from .fields import NO_SECTIONS, CrossSection
@@ -148,7 +149,8 @@ def affordable(model: Model, frames: int) -> tuple[int, int]:
 
 def _size(motion: Motion, sketches: Sequence[Sketch], points: Sequence[Frame]) -> float:
     """What symbols are drawn for, m: the mechanism's size at its start, or a part of the way that it goes."""
-    ways = [motion.frame(body.name)[:, :2] for body in motion.model.bodies if isinstance(body, PlanarFrame)]
+    shown = [body for body in motion.model.bodies if isinstance(body, PlanarFrame | SpatialFrame)]
+    ways = [motion.frame(body.name)[:, :2] for body in shown]
     drawn = [np.array(sketch.outline) + np.array(sketch.at[:2]) for sketch in sketches]
     drawn += [point.motion[:, :2] for point in points]
     if not ways:

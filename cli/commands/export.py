@@ -22,6 +22,7 @@ from ..options import (
     MethodName,
     MethodOption,
     ModelVersion,
+    Native,
     Platforms,
     Rtol,
     Set,
@@ -36,6 +37,7 @@ EXAMPLES = (
     "Examples:\n\n  tlismni export pendulum_stop -o pendulum.fmu\n\n"
     "  tlismni export pendulum_stop -o pendulum3.fmu --fmi 3\n\n"
     "  tlismni export pendulum_stop -o anywhere.fmu --bundle --platform all\n\n"
+    "  tlismni export pendulum_stop -o pendulum.fmu --native\n\n"
     "  tlismni export system.toml -o system.ssp\n\n"
     "  tlismni export my_model.json -o ball.fmu --t-end 2 --method ebdf --option k=3 --set restitution=0.5"
 )
@@ -55,6 +57,7 @@ def export(
     step: Step = None,
     option: MethodOption = None,
     bundle: Bundle = False,
+    native: Native = False,
     arrays: Arrays = False,
     platform: Platforms = None,
     author: Author = None,
@@ -66,7 +69,15 @@ def export(
     """Export a scenario or a model file as a co-simulation FMU, or a system file (.toml) as an SSP archive (.ssp)."""
     if is_system_file(source):
         solver = (t_end, communication_step, method, rtol, atol, step, option)
-        others = (sets, *solver, arrays or None, author, model_version, None if execution_tool else False)
+        others = (
+            sets,
+            *solver,
+            native or None,
+            arrays or None,
+            author,
+            model_version,
+            None if execution_tool else False,
+        )
         _system(source, output, json, any(value is not None for value in others), bundle, platform)
         return
     check_suffix(output, (".fmu",), "--output")
@@ -87,6 +98,7 @@ def export(
             fmi,
             communication_step=communication_step,
             bundle=bundle,
+            native=native,
             platforms=platforms,
             arrays=arrays,
             author=author,
@@ -107,12 +119,13 @@ def export(
                 "t_end": scenario.t_end,
                 "solver": solver_settings(scenario),
                 "bundle": bundle,
+                "native": native,
                 "platforms": held,
                 "inputs": [channel.name for channel in scenario.model.inputs],
             }
         )
     else:
-        carried = ", with tlismni inside" if bundle else ""
+        carried = ", with tlismni inside" if bundle else ", without Python" if native else ""
         say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB, for {', '.join(held)}{carried})")
 
 

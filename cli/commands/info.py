@@ -49,6 +49,8 @@ def info(fmu: ExistingFmu, json: Json = False, debug: Debug = False) -> None:
 def _runs_with(found: dict[str, Any]) -> list[tuple[str, Any]]:
     """What an FMU of ours says of its Python, package and solver."""
     python = found["python"]
+    if found["native"]:
+        return [("runs with", "nothing but the C library: it needs no Python")]
     if not python:
         return []
     carried = f"tlismni {python.get('tlismni')}" + (" (inside the FMU)" if found["bundle"] else "")

@@ -23,23 +23,19 @@ from ..compiled.signatures import signature_text
 from ..contact import cones, directions, joints, lcp
 from ..contact.friction.base import FRICTION_SIGNATURE, FrictionLaw
 from ..contact.laws.base import LAW_SIGNATURE, ForceLaw
-from ..elements.base import Form
-from ..elements.distance2d import Distance2D
-from ..elements.formula2d import form_name
-from ..elements.gear2d import Gear2D
-from ..elements.scalar_joint2d import KIND, ScalarJoint2D
 from ..events import instant
-from ..integrate import dense_output, drive, exchange, loop, sample, watch
+from ..integrate import dense_output, drive, exchange, loop, mend, sample, watch
 from ..integrate import records as run_records
 from ..linalg import dense, record, row_pivoting, small, sparse, symbolic
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, follow, use_analysis
 from ..linalg.solve import _no_solution, _not_analysed, factor, solve
 from ..methods import adams, history, order_selection, park
 from ..methods.records import METHOD_TYPE, STEP_SIGNATURE
-from ..model.markers import Marker2D
+from ..model import marker_channels2d
 from ..stage import accelerations
 from ..system import evaluate, levels, measure, projection, switch
 from ..system.records import EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
+from .formed import forms
 
 _WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE
 _LU = record.LU_TYPE
@@ -68,6 +64,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     yield evaluate.all_kernels, EVALUATE_SIGNATURE
     yield analyze, ANALYZE_SIGNATURE
     yield drive.settle_pending, run_records.SETTLE_SIGNATURE
+    yield drive.pass_breakpoint, run_records.SETTLE_SIGNATURE
     yield loop.run, run_records.RUN_SIGNATURE
     yield loop.trial_step, run_records.TRIAL_SIGNATURE
     yield loop.accept, run_records.ACCEPT_SIGNATURE
@@ -93,10 +90,15 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
 def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     """Functions that Python calls, with the types of their arguments."""
     yield drive.drive, (_DR, _FLAG)
-    for function in (drive.aim_now, drive.wake_now, drive.settle_pending, drive.unsettled_now, drive.open_now):
+    for function in (
+        drive.aim_now, drive.wake_now, drive.settle_pending, drive.pass_breakpoint, drive.begin_forces,
+        drive.unsettled_now, drive.open_now, mend.repair_now,
+    ):  # fmt: skip
         yield function, (_DR,)
-    yield exchange.exchange, (types.from_dtype(exchange.EXCHANGE),)
+    for function in (exchange.exchange, exchange.tell, exchange.read):
+        yield function, (types.from_dtype(exchange.EXCHANGE),)
     yield dense_output.interpolate, (_WS, _MS, _REAL)
+    yield marker_channels2d.all_markers, (_MATRIX, types.Array(_WHOLE, 2, "C"), _MATRIX, _REALS, _BLOCKS)
     yield history.recall, (_WS, _MS, _WHOLE)
     yield history.restart, (_WS, _MS)
     yield watch.remember, (_WS, _LC)
@@ -178,23 +180,6 @@ def _of_one_kind() -> Iterator[tuple[Any, Any]]:
             formula = vars(kind).get("formula")
             if isinstance(formula, Dispatcher):
                 yield formula, signature
-
-
-def _joints() -> Iterator[ScalarJoint2D]:
-    """Joints that are formulas, one of each kind of the package."""
-    a, b = Marker2D(), Marker2D(body="b")
-    yield Distance2D(name="distance", a=a, b=b, length=1.0)
-    yield Gear2D(name="gear", a=a, b=b, radius_a=1.0, radius_b=1.0)
-
-
-def forms() -> dict[str, Form]:
-    """Kernels that are made from formulas, with their patterns, by their names in the library."""
-    found = {}
-    for joint in _joints():
-        arguments = joint.arguments()
-        name = form_name(KIND, (joint.formula.formula,), arguments)
-        found[name] = joint.formula.form(arguments)
-    return found
 
 
 def _kinds(base: type) -> Iterator[type]:

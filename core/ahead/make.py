@@ -24,6 +24,11 @@ ALLOWED = frozenset(
 """What the code may take from the C library: functions of numbers, and memory."""
 
 
+def c_sources() -> list[Path]:
+    """C sources that belong in the library too: those in a folder `native` of any part of the package."""
+    return sorted(Path(__file__).resolve().parents[2].glob("*/native/*.c"))
+
+
 class UndefinedError(TlismniError):
     """Compiled code needs something that is in no C library."""
 
@@ -92,7 +97,7 @@ def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",
             raise UndefinedError(f"compiled code needs {missing}, which no C library has")
         beside = folder is None and target is own
         path = USUAL_PLACE if beside else (folder or Path("build")) / target.name / f"tlismni_core{target.suffix}"
-        link_shared(machine.emit_object(module), target, path, target is own)
+        link_shared(machine.emit_object(module), target, path, target is own, symbols.values(), c_sources())
         logger.info("%s: %d bytes in %.0f s", path, path.stat().st_size, time.perf_counter() - began)
         made.append(path)
     return made

@@ -1,9 +1,10 @@
-"""A shared library from an object file, by zig's linker, or by the machine's own."""
+"""A shared library from an object file and C sources, by zig's compiler, or by the machine's own."""
 
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -11,6 +12,10 @@ from ..errors import TlismniError
 from .module import Target
 
 LINKERS = ("cc", "gcc", "clang")
+FLAGS = ("-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-Wall", "-Wextra")
+"""For C: nothing is seen from outside but what says so, and numbers come out as they are written."""
+OF_SYSTEM = {".so": ("-fPIC", "-Wl,-Bsymbolic"), ".dylib": ("-fPIC",), ".dll": ()}
+"""By the library's suffix; two libraries in one process must not take functions from each other."""
 
 
 class LinkError(TlismniError):
@@ -31,13 +36,39 @@ def _command(target: Target, native: bool) -> list[str]:
     return [found, "-shared", "-s"]
 
 
-def link_shared(machine_code: bytes, target: Target, path: Path, native: bool) -> None:
-    """Write the shared library `path` of one object. Raises LinkError."""
+def symbol_table(symbols: Iterable[str]) -> str:
+    """C source of the table by which `native/image.c` finds functions."""
+    names = sorted(set(symbols))
+    return "\n".join(
+        (
+            "#include <stddef.h>",
+            *(f"extern void {name}(void);" for name in names),
+            "typedef struct { const char *symbol; void (*function)(void); } Symbol;",
+            "const Symbol tlismni_symbols[] = {",
+            *(f'    {{"{name}", {name}}},' for name in names),
+            f"}};\nconst size_t tlismni_symbol_count = {len(names)};\n",
+        )
+    )
+
+
+def link_shared(
+    machine_code: bytes, target: Target, path: Path, native: bool, symbols: Iterable[str], sources: Sequence[Path]
+) -> None:
+    """Write the shared library `path` of one object, whose functions have these `symbols`, and of C sources.
+
+    Raises
+    ------
+    LinkError : if it fails.
+    """
     libraries = [] if target.suffix == ".dll" else ["-lm"]
     with tempfile.TemporaryDirectory() as folder:
-        part, whole = Path(folder, "core.o"), Path(folder, path.name)
+        part, table, whole = Path(folder, "core.o"), Path(folder, "symbols.c"), Path(folder, path.name)
         part.write_bytes(machine_code)
-        command = [*_command(target, native), "-o", str(whole), str(part), *libraries]
+        table.write_text(symbol_table(symbols))
+        include = sorted({f"-I{source.parent}" for source in sources})
+        flags = [*FLAGS, *OF_SYSTEM[target.suffix], *include]
+        parts = [str(part), str(table), *map(str, sources)]
+        command = [*_command(target, native), *flags, "-o", str(whole), *parts, *libraries]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise LinkError(f"{' '.join(command)} failed: {done.stderr.strip()}")

@@ -27,10 +27,11 @@ _CORE = Path(__file__).resolve().parents[1]
 
 @cache
 def core_digest() -> str:
-    """Digest of every source of the core but those that make the library: constants of any may be in the code."""
+    """Digest of every source of the core but those that make the library, and what is laid before it: constants of any
+    may be in the code."""
     digest, root = hashlib.sha256(), str(_CORE)
     for folder, folders, files in os.walk(root):
-        folders[:] = sorted(set(folders) - {"__pycache__", "ahead"})
+        folders[:] = sorted(set(folders) - {"__pycache__", "ahead", "native"})
         for file in sorted(files):
             if file.endswith(".py"):
                 with open(os.path.join(folder, file), "rb", buffering=0) as source:

@@ -101,7 +101,7 @@ class Contact2D(Element):
         """The disks that it brings in touch, for the drawing."""
         return ()
 
-    def reach(self) -> Sequence[tuple[float, float]]:
+    def reach(self) -> Sequence[tuple[float, ...]]:
         """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""
         points = [marker.point for marker in self.markers() if marker.body != GROUND]
         fixed = [marker.point for marker in self.markers() if marker.body == GROUND]

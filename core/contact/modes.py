@@ -21,4 +21,6 @@ SLIDE = 5  # STICKS, IDLE, +1 or -1
 SLIDE_START = 6  # sliding distance at which the contact began to stick, m
 RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slides
 GAP_START = 8  # gap at which a contact constraint holds, next to nothing, m
-MEMORY_SIZE = 9
+BEGUN_IMPULSE = 9  # impulse of a contact force when it began to act, N s
+BEGUN_LOSS = 10  # its dissipation then, J
+MEMORY_SIZE = 11

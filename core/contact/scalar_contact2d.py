@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.base import Form, Numbering, Row
-from ..elements.formula2d import Arguments, argument_names, caller_of, derivatives, plain_function
+from ..elements.formula2d import Arguments, argument_names, caller_of, derivatives, form_ahead, plain_function
 from ..errors import ModelError
 from ..model.markers import Marker2D
 from .bristle2d import act_bristles
@@ -16,6 +16,8 @@ from .friction import LuGreFriction
 from .normal2d import act
 from .sliding2d import act_sliding
 
+KIND, SLIDING_KIND, BRISTLE_KIND = "scalar_contact2d", "sliding_scalar_contact2d", "bristle_scalar_contact2d"
+"""Of its kernels in the library of machine code."""
 PERIOD, FIRST = 0, 16
 """Columns of the table of parameters: by how much the sliding distance may jump, and the first one of the formulas;
 7 to 15 are those of the laws."""
@@ -27,6 +29,11 @@ class ScalarContact:
     def __init__(self, gap: Callable[..., Any], slide: Callable[..., Any] | None) -> None:
         self.gap = plain_function(gap)
         self.slide = None if slide is None else plain_function(slide)
+
+    @property
+    def formulas(self) -> tuple[Callable[..., Any], ...]:
+        """Gap, and sliding distance if there is one."""
+        return (self.gap,) if self.slide is None else (self.gap, self.slide)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -111,6 +118,15 @@ class ScalarContact2D(Contact2D):
         """By how much the sliding distance may jump where an angle goes round, m; 0: it does not."""
         return 0.0
 
+    @property
+    def kind(self) -> str | None:
+        """Of its kernel in the library of machine code; None where there is no such kernel."""
+        if self.friction is None:
+            return KIND
+        if self.formula.slide is None:
+            return None
+        return BRISTLE_KIND if isinstance(self.friction, LuGreFriction) else SLIDING_KIND
+
     def arguments(self) -> Arguments:
         """What its formulas take."""
         return Arguments.of(self, self.formula.names)
@@ -122,6 +138,9 @@ class ScalarContact2D(Contact2D):
         """Raises ModelError for friction without a sliding distance."""
         arguments, formula = self.arguments(), self.formula
         n, bristles = arguments.size, isinstance(self.friction, LuGreFriction)
+        ahead = None if self.kind is None else form_ahead(self.kind, formula.formulas, arguments)
+        if ahead is not None:
+            return ahead
         derivatives(formula.gap, arguments)
         if self.friction is None:
             kernel, rows = _kernel(formula.gap, arguments), 1

@@ -7,29 +7,60 @@ from typing import Annotated
 
 from ..model.open_union import OpenUnion
 from .applied_load2d import AppliedForce2D, AppliedTorque2D
+from .applied_load3d import AppliedForce3D, AppliedTorque3D
 from .axial_rod import AxialRod
 from .base import BodyElement, Element, ForceElement, JointElement
+from .belt2d import Belt2D
 from .bushing2d import Bushing2D
+from .bushing3d import Bushing3D
 from .cable2d import Cable2D
 from .clamp2d import Clamp2D
 from .coordinate_driver import CoordinateDriver
 from .coordinate_load import CoordinateLoad
+from .coordinate_relation import CoordinateRelation, RelationTerm
 from .distance2d import Distance2D
 from .flexible_body import FlexibleBody
 from .floating_beam2d import Attachment, FloatingBeam2D
 from .floating_body2d import FloatingBody2D
 from .formula2d import Frame2D
 from .gear2d import Gear2D
+from .joint3d import Joint3D
+from .joint_friction2d import RevoluteFriction2D, SlideFriction2D
+from .joints3d import (
+    AngleDriver3D,
+    ConstantVelocity3D,
+    Cylindrical3D,
+    Distance3D,
+    Fixed3D,
+    Planar3D,
+    PointOnLine3D,
+    PointOnPlane3D,
+    PositionDriver3D,
+    Prismatic3D,
+    Revolute3D,
+    RevoluteSpherical3D,
+    Spherical3D,
+    Universal3D,
+)
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
 from .moving_frame2d import MovingFrame2D
 from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
+from .rack2d import Rack2D
 from .reduced_body2d import ReducedBody2D, ReducedPoint
+from .relation3d import Gear3D, RackAndPinion3D, Relation3D, Screw3D
+from .relative_motor2d import RelativeMotor2D
 from .revolute2d import Revolute2D
 from .scalar_force2d import ScalarForce2D, scalar_force
 from .scalar_joint2d import ScalarJoint2D, scalar_constraint
+from .servo2d import Servo2D
+from .slide_spring2d import SlideSpring2D
+from .spatial_body import PointMass3D, RigidBody3D, SpatialFrame
 from .spring_damper2d import SpringDamper2D
+from .spring_damper3d import AxialSpring3D, SpringDamper3D, TorsionSpring3D
+from .table_spring2d import TableSpring2D
+from .torsion_spring2d import TorsionSpring2D
 
 BODIES = (
     PointMass2D,
@@ -41,9 +72,57 @@ BODIES = (
     ReducedBody2D,
     MaterialPoint2D,
     MovingFrame2D,
+    PointMass3D,
+    RigidBody3D,
 )
-JOINTS = (Revolute2D, Prismatic2D, Clamp2D, Distance2D, Gear2D, CoordinateDriver)
-FORCES = (SpringDamper2D, Bushing2D, AppliedForce2D, AppliedTorque2D, CoordinateLoad)
+JOINTS = (
+    Revolute2D,
+    Prismatic2D,
+    Clamp2D,
+    Distance2D,
+    Gear2D,
+    Rack2D,
+    Belt2D,
+    CoordinateDriver,
+    RelativeMotor2D,
+    CoordinateRelation,
+    AngleDriver3D,
+    ConstantVelocity3D,
+    Cylindrical3D,
+    Distance3D,
+    Fixed3D,
+    Planar3D,
+    PointOnLine3D,
+    PointOnPlane3D,
+    PositionDriver3D,
+    Prismatic3D,
+    Revolute3D,
+    RevoluteSpherical3D,
+    Spherical3D,
+    Universal3D,
+    Gear3D,
+    RackAndPinion3D,
+    Screw3D,
+)
+FORCES = (
+    SpringDamper2D,
+    TableSpring2D,
+    TorsionSpring2D,
+    SlideSpring2D,
+    RevoluteFriction2D,
+    SlideFriction2D,
+    Bushing2D,
+    Servo2D,
+    AppliedForce2D,
+    AppliedTorque2D,
+    CoordinateLoad,
+    AppliedForce3D,
+    AppliedTorque3D,
+    AxialSpring3D,
+    SpringDamper3D,
+    TorsionSpring3D,
+    Bushing3D,
+)
 
 Body = Annotated[BodyElement, OpenUnion(BODIES, BodyElement)]
 Joint = Annotated[JointElement, OpenUnion(JOINTS, JointElement)]
@@ -53,19 +132,30 @@ __all__ = [
     "BODIES",
     "FORCES",
     "JOINTS",
+    "AngleDriver3D",
     "AppliedForce2D",
+    "AppliedForce3D",
     "AppliedTorque2D",
+    "AppliedTorque3D",
     "Attachment",
     "AxialRod",
+    "AxialSpring3D",
+    "Belt2D",
     "Body",
     "BodyElement",
     "Bushing2D",
+    "Bushing3D",
     "Cable2D",
     "Clamp2D",
+    "ConstantVelocity3D",
     "CoordinateDriver",
     "CoordinateLoad",
+    "CoordinateRelation",
+    "Cylindrical3D",
     "Distance2D",
+    "Distance3D",
     "Element",
+    "Fixed3D",
     "FlexibleBody",
     "FloatingBeam2D",
     "FloatingBody2D",
@@ -73,22 +163,50 @@ __all__ = [
     "ForceElement",
     "Frame2D",
     "Gear2D",
+    "Gear3D",
     "Joint",
+    "Joint3D",
     "JointElement",
     "LinearSystem",
     "MaterialPoint2D",
     "MovingFrame2D",
+    "Planar3D",
     "PlanarBody",
     "PlanarFrame",
     "PointMass2D",
+    "PointMass3D",
+    "PointOnLine3D",
+    "PointOnPlane3D",
+    "PositionDriver3D",
     "Prismatic2D",
+    "Prismatic3D",
+    "Rack2D",
+    "RackAndPinion3D",
     "ReducedBody2D",
     "ReducedPoint",
+    "Relation3D",
+    "RelationTerm",
+    "RelativeMotor2D",
     "Revolute2D",
+    "Revolute3D",
+    "RevoluteFriction2D",
+    "RevoluteSpherical3D",
     "RigidBody2D",
+    "RigidBody3D",
     "ScalarForce2D",
     "ScalarJoint2D",
+    "Screw3D",
+    "Servo2D",
+    "SlideFriction2D",
+    "SlideSpring2D",
+    "SpatialFrame",
+    "Spherical3D",
     "SpringDamper2D",
+    "SpringDamper3D",
+    "TableSpring2D",
+    "TorsionSpring2D",
+    "TorsionSpring3D",
+    "Universal3D",
     "scalar_constraint",
     "scalar_force",
 ]

@@ -18,7 +18,8 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive
 from ..model.channels import Channel
-from .base import MOST_ELEMENTS, Coordinate, Form, Numbering, Part, Row
+from .base import MOST_ELEMENTS, Form, Numbering, Part, Row
+from .coordinate import Coordinate
 from .flexible_body import FlexibleBody, PointShape, Section
 from .massless_end import massless_end_kernel
 

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar, Protocol
 
-from ..model.base import Name
+from ..model.base import Name, Vector3
 from ..model.channels import Channel
-from ..model.markers import Marker2D
+from ..model.derived import Derived
+from ..model.markers import Marker, Marker2D
 from ..model.open_union import OpenRecord
 from ..model.signals import Signal
-from ..model.units import UNKNOWN
+from .coordinate import Coordinate
 
 NO_INPUTS: Mapping[str, float] = MappingProxyType({})
 MOST_ELEMENTS = 100_000
@@ -21,7 +22,9 @@ class Numbering(Protocol):
     """What an element may ask while its tables are built."""
 
     @property
-    def gravity(self) -> tuple[float, float]: ...
+    def gravity(self) -> Vector3:
+        """m/s^2; planar elements feel its first two components."""
+        ...
 
     @property
     def length(self) -> float:
@@ -34,16 +37,34 @@ class Numbering(Protocol):
         ...
 
     def coordinates(self, body: str) -> tuple[int, ...]:
-        """Indices of (x, y, theta) of a planar body; missing ones are the ground's, which stay zero. Of any other body,
-        those of its coordinates."""
+        """Indices of the coordinates of a body. Of one that carries markers: of those that place its frame; for those
+        that it lacks (the angle of a point mass) a place that stays zero. Of the ground: as if it were planar."""
+        ...
+
+    def frame(self, marker: Marker) -> tuple[int, ...]:
+        """Indices of the coordinates that place the frame of a marker's body; for those that it lacks, and all of the
+        ground's, a place that stays zero."""
         ...
 
     def coordinate(self, body: str, name: str) -> int:
         """Index of the coordinate `name` of a body, which has it (the model has checked that)."""
         ...
 
-    def initial(self, body: str) -> tuple[float, float, float]:
-        """Given initial (x, y, theta) of a planar body."""
+    def own_frame(self, marker: Marker) -> tuple[int, ...]:
+        """The same as `frame`, with -1 for what the body lacks."""
+        ...
+
+    def at_rest(self, marker: Marker) -> tuple[float, ...]:
+        """What is to be added to those coordinates: nothing to the body's own, `Marker.rest` to those that it lacks."""
+        ...
+
+    def initial(self, body: str) -> tuple[float, ...]:
+        """Given initial coordinates of a body that carries markers, (x, y, theta) of a planar one; what it lacks is
+        `Marker.rest`."""
+        ...
+
+    def start(self, marker: Marker) -> tuple[float, ...]:
+        """Those of a marker's body."""
         ...
 
     def signal(self, signal: Signal) -> int:
@@ -70,8 +91,9 @@ class Numbering(Protocol):
         """Machine address of a regularised friction law's formula."""
         ...
 
-    def work(self, name: str) -> int:
-        """Index of the work account `name` in the extended vectors."""
+    def work(self, name: str, size: float | None = None) -> int:
+        """Index of the work account `name` in the extended vectors; `size` is how large its values typically are, for
+        the error control, left out of energies."""
         ...
 
 
@@ -156,11 +178,11 @@ class Element(OpenRecord):
         1 a = z'. They come after those of the bodies; their positions mean nothing."""
         return ()
 
-    def markers(self) -> Sequence[Marker2D]:
+    def markers(self) -> Sequence[Marker]:
         """The markers it uses (their bodies must exist)."""
         return ()
 
-    def reach(self) -> Sequence[tuple[float, float]]:
+    def reach(self) -> Sequence[tuple[float, ...]]:
         """Points on its bodies that tell the size of the mechanism, m."""
         return [marker.point for marker in self.markers()]
 
@@ -190,7 +212,11 @@ class Element(OpenRecord):
         return ()
 
     def multiplier_channels(self) -> Sequence[Channel]:
-        """One channel for each constraint row: what its multiplier means."""
+        """One channel for each constraint row: what its multiplier means. None at all if they are not shown."""
+        return ()
+
+    def derived_channels(self, numbering: Numbering, rows: Sequence[int]) -> Sequence[Derived]:
+        """Channels that follow from coordinates and from the multipliers of its constraint rows."""
         return ()
 
 
@@ -213,33 +239,30 @@ class PairElement2D(Element):
 
     def coordinates(self, numbering: Numbering) -> Sequence[int]:
         """Indices of (x, y, theta) of the body of `a`, then of that of `b`."""
-        return (*numbering.coordinates(self.a.body), *numbering.coordinates(self.b.body))
-
-
-@dataclass(frozen=True)
-class Coordinate:
-    """A coordinate of a body: its name, what its channels are called, and how large it typically is."""
-
-    name: str
-    unit: str
-    rate: str
-    """Channel of its rate."""
-    acceleration: str
-    """Channel of its second rate."""
-    scale: float | None = None
-    """Typical magnitude, in its unit; None: the size of the mechanism."""
-
-    def unit_of(self, level: int) -> str:
-        """Unit of the coordinate (level 0), its rate (1) or second rate (2); "-" stays as it is."""
-        return self.unit if level == 0 or self.unit == UNKNOWN_UNIT else self.unit + ("", "/s", "/s2")[level]
-
-
-UNKNOWN_UNIT = UNKNOWN
-"""Of generalised coordinates that do not say theirs."""
+        return (*numbering.frame(self.a), *numbering.frame(self.b))
 
 
 class BodyElement(Element):
     """Base of what has coordinates of its own."""
+
+    carries: ClassVar[type[Marker] | None] = None
+    """The kind of markers that can be put on it; None: none, it has no points."""
+
+    def check_marker(self, user: str, marker: Marker) -> None:
+        """Raise ValueError if the element `user` cannot have this marker on it."""
+        kind = type(self).__name__
+        if self.carries is None:
+            raise ValueError(
+                f"'{user}' needs a point of '{self.name}', but a {kind} has only its coordinates "
+                f"{list(self.coordinate_names[:12])}: act on one of these by name (CoordinateDriver, "
+                "CoordinateLoad), on a MaterialPoint2D of a flexible body, or use a RigidBody2D"
+            )
+        if not isinstance(marker, self.carries):
+            raise ValueError(
+                f"'{user}' puts a {type(marker).__name__} on '{self.name}', but a {kind} carries "
+                f"{self.carries.__name__}s: elements of the plane (2D) go with planar bodies, those of space (3D) with "
+                "spatial ones"
+            )
 
     def coordinate_records(self) -> Sequence[Coordinate]:
         """Its coordinates, in the order of `initial_state`."""
@@ -264,7 +287,7 @@ class BodyElement(Element):
         or an input is."""
         return self.initial_state()
 
-    def extent(self) -> Sequence[tuple[float, float]]:
+    def extent(self) -> Sequence[tuple[float, ...]]:
         """Points where it starts that tell the size of the mechanism, m."""
         return ()
 

@@ -10,9 +10,10 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Vector2
-from .base import MOST_ELEMENTS, Coordinate, Numbering, Row
+from .base import MOST_ELEMENTS, Numbering, Row
 from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
 from .cable_shape import POINTS, gauss_places, weights
+from .coordinate import Coordinate
 from .flexible_body import FlexibleBody, PointShape, Section, along_axis
 
 SLOPE_SCALE = 0.5
@@ -133,7 +134,7 @@ class Cable2D(FlexibleBody):
         axial, bending = POINTS[self.integration]
         fixed = (
             self.length / self.elements, self.mass_per_length, self.axial_stiffness, self.bending_stiffness,
-            self.axial_damping, self.bending_damping, *numbering.gravity, float(axial), float(bending),
+            self.axial_damping, self.bending_damping, *numbering.gravity[:2], float(axial), float(bending),
         )  # fmt: skip
         extra = (numbering.work("dampers"),)
         relaxed = self._relaxed_strains()

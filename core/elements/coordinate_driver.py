@@ -12,7 +12,8 @@ from ..model.base import Name
 from ..model.channels import Channel
 from ..model.motion import evaluate_motion
 from ..model.signals import INPUT_SIZE, InputSignal, Signal, Step
-from .base import UNKNOWN_UNIT, JointElement, Numbering, Row
+from .base import JointElement, Numbering, Row
+from .coordinate import UNKNOWN_UNIT
 
 
 @internal

@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .base import Coordinate, Form, Numbering, Row
+from .base import Form, Numbering, Row
+from .coordinate import Coordinate
 from .flexible_body import FlexibleBody, PointShape
 from .floating_kernel2d import floating_body2d_kernel
 from .planar_body import ANGLE, PlanarBody, X, Y
@@ -104,6 +105,12 @@ class FloatingBody2D(PlanarBody, FlexibleBody):
     def row(self, numbering: Numbering) -> Row:
         i = self.invariants()
         tables = (i.a, i.b, *i.H, i.N, i.Gamma, i.mass, i.stiffness, i.damping, *i.G)
-        parameters = (self.mass, *i.first_moment, i.inertia, *numbering.gravity, *(x for t in tables for x in t.flat))
+        parameters = (
+            self.mass,
+            *i.first_moment,
+            i.inertia,
+            *numbering.gravity[:2],
+            *(x for t in tables for x in t.flat),
+        )
         indices = tuple(numbering.coordinate(self.name, name) for name in self.coordinate_names)
         return Row(tuple(float(x) for x in parameters), indices, (numbering.work("dampers"),))

@@ -21,7 +21,7 @@ FULL_PATTERN: Sequence[tuple[int, int]] = tuple((i, j) for i in range(6) for j i
 ROW_PATTERN: Sequence[tuple[int, int]] = tuple((0, j) for j in range(6))
 
 
-def place(point: tuple[float, float], body: tuple[float, float, float]) -> tuple[float, float]:
+def place(point: tuple[float, float], body: Sequence[float]) -> tuple[float, float]:
     """Where a marker's `point` is when its body is at (x, y, angle), m."""
     x, y, angle = body
     c, s = math.cos(angle), math.sin(angle)

@@ -14,7 +14,8 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Name, Positive
-from .base import UNKNOWN_UNIT, BodyElement, Coordinate, Form, Numbering, Row
+from .base import BodyElement, Form, Numbering, Row
+from .coordinate import UNKNOWN_UNIT, Coordinate
 
 Matrix = tuple[tuple[float, ...], ...]
 Vector = tuple[float, ...]

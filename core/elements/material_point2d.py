@@ -18,7 +18,8 @@ from ..compiled.views import imat, mat, vec
 from ..model.base import Name, Vector2
 from ..model.channels import Channel
 from ..model.markers import GROUND
-from .base import NO_INPUTS, BodyElement, Coordinate, Form, Numbering, Row
+from .base import NO_INPUTS, BodyElement, Form, Numbering, Row
+from .coordinate import Coordinate
 from .flexible_body import FlexibleBody, PointShape
 from .planar_body import ANGLE, PlanarFrame, X, Y
 

@@ -12,7 +12,8 @@ from ..compiled.views import imat, vec
 from ..model.channels import Channel
 from ..model.motion import evaluate_motion
 from ..model.signals import INPUT_SIZE, Constant, InputSignal, Signal, Step, evaluate_signal
-from .base import NO_INPUTS, BodyElement, Coordinate, Numbering, Row
+from .base import NO_INPUTS, BodyElement, Numbering, Row
+from .coordinate import Coordinate
 from .planar_body import ANGLE, PlanarFrame, X, Y
 
 

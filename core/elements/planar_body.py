@@ -10,7 +10,9 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive, Vector2
-from .base import BodyElement, Coordinate, Numbering, Row
+from ..model.markers import Marker, Marker2D
+from .base import BodyElement, Numbering, Row
+from .coordinate import Coordinate
 
 
 @internal
@@ -50,6 +52,8 @@ class PlanarFrame(BodyElement):
     """Base of what moves like a rigid body in the plane: coordinates x, y and (but for point masses) angle. Markers
     can be put on it."""
 
+    carries: ClassVar[type[Marker] | None] = Marker2D
+
 
 class PlanarBody(PlanarFrame):
     """Base of the planar bodies."""
@@ -71,7 +75,7 @@ class PlanarBody(PlanarFrame):
         return self.mass
 
     def _row(self, numbering: Numbering, inertia: float) -> Row:
-        gx, gy = numbering.gravity
+        gx, gy, _ = numbering.gravity
         return Row((self.mass, inertia, self.mass * gx, self.mass * gy, 0.0), numbering.coordinates(self.name))
 
 
@@ -82,6 +86,14 @@ class PointMass2D(PlanarBody):
 
     def coordinate_records(self) -> Sequence[Coordinate]:
         return (X, Y)
+
+    def check_marker(self, user: str, marker: Marker) -> None:
+        super().check_marker(user, marker)
+        if not marker.at_origin:
+            raise ValueError(
+                f"'{user}' has a marker at {marker.point} of point mass '{self.name}', which has no extension: use "
+                "(0, 0), or a RigidBody2D"
+            )
 
     def row(self, numbering: Numbering) -> Row:
         return self._row(numbering, 0.0)

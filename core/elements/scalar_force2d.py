@@ -9,10 +9,20 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
 from ..model.markers import Marker2D
 from .base import ForceElement, Form, Numbering, Row
-from .formula2d import MARKER_COLUMNS, Arguments, argument_names, caller_of, derivatives, plain_function
+from .formula2d import (
+    MARKER_COLUMNS,
+    Arguments,
+    argument_names,
+    caller_of,
+    derivatives,
+    form_ahead,
+    plain_function,
+)
 from .geometry2d import add_hessian, add_product, along
 
 Function = Callable[..., Any]
+KIND = "scalar_force2d"
+"""Of its kernels in the library of machine code."""
 
 
 class ScalarForce:
@@ -26,6 +36,11 @@ class ScalarForce:
                 raise ModelError(f"{function.__qualname__} takes {argument_names(function)}, {what} is needed")
 
     @property
+    def formulas(self) -> tuple[Function, ...]:
+        """Measure, force and energy."""
+        return self.measure, self.force, self.energy or _nothing
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the arguments that are fields."""
         more = argument_names(self.force)[2:]
@@ -33,6 +48,9 @@ class ScalarForce:
 
     def form(self, arguments: Arguments) -> Form:
         """Kernel and patterns."""
+        ahead = form_ahead(KIND, self.formulas, arguments)
+        if ahead is not None:
+            return ahead
         found = derivatives(self.measure, arguments)
         bent = {k for pair in found.second for k in pair}
         pattern = {(i, j) for i in found.first for j in {*found.first, *bent}}

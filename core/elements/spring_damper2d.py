@@ -8,7 +8,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
-from ..model.base import NonNegative, Positive
+from ..model.base import NonNegative
 from .base import ForceElement, Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, add_hessian, add_product, along, distance, place
 
@@ -57,11 +57,11 @@ class SpringDamper2D(PairElement2D, ForceElement):
     """N/m."""
     damping: NonNegative = 0.0
     """N s/m."""
-    natural_length: Positive
-    """m. The direction of the force is that of the line: the markers must not meet."""
+    natural_length: NonNegative
+    """m. The direction of the force is that of the line: the markers must not meet (a Bushing2D's may)."""
 
     def lengths(self) -> Sequence[float]:
-        return (self.natural_length,)
+        return (self.natural_length,) if self.natural_length > 0.0 else ()
 
     def row(self, numbering: Numbering) -> Row:
         """Raises ConsistencyError if the markers meet at the start: the force would have no direction."""
@@ -71,7 +71,7 @@ class SpringDamper2D(PairElement2D, ForceElement):
             raise ConsistencyError(
                 f"spring '{self.name}' starts with length {math.dist(a, b):.3g} m: marker a on '{self.a.body}' is at "
                 f"({a[0]:g}, {a[1]:g}), marker b on '{self.b.body}' at ({b[0]:g}, {b[1]:g}), so its force has no "
-                "direction; start with the markers apart, or use two springs across each other"
+                "direction; start with the markers apart, use a Bushing2D, or two springs across each other"
             )
         return Row(
             (*self.a.point, *self.b.point, self.stiffness, self.damping, self.natural_length),

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..compiled.kernels import kernel_address
 from ..contact.laws import ContactLaw
 from ..model.channels import Channel
-from ..system.assembly import GROUND_SLOTS, Assembly, Batch, ContactInfo
+from ..system.assembly import AT_REST, Assembly, Batch, ContactInfo
 from .binding import EquationBinding
 from .constraints import ConstraintFunctions
 from .errors import EquationError, NotDifferentiableError
@@ -194,7 +194,7 @@ class EquationSystem:
         rows = m + contacts
         full = tuple((i, j) for i in range(n) for j in range(n))
         work_names = [f"{c.name}.{what}" for c in self.contacts for what in ("impulse", "dissipation")]
-        first = n + GROUND_SLOTS
+        first = n + AT_REST
         binding = EquationBinding(self)
         assembly = Assembly(
             n=n,
@@ -224,7 +224,7 @@ class EquationSystem:
             input_names=[],
             input_start=np.zeros(0),
             breakpoints=[],
-            multiplier_channels=[Channel(f"lambda{k}", "1", f"multiplier of constraint {k}") for k in range(m)],
+            multiplier_channels={k: Channel(f"lambda{k}", "1", f"multiplier of constraint {k}") for k in range(m)},
             body_columns=[],
             coordinate_scale=self.scale,
             length=float(np.max(self.scale)),

@@ -27,6 +27,7 @@ from .records import (
     LEFT,
     LOSS,
     LOW,
+    NO_FORCES,
     RESIDUAL,
     RESTITUTION,
     RESTS,
@@ -34,11 +35,14 @@ from .records import (
     SEPARATION,
     SETTLED,
     SLIPS,
+    STOP_IMPULSE,
+    STOP_LOSS,
     STOPS,
     STRUCK,
     WAS,
     WITHOUT,
     call_part,
+    clear,
     col,
     copy,
     real,
@@ -78,12 +82,13 @@ def impact(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         status = _rest(ev, dr, ws, ms)
         if status != SETTLED:
             return status
-    total = 0.0
+    total, stopped = 0.0, 0.0
     for i in range(count):
         total += col(ev, LOSS)[i]
+        stopped += col(ev, STOP_LOSS)[i]
     evaluate_energy(ws)
     if dr.input_account >= 0:
-        v[dr.input_account] += energy[0] - kinetic + total
+        v[dr.input_account] = before[dr.input_account] + energy[0] - kinetic + total + stopped
     _account(ev, dr, ws, ms, -total if total < -GAIN * max(kinetic, 1e-300) else 0.0)
     return SETTLED
 
@@ -120,9 +125,10 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         status = call_part(ev.begin_rest, ev, dr, ws, ms)
     if status == SETTLED:
         status = call_part(ev.find_forces, ev, dr, ws, ms)
-    if status != SETTLED:
+    # forces that cannot be are no rest
+    stay = status != NO_FORCES
+    if stay and status != SETTLED:
         return status
-    stay = True
     for i in range(count):
         stay = stay and (col(ev, LOW)[i] == 0.0 or col(ev, F_N)[i] > 0.0)
     if stay:
@@ -133,6 +139,8 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     real(ev)[LEFT], real(ev)[RESIDUAL] = left, residual
     for i in range(ws.n_ext):
         v[i] = bounced[i]
+    clear(col(ev, STOP_IMPULSE), count)
+    clear(col(ev, STOP_LOSS), count)
     evaluate_residuals(ws)
     read_rates(ev, ws)
     return SETTLED

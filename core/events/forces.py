@@ -4,7 +4,7 @@ from typing import Any
 
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
-from ..contact.cones import CONES_TYPE, NONE, STICKS, call_cones
+from ..contact.cones import CONES_TYPE, NONE, SOLVED, STICKS, call_cones
 from ..contact.directions import RANK, call_farthest, call_independent
 from ..linalg.small import call_least_norm
 from .records import (
@@ -34,6 +34,10 @@ from .records import (
 from .records import STICKS as ALL_STICK
 
 NO_SOLUTION = False
+SPEED = 1e3
+"""Of the largest free acceleration: no force that keeps contacts closed makes a motion of that size."""
+STOPPED = 1e-3
+"""Of that speed: what is left of one that friction has stopped."""
 cones_at = record_view(CONES_TYPE)
 
 
@@ -70,6 +74,8 @@ def among(ev: Any, count: int, takes: Any, direction: Any, slides: Any) -> bool:
         vec(cn.direction, n)[i] = direction[p]
     status = call_cones(ev.solve_cones, cn)
     if status == NONE:
+        status = _with_speeds(ev, cn, n)
+    if status == NONE:
         return NO_SOLUTION
     whole(ev)[ALL_STICK] = 1 if status == STICKS else 0
     for i in range(count):
@@ -84,6 +90,29 @@ def among(ev: Any, count: int, takes: Any, direction: Any, slides: Any) -> bool:
             across += a[count + i, j] * f_n[j] + a[count + i, count + j] * f_t[j]
         w_n[i], w_t[i] = b_n[i] + along, b_t[i] + across
     return not NO_SOLUTION
+
+
+@internal
+def _with_speeds(ev: Any, cn: Any, n: int) -> int:
+    """The same problem with its directions of sliding as speeds, so large that no force turns them round: friction then
+    takes what it can of any motion, which finds forces where fixed directions lead nowhere. NONE where it stops one of
+    them after all."""
+    direction, b_n, b_t, largest, some = vec(cn.direction, n), vec(cn.b_n, n), vec(cn.b_t, n), 0.0, False
+    for i in range(n):
+        largest, some = max(largest, abs(b_n[i]), abs(b_t[i])), some or direction[i] != 0.0
+    if not some:
+        return NONE
+    ways = ivec(ev.chosen, n)
+    for i in range(n):
+        ways[i] = int(direction[i])
+        b_t[i] += SPEED * largest * direction[i]
+        direction[i] = 0.0
+    if call_cones(ev.solve_cones, cn) == NONE:
+        return NONE
+    for i in range(n):
+        if ways[i] != 0 and not vec(cn.tangential_motion, n)[i] * ways[i] > STOPPED * SPEED * largest:
+            return NONE
+    return SOLVED
 
 
 @internal

@@ -17,17 +17,19 @@ from ..contact.directions import (
     independent_directions,
     independent_size,
 )
+from ..contact.laws import ForceLaw
 from ..contact.modes import MEMORY_SIZE
 from ..linalg.small import least_norm_size
 from ..system.assembly import Assembly
 from ..system.records import COUNTERS_SIZE, RATE_SIZE
+from .force_contact import settle_forces
 from .impact import strike
 from .prepare import use_modes
 from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, WHO, WHOLES
 from .resting import begin_rest, find_forces
 from .touching import open_touching
 
-PARTS = (open_touching, strike, begin_rest, find_forces, use_modes)
+PARTS = (open_touching, strike, begin_rest, find_forces, use_modes, settle_forces)
 _OTHERS = (
     ("solve_cones", solve_cones, CONES_SIGNATURE),
     ("independent", independent_directions, INDEPENDENT_SIGNATURE),
@@ -37,10 +39,13 @@ FEW = 8
 """Touching contacts that there is room for at first."""
 
 
-def _functions(needed: bool) -> dict[str, int]:
+def _functions(assembly: Assembly) -> dict[str, int]:
     """Addresses of what the record calls; zeros, and nothing to compile, where it never will."""
     parts = [(part.py_func.__name__, part, PART_SIGNATURE) for part in PARTS]
-    return {name: address_of(f, signature) if needed else 0 for name, f, signature in (*parts, *_OTHERS)}
+    needed = {name: bool(assembly.contacts) for name, _, _ in (*parts, *_OTHERS)}
+    needed["settle_forces"] = any(isinstance(contact.law, ForceLaw) for contact in assembly.contacts)
+    needed["use_modes"] = needed["use_modes"] or bool(assembly.breakpoints)
+    return {name: address_of(f, signature) if needed[name] else 0 for name, f, signature in (*parts, *_OTHERS)}
 
 
 class Instant:
@@ -75,7 +80,7 @@ class Instant:
             },
             {
                 "most": most, "work_size": work, "rows_space": space, "cones": self._cones.address,
-                **_functions(bool(assembly.contacts)),
+                **_functions(assembly),
             },
         )  # fmt: skip
 

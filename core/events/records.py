@@ -19,7 +19,8 @@ INSTANT = np.dtype(
         (name, np.int64)
         for name in (
             "most",                      # touching contacts that there is room for
-            "open_touching", "strike", "begin_rest", "find_forces", "use_modes",  # addresses of these functions
+            # addresses of these functions
+            "open_touching", "strike", "begin_rest", "find_forces", "use_modes", "settle_forces",
             "cones", "solve_cones", "independent", "farthest",  # record of `contact/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
@@ -71,8 +72,10 @@ instant_at = record_view(INSTANT_TYPE)
     RATE_BEFORE, SLIDE_BEFORE, WANTED, RIGHT_N, RIGHT_T, NOW_N, NOW_T,
     FLAG, OTHER_FLAG, SPARE, APART, LOADED,
     SLOW,                              # sliding below it counts as none, m/s
-) = range(67)  # fmt: skip
-COLUMNS = 67
+    STOP_IMPULSE, STOP_LOSS,           # N s and J of what stopped without a collision
+    FIRST,                             # the higher, the earlier its tangent is kept where some repeat others
+) = range(70)  # fmt: skip
+COLUMNS = 70
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

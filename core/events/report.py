@@ -6,8 +6,8 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat
 from ..integrate.records import COUNTS_SIZE, EVENT_SIZE, EVENTS
 
-MOST_EVENTS = 4
-"""Of a contact at one instant."""
+MOST_EVENTS = 6
+"""Of a contact at one instant: a blow, three wedges, closing or opening, sliding or sticking."""
 
 
 @internal

@@ -13,7 +13,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact.modes import CLOSED, IDLE
 from ..contact.modes import STICKS as STUCK
-from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST
+from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST, PRESSING
 from ..system.levels import position_level
 from ..system.records import CONTROL_SIZE, ENERGY_SCALE
 from .forces import NO_SOLUTION, among, farthest_of, independent_of, remove_rates
@@ -29,6 +29,7 @@ from .records import (
     DIRECTION,
     F_N,
     F_T,
+    FIRST,
     FLAG,
     FULL,
     JAMS,
@@ -78,7 +79,7 @@ from .records import (
     real,
     whole,
 )
-from .touching import force_noise, free_accelerations, free_jerks, looks_again, push
+from .touching import force_noise, free_accelerations, free_jerks, looks_again, push, push_and_account
 
 NEARLY_SINGULAR = 1e-6
 """Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
@@ -87,6 +88,8 @@ TO_SPARE = 1e-6
 RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
 """Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and at an instant that
 does not settle. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
+PULLING = 1e-3
+"""Of the largest force of the contacts: one that pulls by more has been kept together with the wrong others."""
 AHEAD, FARTHEST_AHEAD = 1e-9, 1e-6
 """How far the mechanism is moved, of its size, to see what holds a moment later: at the second event of an instant, and
 ten times farther at each of the following ones, but not beyond."""
@@ -96,7 +99,7 @@ ten times farther at each of the following ones, but not beyond."""
 
 
 @internal
-def _look(ev: Any, ms: Any) -> None:
+def look(ev: Any, ms: Any) -> None:
     """What the rates say: +-1 in `KNOWN` where the contact slides, 0 where friction decides."""
     slide_rate, known, slid = col(ev, SLIDE_RATE), col(ev, KNOWN), col(ev, SLID)
     for i in range(whole(ev)[COUNT]):
@@ -116,7 +119,7 @@ def _look(ev: Any, ms: Any) -> None:
 def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Which contacts neither separate nor approach. `ACCELERATIONS` of the coordinates before, 1/s^2, are given."""
     count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
-    _look(ev, ms)
+    look(ev, ms)
     rates, slow = col(ev, RATE), whole(ev)[STRUCK] == 0
     for i in range(count):
         at_rest[i] = abs(rates[i]) <= col(ev, ROUNDING)[i]
@@ -124,7 +127,7 @@ def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         if whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED:
             at_rest[i] = 1.0
         slow = slow or abs(rates[i]) <= PERHAPS_REST * rate_size(ws, contacts[i])
-    _stop_slow(ev, ws, ms)
+    _stop_slow(ev, dr, ws, ms)
     whole(ev)[READY] = 0
     if not slow:
         return SETTLED
@@ -132,23 +135,23 @@ def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
-def _stop_slow(ev: Any, ws: Any, ms: Any) -> None:
+def _stop_slow(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
     """Where instants crowd, take away what is left of sliding that counts as none (`crowding.py`)."""
     some = False
     for i in range(whole(ev)[COUNT]):
         none = col(ev, KNOWN)[i] == 0.0 and col(ev, AT_REST)[i] != 0.0 and col(ev, STATIC)[i] > 0.0
         some = some or (none and abs(col(ev, SLIDE_RATE)[i]) > col(ev, ROUNDING)[i])
     if some and ms.exact != 0:
-        _stop(ev, ws, ms)
+        stop(ev, dr, ws, ms)
 
 
 @internal
-def _stop(ev: Any, ws: Any, ms: Any) -> None:
+def stop(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
     """Take away the rates of the contacts at rest, and of their sliding where friction decides."""
     normal, along = col(ev, SPARE), col(ev, OTHER_FLAG)
     remove_rates(ev, normal, along)
-    push(ev, ws, normal, along)
-    _look(ev, ms)
+    push_and_account(ev, dr, ws, normal, along)
+    look(ev, ms)
 
 
 @internal
@@ -206,7 +209,11 @@ def _hold_back(ev: Any, ws: Any, ms: Any, motion: Any) -> bool:
         at_rest[i] = 1.0 if back[i] != 0.0 else at_rest[i]
     if ms.exact == 0:
         return True
-    _stop(ev, ws, ms)
+    # rounding's worth, which no account sees
+    normal, along = col(ev, SPARE), col(ev, OTHER_FLAG)
+    remove_rates(ev, normal, along)
+    push(ev, ws, normal, along)
+    look(ev, ms)
     return True
 
 
@@ -224,6 +231,8 @@ def find_forces(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     for i in range(count):
         takes[i] = at_rest[i] != 0.0 and leaves[i] == 0.0
     status = _balance(ev, ws, ms)
+    if status == SETTLED and _turned(ev):
+        status = _balance(ev, ws, ms)
     for _ in range(count):
         # one that opens so slowly that it falls back at once
         if status != SETTLED or not _hold_back(ev, ws, ms, col(ev, W_N)):
@@ -235,6 +244,26 @@ def find_forces(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return status
     _stand_apart(ev, ws, ms)
     return _refuse_jam(ev)
+
+
+@internal
+def _turned(ev: Any) -> bool:
+    """True if a contact that has reached the limit of its friction would set off the other way, since others have let
+    go at the same instant: then it is friction that decides."""
+    slips, found, fastest = col(ev, SLIPS), False, _fastest(ev)
+    for i in range(whole(ev)[COUNT]):
+        if slips[i] * col(ev, W_T)[i] < -PRESSING * fastest and col(ev, DIRECTION)[i] == slips[i]:
+            slips[i], found = 0.0, True
+    return found
+
+
+@internal
+def _fastest(ev: Any) -> float:
+    """The largest of the free accelerations, m/s^2."""
+    fastest = 0.0
+    for i in range(whole(ev)[COUNT]):
+        fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]))
+    return fastest
 
 
 @internal
@@ -425,11 +454,14 @@ def sticking(ev: Any) -> int:
     those with the highest limits first. Returns their number."""
     count, static, order, found = whole(ev)[COUNT], col(ev, STATIC), ivec(ev.order, 2 * ev.most), 0
     slipping, f_n, f_t = whole(ev)[SLIPPING] != 0, col(ev, F_N), col(ev, F_T)
+    fastest = _fastest(ev)
     for i in range(count):
         limit = static[i] * f_n[i]
         below = abs(f_t[i]) < limit * (1.0 - AT_LIMIT) or limit == 0.0
         # blocks that ride on one another need just the limit
         below = below or (not slipping and (whole(ev)[STICKS] != 0 or _stays(ev, i)))
+        # where next to nothing presses, rounding must not say that friction is below the limit of next to nothing
+        below = below and (limit == 0.0 or abs(col(ev, W_T)[i]) <= PRESSING * fastest)
         free = static[i] > 0.0 and col(ev, DIRECTION)[i] == 0.0 and col(ev, FULL)[i] == 0.0
         if below and free and col(ev, AT_REST)[i] != 0.0:
             at = found
@@ -554,7 +586,11 @@ def keep(ev: Any, ws: Any, rank: float) -> None:
         return
     for j in range(stuck):
         if closes[order[j]] != 0.0:
-            some[normals + kept] = count + order[j]
+            at = normals + kept
+            while at > normals and col(ev, FIRST)[some[at - 1] - count] < col(ev, FIRST)[order[j]]:
+                some[at] = some[at - 1]
+                at -= 1
+            some[at] = count + order[j]
             kept += 1
     number = independent_of(ev, ws, normals + kept, rank)
     for j in range(number):
@@ -568,6 +604,39 @@ def keep(ev: Any, ws: Any, rank: float) -> None:
         if chosen[j] >= normals:
             i = some[chosen[j]] - count
             slide[i], ratio[i] = STUCK, 0.0
+
+
+@internal
+def keep_others(ev: Any, ws: Any) -> bool:
+    """`keep`, with those first along whose tangents it has been left to others to hold; False if there are none.
+
+    A disk that presses against two others balances their friction by itself: if one is to carry a constant share of its
+    normal force, that share is the one with which the disk is in balance under any normal force, and nothing says how
+    large that is.
+    """
+    count, first, some, latest = whole(ev)[COUNT], col(ev, FIRST), False, 0.0
+    for i in range(count):
+        latest = max(latest, first[i])
+    stuck, order = sticking(ev), ivec(ev.order, 2 * ev.most)
+    for j in range(stuck):
+        i = order[j]
+        if col(ev, FLAG)[i] != 0.0 and col(ev, NEW_SLIDE)[i] == IDLE and first[i] == 0.0:
+            first[i], some = latest + 1.0, True
+    if some:
+        keep(ev, ws, real(ev)[RANK])
+    return some
+
+
+@internal
+def pulls(ev: Any, ws: Any) -> bool:
+    """True if a contact that has been kept pulls, by more than what the forces may be wrong by."""
+    lam, rows, contacts = vec(ws.lam, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts), ivec(ev.contacts, ev.most)
+    largest, least = 0.0, 0.0
+    for i in range(whole(ev)[COUNT]):
+        if col(ev, FLAG)[i] != 0.0:
+            largest = max(largest, col(ev, F_N)[i])
+            least = min(least, -lam[rows[contacts[i]]])
+    return least < -PULLING * largest
 
 
 @internal

@@ -13,6 +13,8 @@ from ..contact.complementarity import RANK as FINEST_RANK
 from ..contact.modes import (
     CLOSED,
     GAP_START,
+    IMPULSE_JUMP,
+    LOSS_JUMP,
     MEMORY_SIZE,
     MODE,
     OPEN,
@@ -38,6 +40,7 @@ from ..integrate.records import (
     OPENS,
     REST,
     SLIP,
+    STEP_SIZE,
     STICK,
     call_accelerations,
     call_sample,
@@ -50,6 +53,7 @@ from ..system.levels import position_level
 from ..system.records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, structure_at
 from ..system.switch import take_partition, take_structure
 from .blow import impact
+from .breakpoint import pass_breakpoint
 from .crowding import count_instant
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
@@ -59,6 +63,7 @@ from .records import (
     ACCELERATIONS,
     COUNT,
     DECLINED,
+    FIRST,
     FLAG,
     GAP,
     KINETIC,
@@ -66,6 +71,7 @@ from .records import (
     NEW_RATIO,
     NEW_SLIDE,
     NO_ACCELERATIONS,
+    NO_FORCES,
     NOT_MET,
     RANK,
     RATE,
@@ -80,9 +86,12 @@ from .records import (
     SLIDE_VALUE,
     SLOW,
     STATIC,
+    STOP_IMPULSE,
+    STOP_LOSS,
     STRUCK,
     WANT_ROOM,
     WAS,
+    WHO,
     call_part,
     col,
     copy,
@@ -90,9 +99,10 @@ from .records import (
     whole,
 )
 from .report import MOST_EVENTS, report, room_for
-from .resting import LOOSEST_RANK, RANK_OF_MANY, choose, keep
+from .resting import LOOSEST_RANK, RANK_OF_MANY, choose, keep, keep_others, pulls
 from .touching import find_touching, looks_again, read_rates, read_values
-from .unsettled import find_pending
+from .unsettled import find_pending, find_unsettled
+from .wedging import MOST_WEDGES, wedge
 
 
 @internal
@@ -114,9 +124,8 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     room = lc.capacity == 0 or ivec(lc.cursor, 1)[0] < lc.capacity
     if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts) or not _gets_on(dr, t):
         return DECLINED
-    if _any_force(dr, ws):
-        return DECLINED
     _keep(ev, ws, False)
+    step = vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here
     recall(ws, ms, 0)
     evaluate_residuals(ws)
@@ -128,19 +137,17 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
-    status = settle_massless(ev, dr, ws, ms)
+    status = call_part(ev.settle_forces, ev, dr, ws, ms) if _any_force(dr, ws) else SETTLED
+    if status == SETTLED:
+        status = settle_massless(ev, dr, ws, ms)
     if status == SETTLED and _any_constraint(dr, ws):
         status = _decide(ev, dr, ws, ms, lc)
     if status == SETTLED:
         status = find_pending(ev, dr, ws, ms, lc)
     if status != SETTLED:
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
-        if ws.structure != structure:
-            take_structure(ws, structure)
-        take_partition(ws, partition)
-        recall(ws, ms, 0)
-        evaluate_residuals(ws)
-        _keep(ev, ws, True)
+        _put_back(ev, ws, ms, structure, partition)
+        vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = step
         return status
     begin_anew(ws, ms, lc)
     _count(dr, t)
@@ -148,6 +155,45 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
     _sample(dr, ws, lc)
     return SETTLED
+
+
+@internal
+def begin_pending_forces(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+    """Let the force laws of pending contacts act from the current point on, at the start; where something is wanted,
+    nothing has happened."""
+    _keep(ev, ws, False)
+    events, step = ivec(dr.counts, COUNTS_SIZE)[EVENTS], vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
+    structure, partition = ws.structure, structure_at(ws.structure).partition
+    status = int(call_part(ev.settle_forces, ev, dr, ws, ms))
+    if status == SETTLED:
+        begin_anew(ws, ms, lc)
+        return status
+    _put_back(ev, ws, ms, structure, partition)
+    ivec(dr.counts, COUNTS_SIZE)[EVENTS], vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = events, step
+    return status
+
+
+@internal
+def go_on_behind(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+    """Go on behind the breakpoint that is due; closed contacts that do not fit the new forces are pending."""
+    status = pass_breakpoint(ev, dr, ws, ms)
+    if status != SETTLED:
+        return status
+    begin_anew(ws, ms, lc)
+    if not find_unsettled(ev, ws, ivec(dr.pending, ws.n_contacts)):
+        _sample(dr, ws, lc)
+    return SETTLED
+
+
+@internal
+def _put_back(ev: Any, ws: Any, ms: Any, structure: int, partition: int) -> None:
+    """As it was before the instant."""
+    if ws.structure != structure:
+        take_structure(ws, structure)
+    take_partition(ws, partition)
+    recall(ws, ms, 0)
+    evaluate_residuals(ws)
+    _keep(ev, ws, True)
 
 
 @internal
@@ -180,10 +226,10 @@ def _any_force(dr: Any, ws: Any) -> bool:
 
 @internal
 def _any_constraint(dr: Any, ws: Any) -> bool:
-    """True if a contact with mass on both sides is pending."""
+    """True if a contact constraint with mass on both sides is pending."""
     law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
     for k in range(ws.n_contacts):
-        if pending[k] != 0 and law[k] != MASSLESS:
+        if pending[k] != 0 and law[k] != MASSLESS and law[k] != FORCE:
             return True
     return False
 
@@ -232,7 +278,7 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         k = contacts[i]
         col(ev, KINETIC)[i], col(ev, STATIC)[i] = friction[k], static[k]
         col(ev, RESTITUTION)[i] = vec(dr.restitution, ws.n_contacts)[k]
-        col(ev, RESTS)[i] = 0.0
+        col(ev, RESTS)[i] = col(ev, FIRST)[i] = col(ev, STOP_IMPULSE)[i] = col(ev, STOP_LOSS)[i] = 0.0
         col(ev, SLOW)[i] = vec(dr.rest_ratio, ws.n_contacts)[k] * rate_size(ws, k) if crowded else 0.0
     status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status != SETTLED:
@@ -246,16 +292,23 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
             col(ev, ROUNDING)[i] *= max(1.0, 2.0 * real(ev)[LEFT])
         accelerations = 0.0
     real(ev)[ACCELERATIONS] = accelerations
-    status = call_part(ev.begin_rest, ev, dr, ws, ms)
-    if status == SETTLED:
-        status = choose(ev, dr, ws, ms)
+    for _ in range(MOST_WEDGES):
+        status = call_part(ev.begin_rest, ev, dr, ws, ms)
+        if status == SETTLED:
+            status = choose(ev, dr, ws, ms)
+        # one contact alone that jams is for the user to hear of
+        if status != NO_FORCES or whole(ev)[WHO] >= 0 or ms.exact == 0 or not wedge(ev, dr, ws, ms):
+            break
     if status != SETTLED:
         return status
+    _account_stops(ev, ws)
     rank = FINEST_RANK if count <= MANY else RANK_OF_MANY
     keep(ev, ws, min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK))
     while True:
         status = _take(ev, dr, ws, ms)
         repeats = status == REPEATED_ROWS or status == SINGULAR_MATRIX or status == NO_ACCELERATIONS
+        if (repeats or (status == SETTLED and pulls(ev, ws))) and keep_others(ev, ws):
+            continue
         # contacts that each can be told from any other repeat each other together
         if not repeats or real(ev)[RANK] >= LOOSEST_RANK or not _any(ev, FLAG):
             break
@@ -263,6 +316,15 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     if status == SETTLED:
         _report(ev, dr, ws, ms)
     return status
+
+
+@internal
+def _account_stops(ev: Any, ws: Any) -> None:
+    """What stopped without a collision, to the contacts' memories."""
+    memory, contacts = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(ev.contacts, ev.most)
+    for i in range(whole(ev)[COUNT]):
+        memory[contacts[i], IMPULSE_JUMP] += col(ev, STOP_IMPULSE)[i]
+        memory[contacts[i], LOSS_JUMP] += col(ev, STOP_LOSS)[i]
 
 
 @internal

@@ -16,7 +16,7 @@ from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, NO_ACCELERATION, RATE_ROUNDING
-from ..system.evaluate import evaluate_tangent
+from ..system.evaluate import evaluate_energy, evaluate_tangent
 from ..system.levels import acceleration_level, position_level, rate_level
 from ..system.records import OK
 from ..system.switch import engage_modes
@@ -31,6 +31,8 @@ from .records import (
     SINGULAR_JOINTS,
     SLIDE_RATE,
     SLIDE_VALUE,
+    STOP_IMPULSE,
+    STOP_LOSS,
     WANT_PIVOTS,
     WANT_STRUCTURE,
     WHO,
@@ -205,6 +207,27 @@ def push(ev: Any, ws: Any, normal: Any, tangential: Any) -> None:
         for j in range(count):
             rate[j] += impulse * a[j, i]
             slide_rate[j] += impulse * a[count + j, i]
+
+
+@internal
+def push_and_account(ev: Any, dr: Any, ws: Any, normal: Any, tangential: Any) -> None:
+    """`push`, of contacts that do not collide: impulses and the energy that they take (half the impulse times the sum
+    of the rates before and after it) are added to STOP_IMPULSE and STOP_LOSS, the rest to the work of inputs."""
+    rate, slide_rate, loss = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, STOP_LOSS)
+    energy, lost = vec(ws.energy, 3), 0.0
+    evaluate_energy(ws)
+    before = energy[0]
+    for i in range(whole(ev)[COUNT]):
+        loss[i] -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
+        lost -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
+    push(ev, ws, normal, tangential)
+    for i in range(whole(ev)[COUNT]):
+        loss[i] -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
+        lost -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
+        col(ev, STOP_IMPULSE)[i] += normal[i]
+    evaluate_energy(ws)
+    if dr.input_account >= 0:
+        vec(ws.v, ws.n_ext)[dr.input_account] += energy[0] - before + lost
 
 
 @internal

@@ -5,17 +5,14 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
 from ..contact.painleve import refuse_passed_jam, sliding_contacts
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
-from ..rounding import CONTINUOUS, GAP_ROUNDING, NO_STEP, PRESSING, SHORTEST
-from ..system.evaluate import evaluate_residuals
-from ..system.levels import position_level, rate_level
-from ..system.projection import bring_to_rest
+from ..rounding import GAP_ROUNDING, NO_STEP, PRESSING, SHORTEST
+from ..system.levels import position_level
 from ..system.records import (
     FACTOR_AGE,
     FAILED_NORM,
@@ -437,48 +434,11 @@ def _closing_step(sim: "Simulation", row: int, h: float, overlap: float, before:
     return find_root(gap, 0.0, h, 0.5 * h, 0.0) if closes else h
 
 
-def _warn_of_jump(sim: "Simulation", t: float) -> None:
-    """Say which drivers strike: an event is of a contact, and a jump of a Ramp's velocity is seldom meant."""
-    assembly, rates = sim.assembly, sim.workspace.arrays["phid"]
-    jumps = {
-        assembly.row_names[row]: -float(rates[row])
-        for row in range(assembly.m_joints)
-        if abs(rates[row]) > _no_jump(sim)[row]
-    }
-    logger.warning(
-        "at t = %.9g s the velocity jumps (%s): an impact of the driver; its work is in energy.input_work. "
-        "A Polynomial or a Table starts smoothly",
-        t,
-        ", ".join(f"driver '{name}' by {jump:.6g}" for name, jump in jumps.items()),
-    )
-
-
-def _no_jump(sim: "Simulation") -> NDArray[np.float64]:
-    """Changes of the rates of rows of Phi at a breakpoint that are no jumps, (m,)."""
-    row_scale = sim.workspace.arrays["row_scale"][: sim.assembly.m]
-    return np.asarray(CONTINUOUS * rate_level(sim.workspace.record) * row_scale)
-
-
 def restart_at(sim: "Simulation", t: float) -> None:
-    """Go on at the breakpoint t, just after the newest row, where a force or the rate of a driver jumps.
-
-    A driver's jump in rate is an impact of the driver, logged as a warning: v jumps by M dv + Phi_q^T Lambda = 0,
-    Phi_q dv = -phid, and the change of kinetic energy is the driver's work.
-    """
-    ws, arrays, active = sim.workspace.record, sim.workspace.arrays, sim.workspace.structure.active
-    recall(ws, sim._method.record, 0)
-    evaluate_residuals(ws)
-    before = arrays["phid"][active].copy()
-    arrays["t"][0] = t
-    evaluate_residuals(ws)
-    kinetic = sim.kinetic_energy()
-    # what a method without velocity constraints has violated before is no jump
-    if np.any(np.abs(arrays["phid"][active] - before) > _no_jump(sim)[active]):
-        _warn_of_jump(sim, t)
-        bring_to_rest(sim.workspace, "phid", "v")
-        sim.add_input_work(sim.kinetic_energy() - kinetic)
-    sim.use_modes()
-    sim._new_history()
-    sim.pending = sim.unsettled()
-    if not sim.pending:
-        sim._sample_now()
+    """Go on at the breakpoint t, just after the newest row, where a force or the rate of a driver jumps
+    (`events/breakpoint.py`)."""
+    sim.flush()
+    sim.take_events()
+    if sim.workspace.dropped:
+        sim.look_at_redundant_rows()
+    sim.settle(lambda: sim.drive.pass_breakpoint(t))

@@ -61,7 +61,6 @@ class Blueprint:
             attributes.pop(name, None)
         for name in _LISTS:
             attributes[name] = list(attributes[name])
-        new.open_accounts = dict(old.open_accounts)
         new.workspace = old.workspace.moved(take)
         new._method, new._loop, new.drive = old._method.moved(take), old._loop.moved(take), old.drive.moved(take)
         new.guard = old.guard.moved(take)
@@ -98,7 +97,7 @@ def what_differs(a: Assembly, b: Assembly) -> str:
     ):  # fmt: skip
         if getattr(a, name) != getattr(b, name):
             return name
-    for name in ("signals", "breakpoints", "batches", "contacts", "markers"):
+    for name in ("signals", "breakpoints", "batches", "contacts", "derived"):
         if len(getattr(a, name)) != len(getattr(b, name)):
             return name
     for x, y in zip(a.batches, b.batches, strict=True):
@@ -112,7 +111,7 @@ def what_differs(a: Assembly, b: Assembly) -> str:
         same = all(getattr(c, name) == getattr(d, name) for name in kept)
         if not (same and type(c.law) is type(d.law) and type(c.friction) is type(d.friction)):
             return f"contact '{c.name}'"
-    for p, q in zip(a.markers, b.markers, strict=True):
-        if p.name != q.name or p.coordinates != q.coordinates:
-            return f"output '{p.name}'"
+    for p, q in zip(a.derived, b.derived, strict=True):
+        if type(p) is not type(q) or tuple(p.channels) != tuple(q.channels):
+            return f"channel '{p.channels[0].name}'"
     return ""

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.modes import ACTIVE, CLOSED, LOSS_JUMP, MODE, SLIDE, STICKS
+from ..contact.modes import ACTIVE, CLOSED, MODE, SLIDE, STICKS
 from ..errors import ConsistencyError
 from ..events import Event
 from ..events.records import SETTLED, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
 from ..methods.registry import Formula
-from ..rounding import FIRST_TOUCH, RATE_ROUNDING
+from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
 from ..system.assembly import Assembly
-from ..system.evaluate import evaluate_energy, evaluate_power
+from ..system.evaluate import evaluate_power
 from ..system.levels import position_level, rate_level
 from ..system.partition import prepare
 from ..system.records import OK
@@ -24,7 +24,7 @@ from ..system.scales import Scales
 from ..system.workspace import Workspace
 from .drive import Drive
 from .failures import failure_of
-from .records import HANDLED, HERE, STEP_SIZE
+from .records import HANDLED, HERE
 from .settings import Settings
 
 logger = logging.getLogger(__name__)
@@ -62,28 +62,6 @@ class ContactSide:
     def gap_rate(self, k: int) -> float:
         """Its rate, m/s."""
         return float(self.workspace.arrays["phid"][self.assembly.contacts[k].row])
-
-    def kinetic_energy(self) -> float:
-        """Kinetic energy at the workspace's point, J."""
-        evaluate_energy(self.workspace.record)
-        return float(self.workspace.arrays["energy"][0])
-
-    def add_input_work(self, work: float) -> None:
-        """Work that driven constraints did during an impact, to its account."""
-        if "input" in self.assembly.work_names:
-            self.workspace.arrays["v"][self.assembly.work_index("input")] += work
-
-    def contact_accounts(self, k: int) -> tuple[float, float]:
-        """Impulse (N s) and dissipation (J) of contact k so far."""
-        contact, v = self.assembly.contacts[k], self.workspace.arrays["v"]
-        return (
-            float(v[contact.impulse_account]),
-            float(v[contact.dissipation_account] + self.memory[k, LOSS_JUMP]),
-        )
-
-    def elastic_energy(self, k: int, contact: Any) -> float:
-        """Elastic energy that the force law of contact k holds, J."""
-        return float(contact.law.elastic_energy(max(-self.gap(k), 0.0)))
 
     def inverse_masses(self, contacts: list[int]) -> NDArray[np.float64]:
         """Inverse effective masses (2 contacts, 2 contacts) of these contacts, 1/kg: how unit impulses along normals
@@ -123,12 +101,6 @@ class ContactSide:
             self.workspace.pivots_wanted()
         else:
             self.workspace.partition_wanted()
-
-    def start_small(self, k: int, speed: float) -> None:
-        """Begin contact k with a step in which it closes by FIRST_TOUCH of its size, so that the error control sees the
-        force grow: a step over the whole contact would find no force at its stages."""
-        size = float(self.workspace.arrays["row_scale"][self.assembly.contacts[k].row])
-        self.clock[STEP_SIZE] = min(self.clock[STEP_SIZE], FIRST_TOUCH * size / speed)
 
     def add_event(self, event: Event) -> None:
         """Record an event."""

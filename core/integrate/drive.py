@@ -6,6 +6,7 @@ of `records` that says what it is.
 """
 
 import logging
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,20 +16,21 @@ from ..compiled.image import Take, twin
 from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, vec
-from ..contact.laws import ImpactLaw
+from ..contact.friction import LuGreFriction
+from ..contact.laws import ForceLaw, ImpactLaw, law_address
 from ..contact.progress import Progress
 from ..events import Event
 from ..events.instant import Instant
 from ..events.laws import code_of
 from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, call_part, instant_at
 from ..events.report import MOST_EVENTS
-from ..events.settle import settle
+from ..events.settle import begin_pending_forces, go_on_behind, settle
 from ..events.unsettled import find_unsettled
 from ..methods.history import history_time
 from ..methods.records import METHOD_TYPE
 from ..rounding import NO_STEP
 from ..stage.accelerations import solve_accelerations
-from ..system.assembly import Assembly
+from ..system.assembly import Assembly, ContactInfo
 from ..system.records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
 from .asleep import wake_all
 from .loop import accept, run, trial_step
@@ -48,15 +50,19 @@ from .records import (
     EVENT_SIZE,
     EVENTS,
     FAILED,
+    FORCE_NUMBERS,
     FOUND_SIZE,
+    FULL,
     GAINS,
     GOAL,
     GOALS_SIZE,
     HANDLED,
     HANDLED_AT,
     JAM,
+    JUMPS,
     LAST_STOP,
     LOOP_TYPE,
+    PASSED,
     REACHED,
     RUN_SIGNATURE,
     SAMPLE_SIGNATURE,
@@ -97,7 +103,7 @@ def _aim(dr: Any, ms: Any, lc: Any) -> int:
         if now < breakpoints[i] < ahead:
             ahead = breakpoints[i]
     # steps end just before a breakpoint, so that they see what holds to the left of it
-    last = np.nextafter(ahead, -np.inf)
+    last, goals[PASSED] = np.nextafter(ahead, -np.inf), ahead
     if last - now <= NO_STEP * abs(now):
         return DUE
     if goal - now <= NO_STEP * abs(goal):
@@ -133,6 +139,14 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
                 return SETTLE if status == DECLINED else (WANTED if status <= WANT_PIVOTS else FAILED)
             continue
         code = _aim(dr, ms, lc)
+        if code == DUE and ws.n_redundant == 0:
+            if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+                return FULL
+            status = call_settle(dr.pass_breakpoint, dr)
+            if status != SETTLED:
+                counts[STATUS] = status
+                return WANTED if status <= WANT_PIVOTS else FAILED
+            continue
         if code != OK:
             return code
         left = last - steps[STEPS] - counts[HANDLED]
@@ -189,6 +203,20 @@ def settle_pending(dr: Any) -> int:
 
 
 @compiled
+def pass_breakpoint(dr: Any) -> int:
+    """Go on behind the breakpoint `PASSED` of the goals: a status of `events/records.py`."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return go_on_behind(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
+def begin_forces(dr: Any) -> int:
+    """`begin_pending_forces`, for Python."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return begin_pending_forces(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
 def unsettled_now(dr: Any) -> bool:
     """`find_unsettled` at the current point, for Python."""
     ws, ev = workspace_at(dr.workspace), instant_at(dr.instant)
@@ -214,6 +242,27 @@ def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
         "restitution": np.array([law.restitution if law else 0.0 for law in impacts], dtype=np.float64),
         "rest_ratio": np.array([law.rest_ratio if law else 0.0 for law in impacts], dtype=np.float64),
         "friction": np.array([c.coulomb.coefficient if c.coulomb else 0.0 for c in contacts], dtype=np.float64),
+        **_forces_of(contacts),
+    }
+
+
+def _forces_of(contacts: Sequence[ContactInfo]) -> dict[str, NDArray[Any]]:
+    """What the record takes from contacts that act as forces; zeros for the others."""
+    laws = [c.law if isinstance(c.law, ForceLaw) else None for c in contacts]
+    stiffness = [c.friction.bristle_stiffness if isinstance(c.friction, LuGreFriction) else 0.0 for c in contacts]
+    least = [0.0 if law is None else -1.0 if law.minimum_approach_speed is None else law.minimum_approach_speed
+             for law in laws]  # fmt: skip
+    return {
+        "force_law": np.array([law_address(law) if law else 0 for law in laws], dtype=np.int64),
+        "force_numbers": np.array(
+            [law.formula_parameters() if law else (0.0,) * FORCE_NUMBERS for law in laws], dtype=np.float64
+        ).reshape(-1, FORCE_NUMBERS),
+        "least_approach": np.array(least, dtype=np.float64),
+        "ends_early": np.array([law is not None and law.release == "force" for law in laws], dtype=np.int64),
+        "impulse_account": np.array([c.impulse_account for c in contacts], dtype=np.int64),
+        "dissipation_account": np.array([c.dissipation_account for c in contacts], dtype=np.int64),
+        "bristle": np.array([c.bristle for c in contacts], dtype=np.int64),
+        "bristle_stiffness": np.array(stiffness, dtype=np.float64),
     }
 
 
@@ -224,6 +273,16 @@ def _warn_of_gain(t: float, gains: list[tuple[str, float]], laws: dict[str, str]
         t,
         ", ".join(f"'{name}' ({laws[name]})" for name, _ in gains),
         gains[0][1],
+    )
+
+
+def _warn_of_jump(t: float, jumps: list[tuple[str, float]]) -> None:
+    """Say which drivers strike: an event is of a contact, and a jump of a Ramp's velocity is seldom meant."""
+    logger.warning(
+        "at t = %.9g s the velocity jumps (%s): an impact of the driver; its work is in energy.input_work. "
+        "A Polynomial or a Table starts smoothly",
+        t,
+        ", ".join(f"driver '{name}' by {jump:.6g}" for name, jump in jumps),
     )
 
 
@@ -243,7 +302,9 @@ class Drive:
         self.goals, self.counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
         self.goals[HANDLED_AT] = np.nan
         self.pending = np.zeros(count, dtype=np.int64)
-        self.events = np.zeros((max(EVENT_ROWS, 2 * MOST_EVENTS * len(contacts)) if contacts else 1, EVENT_SIZE))
+        rows = 2 * MOST_EVENTS * len(contacts) + assembly.m_joints
+        self.events = np.zeros((max(EVENT_ROWS, rows) if contacts or assembly.breakpoints else 1, EVENT_SIZE))
+        self._rows = assembly.row_names
         self.instant = Instant(assembly)
         self._record = ArrayRecord(
             DRIVE,
@@ -257,7 +318,8 @@ class Drive:
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": sim._loop.address,
                 "instant": self.instant.address, "event_rows": len(self.events),
                 "settle": address_of(settle_pending, SETTLE_SIGNATURE) if contacts else 0,
-                "n_breakpoints": len(assembly.breakpoints),
+                "n_breakpoints": len(assembly.breakpoints), "joint_rows": assembly.m_joints,
+                "pass_breakpoint": address_of(pass_breakpoint, SETTLE_SIGNATURE) if assembly.breakpoints else 0,
                 "run": address_of(run, RUN_SIGNATURE), "trial": address_of(trial_step, TRIAL_SIGNATURE),
                 "accept": address_of(accept, ACCEPT_SIGNATURE),
                 "write_sample": address_of(write_sample, SAMPLE_SIGNATURE),
@@ -311,6 +373,20 @@ class Drive:
         self.pending[pending] = 1
         return int(settle_pending(self._record.record))
 
+    def pass_breakpoint(self, t: float) -> int:
+        """Go on behind the breakpoint t (s), just after the newest row: a status, as `settle`."""
+        self.goals[PASSED] = t
+        return int(pass_breakpoint(self._record.record))
+
+    def begin_forces(self, contacts: list[int]) -> int:
+        """Let the force laws of these contacts act from the current point on: a status, as `settle`."""
+        self.pending[:] = 0
+        self.pending[contacts] = 1
+        try:
+            return int(begin_forces(self._record.record))
+        finally:
+            self.pending[:] = 0
+
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the current point: they pull, or are held beyond their
         friction."""
@@ -345,8 +421,11 @@ class Drive:
         """The events since the last call."""
         rows: NDArray[np.float64] = self.events[: self.counts[EVENTS]]
         self.counts[EVENTS] = 0
-        found, gains = [], []
+        found, gains, jumps = [], [], []
         for t, kind, k, *numbers in rows.tolist():
+            if kind == JUMPS:
+                jumps.append((t, self._rows[int(k)], numbers[2]))
+                continue
             name = self._names[int(k)]
             if kind == GAINS:
                 gains.append((t, name, -numbers[1]))
@@ -354,4 +433,6 @@ class Drive:
                 found.append(Event(t, EVENT_KINDS[int(kind)], name, *numbers))
         for t in dict.fromkeys(t for t, _, _ in gains):
             _warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t], self._laws)
+        for t in dict.fromkeys(t for t, _, _ in jumps):
+            _warn_of_jump(t, [(name, jump) for at, name, jump in jumps if at == t])
         return found

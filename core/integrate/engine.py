@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
 from ..compiled.notices import compile_notices
-from ..contact.force_contact import handle_force
 from ..contact.laws import ForceLaw
 from ..contact.progress import Progress
 from ..description import Model
@@ -108,7 +107,6 @@ class Engine(ContactSide):
         self.table = ChannelTable(system, self.assembly)
         self.events: list[Event] = []
         self.progress: Callable[[float], None] | None = None
-        self.open_accounts: dict[int, tuple[float, float]] = {}
         self.pending: list[int] = []
         self.long_step: Any = None
         self.t = float(t0)
@@ -208,14 +206,12 @@ class Engine(ContactSide):
         self.clock[STEP_SIZE] = self.settings.first_step or self._first_step()
         self._new_history()
         # a force law that acts from the start holds energy from the start
-        for k in touching:
-            law = a.contacts[k].law
-            if isinstance(law, ForceLaw):
-                handle_force(self, k, law)
-        self._new_history()
+        forces = [k for k in touching if isinstance(a.contacts[k].law, ForceLaw)]
+        if forces:
+            self.settle(lambda: self.drive.begin_forces(forces))
         self.table.initial_energy = self.table.total_energy(self.sample())
         self._sample_now()
-        self.pending = [k for k in touching if not isinstance(a.contacts[k].law, ForceLaw)]
+        self.pending = [k for k in touching if k not in forces]
         self._handle_pending()
 
     def _first_step(self) -> float:
@@ -241,12 +237,11 @@ class Engine(ContactSide):
         if not self.compiled_events:
             self._handle_otherwise(pending)
             return
-        forces = [k for k in pending if isinstance(self.assembly.contacts[k].law, ForceLaw)]
-        constraints = [k for k in pending if k not in forces]
-        if forces:
-            self._handle_forces(forces, bool(constraints))
-        if constraints:
-            self._settle(constraints)
+        self.flush()
+        self.take_events()
+        if self.workspace.dropped:
+            self.look_at_redundant_rows()
+        self.settle(lambda: self.drive.settle(pending))
 
     def _note_instant(self, pending: list[int]) -> None:
         """One more instant with events, which Python handles."""
@@ -267,30 +262,12 @@ class Engine(ContactSide):
         self.pending = self.unsettled()
         self._sample_now()
 
-    def _handle_forces(self, pending: list[int], more: bool) -> None:
-        """Let forces of contacts begin and end; `more`: other contacts have events at this instant too."""
-        self._note_instant(pending)
-        recall(self.workspace.record, self._method.record, 0)
-        self._new_history()
-        for k in pending:
-            law = self.assembly.contacts[k].law
-            if isinstance(law, ForceLaw):
-                handle_force(self, k, law)
-        self._new_history()
-        if not more:
-            self.pending = self.unsettled()
-            self._sample_now()
-
-    def _settle(self, pending: list[int]) -> None:
-        """Let compiled code settle the pending events of contacts that are constraints."""
-        self.flush()
-        self.take_events()
-        if self.workspace.dropped:
-            self._look_at_redundant_rows()
-        while (status := self.drive.settle(pending)) != SETTLED:
+    def settle(self, act: Callable[[], int]) -> None:
+        """Let compiled code settle what happens at the newest row, and build what it wants for that."""
+        while (status := act()) != SETTLED:
             self.workspace.sync()
             if status == DECLINED:
-                self._note_instant(pending)
+                self._note_instant(self.drive.take_pending())
                 raise RuntimeError("compiled code declines only what the guard against endless events stops")
             elif status > WANT_PIVOTS:
                 raise failure_of(self, status)
@@ -300,7 +277,7 @@ class Engine(ContactSide):
         self.pending = self.drive.take_pending()
         self.take_events()
 
-    def _look_at_redundant_rows(self) -> None:
+    def look_at_redundant_rows(self) -> None:
         """Choose anew which of them are left out, if others would be much better at the newest row."""
         recall(self.workspace.record, self._method.record, 0)
         if choose_rows(self.workspace):

@@ -14,34 +14,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import types
-from ..compiled.jit import address_of, caller, compiled_unlocked, internal, record_view
+from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import ACTIVE, CLOSED
 from ..description import Model
 from ..errors import ModelError
 from ..events.records import instant_at
 from ..events.settle import begin_anew
 from ..events.unsettled import find_unsettled
-from ..methods.history import bridge_rows, history_time, recall
-from ..methods.multistep import rows_available
-from ..methods.records import METHOD_TYPE
+from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
 from ..stage.accelerations import solve_accelerations
-from ..system.records import (
-    COUNTERS_SIZE,
-    LEAST_CONDITION,
-    OK,
-    RATE_SIZE,
-    STEPS,
-    WORKSPACE_TYPE,
-    WORST_CONDITION,
-)
+from ..system.records import COUNTERS_SIZE, OK, STEPS
 from . import advance
 from .dense_output import query
 from .drive import drive_on, loop_at, method_at, workspace_at
+from .exchange_record import (
+    EXCHANGE,
+    FIRST_STEP,
+    GOAL,
+    INITIAL_ENERGY,
+    INTERVAL,
+    LAST_CHANGE,
+    NOW,
+    QUERY_SIGNATURE,
+    TIMES_SIZE,
+    call_query,
+)
 from .inputs import PUNCTUAL
-from .near_singular import STRAINED
+from .read_channels import read_at_goal
 from .records import (
     ACCELERATIONS_SIGNATURE,
     BUDGET,
@@ -54,35 +55,9 @@ from .records import (
     call_accelerations,
 )
 from .records import GOAL as GOAL_TIME
-from .sample import write_sample
 
 if TYPE_CHECKING:
     from .simulation import Simulation
-
-EXCHANGE = np.dtype(
-    [
-        (name, np.int64)
-        for name in (
-            "workspace", "method", "loop",                         # addresses of the records
-            "drive",                                               # and of that of `drive`
-            "query", "accelerations",                              # addresses of functions
-            "times",                                               # (TIMES_SIZE,) float64
-            "inputs", "before", "n_inputs",                        # wanted; (n_inputs, INPUT_SIZE): what they were
-            "chunk", "read",
-            "sample", "sample_length", "channels", "n_channels",   # one row, and what it gives
-            "places", "summed", "n_sums", "number", "column", "signs", "n_terms", "flags", "flag_columns", "n_flags",
-            "balance",
-        )
-    ]
-)  # fmt: skip
-
-# columns of `times`
-NOW = 0
-GOAL = 1
-LAST_CHANGE, INTERVAL = 2, 3  # of inputs
-INITIAL_ENERGY = 4  # J
-FIRST_STEP = 5  # steps made, and instants with events, before
-TIMES_SIZE = 6
 
 # what `exchange` returns, besides what `run` does
 DECLINED = 200
@@ -91,8 +66,6 @@ ARRIVED = 201
 """At the goal; the channels have not been asked for, or are not to be had in this way."""
 READ = 202
 
-QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
-call_query = caller(QUERY_SIGNATURE)
 drive_at = record_view(DRIVE_TYPE)
 
 
@@ -110,9 +83,11 @@ def _input_changes(ex: Any, ws: Any) -> int:
 
 
 @internal
-def _change_inputs(ex: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> bool:
+def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
     """Let the inputs take the values that are wanted, and start anew from now, as `restart_here` does; False, with the
-    inputs as they were, if that takes more."""
+    inputs as they were, if that takes more; `decline`: if it makes contacts pending, too."""
+    dr = drive_at(ex.drive)
+    ev = instant_at(dr.instant)
     times = vec(ex.times, TIMES_SIZE)
     wanted, n = vec(ex.inputs, ex.n_inputs), ex.n_inputs
     rows, before = mat(ws.inputs, n, INPUT_SIZE), mat(ex.before, n, INPUT_SIZE)
@@ -130,12 +105,17 @@ def _change_inputs(ex: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> bool:
         vec(ws.t, 1)[0] = t
     if status == OK:
         status = call_accelerations(ex.accelerations, ws)
-    if status != OK or find_unsettled(ev, ws, ivec(ev.unsettled, ws.n_contacts)):
+    unsettled = ivec(ev.unsettled, ws.n_contacts)
+    if status != OK or (find_unsettled(ev, ws, unsettled) and decline):
         for k in range(n):
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]
         return False
     begin_anew(ws, ms, lc)
+    pending = ivec(dr.pending, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        # what was to happen later than now will not
+        pending[k] = max(pending[k] if t == newest else 0, unsettled[k])
     if t > times[LAST_CHANGE]:
         times[LAST_CHANGE], times[INTERVAL] = t, t - times[LAST_CHANGE]
     return True
@@ -150,49 +130,12 @@ def _stop(times: Any) -> float:
     return times[GOAL] if expected <= times[GOAL] + PUNCTUAL * times[INTERVAL] else expected
 
 
-@internal
-def _near_singular(ws: Any, ms: Any, t: float) -> bool:
-    """`strained` at time t."""
-    rate = vec(ws.rate, RATE_SIZE)
-    strained = rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
-    inside = rows_available(ms) > 1 and history_time(ms, 1) < t < history_time(ms, 0)
-    return (strained and inside) or bridge_rows(ms) > 0
-
-
-@internal
-def _read(ex: Any, ws: Any, ms: Any) -> bool:
-    """The channels at the goal, but those of markers; False if they are not to be had, or one is not finite."""
-    t = vec(ex.times, TIMES_SIZE)[GOAL]
-    if _near_singular(ws, ms, t) or call_query(ex.query, ws, ms, t) != OK:
-        return False
-    sample, out = vec(ex.sample, ex.sample_length), vec(ex.channels, ex.n_channels)
-    write_sample(ws, sample)
-    places = ivec(ex.places, ex.n_channels)
-    for k in range(ex.n_channels):
-        out[k] = sample[places[k]]
-    summed = ivec(ex.summed, ex.n_sums)
-    for k in range(ex.n_sums):
-        out[summed[k]] = 0.0
-    number, column, signs = ivec(ex.number, ex.n_terms), ivec(ex.column, ex.n_terms), vec(ex.signs, ex.n_terms)
-    for i in range(ex.n_terms):
-        out[summed[number[i]]] += signs[i] * sample[column[i]]
-    out[ex.balance] -= vec(ex.times, TIMES_SIZE)[INITIAL_ENERGY]
-    flags, columns = ivec(ex.flags, ex.n_flags), ivec(ex.flag_columns, ex.n_flags)
-    for k in range(ex.n_flags):
-        mode = sample[columns[k]]
-        out[flags[k]] = 1.0 if mode == CLOSED or mode == ACTIVE else 0.0
-    for k in range(ex.n_channels):
-        if not np.isfinite(out[k]):
-            return False
-    return True
-
-
 @compiled_unlocked
 def exchange(ex: Any) -> int:
     """Set the inputs, go to the goal, read the channels."""
     ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
     changes, dr = _input_changes(ex, ws), drive_at(ex.drive)
-    if changes < 0 or (changes > 0 and not _change_inputs(ex, instant_at(dr.instant), ws, ms, lc)):
+    if changes < 0 or (changes > 0 and not _change_inputs(ex, ws, ms, lc, True)):
         return DECLINED
     times = vec(ex.times, TIMES_SIZE)
     goals, counts = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE)
@@ -201,7 +144,22 @@ def exchange(ex: Any) -> int:
     code = drive_on(dr, ws, ms, lc, False)
     if code != REACHED:
         return code
-    return READ if ex.read != 0 and _read(ex, ws, ms) else ARRIVED
+    return READ if ex.read != 0 and read_at_goal(ex, ws, ms) else ARRIVED
+
+
+@compiled
+def tell(ex: Any) -> bool:
+    """Set the inputs, and nothing else; False, with nothing changed, if that takes Python. Contacts whose mode does not
+    fit them are pending then."""
+    ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
+    changes = _input_changes(ex, ws)
+    return changes == 0 or (changes > 0 and _change_inputs(ex, ws, ms, lc, False))
+
+
+@compiled
+def read(ex: Any) -> bool:
+    """Read the channels at the goal, which is no later than the newest row; False if they are not to be had."""
+    return read_at_goal(ex, workspace_at(ex.workspace), method_at(ex.method))
 
 
 class Exchange:
@@ -227,6 +185,7 @@ class Exchange:
                 "n_inputs": inputs, "chunk": chunk, "read": 0,
                 "sample_length": length, "n_channels": channels, "n_sums": len(formulas["summed"]),
                 "n_terms": len(formulas["number"]), "n_flags": len(formulas["flags"]), "balance": table.balance,
+                "n_markers": table.n_markers,
             },
         )  # fmt: skip
         self.record = self._record.record
@@ -271,9 +230,11 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     sim.t = float(t)
     if code != READ:
         return None
+    if not sim.table.python_derives:
+        return ex.channels.copy()
     values = ex.channels.copy()
-    sim.table.put_markers(ex.sample, values)
-    if sim.assembly.markers and not np.isfinite(values).all():
+    sim.table.put_derived(ex.sample, values)
+    if not np.isfinite(values).all():
         return None  # whoever reads them one by one says which
     return values
 

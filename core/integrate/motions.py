@@ -71,7 +71,7 @@ def start_again(sim: "Simulation") -> None:
         arrays[name][...] = 0.0
     sim.flush()
     sim.events, sim.stored_events, sim.samples, sim.pending = [], (), [], []
-    sim.open_accounts, sim.redundant = {}, ()
+    sim.redundant = ()
     sim.method_arrays["ring"][1] = 0
     sim.workspace.drop(frozenset())
     sim.workspace.engage(frozenset(), frozenset())

@@ -10,31 +10,13 @@ from numpy.typing import NDArray
 from ..compiled.image import twin
 from ..contact.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..model.channels import Channel, Enumeration
+from ..model.derived import NOT_KNOWN, Columns, Derived
+from ..model.marker_channels2d import MarkerChannels2D
 from ..model.units import conjugate, per_second, times_second
 from ..system.assembly import Assembly, ContactInfo
-from .marker_channels import MarkerChannels
+from ..system.sample_layout import SampleLayout
 
 CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
-
-
-class SampleLayout:
-    """Where things stand in a sample (see `sample.py`)."""
-
-    def __init__(self, assembly: Assembly) -> None:
-        n, m, c = assembly.n, assembly.m, len(assembly.contacts)
-        self.q, self.v, self.a = slice(1, 1 + n), slice(1 + n, 1 + 2 * n), slice(1 + 2 * n, 1 + 3 * n)
-        at = 1 + 3 * n
-        self.multipliers = slice(at, at + m)
-        at += m
-        (
-            self.force, self.gap, self.gap_rate, self.mode, self.impulse_jump, self.loss_jump,
-            self.friction, self.sliding,
-        ) = (at + k * c for k in range(8))  # fmt: skip
-        at += 8 * c
-        self.kinetic, self.potential, self.strain = at, at + 1, at + 2
-        self.work = {name: at + 3 + k for k, name in enumerate(assembly.work_names)}
-        at += 3 + len(assembly.work_names)
-        self.residuals = (at, at + 1, at + 2)
 
 
 @dataclass(frozen=True)
@@ -66,10 +48,13 @@ class InContact:
 
 
 @dataclass(frozen=True)
-class OfMarker:
-    """A channel of a marker: its number among those of all markers."""
+class OneOf:
+    """A derived channel: which of a group it is, its number among all derived ones, and that of its rate."""
 
+    group: int
+    place: int
     number: int
+    rate: int
 
 
 class ChannelTable:
@@ -78,14 +63,19 @@ class ChannelTable:
     def __init__(self, system: Any, assembly: Assembly) -> None:
         self.layout = layout = SampleLayout(assembly)
         self.initial_energy = 0.0
-        self._formulas: list[tuple[Channel, int | Sum | InContact | OfMarker]] = []
+        self._formulas: list[tuple[Channel, int | Sum | InContact | OneOf]] = []
         for channel, at in system.coordinate_channels(assembly, layout):
             self._formulas.append((channel, at))
-        self._markers = MarkerChannels(assembly.markers, (layout.q.start, layout.v.start, layout.a.start))
-        for k, channel in enumerate(self._markers.channels):
-            self._formulas.append((channel, OfMarker(k)))
-        for k, channel in enumerate(assembly.multiplier_channels):
-            self._formulas.append((channel, layout.multipliers.start + k))
+        self._derived: tuple[Derived, ...] = assembly.derived
+        number = 0
+        for k, group in enumerate(self._derived):
+            first = number
+            for place, (channel, rate) in enumerate(zip(group.channels, group.rate_of, strict=True)):
+                rate = NOT_KNOWN if rate == NOT_KNOWN else first + rate
+                self._formulas.append((channel, OneOf(k, place, number, rate)))
+                number += 1
+        for row, channel in assembly.multiplier_channels.items():
+            self._formulas.append((channel, layout.multipliers.start + row))
         for k, contact in enumerate(assembly.contacts):
             self._add_contact(k, contact)
             if contact.bristle >= 0:
@@ -105,18 +95,20 @@ class ChannelTable:
     def moved(self, assembly: Assembly) -> "ChannelTable":
         """The table of another run, of an assembly that differs in its numbers only."""
         new = twin(self)
-        if assembly.markers:
-            layout = self.layout
-            new._markers = MarkerChannels(assembly.markers, (layout.q.start, layout.v.start, layout.a.start))
+        new._derived = assembly.derived
         return new
+
+    def _columns(self, samples: NDArray[np.float64]) -> Columns:
+        layout = self.layout
+        q, v, a, multipliers = (samples[:, part] for part in (layout.q, layout.v, layout.a, layout.multipliers))
+        return Columns(q, v, a, multipliers, lambda name: samples[:, layout.work[name]])
 
     def _prepare_values(self) -> None:
         """The formulas as index arrays, for one sample at a time."""
         plain = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, int)]
         flags = [(k, f.column) for k, (_, f) in enumerate(self._formulas) if isinstance(f, InContact)]
-        self._of_markers = np.array(
-            [k for k, (_, f) in enumerate(self._formulas) if isinstance(f, OfMarker)], dtype=np.intp
-        )
+        derived = [(k, f.rate) for k, (_, f) in enumerate(self._formulas) if isinstance(f, OneOf)]
+        self._derived_at, self._derived_rate = _pairs(derived)
         sums = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, Sum)]
         terms = [
             *((k, column, 1.0) for k, f in sums for column in f.columns),
@@ -131,14 +123,38 @@ class ChannelTable:
         self._terms = _pairs([(number[k], column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
 
+    @property
+    def _planar_markers(self) -> MarkerChannels2D | None:
+        """The derived channels that compiled code reads."""
+        return next((group for group in self._derived if isinstance(group, MarkerChannels2D)), None)
+
+    @property
+    def n_markers(self) -> int:
+        """Planar markers whose channels compiled code reads."""
+        markers = self._planar_markers
+        return 0 if markers is None else markers.count
+
+    @property
+    def python_derives(self) -> Derived | None:
+        """Derived channels that only Python reads; None if there are none."""
+        markers = self._planar_markers
+        return next((group for group in self._derived if group is not markers and group.channels), None)
+
     def index_arrays(self) -> dict[str, NDArray[np.int64] | NDArray[np.float64]]:
-        """The formulas of all channels but those of markers, by the names that `exchange` has for them."""
+        """The formulas of all channels but those that only Python derives, by the names that `exchange` has."""
         (number, column), (flags, flag_columns) = self._terms, self._flags
         found = {
             "places": self._places, "summed": self._summed, "number": number, "column": column, "flags": flags,
             "flag_columns": flag_columns,
         }  # fmt: skip
-        return {**{name: x.astype(np.int64) for name, x in found.items()}, "signs": self._signs.astype(np.float64)}
+        layout, markers, first = self.layout, self._planar_markers or MarkerChannels2D(()), 0
+        for k, (_, formula) in enumerate(self._formulas):
+            if isinstance(formula, OneOf) and formula.place == 0 and self._derived[formula.group] is markers:
+                first = k
+        return {
+            **{name: x.astype(np.int64) for name, x in found.items()}, "signs": self._signs.astype(np.float64),
+            **markers.index_arrays((layout.q.start, layout.v.start, layout.a.start), first),
+        }  # fmt: skip
 
     def _add_contact(self, k: int, contact: ContactInfo) -> None:
         layout, name, (gap, slide) = self.layout, contact.name, contact.units
@@ -214,8 +230,8 @@ class ChannelTable:
         formula = self._formulas[k][1]
         if isinstance(formula, int):
             return samples[:, formula]
-        if isinstance(formula, OfMarker):
-            return self._markers(samples)[:, formula.number]
+        if isinstance(formula, OneOf):
+            return self._derived[formula.group](self._columns(samples))[:, formula.place]
         found = formula(samples)
         return found - self.initial_energy if k == self.balance else found
 
@@ -230,13 +246,14 @@ class ChannelTable:
         if len(channel):
             mode = sample.take(column)
             out[channel] = (mode == CLOSED) | (mode == ACTIVE)
-        self.put_markers(sample, out)
+        self.put_derived(sample, out)
         return out
 
-    def put_markers(self, sample: NDArray[np.float64], values: NDArray[np.float64]) -> None:
-        """Put the channels of markers among those of one sample."""
-        if len(self._of_markers):
-            values[self._of_markers] = self._markers(sample[None, :])[0]
+    def put_derived(self, sample: NDArray[np.float64], values: NDArray[np.float64]) -> None:
+        """Put the derived channels among those of one sample."""
+        if self._derived:
+            columns = self._columns(sample[None, :])
+            values[self._derived_at] = np.concatenate([group(columns)[0] for group in self._derived])
 
     def rates(self, sample: NDArray[np.float64], rates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Rates of all channels (channels,) from those of the columns of a sample; NaN: not known."""
@@ -246,27 +263,18 @@ class ChannelTable:
                 found[k] = rates[formula]
             elif isinstance(formula, Sum):
                 found[k] = formula(rates[None, :])[0]
-        found[self._of_markers] = self._markers.rates(sample)
+        if self._derived:
+            values = np.full(len(self._formulas), np.nan)
+            self.put_derived(sample, values)
+            values = values[self._derived_at]
+            known = self._derived_rate != NOT_KNOWN
+            found[self._derived_at[known]] = values[self._derived_rate[known]]
         return found
 
     def total_energy(self, sample: NDArray[np.float64]) -> float:
         """Stored energy in one sample, J."""
         layout = self.layout
         return float(sample[layout.kinetic] + sample[layout.potential] + sample[layout.strain])
-
-
-def body_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, int]]:
-    """Position, velocity and acceleration of every body coordinate, with their columns in a sample."""
-    columns = []
-    for body, coordinate, index in assembly.body_columns:
-        for level, (name, what, part) in enumerate((
-            (coordinate.name, "", layout.q),
-            (coordinate.rate, "rate of ", layout.v),
-            (coordinate.acceleration, "second rate of ", layout.a),
-        )):  # fmt: skip
-            channel = Channel(f"{body}.{name}", coordinate.unit_of(level), f"{what}{coordinate.name} of {body}")
-            columns.append((channel, part.start + index))
-    return columns
 
 
 def _pairs(pairs: Sequence[tuple[int, int]]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -99,11 +99,17 @@ DRIVE = np.dtype(
             "goals",                                  # (GOALS_SIZE,) float64: where to go
             "counts",                                 # (COUNTS_SIZE,) int64
             "guard",                                  # (GUARD_SIZE,) float64: of `Progress`
-            "breakpoints", "n_breakpoints",
+            "breakpoints", "n_breakpoints", "pass_breakpoint",  # the last: address of a function
+            "joint_rows",                             # rows of Phi that are no contacts'
             "input_account",                          # index in v of the work of driven constraints; -1: there is none
             # of each contact
             "law",                                    # (n_contacts,) int64: how an impact is solved
             "restitution", "rest_ratio", "friction",  # (n_contacts,) float64
+            # of those that act as forces: address of the law, (FORCE_NUMBERS,) its parameters, least approach speed
+            # (m/s; < 0: a part of the model's), 1 if the force may end before the gap opens
+            "force_law", "force_numbers", "least_approach", "ends_early",
+            "impulse_account", "dissipation_account",  # places in v
+            "bristle", "bristle_stiffness",           # place in v, -1: none; N/m
             "pending",                                # (n_contacts,) int64: 1 where an event has to be handled
             "found",                                  # (n_contacts, FOUND_SIZE) float64: of the location of events
             "events", "event_rows",                   # (event_rows, EVENT_SIZE) float64: a buffer that Python empties
@@ -118,7 +124,8 @@ call_settle = caller(SETTLE_SIGNATURE)
 
 # columns of `goals`, s
 GOAL, LAST_STOP, HANDLED_AT = range(3)
-GOALS_SIZE = 3
+PASSED = 3  # the breakpoint that is due
+GOALS_SIZE = 4
 # columns of `counts`
 BUDGET = 0  # steps and instants with events that `drive` may take
 HANDLED = 1  # instants with events so far
@@ -128,11 +135,13 @@ STATUS = 4  # of the settling that has ended a run: `events/records.py`
 COUNTS_SIZE = 5
 
 FOUND_SIZE = 7
+FORCE_NUMBERS = 4
+"""Parameters of a force law."""
 # columns of an event
 EVENT_ROWS = 1024
 EVENT_SIZE = 9
 """Time, kind, contact, and the numbers of `Event` in their order."""
-IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS = range(8)
+IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS, JUMPS = range(9)
 EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
 """Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the
-energy."""
+energy; nor is JUMPS: the rate of a driver, with its row of Phi in place of a contact, has jumped."""

@@ -85,7 +85,7 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
                 raise ModelError(f"the factors of the solver state are not {len(own)} numbers but {len(stored)}")
             own[:] = stored
     workspace.state_bytes[:] = parts.buffer
-    sim.t, sim.pending, sim.open_accounts = parts.t, list(parts.pending), parts.open_accounts.copy()
+    sim.t, sim.pending = parts.t, list(parts.pending)
     sim.start_open, sim.input_times = parts.start_open, parts.input_times
     sim.table.initial_energy = parts.initial_energy
     sim.drive.goals[HANDLED_AT], sim.drive.counts[HERE] = parts.handled

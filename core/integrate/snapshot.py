@@ -46,7 +46,6 @@ class Snapshot(NamedTuple):
     dropped: frozenset[int]
     t: float
     pending: tuple[int, ...]
-    open_accounts: dict[int, tuple[float, float]]
     handled: tuple[float, int]
     outer: str
     start_open: bool
@@ -74,7 +73,6 @@ class Snapshot(NamedTuple):
             "engaged": sorted(engaged),
             "sticking": sorted(sticking),
             "pending": list(self.pending),
-            "open_accounts": {str(k): list(v) for k, v in self.open_accounts.items()},
             "handled": [repr(self.handled[0]), self.handled[1]],
             "outer": self.outer,
             "start_open": self.start_open,
@@ -103,7 +101,6 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         workspace.dropped,
         sim.t,
         tuple(sim.pending),
-        sim.open_accounts.copy(),
         (drive.goals.item(HANDLED_AT), drive.counts.item(HERE)),
         sim.outer,
         sim.start_open,
@@ -133,7 +130,6 @@ def snapshot_of(arrays: dict[str, NDArray[Any]], facts: dict[str, Any], layout: 
         frozenset(facts["dropped"]),
         float(facts["t"]),
         tuple(int(k) for k in facts["pending"]),
-        {int(k): (v[0], v[1]) for k, v in facts["open_accounts"].items()},
         (float(facts["handled"][0]), int(facts["handled"][1])),
         facts["outer"],
         bool(facts["start_open"]),

@@ -108,7 +108,7 @@ def _indices(x: Any, count: int) -> bool:
 def _check_facts(sim: "Simulation", state: State) -> None:
     facts, contacts, assembly = state.facts, len(sim.assembly.contacts), sim.assembly
     own = {
-        "t", "closed", "dropped", "engaged", "sticking", "pending", "open_accounts", "handled", "outer", "start_open",
+        "t", "closed", "dropped", "engaged", "sticking", "pending", "handled", "outer", "start_open",
         "input_times", "initial_energy", "fallbacks",
     }  # fmt: skip
     _need("facts", set(facts) == own, f"are {sorted(facts)}, needed are {sorted(own)}")
@@ -122,11 +122,6 @@ def _check_facts(sim: "Simulation", state: State) -> None:
     slides = {k for k, contact in enumerate(assembly.contacts) if contact.slide_row >= 0}
     _need("sticking", sticking <= closed & slides, "has contacts that are not closed, or have no friction")
     _need("t", _number(facts["t"]), f"is {facts['t']!r}, no time")
-    accounts, indices = facts["open_accounts"], {str(k) for k in range(contacts)}
-    kept = isinstance(accounts, dict) and all(
-        k in indices and isinstance(v, list) and len(v) == 2 and all(map(_number, v)) for k, v in accounts.items()
-    )
-    _need("open_accounts", kept, f"is {accounts!r}: two numbers for a contact each")
     handled, times = facts["handled"], facts["input_times"]
     counted = isinstance(handled, list) and len(handled) == 2 and _text_number(handled[0], True)
     _need("handled", counted and _indices(handled[1:], _LARGEST_COUNT), f"is {handled!r}: a time and a count")

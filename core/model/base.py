@@ -1,11 +1,20 @@
 """Base of all model records: frozen, validated, no unknown fields, no NaN."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, get_args, get_origin
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    ValidationError,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import CoreSchema
 
 from ..errors import ModelError
@@ -90,6 +99,22 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=60)]
 """A name: letters, digits and underscores, not starting with a digit (it becomes part of channel names)."""
 
 Vector2 = tuple[float, float]
+Vector3 = tuple[float, float, float]
+
+
+def in_space(vector: Sequence[float]) -> Vector3:
+    """A vector of two or three components in space: copies of records are not validated and may hold two."""
+    x, y, z = (*vector, 0.0)[:3]
+    return x, y, z
+
+
+Gravity = Annotated[
+    tuple[float, ...],
+    Field(min_length=3, max_length=3),
+    BeforeValidator(lambda g: (*g, 0.0) if isinstance(g, list | tuple) and len(g) == 2 else g),
+    WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 3}),
+]
+"""A vector whose third component may be left out: models of the plane have no use for it."""
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 Restitution = Annotated[float, Field(ge=0.0, le=1.0)]

@@ -1,5 +1,6 @@
 """A model that starts where a run was."""
 
+from collections.abc import Mapping
 from functools import singledispatch
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +17,12 @@ from ..elements import (
     MaterialPoint2D,
     MovingFrame2D,
     PointMass2D,
+    PointMass3D,
     RigidBody2D,
+    RigidBody3D,
 )
 from ..errors import ModelError
+from ..model.attitude import EulerParameters
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -69,7 +73,16 @@ def model_at(result: "Result", t: float | None = None) -> Model:
     model = result.system
     if not isinstance(model, Model):
         raise ModelError(f"this result is not of a Model, or comes without it: {REMEDY}")
-    start = start_at(result, t)
+    return model_from(model, start_at(result, t))
+
+
+def model_from(model: Model, start: Mapping[str, float]) -> Model:
+    """The model, starting with coordinates and rates by the names of channels.
+
+    Raises
+    ------
+    ModelError : for a body whose record cannot say where it is.
+    """
     bodies = []
     for body in model.bodies:
         records = body.coordinate_records()
@@ -93,6 +106,23 @@ def moved(body: BodyElement, q: Floats, v: Floats) -> dict[str, Any]:
 @moved.register
 def _(body: PointMass2D, q: Floats, v: Floats) -> dict[str, Any]:
     return {"position": tuple(q.tolist()), "velocity": tuple(v.tolist())}
+
+
+@moved.register
+def _(body: PointMass3D, q: Floats, v: Floats) -> dict[str, Any]:
+    return {"position": tuple(q.tolist()), "velocity": tuple(v.tolist())}
+
+
+@moved.register
+def _(body: RigidBody3D, q: Floats, v: Floats) -> dict[str, Any]:
+    """Its angular velocity in the body is 2 G p'."""
+    (e0, *e), (rate, *rates) = q[3:].tolist(), v[3:].tolist()
+    spin = 2.0 * (e0 * np.array(rates) - rate * np.array(e) - np.cross(e, rates))
+    return {
+        "position": tuple(q[:3].tolist()), "velocity": tuple(v[:3].tolist()),
+        "attitude": EulerParameters(values=(e0, e[0], e[1], e[2])),
+        "angular_velocity": tuple(spin.tolist()), "angular_velocity_in": "body",
+    }  # fmt: skip
 
 
 @moved.register

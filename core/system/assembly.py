@@ -11,13 +11,15 @@ from ..compiled.kernels import kernel_address
 from ..contact.friction import CoulombFriction, Friction
 from ..contact.geometry_kinds import EQUATIONS, kind_of
 from ..contact.laws import ForceLaw, ImpactLaw
-from ..elements.base import Coordinate, Element, Form, Row
+from ..elements.base import Element, Form, Row
+from ..elements.coordinate import Coordinate
 from ..elements.internal import internal_coordinates_kernel
 from ..errors import ModelError
 from ..model.channels import Channel
+from ..model.derived import Derived
 from ..model.motion import InputMotion
-from ..model.outputs import MarkerPlace
-from .numbering import GROUND_SLOTS, ModelNumbering
+from ..model.outputs import MarkerOutput
+from .numbering import AT_REST, ModelNumbering
 from .parts import Parts
 
 
@@ -84,11 +86,14 @@ class Assembly:
     input_names: list[str]
     input_start: NDArray[np.float64]
     breakpoints: list[float]
-    multiplier_channels: list[Channel]
+    multiplier_channels: dict[int, Channel]
+    """Of those rows whose multiplier is shown."""
     body_columns: list[tuple[str, Coordinate, int]]
     """(body, coordinate, index)."""
     coordinate_scale: NDArray[np.float64]
     """Typical magnitude of each coordinate, so that units do not choose the partition."""
+    work_sizes: dict[str, float] = field(default_factory=dict)
+    """How large the values of work accounts are that are no energies."""
     length: float = 1.0
     """Size of the mechanism, m."""
     row_scale: NDArray[np.float64] | None = None
@@ -97,8 +102,8 @@ class Assembly:
     """Step beyond which error control could miss what a time function does, s."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
     """Rows of massless ends, each with the contacts that take its place when they close."""
-    markers: tuple[MarkerPlace, ...] = ()
-    """Those whose motion is shown."""
+    derived: tuple[Derived, ...] = ()
+    """Channels that follow from coordinates and multipliers."""
     motions: tuple[InputMotion, ...] = ()
     """Motions that are inputs."""
     placed: tuple[tuple[int, int], ...] = ()
@@ -135,24 +140,24 @@ class Assembly:
 
     @property
     def is_angle(self) -> NDArray[np.bool_]:
-        """Which coordinates are angles (rad), (n,); the others count as lengths (m)."""
+        """Which coordinates tell attitudes, (n,); the others count as lengths (m)."""
         angles = np.zeros(self.n, dtype=bool)
-        angles[[index for _, coordinate, index in self.body_columns if coordinate.unit == "rad"]] = True
+        angles[[index for _, coordinate, index in self.body_columns if coordinate.is_angle]] = True
         return angles
 
     @property
     def ground(self) -> int:
-        """Index of the ground's x in extended vectors."""
+        """Index of what does not move in extended vectors."""
         return self.n
 
     @property
     def n_extended(self) -> int:
         """Length of extended vectors."""
-        return self.n + GROUND_SLOTS + len(self.work_names)
+        return self.n + AT_REST + len(self.work_names)
 
     def work_index(self, name: str) -> int:
         """Index of a work account in extended vectors."""
-        return self.n + GROUND_SLOTS + self.work_names.index(name)
+        return self.n + AT_REST + self.work_names.index(name)
 
 
 def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
@@ -174,12 +179,14 @@ def assemble(model: Parts) -> Assembly:
     grouped: dict[tuple[int, int], list[tuple[Element, Row, tuple[int, ...]]]] = {}
     forms: dict[tuple[int, int], Form] = {}
     row_names: list[str] = []
-    multipliers: list[Channel] = []
+    multipliers: dict[int, Channel] = {}
+    derived: list[Derived] = []
     contact_rows: dict[str, tuple[int, ...]] = {}
     massless: dict[int, int] = {}
     placed: list[tuple[int, int]] = []
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
+        own_rows = len(row_names)
         for part in element.parts(numbering):
             form = part.form
             rows = tuple(range(len(row_names), len(row_names) + form.constraint_rows))
@@ -194,7 +201,10 @@ def assemble(model: Parts) -> Assembly:
                 key = (address, len(row.coordinates))
                 forms[key] = form
                 grouped.setdefault(key, []).append((element, row, rows))
-        multipliers += element.multiplier_channels()
+        own = range(own_rows, len(row_names))
+        multipliers |= dict(zip(own, element.multiplier_channels(), strict=False))
+        derived += element.derived_channels(numbering, own)
+    derived += _of_outputs(model.outputs, numbering)
     batches = []
     for key, members in grouped.items():
         batches.append(
@@ -250,6 +260,7 @@ def assemble(model: Parts) -> Assembly:
             for c in model.contacts
         ],
         work_names=numbering.work_names,
+        work_sizes=numbering.work_sizes,
         signals=np.array([*numbering.pool, 0.0]),
         input_names=[record.name for record in model.inputs],
         input_start=np.array([record.start for record in model.inputs], dtype=np.float64),
@@ -259,13 +270,19 @@ def assemble(model: Parts) -> Assembly:
         coordinate_scale=_coordinate_scale(numbering.length, columns, len(internal)),
         length=numbering.length,
         replaced_rows=_replaced_rows(model, massless, batches),
-        markers=tuple(MarkerPlace(o.name, o.marker, numbering.place(o.marker.body)) for o in model.outputs),
+        derived=tuple(derived),
         motions=tuple(numbering.motions),
         placed=tuple(placed),
         linear=all(element.linear for element in model.elements()),
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
+
+
+def _of_outputs(outputs: Sequence[MarkerOutput], numbering: ModelNumbering) -> list[Derived]:
+    """The channels of outputs, all of one kind together."""
+    kinds = dict.fromkeys(type(output) for output in outputs)
+    return [k.derived([o for o in outputs if type(o) is k], numbering.own_frame) for k in kinds]
 
 
 def _replaced_rows(model: Parts, massless: Mapping[int, int], batches: Sequence[Batch]) -> dict[int, frozenset[int]]:
@@ -304,7 +321,7 @@ def _internal_batch(internal: NDArray[np.int64]) -> Batch:
 def _coordinate_scale(
     length: float, columns: Sequence[tuple[str, Coordinate, int]], n_internal: int
 ) -> NDArray[np.float64]:
-    """What the coordinates say, 1 for angles; for translations of planar bodies the size of the mechanism, so that m
+    """What the coordinates say, 1 for angles; for translations of bodies the size of the mechanism, so that m
     and mm give the same partition. Internal coordinates change no size: they have that of the mechanism."""
     scales = [length if coordinate.scale is None else coordinate.scale for _, coordinate, _ in columns]
     return np.array([*scales, *(length,) * n_internal])

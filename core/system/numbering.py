@@ -3,30 +3,31 @@
 from ..contact.friction import FrictionLaw, friction_address
 from ..contact.laws import ForceLaw, law_address
 from ..elements.base import BodyElement
-from ..elements.planar_body import PlanarFrame
-from ..model.markers import GROUND
+from ..model.base import Vector3, in_space
+from ..model.markers import GROUND, Marker, Marker2D
 from ..model.motion import InputMotion
 from ..model.signals import InputSignal, Signal
 from .parts import Parts
 
-GROUND_SLOTS = 3
-"""Extended vectors end in the ground's (x, y, angle), which stay zero, and the work accounts."""
+AT_REST = 1
+"""Extended vectors end in one place that stays zero, for what does not move, and the work accounts."""
 
 
 class ModelNumbering:
     """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
 
     def __init__(self, model: Parts) -> None:
-        self.gravity = model.gravity
+        self.gravity: Vector3 = in_space(model.gravity)
         self.length = _length(model)
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
         self.index: dict[str, tuple[int, ...]] = {}
-        self.initial_positions: dict[str, tuple[float, float, float]] = {GROUND: (0.0, 0.0, 0.0)}
+        self.starts: dict[str, tuple[float, ...]] = {GROUND: ()}
         self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
         self.input_start = {record.name: record.start for record in model.inputs}
         self.motions: list[InputMotion] = []
         self.pool: list[float] = []
         self.work_names: list[str] = []
+        self.work_sizes: dict[str, float] = {}
         self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
         self.names = {body.name: body.coordinate_names for body in model.bodies}
         n_bodies = sum(len(names) for names in self.names.values())
@@ -38,35 +39,56 @@ class ModelNumbering:
             first = n_bodies + len(self.internal_names)
             self.internals[element.name] = tuple(range(first, first + len(states)))
             self.internal_names += [f"{element.name}.{name}" for name in states]
-        self.n = n = n_bodies + len(self.internal_names)
-        self.index[GROUND] = (n, n + 1, n + 2)
+        self.n = n_bodies + len(self.internal_names)
+        self.index[GROUND] = ()
         start = 0
         for body in model.bodies:
             count = len(self.names[body.name])
-            own = tuple(range(start, start + count))
-            if isinstance(body, PlanarFrame):
-                own += tuple(range(n + count, n + GROUND_SLOTS))
-                q0 = body.start_in(self.bodies, self.input_start)[0]
-                self.initial_positions[body.name] = (q0[0], q0[1], q0[2] if count > 2 else 0.0)
-            self.index[body.name] = own
+            self.index[body.name] = tuple(range(start, start + count))
+            if body.carries is not None:
+                self.starts[body.name] = tuple(body.start_in(self.bodies, self.input_start)[0])
             start += count
 
     def coordinates(self, body: str) -> tuple[int, ...]:
-        planar = body in self.initial_positions
-        return self.index[body][:GROUND_SLOTS] if planar else self.index[body]
+        carried = self._carried(body)
+        return self.index[body] if carried is None else self._frame(body, carried)
+
+    def frame(self, marker: Marker) -> tuple[int, ...]:
+        return self._frame(marker.body, type(marker))
+
+    def own_frame(self, marker: Marker) -> tuple[int, ...]:
+        return tuple(k if k < self.n else -1 for k in self.frame(marker))
+
+    def at_rest(self, marker: Marker) -> tuple[float, ...]:
+        own = len(self.index[marker.body])
+        return (0.0,) * min(own, len(marker.rest)) + marker.rest[own:]
+
+    def _frame(self, body: str, marker: type[Marker]) -> tuple[int, ...]:
+        """The body's coordinates as far as markers need them, and the place at rest for those that it lacks."""
+        most = len(marker.rest)
+        own = self.index[body][:most]
+        return own + (self.n,) * (most - len(own))
+
+    def _carried(self, body: str) -> type[Marker] | None:
+        """The markers that a body carries; elements that ask for the ground by its name are planar ones."""
+        return Marker2D if body == GROUND else self.bodies[body].carries
 
     def coordinate(self, body: str, name: str) -> int:
         if body not in self.places:
             self.places[body] = dict(zip(self.names[body], self.index[body], strict=False))
         return self.places[body][name]
 
-    def place(self, body: str) -> tuple[int, int, int]:
-        """Indices of a frame's own (x, y, angle); -1 for those that it does not have."""
-        x, y, angle = (k if k < self.n else -1 for k in self.coordinates(body))
-        return x, y, angle
+    def initial(self, body: str) -> tuple[float, ...]:
+        carried = self._carried(body)
+        assert carried is not None  # the model has checked that its markers are on bodies that carry such
+        return self._start(body, carried)
 
-    def initial(self, body: str) -> tuple[float, float, float]:
-        return self.initial_positions[body]
+    def start(self, marker: Marker) -> tuple[float, ...]:
+        return self._start(marker.body, type(marker))
+
+    def _start(self, body: str, marker: type[Marker]) -> tuple[float, ...]:
+        own = self.starts[body][: len(marker.rest)]
+        return own + marker.rest[len(own) :]
 
     def signal(self, signal: Signal) -> int:
         offset = len(self.pool)
@@ -94,10 +116,12 @@ class ModelNumbering:
     def friction_address(self, law: FrictionLaw) -> int:
         return friction_address(law)
 
-    def work(self, name: str) -> int:
+    def work(self, name: str, size: float | None = None) -> int:
         if name not in self.work_names:
             self.work_names.append(name)
-        return self.n + GROUND_SLOTS + self.work_names.index(name)
+        if size is not None:
+            self.work_sizes[name] = size
+        return self.n + AT_REST + self.work_names.index(name)
 
 
 def _length(model: Parts) -> float:
@@ -105,5 +129,5 @@ def _length(model: Parts) -> float:
     largest disk. 1 if it says none."""
     points = [point for body in model.bodies for point in body.extent()]
     points += [point for e in model.elements() for point in e.reach()]
-    size = max((max(abs(x), abs(y)) for x, y in points), default=0.0)
+    size = max((abs(x) for point in points for x in point), default=0.0)
     return size or max((x for e in model.elements() for x in e.lengths()), default=0.0) or 1.0

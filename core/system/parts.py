@@ -6,7 +6,7 @@ from typing import Protocol
 from ..contact import Contact
 from ..elements.base import BodyElement, Element
 from ..model.channels import Input
-from ..model.outputs import MarkerOutput2D
+from ..model.outputs import MarkerOutput
 
 
 class Parts(Protocol):
@@ -16,7 +16,7 @@ class Parts(Protocol):
     def name(self) -> str: ...
 
     @property
-    def gravity(self) -> tuple[float, float]: ...
+    def gravity(self) -> tuple[float, ...]: ...
 
     @property
     def bodies(self) -> Sequence[BodyElement]: ...
@@ -28,7 +28,7 @@ class Parts(Protocol):
     def inputs(self) -> Sequence[Input]: ...
 
     @property
-    def outputs(self) -> Sequence[MarkerOutput2D]: ...
+    def outputs(self) -> Sequence[MarkerOutput]: ...
 
     def elements(self) -> Iterator[Element]:
         """All elements in the order bodies, joints, forces, contacts."""

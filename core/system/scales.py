@@ -69,6 +69,8 @@ def measure_scales(workspace: Workspace) -> Scales:
     work[:] = WORK * energy
     for contact in assembly.contacts:
         work[contact.impulse_account] = WORK * energy / (rate * arrays["row_scale"][contact.row])
+    for name, size in assembly.work_sizes.items():
+        work[assembly.work_index(name)] = size
     # M and Phi_q become numbers of about 1
     root = np.sqrt(inertia)
     workspace.use_units(np.concatenate([assembly.coordinate_scale / root, root / arrays["row_scale"]]))

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.description import Model
+from ..extras import require
 from ..slave import Slave
 from .description import InstanceRecord
 from .errors import MasterError
@@ -78,6 +79,7 @@ def of_source(name: str, source: Any, fmi: str = "3.0", **solver: Any) -> Instan
 
 def of_fmu(name: str, path: Path, unzipped: Path, in_process: bool = False) -> Instance:
     """An instance of an FMU, which is unzipped into the folder `unzipped`; see `make_instance`."""
+    require(f"instance '{name}', an FMU,", "fmpy", "lxml", error=MasterError)
     import fmpy
 
     if not path.is_file():

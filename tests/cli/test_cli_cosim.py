@@ -11,6 +11,7 @@ pytest.importorskip("fmpy")
 
 from tlismni.cli import cosimulation
 from tlismni.cli.cosimulation import Columns, communication_points
+from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper.export import HERE, SHIM
 from tlismni.models import load
 
@@ -91,6 +92,19 @@ def test_a_bundled_fmu_says_so(tlismni: Command, tmp_path: Path) -> None:
     assert variables["stop.law"]["start"] == "NewtonImpact"
     shown = tlismni("info", path).out
     assert "inside" in shown and "numba>=" in shown and "terminals" in shown and "constants" in shown
+
+
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+def test_an_fmu_without_python_says_so(tlismni: Command, tmp_path: Path) -> None:
+    path = tmp_path / "p.fmu"
+    assert tlismni("export", "pendulum_stop", "-o", path, "--native", "--json").json["native"] is True
+    found = tlismni("info", path, "--json").json
+    assert found["native"] and not found["python"] and "state" in found["capabilities"]
+    assert "it needs no Python" in tlismni("info", path).out
+    warmed = tlismni("warm", path)
+    assert warmed.code == 1 and "has nothing to compile" in warmed.cause
+    refused = tlismni("export", "four_bar", "-o", tmp_path / "f.fmu", "--native")
+    assert refused.code == 1 and "'four_bar' cannot be an FMU without Python" in refused.cause
 
 
 def test_export_for_an_unknown_platform(tlismni: Command, tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ from tlismni.core import (
 )
 from tlismni.core.compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from tlismni.core.compiled.views import imat, mat, vec
-from tlismni.core.elements.base import Coordinate, Row
+from tlismni.core.elements.base import Row
+from tlismni.core.elements.coordinate import Coordinate
 from tlismni.core.model.base import NonNegative, Positive
 
 

@@ -78,3 +78,19 @@ def test_a_small_heap_comes_to_rest(method, ledger, restitution, friction, seed)
 def test_ten_disks_that_stick_and_slip_in_ever_shorter_turns(rest_ratio):
     count = 10
     check_rest(Simulation(heap(count, 0.3, 0.4, 0, rest_ratio), "ebdf"), count, 1.5, 1e-7)
+
+
+def test_disks_that_wedge_each_other():
+    """At one instant no forces exist with the directions in which the contacts slide: impulses without a collision stop
+    them, and the energy that this takes is accounted for."""
+    sim = Simulation(heap(8, 0.3, 0.8, 3, 1e-3), "ebdf")
+    sim.advance(0.61)
+    struck: dict[float, list] = {}
+    for event in sim.events:
+        if event.kind == "impact":
+            struck.setdefault(event.t, []).append(event)
+    wedged = [events for events in struck.values() if max(event.approach_speed for event in events) == 0.0]
+    assert wedged and all(sum(event.energy_loss for event in events) > 0.0 for events in wedged)
+    values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    assert abs(values["energy.balance"]) < 1e-7 * values["energy.impact_loss"]
+    assert min(sim.gap(k) for k in range(len(sim.assembly.contacts))) > -1e-9

@@ -2,33 +2,52 @@
 
 import json
 
+import numpy as np
 import pytest
 from helpers import rod_pendulum
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tlismni.core import (
+    AngleDriver3D,
+    AngleStop2D,
     AppliedForce2D,
+    AppliedForce3D,
     AppliedTorque2D,
+    AppliedTorque3D,
+    Axes,
     AxialRod,
+    AxialSpring3D,
+    AxisAngles,
+    Belt2D,
+    Box2D,
     Bushing2D,
+    Bushing3D,
     Cable2D,
     Clamp2D,
     Constant,
+    ConstantVelocity3D,
     CoordinateContact,
     CoordinateDriver,
     CoordinateLoad,
+    CoordinateRelation,
     CoordinateTerm,
     CoulombFriction,
+    Cylindrical3D,
     Disk2D,
+    DiskOnBox2D,
     DiskOnCable2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
     DiskOnLine2D,
     DiskOnSegment2D,
     Distance2D,
+    Distance3D,
+    EulerParameters,
+    Fixed3D,
     FloatingBeam2D,
     Flores,
     Gear2D,
+    Gear3D,
     Gonthier,
     HalfPlane2D,
     Hertz,
@@ -40,27 +59,55 @@ from tlismni.core import (
     Line2D,
     LinearSystem,
     Marker2D,
+    Marker3D,
     MarkerOutput2D,
+    MarkerOutput3D,
     MaterialPoint2D,
     Model,
     ModelError,
     MovingFrame2D,
     NewtonImpact,
     Parameter,
+    Planar3D,
     PointMass2D,
+    PointMass3D,
+    PointOnLine3D,
+    PointOnPlane3D,
     PoissonImpact,
     Polynomial,
+    PositionDriver3D,
     Prismatic2D,
+    Prismatic3D,
+    Rack2D,
+    RackAndPinion3D,
     Ramp,
     ReducedBody2D,
     ReducedPoint,
+    RelationTerm,
+    RelativeMotor2D,
     Revolute2D,
+    Revolute3D,
+    RevoluteFriction2D,
+    RevoluteSpherical3D,
     RigidBody2D,
+    RigidBody3D,
+    Rope2D,
+    RotationVector,
+    Screw3D,
     Segment2D,
+    Servo2D,
     Sine,
+    SlideFriction2D,
+    SlideSpring2D,
+    Spherical3D,
     SpringDamper2D,
+    SpringDamper3D,
     Step,
     Table,
+    TableSpring2D,
+    TorsionSpring2D,
+    TorsionSpring3D,
+    Universal3D,
     simulate,
 )
 
@@ -70,6 +117,15 @@ number = st.floats(-1e6, 1e6)
 positive = st.floats(1e-6, 1e6)
 vector = st.tuples(number, number)
 marker = st.builds(Marker2D, body=st.just("b"), point=vector, angle=number)
+vector3 = st.tuples(number, number, number)
+attitude = st.one_of(
+    st.builds(EulerParameters, values=st.tuples(number, number, number, positive)),
+    st.builds(RotationVector, vector=vector3),
+    st.builds(AxisAngles, sequence=st.sampled_from(["xyz", "zxz"]), angles=vector3),
+    st.builds(Axes, z=st.tuples(number, number, positive)),
+    st.just(Axes(z=(0.0, 1.0, 0.0), x=(1.0, 0.0, 1.0))),
+)
+marker3d = st.builds(Marker3D, body=st.just("s"), point=vector3, attitude=attitude)
 signal = st.one_of(
     st.builds(Constant, value=number),
     st.builds(Step, time=number, before=number, after=number),
@@ -207,14 +263,116 @@ ELEMENTS = {
             friction=st.builds(CoulombFriction, coefficient=st.floats(0.0, 2.0)),
         ),
     ],
-    "outputs": [st.builds(MarkerOutput2D, name=st.just("x"), marker=marker)],
+    "outputs": [
+        st.builds(MarkerOutput2D, name=st.just("x"), marker=marker),
+        st.builds(
+            MarkerOutput3D, name=st.just("x"), marker=marker3d, attitude=st.sampled_from(["none", "matrix", "zxz"])
+        ),
+    ],
+}  # fmt: skip
+ELEMENTS["bodies"] += [
+    st.builds(PointMass3D, name=st.just("x"), mass=positive, position=vector3, velocity=vector3),
+    st.builds(
+        RigidBody3D, name=st.just("x"), mass=positive,
+        inertia=st.tuples(positive, positive, positive).map(lambda m: (m[0] + m[1], m[1] + m[2], m[2] + m[0])),
+        position=vector3, attitude=attitude, velocity=vector3, angular_velocity=vector3,
+        angular_velocity_in=st.sampled_from(["body", "space"]),
+    ),
+]  # fmt: skip
+ELEMENTS["joints"] += [
+    *(
+        st.builds(kind, name=st.just("x"), a=st.builds(Marker3D), b=st.builds(Marker3D, body=st.just("s")))
+        for kind in (
+            Spherical3D, Revolute3D, Universal3D, ConstantVelocity3D, Fixed3D, Cylindrical3D, Prismatic3D, Planar3D
+        )
+    ),
+    *(
+        st.builds(kind, name=st.just("x"), a=st.builds(Marker3D, point=vector3, attitude=attitude), b=marker3d)
+        for kind in (PointOnLine3D, PointOnPlane3D)
+    ),
+    st.builds(Distance3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, length=positive | motion),
+    st.builds(RevoluteSpherical3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, length=positive),
+    st.builds(Screw3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, lead=number),
+    st.builds(
+        RackAndPinion3D, name=st.just("x"), frame=st.builds(Marker3D), wheel=marker3d, guide=st.builds(Marker3D),
+        rack=marker3d, radius=number,
+    ),
+    st.builds(
+        Gear3D, name=st.just("x"), frame_a=st.builds(Marker3D), wheel_a=marker3d, frame_b=st.builds(Marker3D),
+        wheel_b=marker3d, radius_a=positive, radius_b=positive,
+    ),
+    st.builds(AngleDriver3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, angle=motion),
+    st.builds(PositionDriver3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, position=motion),
+]  # fmt: skip
+ELEMENTS["forces"] += [
+    st.builds(
+        AppliedForce3D, name=st.just("x"), marker=marker3d, force_x=signal, force_z=signal, follower=st.booleans()
+    ),
+    st.builds(AppliedTorque3D, name=st.just("x"), marker=marker3d, torque_y=signal, follower=st.booleans()),
+    st.builds(
+        SpringDamper3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, stiffness=positive, damping=positive,
+        natural_length=positive,
+    ),
+    st.builds(
+        AxialSpring3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, stiffness=positive, damping=positive,
+        natural_position=number,
+    ),
+    st.builds(
+        TorsionSpring3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, stiffness=positive, damping=positive,
+        natural_angle=number,
+    ),
+    st.builds(
+        Bushing3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d,
+        stiffness=st.tuples(*(positive,) * 6) | positive.map(lambda k: tuple(map(tuple, (k * np.eye(6)).tolist()))),
+        damping=st.tuples(*(positive,) * 6),
+    ),
+]  # fmt: skip
+ENDS = {"name": st.just("x"), "a": st.builds(Marker2D, point=vector), "b": marker}
+MEASURES = st.sampled_from(["angle", "slide", "distance"])
+ELEMENTS["joints"] += [
+    st.builds(Rack2D, **ENDS, radius=positive),
+    st.builds(Belt2D, **ENDS, radius_a=positive, radius_b=positive, crossed=st.booleans()),
+    st.builds(RelativeMotor2D, **ENDS, motion=motion, measure=MEASURES),
+    st.builds(
+        CoordinateRelation, name=st.just("x"), offset=number,
+        terms=st.builds(RelationTerm, body=st.just("b"), coordinate=st.just("x"), factor=positive).map(lambda t: (t,)),
+    ),
+]  # fmt: skip
+ELEMENTS["forces"] += [
+    st.builds(TorsionSpring2D, **ENDS, stiffness=positive, damping=positive, natural_angle=number),
+    st.builds(SlideSpring2D, **ENDS, stiffness=positive, damping=positive, natural_position=number),
+    st.builds(
+        TableSpring2D, **ENDS, lengths_table=st.just((0.5, 1.0, 2.0, 3.0)),
+        forces=st.tuples(number, number, number, number),
+        damping=positive,
+    ),
+    st.builds(RevoluteFriction2D, **ENDS, torque=positive, transition_rate=positive),
+    st.builds(SlideFriction2D, **ENDS, force=positive, transition_speed=positive),
+    st.builds(
+        Servo2D, **ENDS, target=signal, measure=MEASURES, gain=positive, rate_gain=positive, of_rate=st.just(False)
+    ),
+]  # fmt: skip
+ELEMENTS["contacts"] += [
+    st.builds(Rope2D, **ENDS, law=law, length=positive),
+    st.builds(AngleStop2D, **ENDS, law=law, limit=number, side=st.sampled_from(["upper", "lower"])),
+    st.builds(
+        DiskOnBox2D, name=st.just("x"), law=law, disk=disk,
+        shape=st.builds(Box2D, marker=marker, width=positive, height=positive),
+    ),
+]  # fmt: skip
+SPATIAL = {
+    "PointMass3D", "RigidBody3D", "Spherical3D", "Revolute3D", "Universal3D", "ConstantVelocity3D", "Fixed3D",
+    "Cylindrical3D", "Prismatic3D", "Planar3D", "PointOnLine3D", "PointOnPlane3D", "Distance3D", "RevoluteSpherical3D",
+    "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
+    "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
+SOLID = RigidBody3D(name="s", mass=1.0, inertia=(1.0, 1.0, 1.0))
 ROPE = Cable2D(name="rope", elements=1, length=1.0, mass_per_length=1.0, axial_stiffness=1.0, bending_stiffness=0.0)
 
 
 def model_with(kind, element):
-    parts = {"bodies": [BODY, ROPE], "joints": [], "forces": [], "contacts": [], "outputs": []}
+    parts = {"bodies": [BODY, ROPE, SOLID], "joints": [], "forces": [], "contacts": [], "outputs": []}
     parts["inputs"] = [Input(name="u", unit="N")]
     parts[kind] = [*parts[kind], element]
     return Model(name="journey", **parts)
@@ -250,7 +408,9 @@ def test_the_list_of_elements_above_is_complete():
         "Bushing2D", "AppliedForce2D", "AppliedTorque2D", "CoordinateLoad", "LinearSystem", "DiskOnHalfPlane2D",
         "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
         "Clamp2D", "Gear2D", "AxialRod", "MovingFrame2D", "MarkerOutput2D", "ReducedBody2D", "FloatingBeam2D",
-        "DiskOnCable2D",
+        "DiskOnCable2D", "Rack2D", "Belt2D", "RelativeMotor2D", "CoordinateRelation", "TorsionSpring2D",
+        "SlideSpring2D", "TableSpring2D", "RevoluteFriction2D", "SlideFriction2D", "Servo2D", "Rope2D", "AngleStop2D",
+        "DiskOnBox2D", *SPATIAL,
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

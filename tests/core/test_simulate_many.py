@@ -1,6 +1,7 @@
 """Many runs on threads: each is the one that `simulate` makes, in whatever order threads come to it."""
 
 import sys
+from threading import Event
 
 import numpy as np
 import pytest
@@ -75,6 +76,25 @@ def test_failures_are_rows_with_their_cause():
     assert "overlapping by 0.5 m" in str(found.failures[1])
     assert "overlapping" in found.table["cause"][1]
     assert np.isnan(found["ball.y"][1]) and found["ball.y"][2] == pytest.approx(2.0 - 0.5 * 9.81 * 0.09, abs=1e-8)
+
+
+def test_failures_stand_in_the_order_of_the_rows_whichever_ended_first():
+    first_ends = Event()
+
+    def force(t, q, v):
+        if v[0] == 0.0:
+            return np.array([0.0])
+        if v[0] > 2.0:
+            first_ends.set()
+        elif not first_ends.wait(60.0):
+            raise TimeoutError("the other run has not begun")
+        raise ArithmeticError("own")
+
+    system = EquationSystem(mass=lambda t, q: np.array([[1.0]]), force=force, q0=[0.0], v0=[0.0])
+    rate = compile_model(system).channels[1]
+    found = simulate_many(system, None, 0.5, start={rate: [1.0, 3.0]}, threads=2)
+    assert list(found.failures) == [0, 1]
+    assert [str(error) for error in found.failures.values()] == ["own", "own"]
 
 
 def test_an_error_of_an_own_function_is_the_cause_of_its_row():

@@ -5,6 +5,7 @@ The sixth-order central difference with span H has an error of about 1e-10 for f
 
 import math
 
+import element_cases
 import numpy as np
 import pytest
 from helpers import GROUND, circle_pendulum, on
@@ -171,6 +172,7 @@ CASES = {
     "open plane": {"contacts": [contact(NewtonImpact(restitution=0.5))]},
     **{f"{law.type} on plane": {"contacts": [contact(law)], "mode": ACTIVE} for law in FORCE_LAWS},
     **{f"{law.type} on disk": {"contacts": [contact(law, "disks")], "mode": ACTIVE} for law in FORCE_LAWS},
+    **element_cases.CASES,
 }  # fmt: skip
 
 

@@ -159,3 +159,31 @@ def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
         if not target.startswith("http"):
             assert (page.parent / target).exists(), target
+
+
+def test_the_page_of_analyses_runs() -> None:
+    names: dict[str, Any] = {}
+    code, fitting = blocks("analyses.md", "python")
+    exec(code, names)
+    exec(fitting, names)
+    assert names["found"]["spring.damping"] == pytest.approx(0.08, abs=1e-4)
+    # what lies on the ground is carried: the rest hangs from the pin
+    assert "ground8" in names["rest"].closed and names["rest"]["ground8.normal_force"] > 0.0
+    assert (names["modes"].frequencies[1] / names["modes"].frequencies[0]) == pytest.approx(
+        (4.694 / 1.875) ** 2, rel=1e-3
+    )
+
+
+def test_the_page_of_sweeps_runs() -> None:
+    pytest.importorskip("pyarrow")
+    names: dict[str, Any] = {}
+    (code,) = blocks("sweeps.md", "python")
+    exec(code, names)
+    assert len(names["found"]) == 10 and not names["found"].failures
+
+
+def test_the_page_of_inputs_runs() -> None:
+    names: dict[str, Any] = {}
+    (code,) = blocks("inputs.md", "python")
+    exec(code, names)
+    assert names["result"]["cart.vx"][-1] == pytest.approx(1.0, abs=1e-6)

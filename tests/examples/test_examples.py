@@ -173,3 +173,23 @@ def test_the_trolley_loses_at_the_buffer_what_the_buffer_pushes(tmp_path: Path) 
     assert f["rest"].q[-1] == pytest.approx(f["result"].q[-1], abs=1e-5)
     example("see_it_move").animate(f, tmp_path / "crane.html")
     assert "A trolley strikes a buffer" in (tmp_path / "crane.html").read_text(encoding="utf-8")
+
+
+def test_the_oscillator_doubles_its_period_and_two_motions_live_side_by_side() -> None:
+    """Two velocities, then four, then many; the free motion is reached from where it is, and not from everywhere."""
+    pytest.importorskip("pyarrow")
+    f = figures("oscillator_sweeps")
+    count = {e: example("oscillator_sweeps").velocities(f, e) for e in (0.36, 0.5, 0.9)}
+    assert count[0.36] == 2 and count[0.5] == 4 and count[0.9] > 8
+    assert not f["basin"].failures and 0.05 < np.mean(f["free"]) < 0.95
+    near = np.hypot(f["basin"]["start.mass.x"] - f["free_motion"][0], f["basin"]["start.mass.vx"] - f["free_motion"][1])
+    assert f["free"][np.argmin(near)]
+
+
+def test_identification_finds_restitution_and_damping() -> None:
+    f = figures("identification")
+    found = f["found"]
+    for name, value in f["true"].items():
+        k = found.names.index(name)
+        assert abs(found.values[k] - value) < 4.0 * found.errors[k]
+    assert found.noise == pytest.approx(1.0, abs=0.35)

@@ -18,7 +18,7 @@ from fmu_helpers import LAW_NAMES, METHODS, ball_model
 from lxml import etree
 from tlismni.core.description import Model
 from tlismni.core.errors import ModelError
-from tlismni.fmu_wrapper import ExportError, FmuValueError, export_fmu
+from tlismni.fmu_wrapper import ExportError, FmuValueError, archive, export_fmu
 from tlismni.fmu_wrapper.export import c_identifier
 
 
@@ -177,9 +177,9 @@ def test_a_file_that_cannot_be_written_is_named(tmp_path, monkeypatch):
     def refused(*arguments, dir, **options):
         raise PermissionError(13, "Permission denied", str(dir / "tmp1234.fmu"))
 
-    monkeypatch.setattr(export_module.tempfile, "mkstemp", refused)
+    monkeypatch.setattr(archive.tempfile, "mkstemp", refused)
     with pytest.raises(ExportError) as caught:
-        export_module._write(tmp_path / "y.fmu", {})
+        archive.write_archive(tmp_path / "y.fmu", {})
     assert str(caught.value) == f"'{tmp_path / 'y.fmu'}' cannot be written: Permission denied"
 
 

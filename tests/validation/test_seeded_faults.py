@@ -48,7 +48,7 @@ def scaled(field: str, factor: float) -> Fault:
 
 
 def upwards(model: Model) -> Model:
-    return model.model_copy(update={"gravity": (model.gravity[0], -model.gravity[1])})
+    return model.model_copy(update={"gravity": (model.gravity[0], -model.gravity[1], model.gravity[2])})
 
 
 BALL: dict[str, Any] = {"height": 0.3, "stiffness": 1e6}

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...core.elements import BodyElement, LinearSystem, MovingFrame2D, PointMass2D, RigidBody2D
+from ...core.model.base import in_space
 from .registry import BodyItems, Build, Column, translates
 from .signals import TimeFunction, time_function
 
@@ -27,7 +28,7 @@ def body(record: RigidBody2D | PointMass2D, build: Build) -> None:
     build.bodies[record.name] = BodyItems(node, item, rigid, reference=tuple(q0))
     if any(build.model.gravity):
         marker = build.add("MarkerBodyMass", bodyNumber=item)
-        build.add("LoadMassProportional", markerNumber=marker, loadVector=[*build.model.gravity, 0.0])
+        build.add("LoadMassProportional", markerNumber=marker, loadVector=[*in_space(build.model.gravity)])
     node_columns(record, build, (node,), q0)
 
 

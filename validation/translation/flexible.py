@@ -4,6 +4,7 @@ import numpy as np
 from scipy.sparse import diags_array
 
 from ...core.elements import AxialRod, Cable2D, FloatingBeam2D, MaterialPoint2D, ReducedBody2D
+from ...core.model.base import in_space
 from ..errors import NotTranslatable
 from .bodies import node_columns
 from .registry import BodyItems, Build, Column, no_equal, translates
@@ -85,7 +86,7 @@ def cable(record: Cable2D, build: Build) -> None:
         )
         if any(build.model.gravity):
             marker = build.add("MarkerBodyMass", bodyNumber=element)
-            build.add("LoadMassProportional", markerNumber=marker, loadVector=[*build.model.gravity, 0.0])
+            build.add("LoadMassProportional", markerNumber=marker, loadVector=[*in_space(build.model.gravity)])
         elements.append(element)
     reference = tuple(float(x) for x in places.ravel())
     build.bodies[record.name] = BodyItems(

@@ -12,6 +12,7 @@ from ...core.elements import (
     PointMass2D,
     Prismatic2D,
     RigidBody2D,
+    SpatialFrame,
 )
 from . import symbols
 from .places import Places
@@ -55,6 +56,11 @@ def draw_body(drawing: Drawing, places: Places, body: BodyElement) -> Label:
         return Label((centre[0], centre[1] + 5.0 * u), body.name)
     if isinstance(body, FlexibleBody):
         return _flexible(drawing, places, body)
+    if isinstance(body, SpatialFrame):
+        line, centre = places.star(body), places.frame(body.name)[0]
+        drawing.shapes += [Path(line, INK, width=LINK + 0.9), Path(line, STEEL, width=LINK)]
+        symbols.centre_of_mass(drawing, centre)
+        return Label((centre[0] + 2.5 * u, centre[1] + 3.5 * u), body.name)
     return Label(places.frame(body.name)[0], body.name)
 
 

@@ -19,11 +19,13 @@ from ...core.elements import (
     CoordinateLoad,
     Distance2D,
     Gear2D,
+    Joint3D,
     MovingFrame2D,
     PlanarFrame,
     Prismatic2D,
     Revolute2D,
     SpringDamper2D,
+    SpringDamper3D,
 )
 from ...core.model.markers import GROUND
 from ...core.model.signals import Constant, InputSignal
@@ -32,6 +34,8 @@ from .places import Places
 from .shapes import GROUND as GROUND_COLOUR
 from .shapes import INK, PORT, TOUCH, Circle, Drawing, Label, Path, Point, moved, turned
 
+NEAR = 0.02
+"""Markers nearer than this, in parts of the drawing's size, are one place."""
 _PLACE = re.compile(r"([xy])\d*$")
 
 
@@ -49,6 +53,17 @@ def _(element: Revolute2D, drawing: Drawing, places: Places) -> None:
     if GROUND in (element.a.body, element.b.body):
         symbols.bearing(drawing, at)
     symbols.pin(drawing, at)
+
+
+@draw_interaction.register
+def _(element: Joint3D, drawing: Drawing, places: Places) -> None:
+    a, b = places.at(element.a), places.at(element.b)
+    if math.dist(a, b) > NEAR * drawing.size:
+        drawing.behind.append(Path((a, b), INK, width=0.5))
+    for marker, at in ((element.a, a), (element.b, b)):
+        if marker.body == GROUND:
+            symbols.bearing(drawing, at)
+    symbols.pin(drawing, a)
 
 
 @draw_interaction.register
@@ -112,6 +127,11 @@ def _(element: MovingFrame2D, drawing: Drawing, places: Places) -> None:
 def _(element: SpringDamper2D, drawing: Drawing, places: Places) -> None:
     symbols.spring(drawing, places.at(element.a), places.at(element.b), element.damping > 0.0, element.stiffness > 0.0)
     _anchors(element, drawing, places)
+
+
+@draw_interaction.register
+def _(element: SpringDamper3D, drawing: Drawing, places: Places) -> None:
+    symbols.spring(drawing, places.at(element.a), places.at(element.b), element.damping > 0.0, element.stiffness > 0.0)
 
 
 @draw_interaction.register

@@ -2,13 +2,17 @@
 
 import math
 
+import numpy as np
+
 from ...core.description import Model
-from ...core.elements import MovingFrame2D
+from ...core.elements import MovingFrame2D, SpatialFrame
+from ...core.model.base import in_space
 from . import symbols
 from .bodies import draw_bodies
 from .interactions import draw_interaction
 from .places import Places
 from .shapes import GROUND, Drawing, Label, Path, between
+from .view import View
 
 
 def draw(model: Model) -> Drawing:
@@ -31,9 +35,11 @@ def draw(model: Model) -> Drawing:
 def add_surroundings(drawing: Drawing, model: Model) -> None:
     """Gravity and a scale, beside the mechanism."""
     (x0, y0), (x1, y1) = drawing.box()
-    g = math.hypot(*model.gravity)
-    if g:
-        direction, _ = between((0.0, 0.0), model.gravity)
+    spatial = any(isinstance(body, SpatialFrame) for body in model.bodies)
+    x, y, z = in_space(model.gravity)
+    gravity = View(model).point(np.array([x, y, z])) if spatial else (x, y)
+    if any(gravity):
+        direction, _ = between((0.0, 0.0), gravity)
         tip = x1 + 0.08 * drawing.size, 0.5 * (y0 + y1)
         start = symbols.arrow(drawing, tip, direction, GROUND, 0.1 * drawing.size)
         side = "above" if abs(direction[1]) > abs(direction[0]) else "left"

@@ -4,9 +4,11 @@ import math
 from collections.abc import Iterator
 
 from ...core.description import Model
-from ...core.elements import BodyElement, FlexibleBody, Gear2D, PlanarFrame, PointMass2D
-from ...core.model.markers import GROUND, Marker2D
+from ...core.elements import BodyElement, FlexibleBody, Gear2D, PlanarFrame, PointMass2D, SpatialFrame
+from ...core.elements.spatial_body import start_of_marker
+from ...core.model.markers import Marker, Marker2D, Marker3D
 from .shapes import Point, bounds, turned
+from .view import View, star
 
 
 class Places:
@@ -17,6 +19,7 @@ class Places:
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
         inputs = {channel.name: channel.start for channel in model.inputs}
         self._starts = {name: body.start_in(self.bodies, inputs)[0] for name, body in self.bodies.items()}
+        self.view = View(model)
         self.size = self._size()
 
     def start(self, body: str) -> dict[str, float]:
@@ -25,14 +28,20 @@ class Places:
 
     def frame(self, body: str) -> tuple[Point, float]:
         """Origin and angle of a body's frame; those of the ground are zero."""
-        if body == GROUND or not isinstance(self.bodies[body], PlanarFrame):
+        found = self.bodies.get(body)
+        if isinstance(found, SpatialFrame):
+            return self.at(Marker3D(body=body)), 0.0
+        if not isinstance(found, PlanarFrame):
             return (0.0, 0.0), 0.0
         x, y, *angle = self._starts[body]
         # a point mass keeps the directions of the ground
         return (x, y), 0.0 if isinstance(self.bodies[body], PointMass2D) else angle[0]
 
-    def at(self, marker: Marker2D) -> Point:
-        """Position of a marker."""
+    def at(self, marker: Marker) -> Point:
+        """Position of a marker, of one in space on paper."""
+        if isinstance(marker, Marker3D):
+            return self.view.point(start_of_marker(marker, self.bodies)[0])
+        assert isinstance(marker, Marker2D)
         (x, y), angle = self.frame(marker.body)
         dx, dy = turned(marker.point, angle)
         return x + dx, y + dy
@@ -45,6 +54,11 @@ class Places:
         """Where other elements are attached to a body, without repetitions."""
         found = [self.at(m) for element in self.model.elements() for m in element.markers() if m.body == body]
         return list(dict.fromkeys(found))
+
+    def star(self, body: SpatialFrame) -> list[Point]:
+        """The line that shows a body in space, on paper."""
+        ends = [Marker3D(body=body.name, point=(x, y, z)) for x, y, z in star(self.model, body).tolist()]
+        return [self.at(marker) for marker in ends]
 
     def axis(self, body: FlexibleBody) -> list[Point]:
         """Where the points start that a flexible body is drawn by."""
@@ -63,12 +77,14 @@ class Places:
 
     def _all_points(self) -> Iterator[Point]:
         for body in self.bodies.values():
-            if isinstance(body, PlanarFrame):
+            if isinstance(body, PlanarFrame | SpatialFrame):
                 yield self.frame(body.name)[0]
             if isinstance(body, FlexibleBody):
                 yield from self.axis(body)
             elif isinstance(body, PlanarFrame):
                 yield from self.points_on(body.name)
+            elif isinstance(body, SpatialFrame):
+                yield from self.star(body)
         for element in (*self.model.joints, *self.model.forces, *self.model.contacts):
             for marker in element.markers():
                 yield self.at(marker)

@@ -1,0 +1,91 @@
+"""What FMUs without Python cost a C host, beside those with it: python benchmarks/native_cost.py [SCENARIO ...]
+
+Needs a C compiler, fmpy (for the standard's headers) and the library of machine code. One process a measurement.
+"""
+
+import argparse
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import fmpy
+from tlismni.fmu_wrapper import export_fmu
+from tlismni.fmu_wrapper.errors import ExportError
+from tlismni.fmu_wrapper.export import fmi2_platform
+from tlismni.models import load, names
+
+HERE = Path(__file__).parent
+USUAL = ("bouncing_ball", "chain", "slider_crank_stop", "rod_rod")
+
+
+def host(folder: Path) -> Path:
+    """The C host, compiled."""
+    program = folder / "native_host"
+    headers = Path(fmpy.__file__).parent / "c-code"
+    command = ["cc", "-O2", f"-I{headers}", "-o", str(program), str(HERE / "native_host.c"), "-ldl", "-lpthread"]
+    subprocess.run(command, check=True)
+    return program
+
+
+def measure(program: Path, path: Path) -> dict[str, float]:
+    """What the host prints for one FMU."""
+    folder = path.with_suffix("")
+    fmpy.extract(str(path), unzipdir=str(folder))
+    description: Any = fmpy.read_model_description(str(folder))
+    inputs = [v.valueReference for v in description.modelVariables if v.causality == "input"]
+    outputs = [v.valueReference for v in description.modelVariables if v.causality == "output" and v.type == "Real"]
+    binaries = folder / "binaries" / fmi2_platform()
+    library = next(binaries.glob(f"{description.coSimulation.modelIdentifier}.*"))
+    arguments = [library, (folder / "resources").as_uri(), description.guid, description.defaultExperiment.stopTime]
+    arguments += [inputs[0] if inputs else 0, *outputs[:2]]
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True)
+    return {line.split()[0]: float(line.split()[1]) for line in done.stdout.splitlines()}
+
+
+def costs(scenarios: list[str]) -> None:
+    """A table of both kinds."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = host(Path(folder))
+        for name in scenarios:
+            for native in (True, False):
+                path = Path(folder, f"{name}_{'native' if native else 'python'}.fmu")
+                began = time.perf_counter()
+                export_fmu(load(name), path, native=native)
+                exported = time.perf_counter() - began
+                found = {"bytes": path.stat().st_size, "export_s": exported, **measure(program, path)}
+                print(name, "native" if native else "python", *(f"{k}={v:.4g}" for k, v in found.items()), flush=True)
+
+
+def share() -> None:
+    """Which scenarios of the catalogue can be FMUs without Python."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = 0
+        for name in names():
+            try:
+                path = export_fmu(load(name), Path(folder, "x.fmu"), native=True)
+            except ExportError as error:
+                print(f"{name}: {error}")
+            else:
+                done += 1
+                print(f"{name}: {path.stat().st_size / 1024:.0f} KiB", flush=True)
+        print(f"{done} of {len(names())}")
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scenarios", nargs="*", default=list(USUAL))
+    parser.add_argument("--share", action="store_true", help="go through the catalogue instead")
+    given = parser.parse_args()
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if given.share:
+        share()
+    else:
+        costs(given.scenarios)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,76 @@
+"""Primitive "dot1": two directions keep an angle. Phi = a . b - c, a = A_a u, b = A_b w unit vectors."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.kernels import RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..model.markers import Marker3D
+from .base import Form
+from .primitive3d import AXIS, PA, PB, RB, SIZE, Axis, Floats, Motion3D, Primitive, block
+from .rotation3d import add_bend, columns_at, constant, dot, onto, turns
+
+
+@internal
+def dot1_3d_kernel(job: int, t: float, b: Any) -> None:
+    if job != RESIDUAL and job != TANGENT:
+        return
+    par, coord, row = mat(b.par, b.count, 9), imat(b.coord, b.count, 14), imat(b.row, b.count, 1)
+    for e in range(b.count):
+        k = row[e, 0]
+        lam = vec(b.lam, b.m_extended)[k]
+        u, w = constant(par[e], 2), constant(par[e], 5)
+        if job == RESIDUAL:
+            of_a, x, x_rate, x_second = turns(b, coord[e], 3, par[e, 0], u)
+            of_b, y, y_rate, y_second = turns(b, coord[e], 10, par[e, 1], w)
+            vec(b.phi, b.m_extended)[k] = dot(x, y) - par[e, 8]
+            vec(b.phid, b.m_extended)[k] = dot(x_rate, y) + dot(x, y_rate)
+            vec(b.phidd, b.m_extended)[k] = dot(x_second, y) + 2.0 * dot(x_rate, y_rate) + dot(x, y_second)
+            r, by_a, by_b = vec(b.r, b.n_extended), onto(of_a, y), onto(of_b, x)
+            for i in range(4):
+                r[coord[e, 3 + i]] += lam * by_a[i]
+                r[coord[e, 10 + i]] += lam * by_b[i]
+        else:
+            values, slot = vec(b.values, b.n_values), imat(b.slot_s + 8 * 196 * e, 14, 14)
+            slot_j, slot_jt = imat(b.slot_j, b.count, 14)[e], imat(b.slot_jt, b.count, 14)[e]
+            of_a, x = columns_at(b, coord[e], 3, par[e, 0], u)
+            of_b, y = columns_at(b, coord[e], 10, par[e, 1], w)
+            factor = vec(b.coef, 2)[0] * lam
+            add_bend(values, slot, 3, factor, y, u)
+            add_bend(values, slot, 10, factor, x, w)
+            by_a, by_b = onto(of_a, y), onto(of_b, x)
+            for i in range(4):
+                for j in range(4):
+                    mixed = factor * dot(of_a[i], of_b[j])
+                    values[slot[3 + i, 10 + j]] += mixed
+                    values[slot[10 + j, 3 + i]] += mixed
+                values[slot_j[3 + i]] += by_a[i]
+                values[slot_jt[3 + i]] += by_a[i]
+                values[slot_j[10 + i]] += by_b[i]
+                values[slot_jt[10 + i]] += by_b[i]
+
+
+ROTATIONS = (*block(PA, 4, PA, 4), *block(PB, 4, PB, 4), *block(PA, 4, PB, 4))
+"""Pairs of Euler parameters."""
+BY_ROTATION = tuple((0, j) for j in (*range(PA, RB), *range(PB, SIZE)))
+
+
+@dataclass(frozen=True)
+class Dot1(Primitive):
+    """An axis of marker a and one of marker b keep the cosine `value`; 1 row."""
+
+    axis_a: Axis
+    axis_b: Axis
+    value: float = 0.0
+    form: ClassVar[Form] = Form(dot1_3d_kernel, 1, ROTATIONS, BY_ROTATION)
+
+    def parameters(self, a: Marker3D, b: Marker3D) -> Sequence[float]:
+        return (*a.axes()[:, AXIS[self.axis_a]], *b.axes()[:, AXIS[self.axis_b]], self.value)
+
+    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
+        a, b = motion.axes_a[:, :, AXIS[self.axis_a]], motion.axes_b[:, :, AXIS[self.axis_b]]
+        return np.zeros_like(a), multipliers * np.cross(a, b)

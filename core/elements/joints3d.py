@@ -1,0 +1,211 @@
+"""The joints in space, each as its primitives. The axis of a joint is the z axis of its markers, unless said otherwise.
+
+Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4, has the same table.
+"""
+
+from collections.abc import Sequence
+from typing import ClassVar, Literal
+
+from pydantic import model_validator
+
+from ..model.signals import Constant, Signal, Step
+from .distance3d import Separation
+from .dot1_3d import Dot1
+from .dot2_3d import Dot2
+from .joint3d import Joint3D
+from .point3d import Point
+from .primitive3d import Axis, Primitive
+from .twist3d import Twist
+
+_PARALLEL = (Dot1("z", "x"), Dot1("z", "y"))
+"""The z axes are parallel."""
+_NO_TURN = Dot1("x", "y")
+"""About parallel z axes."""
+_ON_AXIS = (Dot2("x"), Dot2("y"))
+"""The point of b is on the z axis of a."""
+_Z: tuple[tuple[Axis, Axis], ...] = (("z", "z"),)
+_ALL: tuple[tuple[Axis, Axis], ...] = (("x", "x"), ("z", "z"))
+
+
+class Spherical3D(Joint3D):
+    """Ball joint: the points of both markers are one (3 rows)."""
+
+    type: Literal["Spherical3D"] = "Spherical3D"
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Point(),)
+
+
+class Revolute3D(Joint3D):
+    """Hinge: the points and the z axes of both markers are one (5 rows)."""
+
+    type: Literal["Revolute3D"] = "Revolute3D"
+    turns: ClassVar[bool] = True
+    aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Point(), *_PARALLEL)
+
+
+class Universal3D(Joint3D):
+    """Cardan joint: the points are one, and the x axis of marker a stays across the y axis of marker b (4 rows)."""
+
+    type: Literal["Universal3D"] = "Universal3D"
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Point(), _NO_TURN)
+
+
+class ConstantVelocity3D(Joint3D):
+    """Homokinetic joint: the points are one and the joint bends without twisting, so that the spin about the z axes is
+    the same on both sides (4 rows)."""
+
+    type: Literal["ConstantVelocity3D"] = "ConstantVelocity3D"
+    aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Point(), Twist(("x", "y"), ("y", "x")))
+
+
+class Fixed3D(Joint3D):
+    """Weld: points and axes of both markers are one (6 rows)."""
+
+    type: Literal["Fixed3D"] = "Fixed3D"
+    aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _ALL
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Point(), *_PARALLEL, _NO_TURN)
+
+
+class Cylindrical3D(Joint3D):
+    """The z axes of both markers are one line, along which and about which b moves (4 rows)."""
+
+    type: Literal["Cylindrical3D"] = "Cylindrical3D"
+    turns: ClassVar[bool] = True
+    slides: ClassVar[bool] = True
+    aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (*_PARALLEL, *_ON_AXIS)
+
+
+class Prismatic3D(Joint3D):
+    """Slider: b moves along the z axis of marker a without turning (5 rows)."""
+
+    type: Literal["Prismatic3D"] = "Prismatic3D"
+    slides: ClassVar[bool] = True
+    aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _ALL
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (*_PARALLEL, _NO_TURN, *_ON_AXIS)
+
+
+class Planar3D(Joint3D):
+    """The xy planes of both markers are one, in which b moves and turns (3 rows)."""
+
+    type: Literal["Planar3D"] = "Planar3D"
+    turns: ClassVar[bool] = True
+    aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (*_PARALLEL, Dot2("z"))
+
+
+class PointOnLine3D(Joint3D):
+    """The point of marker b is on the z axis of marker a (2 rows)."""
+
+    type: Literal["PointOnLine3D"] = "PointOnLine3D"
+
+    def primitives(self) -> Sequence[Primitive]:
+        return _ON_AXIS
+
+
+class PointOnPlane3D(Joint3D):
+    """The point of marker b is in the xy plane of marker a (1 row)."""
+
+    type: Literal["PointOnPlane3D"] = "PointOnPlane3D"
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Dot2("z"),)
+
+
+class _Driven(Joint3D):
+    """Base of joints with a time function."""
+
+    def motions(self) -> Sequence[Signal]:
+        return [signal for signal in self.signals() if not isinstance(signal, Constant)]
+
+    @model_validator(mode="after")
+    def _check(self) -> "_Driven":
+        for signal in self.motions():
+            if isinstance(signal, Step):
+                raise ValueError(
+                    f"'{self.name}' follows a Step: a jump in position is no motion; use a Ramp, a Polynomial or a "
+                    "Table"
+                )
+        return self
+
+
+class Distance3D(_Driven):
+    """Massless rod: the points of both markers are `length` apart (1 row). A time function drives the length."""
+
+    type: Literal["Distance3D"] = "Distance3D"
+    length: float | Signal
+    """m, positive."""
+
+    @model_validator(mode="after")
+    def _check_length(self) -> "Distance3D":
+        if isinstance(self.length, float | int) and not self.length > 0.0:
+            raise ValueError(
+                f"'{self.name}' has length {self.length!r} m: a positive one is needed; where two points "
+                "are one, use a Spherical3D"
+            )
+        return self
+
+    def primitives(self) -> Sequence[Primitive]:
+        length = self.length
+        return (Separation(Constant(value=length) if isinstance(length, float | int) else length),)
+
+
+class RevoluteSpherical3D(_Driven):
+    """Composite of a rod: the point of marker b is `length` from that of marker a, in the xy plane of marker a, as by a
+    rod with a hinge about z at a and a ball joint at b (2 rows)."""
+
+    type: Literal["RevoluteSpherical3D"] = "RevoluteSpherical3D"
+    length: float
+    """m, positive."""
+
+    @model_validator(mode="after")
+    def _check_length(self) -> "RevoluteSpherical3D":
+        if not self.length > 0.0:
+            raise ValueError(f"'{self.name}' has length {self.length!r} m: a positive one is needed")
+        return self
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Separation(Constant(value=self.length)), Dot2("z"))
+
+
+class AngleDriver3D(_Driven):
+    """The x axis of marker b has the angle `angle` in the xy plane of marker a, counted from x to y (1 row).
+
+    To drive a Revolute3D, a Cylindrical3D or a Planar3D give both the same markers.
+    """
+
+    type: Literal["AngleDriver3D"] = "AngleDriver3D"
+    angle: Signal
+    """rad over time."""
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Twist(("x", "x"), ("y", "x"), self.angle),)
+
+
+class PositionDriver3D(_Driven):
+    """The point of marker b is `position` along the z axis of marker a from its point (1 row): drives a Prismatic3D or
+    a Cylindrical3D with the same markers."""
+
+    type: Literal["PositionDriver3D"] = "PositionDriver3D"
+    position: Signal
+    """m over time."""
+
+    def primitives(self) -> Sequence[Primitive]:
+        return (Dot2("z", self.position),)

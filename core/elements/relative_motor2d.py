@@ -1,0 +1,107 @@
+"""Motor between two bodies: an angle, a way or a distance between two markers follows a time function.
+
+Phi = x(a, b) - f(t).
+"""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any, Literal
+
+from pydantic import model_validator
+
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..model.channels import Channel
+from ..model.motion import evaluate_motion
+from ..model.signals import INPUT_SIZE, Signal, Step
+from .base import Form, JointElement, Numbering, PairElement2D, Row
+from .formula2d import Arguments, caller_of, derivatives, form_ahead
+from .geometry2d import constrain
+from .measures2d import EFFORTS, MEASURES, Measure
+
+KIND = "relative_motor2d"
+
+
+@cache
+def _kernel(measure: str, arguments: Arguments) -> Any:
+    from ..compiled.formula_code import formula_internal
+    from ..compiled.jet_functions import gradient_of, hessian_of, value_of
+
+    formula = MEASURES[measure]
+    call, n = caller_of(formula, arguments, 0), arguments.size
+
+    def relative_motor2d_kernel(job: int, t: float, b: Any) -> None:
+        if job != RESIDUAL and job != TANGENT and job != POWER:
+            return
+        par, coord, row = mat(b.par, b.count, b.npar), imat(b.coord, b.count, n), imat(b.row, b.count, 1)
+        extra, q = imat(b.extra, b.count, 2), vec(b.q, b.n_extended)
+        pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
+        for e in range(b.count):
+            k = row[e, 0]
+            f, df, ddf = evaluate_motion(pool, inputs, extra[e, 0], t)
+            if job == POWER:
+                vec(b.a, b.n_extended)[extra[e, 1]] -= vec(b.lam, b.m_extended)[k] * df
+                continue
+            g = call(q, coord[e], par[e])
+            constrain(b, job, e, k, 0, value_of(g), gradient_of(g), hessian_of(g))
+            if job == RESIDUAL:
+                vec(b.phi, b.m_extended)[k] -= f
+                vec(b.phid, b.m_extended)[k] -= df
+                vec(b.phidd, b.m_extended)[k] -= ddf
+
+    return formula_internal(relative_motor2d_kernel, (formula, evaluate_motion), arguments)
+
+
+class RelativeMotor2D(JointElement, PairElement2D):
+    """The angle, way or distance from marker `a` to marker `b` follows `motion`(t).
+
+    measure "angle": from a's first axis to b's, rad, a motor on a revolute joint; "slide": of b along a's first axis,
+    m, a drive on a prismatic joint; "distance": of the two points, m, a cylinder. Channel: torque or force that the
+    bodies put against its growth.
+    """
+
+    type: Literal["RelativeMotor2D"] = "RelativeMotor2D"
+
+    motion: Signal
+    """What it follows, rad or m over s. The bodies must start where it says."""
+    measure: Measure = "angle"
+
+    @model_validator(mode="after")
+    def _check(self) -> "RelativeMotor2D":
+        if isinstance(self.motion, Step):
+            raise ValueError(
+                f"motion of motor '{self.name}' is a Step: a jump in position is no motion; use a Ramp, a Polynomial "
+                "or a Table"
+            )
+        if self.a.body == self.b.body:
+            raise ValueError(f"motor '{self.name}': both markers are on '{self.a.body}': give it two bodies")
+        return self
+
+    def arguments(self) -> Arguments:
+        """What its formula takes."""
+        return Arguments.of(self, ("a", "b"))
+
+    def form(self) -> Form:
+        formula, arguments = MEASURES[self.measure], self.arguments()
+        ahead = form_ahead(KIND, (formula,), arguments)
+        if ahead is not None:
+            return ahead
+        found = derivatives(formula, arguments)
+        tangent = {*found.second, *((j, i) for i, j in found.second)}
+        kernel = _kernel(self.measure, arguments)
+        return Form(kernel, 1, tuple(sorted(tangent)), tuple((0, j) for j in found.first))
+
+    def row(self, numbering: Numbering) -> Row:
+        arguments = self.arguments()
+        extra = (numbering.motion(self.motion), numbering.work("input"))
+        return Row(arguments.columns(self), arguments.coordinates(self, numbering), extra)
+
+    def motions(self) -> Sequence[Signal]:
+        return (self.motion,)
+
+    def signals(self) -> Sequence[Signal]:
+        return (self.motion,)
+
+    def multiplier_channels(self) -> Sequence[Channel]:
+        name, unit = EFFORTS[self.measure]
+        return (Channel(f"{self.name}.{name}", unit, f"{name} of the bodies against the growth of its {self.measure}"),)

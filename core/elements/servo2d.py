@@ -1,0 +1,114 @@
+"""Servo between two bodies: a spring and damper whose end a time function or an input moves.
+
+F = gain (x - f(t)) + rate_gain (x' - f'(t)) works against the growth of x: a position servo. Without gain and with the
+rate as target (`of_rate`), F = rate_gain (x' - f(t)): a velocity servo. All of its power counts as put in.
+"""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any, Literal
+
+from pydantic import model_validator
+
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..model.base import NonNegative
+from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
+from .base import ForceElement, Form, Numbering, PairElement2D, Row
+from .formula2d import MARKER_COLUMNS, Arguments, caller_of, derivatives, form_ahead
+from .geometry2d import add_hessian, add_product, along
+from .measures2d import MEASURES, Measure
+
+KIND = "servo2d"
+
+
+@cache
+def _kernel(measure: str, arguments: Arguments) -> Any:
+    from ..compiled.formula_code import formula_internal
+    from ..compiled.jet_functions import gradient_of, hessian_of, value_of
+
+    formula = MEASURES[measure]
+    call, n, own = caller_of(formula, arguments, 0), arguments.size, MARKER_COLUMNS * len(arguments.markers)
+
+    def servo2d_kernel(job: int, t: float, b: Any) -> None:
+        if job != RESIDUAL and job != TANGENT and job != POWER:
+            return
+        par, coord, extra = mat(b.par, b.count, b.npar), imat(b.coord, b.count, n), imat(b.extra, b.count, 2)
+        q, v = vec(b.q, b.n_extended), vec(b.v, b.n_extended)
+        pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
+        for e in range(b.count):
+            gain, rate_gain, of_rate = par[e, own], par[e, own + 1], par[e, own + 2]
+            g = call(q, coord[e], par[e])
+            x, gradient, hessian = value_of(g), gradient_of(g), hessian_of(g)
+            rate = along(gradient, v, coord[e])
+            f, df, _ = evaluate_signal(pool, inputs, extra[e, 0], t)
+            if of_rate != 0.0:
+                force = rate_gain * (rate - f)
+            else:
+                force = gain * (x - f) + rate_gain * (rate - df)
+            if job == RESIDUAL:
+                r = vec(b.r, b.n_extended)
+                for i in range(len(gradient)):
+                    r[coord[e, i]] += force * gradient[i]
+            elif job == TANGENT:
+                values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
+                slot = imat(b.slot_s + 8 * n * n * e, n, n)
+                add_hessian(values, slot, gradient, hessian, coef[0] * force)
+                by_value, by_rate = coef[0] * gain + coef[1] * rate_gain, coef[0] * rate_gain
+                add_product(values, slot, gradient, gradient, hessian, v, coord[e], by_value, by_rate)
+            else:
+                vec(b.a, b.n_extended)[extra[e, 1]] -= force * rate
+
+    return formula_internal(servo2d_kernel, (formula, evaluate_signal), arguments)
+
+
+class Servo2D(ForceElement, PairElement2D):
+    """Drives the angle, way or distance from marker `a` to `b` (`measure`, as in `RelativeMotor2D`) to `target`(t).
+
+    A position servo has a `gain` and a `rate_gain`; a velocity servo has `of_rate` and a `rate_gain` alone.
+    """
+
+    type: Literal["Servo2D"] = "Servo2D"
+
+    target: Signal
+    """rad or m over s; with `of_rate` rad/s or m/s."""
+    measure: Measure = "angle"
+    gain: NonNegative = 0.0
+    """N m/rad or N/m."""
+    rate_gain: NonNegative = 0.0
+    """N m s/rad or N s/m."""
+    of_rate: bool = False
+
+    @model_validator(mode="after")
+    def _check(self) -> "Servo2D":
+        if self.of_rate and self.gain > 0.0:
+            raise ValueError(
+                f"servo '{self.name}' follows a rate and has a gain on the position: leave one of them out"
+            )
+        if self.gain == 0.0 and self.rate_gain == 0.0:
+            raise ValueError(f"servo '{self.name}' has neither gain nor rate_gain, so it does nothing: give one")
+        return self
+
+    def arguments(self) -> Arguments:
+        """What its formula takes."""
+        return Arguments.of(self, ("a", "b"))
+
+    def form(self) -> Form:
+        formula, arguments = MEASURES[self.measure], self.arguments()
+        ahead = form_ahead(KIND, (formula,), arguments)
+        if ahead is not None:
+            return ahead
+        found = derivatives(formula, arguments)
+        bent = {k for pair in found.second for k in pair}
+        pattern = {(i, j) for i in found.first for j in {*found.first, *bent}}
+        pattern |= {*found.second, *((j, i) for i, j in found.second)}
+        return Form(_kernel(self.measure, arguments), 0, tuple(sorted(pattern)), ())
+
+    def row(self, numbering: Numbering) -> Row:
+        arguments = self.arguments()
+        columns = (*arguments.columns(self), self.gain, self.rate_gain, float(self.of_rate))
+        extra = (numbering.signal(self.target), numbering.work("input"))
+        return Row(columns, arguments.coordinates(self, numbering), extra)
+
+    def signals(self) -> Sequence[Signal]:
+        return (self.target,)

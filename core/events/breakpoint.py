@@ -1,0 +1,74 @@
+"""A time at which a force or the rate of a driver jumps: the run goes on from there with a new history.
+
+A driver's jump in rate is an impact of the driver: v jumps by M dv + Phi_q^T Lambda = 0, Phi_q dv = -phid, and the
+change of kinetic energy is the driver's work.
+"""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..integrate.records import COUNTS_SIZE, EVENTS, GOALS_SIZE, JUMPS, PASSED, call_accelerations
+from ..methods.history import recall
+from ..rounding import CONTINUOUS
+from ..system.evaluate import evaluate_energy, evaluate_residuals
+from ..system.levels import rate_level
+from ..system.projection import meet
+from ..system.records import OK, structure_at
+from ..system.switch import take_partition
+from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
+from .report import report, room_for
+
+
+@internal
+def pass_breakpoint(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Bring the current point to the breakpoint `PASSED` of the goals, just after the newest row, with accelerations
+    that hold behind it: a status; with any but SETTLED nothing has happened."""
+    partition, events = structure_at(ws.structure).partition, ivec(dr.counts, COUNTS_SIZE)[EVENTS]
+    status = _pass(ev, dr, ws, ms, vec(dr.goals, GOALS_SIZE)[PASSED])
+    if status != SETTLED:
+        ivec(dr.counts, COUNTS_SIZE)[EVENTS] = events
+        take_partition(ws, partition)
+        recall(ws, ms, 0)
+        evaluate_residuals(ws)
+    return status
+
+
+@internal
+def _pass(ev: Any, dr: Any, ws: Any, ms: Any, t: float) -> int:
+    recall(ws, ms, 0)
+    evaluate_residuals(ws)
+    rates, before, active = vec(ws.phid, ws.m_ext), vec(ev.joint_rates, ws.m_act), ivec(ws.active, ws.m_act)
+    for i in range(ws.m_act):
+        before[i] = rates[active[i]]
+    vec(ws.t, 1)[0] = t
+    evaluate_residuals(ws)
+    if _jumps(dr, ws, before, t):
+        v, energy = vec(ws.v, ws.n_ext), vec(ws.energy, 3)
+        evaluate_energy(ws)
+        kinetic = energy[0]
+        if not meet(ws, True):
+            return NOT_MET
+        evaluate_energy(ws)
+        if dr.input_account >= 0:
+            v[dr.input_account] += energy[0] - kinetic
+    status = call_part(ev.use_modes, ev, dr, ws, ms)
+    if status != SETTLED:
+        return int(status)
+    return SETTLED if call_accelerations(dr.accelerations, ws) == OK else NO_ACCELERATIONS
+
+
+@internal
+def _jumps(dr: Any, ws: Any, before: Any, t: float) -> bool:
+    """True if the rate of an active row has jumped; drivers that strike are reported. (What a method without velocity
+    constraints has violated before is no jump.)"""
+    rates, scale, active = vec(ws.phid, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ws.active, ws.m_act)
+    least, found = CONTINUOUS * rate_level(ws), False
+    for i in range(ws.m_act):
+        found = found or abs(rates[active[i]] - before[i]) > least * scale[active[i]]
+    if found:
+        for i in range(ws.m_act):
+            row = active[i]
+            if row < dr.joint_rows and abs(rates[row]) > least * scale[row] and room_for(dr, 1):
+                report(dr, t, JUMPS, row, 0.0, 0.0, -rates[row], 0.0, 0.0, 0.0)
+    return found

@@ -1,0 +1,32 @@
+/* Codes that compiled code returns, and columns of its arrays. `tests/core/test_native_image.py` holds them against the
+ * Python sources. */
+#ifndef TLISMNI_CODES_H
+#define TLISMNI_CODES_H
+
+/* columns of `times` (exchange.py), `goals`, `counts`, `clock` (integrate/records.py), `counters` (system/records.py) */
+enum { NOW, TO, LAST_CHANGE, INTERVAL };
+enum { GOAL, LAST_STOP };
+enum { BUDGET, HANDLED, HERE, EVENTS, STATUS };
+enum { STEP_SIZE = 0, TRIAL_STEP = 4 };
+enum { STEPS = 0 };
+enum { EVENT_SIZE = 9, GAINS = 7 };
+
+/* failures of steps (system/records.py) */
+enum { OUTER_DIVERGED = 1, INNER_DIVERGED, SINGULAR, REANALYZE, NOT_FINITE, OUTER_SLOW };
+
+/* what `drive` and `exchange` return */
+enum {
+    REACHED = 100, EVENT, FULL, CHUNK, STEP_TOO_SMALL, REPARTITION, NEAR_SINGULAR, VIOLATED, UNLOCATED, DUE, SETTLE_IT,
+    JAM, WANTED, EVENT_FAILED, ARRIVED = 201, WAS_READ
+};
+
+/* what settling an instant returns (events/records.py) */
+enum { SETTLED = 0, NOT_SETTLED = 1 };
+
+/* beyond those: statuses of this code, and those of settling behind SETTLING */
+enum {
+    SETTLING = 300, RAISED = 400, NEEDS_EVENT, NEEDS_ROWS, TOO_MANY_STEPS, HAS_FAILED, WRONG_TIME, WRONG_INPUT,
+    INPUT_REFUSED, NOT_READ, NOT_PACKED, DONE
+};
+
+#endif

@@ -1,0 +1,71 @@
+/* Images and runs, as the C files of this folder see them. What stands in an image: `layout.py`, `image_file.py`. */
+#ifndef TLISMNI_IMAGE_H
+#define TLISMNI_IMAGE_H
+
+#include "tlismni.h"
+
+#define IMAGE_MAGIC "TLISMNI\x01"
+#define IMAGE_VERSION 1
+#define DIGEST_BYTES 32
+#define ALIGNED 64
+
+/* The head, behind magic and digest. */
+typedef struct {
+    int64_t version, size, checksum;
+    int64_t shared, tables, decisive, own;
+    int64_t functions, function_text, texts, text_size;
+    int64_t shared_shared, shared_function, own_own, own_shared, own_function;
+} Head;
+
+typedef struct {
+    int64_t inputs, channels, contacts, n, event_rows, most_steps, chunk, fixed_step, redundant, events;
+    double start, shortest, brief, punctual;
+} Numbers;
+
+typedef struct {
+    int64_t exchange, drive, reads, budget, times, inputs, channels, goals, counts, events, pending, clock, counters,
+        method_times, ring;
+} Places;
+
+/* The functions that the C code calls: the first ones of the image's list. */
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, CALLED };
+
+typedef void (*Function)(void);
+
+struct tlismni_model {
+    Head head;
+    Numbers numbers;
+    Places places;
+    const int64_t *own_own, *own_shared, *own_function; /* words of a run's memory that are addresses */
+    Function *functions;
+    const char **texts;     /* names of inputs, channels, contacts */
+    const char *own_bytes;  /* a run's memory at the start, with places for addresses */
+    char *shared;           /* what runs share, aligned */
+    char *bytes;            /* the image */
+    void *room;             /* that `shared` is in */
+};
+
+/* What decides the future of a run besides its memory. */
+typedef struct {
+    double now;
+    int64_t events, failed;
+} Beside;
+
+struct tlismni_run {
+    const tlismni_model *model;
+    char *own;        /* its memory, aligned */
+    void *allocated;  /* by `tlismni_start`; NULL if the memory is the caller's */
+    int64_t limit;
+    Beside beside;
+};
+
+/* Places in a run's memory. */
+#define WHOLES(run, name) ((int64_t *)((run)->own + (run)->model->places.name))
+#define REALS(run, name) ((double *)((run)->own + (run)->model->places.name))
+
+/* A function of the library by its symbol, NULL if there is none. */
+Function image_function(const char *symbol);
+
+uint32_t image_checksum(const void *bytes, size_t size);
+
+#endif

@@ -1,0 +1,177 @@
+"""A run as a file: all its memory, with addresses as places, so that a program without Python can go on from it."""
+
+import struct
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled.library import LIBRARY, Library
+from ..integrate.exchange import possible
+from .errors import NativeError
+from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
+from .reach import Found, check_words, held_by, holds_reals, like_addresses, reached, without_parts, words_of
+from .scratch import own_of, scratch_of
+
+_ALIGNED = 64
+
+
+def own_library() -> Library:
+    """The library of this process. Raises NativeError where there is none."""
+    if LIBRARY is None:
+        raise NativeError(
+            "a run without Python needs the library of machine code, and this process has none: make it with "
+            "`python -m tlismni.core.ahead`, or use a wheel that carries it"
+        )
+    return LIBRARY
+
+
+class _Segment:
+    """Arrays one after the other."""
+
+    def __init__(self, arrays: Sequence[NDArray[Any]], last: Found | None = None) -> None:
+        """Those that lie in `last` come at the end, as room without content."""
+        blank = {id(x) for x in arrays if last is not None and int(last.owner(np.array([x.ctypes.data]))[0]) >= 0}
+        self.arrays = [x for x in arrays if id(x) not in blank]
+        self.arrays.sort(key=holds_reals)  # what may have addresses comes first
+        self.start: dict[int, int] = {}
+        self.tables = self.copied = self.size = 0
+        for x in (*self.arrays, *(x for x in arrays if id(x) in blank)):
+            self.start[x.ctypes.data] = self.size
+            self.size += -(-x.nbytes // _ALIGNED) * _ALIGNED
+            if id(x) not in blank:
+                self.copied = self.size
+                self.tables = self.tables if holds_reals(x) else self.size
+        self.data = np.zeros(self.copied, dtype=np.uint8)
+        for x in self.arrays:
+            begin = self.start[x.ctypes.data]
+            self.data[begin : begin + x.nbytes] = x.reshape(-1).view(np.uint8)
+
+
+def native_image(sim: Any, most_steps: int) -> bytes:
+    """The image of a simulation of a Model: it goes on from the present point.
+
+    Parameters
+    ----------
+    most_steps : of the solver between two times that are asked for; more are an error of the run.
+
+    Raises
+    ------
+    NativeError : if the model needs Python when it runs; it says for what.
+    """
+    library = own_library()
+    if not possible(sim) or sim.crossing is None:
+        raise NativeError(
+            "the motion of a driver is an input, and what a run does when that jumps is Python's as yet: let an input "
+            "be a force, or use the FMU that runs with Python"
+        )
+    if (derived := sim.table.python_derives) is not None:
+        name = derived.channels[0].name
+        raise NativeError(f"channels that follow from coordinates ({name}, ...) are computed by Python as yet")
+    times = sim.crossing.times
+    times[:5] = sim.t, sim.t, *sim.input_times, sim.table.initial_energy
+    sim.crossing.wanted[:] = sim.workspace.arrays["inputs"][: len(sim.crossing.wanted), 0]
+    arrays = list(held_by(sim))
+    held, empty = without_parts(arrays), frozenset(x.ctypes.data for x in arrays if not x.nbytes)
+    found = reached(sim.crossing._record.table, held)
+    own = without_parts(own_of(sim))
+    scratch = without_parts(scratch_of(sim))
+    is_own = own.owner(found.begin) >= 0
+    shared = _Segment([x for x, mine in zip(found.arrays, is_own, strict=True) if not mine])
+    mine = _Segment([x for x, mine in zip(found.arrays, is_own, strict=True) if mine], scratch)
+    symbols = called_symbols(library)
+    addresses: dict[int, str] = {}
+    for key, symbol in library.entries.items():
+        address = library.address(*key.rsplit(" ", 1))
+        if address is not None:
+            addresses[address] = symbol
+    lists: dict[tuple[int, int], list[NDArray[np.int64]]] = {}
+    for kind, segment in ((0, shared), (1, mine)):
+        for x in segment.arrays:
+            for to, at in _relocate(x, segment, found, is_own, (shared, mine), addresses, symbols, empty):
+                lists.setdefault((kind, to), []).append(at)
+    if (0, 1) in lists:
+        raise NativeError("memory that all runs share points into that of one: it cannot be written as an image")
+    names = [*sim.assembly.input_names, *(c.name for c in sim.table.channels), *(c.name for c in sim.assembly.contacts)]
+    places = [_place(x, found, mine) for x in arrays_in_places(sim)]
+    order = ((0, 0), (0, 2), (1, 1), (1, 0), (1, 2))
+    relocations = [np.concatenate(lists.get(key, [np.zeros(0, dtype=np.int64)])) for key in order]
+    return _file(library, numbers_of(sim, most_steps), places, relocations, symbols, names, (shared, mine))
+
+
+def _place(x: NDArray[Any], found: Found, mine: _Segment) -> int:
+    """Where an array stands in a run's memory; 0 for one without content."""
+    if not x.nbytes:
+        return 0
+    address = x.ctypes.data
+    (number,) = found.owner(np.array([address]))
+    begin = int(found.begin[number])
+    if number < 0 or begin not in mine.start:
+        raise NativeError("an array that the C code reads is not in the run's own memory")
+    return mine.start[begin] + address - begin
+
+
+def _relocate(
+    x: NDArray[Any], segment: _Segment, found: Found, is_own: NDArray[np.bool_], segments: tuple[_Segment, _Segment],
+    addresses: dict[int, str], symbols: list[str], empty: frozenset[int],
+) -> list[tuple[int, NDArray[np.int64]]]:  # fmt: skip
+    """Write places in place of addresses; gives what they point to (0 shared, 1 own, 2 functions), and where."""
+    words = words_of(x)
+    if not len(words):
+        return []
+    first = segment.start[x.ctypes.data] // 8
+    copy = segment.data.view(np.int64)[first : first + len(words)]
+    owner = found.owner(words)
+    result = []
+    for to in (0, 1):
+        at = np.flatnonzero((owner >= 0) & (is_own[owner] == bool(to)))
+        if len(at):
+            starts = np.array([segments[to].start[found.arrays[k].ctypes.data] for k in owner[at]], dtype=np.int64)
+            copy[at] = words[at] - found.begin[owner[at]] + starts
+            result.append((to, first + at))
+    large = np.flatnonzero((owner < 0) & like_addresses(words))
+    functions = np.array([k for k in large.tolist() if int(words[k]) in addresses], dtype=np.int64)
+    for k in functions.tolist():
+        name = addresses[int(words[k])]
+        if name not in symbols:
+            symbols.append(name)
+        copy[k] = symbols.index(name)
+    if len(functions):
+        result.append((2, first + functions))
+    rest = np.setdiff1d(large, functions)
+    if not holds_reals(x):
+        check_words(words[rest], empty)
+        copy[rest] = 0  # addresses of arrays without content
+    return result
+
+
+def _file(
+    library: Library, numbers: bytes, places: list[int], relocations: list[NDArray[np.int64]], symbols: list[str],
+    names: list[str], segments: tuple[_Segment, _Segment],
+) -> bytes:  # fmt: skip
+    shared, own = segments
+    function_text = _padded(b"".join(name.encode() + b"\0" for name in symbols))
+    text = _padded(b"".join(name.encode() + b"\0" for name in names))
+    body = b"".join(
+        (
+            numbers,
+            struct.pack(f"<{len(places)}q", *places),
+            *(x.astype("<i8").tobytes() for x in relocations),
+            function_text, text, shared.data.tobytes(), own.data.tobytes(),
+        )
+    )  # fmt: skip
+    head = {
+        "version": VERSION, "size": 0, "checksum": zlib.crc32(body),
+        "shared": len(shared.data), "tables": own.tables, "decisive": own.copied, "own": own.size,
+        "functions": len(symbols), "function_text": len(function_text), "texts": len(names), "text_size": len(text),
+        **dict(zip(HEAD[-5:], map(len, relocations), strict=True)),
+    }  # fmt: skip
+    start = MAGIC + library.digest.encode().ljust(32, b"\0")[:32]
+    head["size"] = len(start) + 8 * len(HEAD) + len(body)
+    return start + struct.pack(f"<{len(HEAD)}q", *(head[name] for name in HEAD)) + body
+
+
+def _padded(data: bytes) -> bytes:
+    return data + bytes(-len(data) % 8)

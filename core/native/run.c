@@ -1,0 +1,109 @@
+/* Runs: memory of their own, and what can be asked of them. */
+
+#include "image.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "codes.h"
+
+static size_t head_size(void) {
+    return (sizeof(tlismni_run) + ALIGNED - 1) / ALIGNED * ALIGNED;
+}
+
+size_t tlismni_run_size(const tlismni_model *model) {
+    return head_size() + (size_t)model->head.own;
+}
+
+tlismni_run *tlismni_start_in(const tlismni_model *m, void *memory, size_t size) {
+    if (!memory || (uintptr_t)memory % ALIGNED || size < tlismni_run_size(m)) {
+        return NULL;
+    }
+    tlismni_run *run = memory;
+    memset(run, 0, sizeof *run);
+    run->model = m;
+    run->own = (char *)memory + head_size();
+    run->limit = m->numbers.most_steps;
+    tlismni_restart(run);
+    return run;
+}
+
+void tlismni_restart(tlismni_run *run) {
+    const tlismni_model *m = run->model;
+    run->beside = (Beside){m->numbers.start, m->numbers.events, 0};
+    memcpy(run->own, m->own_bytes, (size_t)m->head.decisive);
+    memset(run->own + m->head.decisive, 0, (size_t)(m->head.own - m->head.decisive));
+    int64_t *words = (int64_t *)run->own;
+    for (int64_t k = 0; k < m->head.own_own; k++) {
+        words[m->own_own[k]] += (int64_t)(intptr_t)run->own;
+    }
+    for (int64_t k = 0; k < m->head.own_shared; k++) {
+        words[m->own_shared[k]] += (int64_t)(intptr_t)m->shared;
+    }
+    for (int64_t k = 0; k < m->head.own_function; k++) {
+        words[m->own_function[k]] = (int64_t)(intptr_t)m->functions[words[m->own_function[k]]];
+    }
+}
+
+tlismni_run *tlismni_start(const tlismni_model *model) {
+    size_t size = tlismni_run_size(model);
+    char *allocated = malloc(size + ALIGNED);
+    if (!allocated) {
+        return NULL;
+    }
+    char *aligned = (char *)(((uintptr_t)allocated + ALIGNED - 1) / ALIGNED * ALIGNED);
+    tlismni_run *run = tlismni_start_in(model, aligned, size);
+    run->allocated = allocated;
+    return run;
+}
+
+void tlismni_end(tlismni_run *run) {
+    if (run) {
+        free(run->allocated);
+    }
+}
+
+double tlismni_time(const tlismni_run *run) {
+    return run->beside.now;
+}
+
+double tlismni_computed(const tlismni_run *run) {
+    return REALS(run, method_times)[WHOLES(run, ring)[0]];
+}
+
+double *tlismni_inputs(tlismni_run *run) {
+    return REALS(run, inputs);
+}
+
+const double *tlismni_channels(const tlismni_run *run) {
+    return REALS(run, channels);
+}
+
+int64_t tlismni_event_count(const tlismni_run *run) {
+    return run->beside.events;
+}
+
+int64_t tlismni_steps(const tlismni_run *run) {
+    return WHOLES(run, counters)[STEPS];
+}
+
+void tlismni_limit_steps(tlismni_run *run, int64_t steps) {
+    run->limit = steps > 0 ? steps : INT64_MAX;
+}
+
+size_t tlismni_events(tlismni_run *run, tlismni_event *events, size_t room) {
+    const double *row = REALS(run, events);
+    size_t found = 0;
+    for (int64_t k = 0; k < WHOLES(run, counts)[EVENTS]; k++, row += EVENT_SIZE) {
+        if ((int)row[1] >= GAINS) {
+            continue; /* what only warnings in Python tell of */
+        }
+        if (found < room) {
+            events[found] = (tlismni_event){row[0], (int)row[1], (int)row[2], row[3], row[4], row[5], row[6], row[7],
+                                            row[8]};
+        }
+        found++;
+    }
+    WHOLES(run, counts)[EVENTS] = 0;
+    return found;
+}

@@ -1,0 +1,61 @@
+"""Which memory of a run decides nothing: it may hold anything between two calls (`tests/core/test_state_memory.py`)."""
+
+from typing import Any
+
+from numpy.typing import NDArray
+
+_OF_WORKSPACE = (
+    "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v", "offset", "phi", "phid", "phidd",
+    "coef", "energy", "monitor", "stage_v", "stage_a", "stage_rows", "rhs", "scratch", "basis",
+)  # fmt: skip
+_OF_LOOP = (
+    *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor")),
+    "travel", "brackets", "samples", "log",
+)  # fmt: skip
+_OF_DRIVE = ("found", "events", "nearest", "last_trial")
+_OF_EXCHANGE = ("before", "sample", "channels")
+
+
+def scratch_of(sim: Any) -> list[NDArray[Any]]:
+    """The scratch arrays of a simulation."""
+    found = []
+    for arrays, names in (
+        (sim.workspace.arrays, _OF_WORKSPACE),
+        (sim._loop.arrays, _OF_LOOP),
+        (sim.drive.record.arrays, _OF_DRIVE),
+        (sim.crossing._record.arrays, _OF_EXCHANGE),
+    ):
+        found += [arrays[name] for name in names]
+    found += sim.drive.instant.scratch()
+    for structure in sim.workspace.patterns:
+        found.append(structure.values)
+        for factorization in factorizations_of(structure):
+            found += [factorization.arrays[name] for name in ("choice_work",) if name in factorization.arrays]
+    return found
+
+
+def factorizations_of(structure: Any) -> list[Any]:
+    """All factorisations of a structure."""
+    return [structure.kkt, structure.kkt_query, *(partition.lu_d for partition in structure.known.values())]
+
+
+def own_of(sim: Any) -> list[NDArray[Any]]:
+    """All memory that a run writes into, scratch included."""
+    arrays, tables = sim.workspace.memory()
+    own = [*arrays, *tables, *sim.drive.instant.tables(), *sim.drive.instant.scratch()]
+    for record in (sim._method, sim._loop, sim.drive.record, sim.crossing._record):
+        own += [record.table, *(x for name, x in record.arrays.items() if name not in _CONSTANT)]
+    for structure in sim.workspace.patterns:
+        for part in (structure, *structure.known.values()):
+            arrays, tables = part.memory()
+            own += [*arrays, *tables]
+    return own
+
+
+_CONSTANT = (
+    "near", "leap", "breakpoints", "law", "restitution", "rest_ratio", "friction", "places", "summed", "number",
+    "column", "signs", "flags", "flag_columns", "force_law", "force_numbers", "least_approach", "ends_early",
+    "impulse_account", "dissipation_account", "bristle", "bristle_stiffness", "marker_columns", "marker_offsets",
+    "marker_angles", "marker_channels",
+)  # fmt: skip
+"""Arrays of the records that a run never writes into."""

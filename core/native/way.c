@@ -1,0 +1,270 @@
+/* The way on: what `exchange` and `advance.py` do in Python, as far as it takes none. */
+
+#include "codes.h"
+#include "image.h"
+
+#include <math.h>
+
+/* Calls of compiled code follow numba's convention: places of the result and of what is raised come first. */
+
+typedef int32_t (*OfRecord)(void *result, void **raised, void *record);
+typedef int32_t (*OfDrive)(void *result, void **raised, void *record, bool hold);
+
+/* What a function of one record returns; RAISED if it has raised something. */
+static int64_t call(tlismni_run *run, int which, int64_t place) {
+    int64_t result = 0; /* of a truth value only the first byte is written */
+    void *raised = NULL;
+    int32_t status = ((OfRecord)run->model->functions[which])(&result, &raised, run->own + place);
+    return status == 0 ? result : RAISED;
+}
+
+static int64_t drive(tlismni_run *run, bool hold) {
+    int64_t result = 0;
+    void *raised = NULL;
+    int32_t status = ((OfDrive)run->model->functions[DRIVE])(&result, &raised, run->own + run->model->places.drive, hold);
+    return status == 0 ? result : RAISED;
+}
+
+/* Count the events that compiled code has reported from row `first` on. */
+static void count_events(tlismni_run *run, int64_t first) {
+    const double *rows = REALS(run, events);
+    int64_t count = WHOLES(run, counts)[EVENTS];
+    for (int64_t k = first; k < count; k++) {
+        run->beside.events += rows[EVENT_SIZE * k + 1] < (double)GAINS;
+    }
+}
+
+/* Forget reported events, so that there is room for more. */
+static void drop_events(tlismni_run *run) {
+    WHOLES(run, counts)[EVENTS] = 0;
+}
+
+static bool any_pending(const tlismni_run *run) {
+    const int64_t *pending = WHOLES(run, pending);
+    for (int64_t k = 0; k < run->model->numbers.contacts; k++) {
+        if (pending[k]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool tlismni_event_due(const tlismni_run *run) {
+    return any_pending(run) && tlismni_computed(run) == run->beside.now;
+}
+
+static int64_t used(const tlismni_run *run) {
+    return WHOLES(run, counters)[STEPS] + WHOLES(run, counts)[HANDLED];
+}
+
+/* A smaller step after a failure; false if it cannot be smaller (`advance.py`). */
+static bool shrink(tlismni_run *run) {
+    double *clock = REALS(run, clock), h = 0.25 * clock[TRIAL_STEP];
+    const Numbers *n = &run->model->numbers;
+    double least = n->shortest * fmax(fabs(tlismni_computed(run)), n->brief);
+    clock[STEP_SIZE] = h;
+    return h > least;
+}
+
+/* New partition and pivots. */
+static tlismni_status repair(tlismni_run *run) {
+    int64_t status = run->model->numbers.redundant ? NEEDS_ROWS : call(run, REPAIR, run->model->places.drive);
+    return status == SETTLED ? TLISMNI_OK : (tlismni_status)(status < RAISED ? SETTLING + status : status);
+}
+
+/* What has to be done after `drive` has returned `code`; DONE at the end of the way. */
+static tlismni_status after(tlismni_run *run, int64_t code, bool hold, double *repaired) {
+    double computed = tlismni_computed(run);
+    switch (code) {
+    case REACHED:
+    case ARRIVED:
+    case WAS_READ:
+        return DONE;
+    case CHUNK:
+        return TLISMNI_OK;
+    case SETTLE_IT:
+        if (hold || computed > REALS(run, goals)[GOAL]) {
+            return DONE;
+        }
+        if (WHOLES(run, counts)[EVENTS]) { /* there may be no room for more events */
+            drop_events(run);
+            return TLISMNI_OK;
+        }
+        return run->model->numbers.redundant ? NEEDS_ROWS : NEEDS_EVENT;
+    case WANTED:
+    case EVENT_FAILED:
+        return (tlismni_status)(SETTLING + WHOLES(run, counts)[STATUS]);
+    case REPARTITION:
+        return repair(run);
+    case REANALYZE:
+    case SINGULAR:
+    case INNER_DIVERGED:
+    case OUTER_DIVERGED:
+    case OUTER_SLOW:
+        if (*repaired != computed) {
+            *repaired = computed;
+            return repair(run);
+        }
+        if (code != OUTER_DIVERGED && code != OUTER_SLOW && !run->model->numbers.fixed_step && shrink(run)) {
+            if (code == REANALYZE) {
+                *repaired = NAN; /* the matrix of the shorter step has other pivots */
+            }
+            return TLISMNI_OK;
+        }
+        return (tlismni_status)code;
+    default:
+        return (tlismni_status)code;
+    }
+}
+
+/* Go on after `code`, until the goal or, to `hold`, until events are pending. `first`: steps made before; `seen`: events
+ * that are counted already. */
+static tlismni_status go_on(tlismni_run *run, int64_t code, bool hold, int64_t first, int64_t seen) {
+    double repaired = NAN;
+    int64_t *counts = WHOLES(run, counts);
+    for (;;) {
+        count_events(run, seen);
+        tlismni_status status = after(run, code, hold, &repaired);
+        seen = counts[EVENTS];
+        if (status != TLISMNI_OK) {
+            return status == DONE ? TLISMNI_OK : status;
+        }
+        int64_t left = run->limit - (used(run) - first);
+        if (left <= 0) {
+            return TOO_MANY_STEPS;
+        }
+        counts[BUDGET] = left < run->model->numbers.chunk ? left : run->model->numbers.chunk;
+        code = drive(run, hold);
+    }
+}
+
+/* Before anything else: can the run go on to `t`? The inputs count from now on. */
+static tlismni_status begin(tlismni_run *run, double t) {
+    double *times = REALS(run, times);
+    if (run->beside.failed) {
+        return HAS_FAILED;
+    }
+    if (!(isfinite(t) && t >= run->beside.now)) {
+        return WRONG_TIME;
+    }
+    for (int64_t k = 0; k < run->model->numbers.inputs; k++) {
+        if (!isfinite(REALS(run, inputs)[k])) {
+            return WRONG_INPUT;
+        }
+    }
+    WHOLES(run, counts)[EVENTS] = 0;
+    times[NOW] = run->beside.now;
+    times[TO] = t;
+    bool told = !run->model->numbers.inputs || call(run, TELL, run->model->places.exchange) == 1;
+    return told ? TLISMNI_OK : INPUT_REFUSED;
+}
+
+/* A failed run can only be restored. */
+static tlismni_status end(tlismni_run *run, tlismni_status status) {
+    if (status != TLISMNI_OK && status != INPUT_REFUSED) {
+        run->beside.failed = 1;
+    }
+    return status;
+}
+
+static tlismni_status read_at(tlismni_run *run, double t) {
+    REALS(run, times)[TO] = t;
+    return call(run, READ, run->model->places.exchange) == 1 ? TLISMNI_OK : NOT_READ;
+}
+
+tlismni_status tlismni_step(tlismni_run *run, double t, bool read) {
+    tlismni_status status = begin(run, t);
+    if (status != TLISMNI_OK) {
+        return status;
+    }
+    int64_t first = used(run);
+    *WHOLES(run, reads) = read;
+    *WHOLES(run, budget) = run->limit < run->model->numbers.chunk ? run->limit : run->model->numbers.chunk;
+    int64_t code = call(run, EXCHANGE, run->model->places.exchange);
+    status = go_on(run, code, false, first, 0);
+    if (status == TLISMNI_OK) {
+        run->beside.now = t;
+        if (read && code != WAS_READ) {
+            status = read_at(run, t);
+        }
+    }
+    return end(run, status);
+}
+
+tlismni_status tlismni_look(tlismni_run *run) {
+    tlismni_status status = begin(run, run->beside.now);
+    return status == TLISMNI_OK ? end(run, read_at(run, run->beside.now)) : status;
+}
+
+/* Where a step must end because the inputs are expected to change (`inputs.py`). */
+static double stop_of(const tlismni_run *run, double t) {
+    const double *times = REALS(run, times);
+    double expected = times[LAST_CHANGE] + times[INTERVAL];
+    if (!(run->beside.now < expected && expected < INFINITY)) {
+        return INFINITY;
+    }
+    return expected <= t + run->model->numbers.punctual * times[INTERVAL] ? t : expected;
+}
+
+/* Let the pending events of the present time happen. */
+static tlismni_status settle(tlismni_run *run) {
+    int64_t first = WHOLES(run, counts)[EVENTS];
+    if (run->model->numbers.redundant) {
+        return NEEDS_ROWS;
+    }
+    int64_t status = call(run, SETTLE, run->model->places.drive);
+    if (status == NOT_SETTLED && first) {
+        drop_events(run);
+        first = 0;
+        status = call(run, SETTLE, run->model->places.drive);
+    }
+    count_events(run, first);
+    if (status == SETTLED) {
+        return TLISMNI_OK;
+    }
+    return (tlismni_status)(status == NOT_SETTLED ? NEEDS_EVENT : status < RAISED ? SETTLING + status : status);
+}
+
+tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
+    *event = false;
+    tlismni_status status = begin(run, t);
+    if (status != TLISMNI_OK) {
+        return status;
+    }
+    double start = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
+    int64_t first = used(run);
+    for (;;) {
+        while (status == TLISMNI_OK && tlismni_event_due(run)) {
+            status = settle(run);
+        }
+        if (status != TLISMNI_OK) {
+            return end(run, status);
+        }
+        goals[GOAL] = t;
+        goals[LAST_STOP] = stop;
+        status = go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
+        if (status != TLISMNI_OK) {
+            return end(run, status);
+        }
+        double computed = tlismni_computed(run);
+        if (!any_pending(run) || computed > t) {
+            run->beside.now = t;
+            return TLISMNI_OK;
+        }
+        run->beside.now = computed;
+        if (computed > start) {
+            *event = true;
+            return TLISMNI_OK;
+        }
+    }
+}
+
+tlismni_status tlismni_happen(tlismni_run *run, bool *again) {
+    *again = false;
+    tlismni_status status = begin(run, run->beside.now);
+    if (status == TLISMNI_OK && tlismni_event_due(run)) {
+        status = settle(run);
+        *again = status == TLISMNI_OK && tlismni_event_due(run);
+    }
+    return status == INPUT_REFUSED ? status : end(run, status);
+}

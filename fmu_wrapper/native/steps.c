@@ -1,0 +1,128 @@
+/* Steps and events: what `Slave.do_step` and `Run.advance` do in Python. */
+
+#include "slave.h"
+
+#include <math.h>
+
+#define LARGEST_SLIP 1e-9
+
+static double ulp(double x) {
+    x = fabs(x);
+    return nextafter(x, INFINITY) - x;
+}
+
+/* End of the step, before `stop` (`grid.py`); false with a line in the log. */
+static bool check_step(const Slave *self, const char *function, double t, double h, double *end) {
+    double own = tlismni_time(self->run);
+    *end = t + h;
+    if (!isfinite(t) || !isfinite(h) || h <= 0.0) {
+        slave_error(self, function, "communication point %g s and step %g s must be finite, the step greater than 0", t, h);
+        return false;
+    }
+    double scale = fmax(fmax(fabs(own), fabs(t)), h);
+    double slack = fmax(8.0 * ulp(scale), fmin(LARGEST_SLIP * scale, 0.01 * h));
+    if (fabs(t - own) > slack) {
+        slave_error(self, function, "the communication point is %.17g s, but this slave is at %.17g s: step from there, or "
+                    "set a stored state first", t, own);
+        return false;
+    }
+    if (!(*end > own) || !isfinite(*end)) {
+        slave_error(self, function, "the communication step %g s is lost in rounding at %.17g s: make it larger", h, own);
+        return false;
+    }
+    if (*end > self->stop + slack) {
+        slave_error(self, function, "the step from %.17g s by %g s ends after the stop time %.17g s of the experiment: make "
+                    "it shorter, or set up the experiment without a stop time", t, h, self->stop);
+        return false;
+    }
+    return true;
+}
+
+/* To `goal`, or to an event before that which ends the step. */
+static int advance(Slave *self, double goal, StepEnd *end) {
+    bool event, again;
+    int status;
+    while ((status = tlismni_step_to_event(self->run, goal, &event)) == TLISMNI_OK && event) {
+        double reached = tlismni_time(self->run);
+        bool early = self->early_return && reached < goal;
+        slave_log_events(self);
+        if (self->event_mode && (early || reached >= goal)) {
+            *end = (StepEnd){reached, true, early};
+            return status;
+        }
+        do {
+            status = tlismni_happen(self->run, &again);
+            slave_log_events(self);
+        } while (status == TLISMNI_OK && again);
+        if (status != TLISMNI_OK) {
+            return status;
+        }
+        if (early) {
+            *end = (StepEnd){reached, false, true};
+            return status;
+        }
+    }
+    slave_log_events(self);
+    return status;
+}
+
+int slave_step(Slave *self, const char *function, double t, double h, StepEnd *end) {
+    double goal;
+    if (!slave_may(self, function, IN(STEP_MODE))) {
+        return STATUS_ERROR;
+    }
+    *end = (StepEnd){tlismni_time(self->run), false, false};
+    if (!check_step(self, function, t, h, &goal)) {
+        return STATUS_ERROR;
+    }
+    bool read = self->asked, plain = !(self->event_mode || self->early_return);
+    self->asked = self->fresh = false;
+    *end = (StepEnd){goal, false, false};
+    int status = plain ? tlismni_step(self->run, goal, read) : advance(self, goal, end);
+    if (status) {
+        self->phase = FAILED;
+        end->time = tlismni_time(self->run);
+        return slave_run_error(self, function, status);
+    }
+    if (plain) {
+        slave_log_events(self);
+        self->fresh = read;
+    } else if (end->event_due) {
+        self->phase = EVENT_DUE;
+    }
+    return STATUS_OK;
+}
+
+int slave_enter_event_mode(Slave *self, const char *function) {
+    if (slave_alive(self) && !self->event_mode) {
+        return slave_error(self, function, "this instance has no event mode: instantiate it with eventModeUsed = true");
+    }
+    if (!slave_may(self, function, IN(STEP_MODE) | IN(EVENT_DUE))) {
+        return STATUS_ERROR;
+    }
+    self->phase = EVENT_MODE;
+    return STATUS_OK;
+}
+
+int slave_update(Slave *self, const char *function, bool *again) {
+    *again = false;
+    if (!slave_may(self, function, IN(EVENT_MODE))) {
+        return STATUS_ERROR;
+    }
+    self->fresh = false;
+    int status = tlismni_happen(self->run, again);
+    if (status) {
+        self->phase = FAILED;
+        return slave_run_error(self, function, status);
+    }
+    slave_log_events(self);
+    return STATUS_OK;
+}
+
+int slave_enter_step_mode(Slave *self, const char *function) {
+    if (!slave_may(self, function, IN(EVENT_MODE))) {
+        return STATUS_ERROR;
+    }
+    self->phase = STEP_MODE;
+    return STATUS_OK;
+}

@@ -1,0 +1,136 @@
+/* Values of variables. */
+
+#include "slave.h"
+
+#include <math.h>
+
+static const char *const KIND_NAMES[] = {"real", "integer", "boolean"};
+#define READABLE (~IN(INSTANTIATED))
+#define SETTABLE (IN(INSTANTIATED) | IN(INITIALIZATION) | IN(STEP_MODE) | IN(EVENT_DUE) | IN(EVENT_MODE))
+
+/* The variable behind a value reference; NULL with a line in the log. */
+static const Variable *find(const Slave *self, const char *function, uint32_t reference, Kind kind) {
+    if (reference < 1 || reference > self->count) {
+        slave_error(self, function, "value reference %lu is unknown: this FMU has 1 to %zu, which stand in "
+                    "modelDescription.xml", (unsigned long)reference, self->count);
+        return NULL;
+    }
+    const Variable *v = &self->variables[reference - 1];
+    if (v->kind != (int32_t)kind) {
+        slave_error(self, function, "value reference %lu is of kind %s, not %s: use the functions for that",
+                    (unsigned long)reference, v->enumeration ? "enumeration" : KIND_NAMES[v->kind], KIND_NAMES[kind]);
+        return NULL;
+    }
+    return v;
+}
+
+/* Have the channels at the present time with the present inputs. */
+static int look(Slave *self, const char *function) {
+    self->asked = true;
+    if (self->fresh) {
+        return STATUS_OK;
+    }
+    if (!slave_may(self, function, ~IN(FAILED))) {
+        return STATUS_ERROR;
+    }
+    int status = tlismni_look(self->run);
+    if (status) {
+        if (self->phase != INITIALIZATION) {
+            self->phase = FAILED;
+        }
+        return slave_run_error(self, function, status);
+    }
+    self->fresh = true;
+    return STATUS_OK;
+}
+
+static double value_of(const Slave *self, const Variable *v) {
+    switch (v->source) {
+    case TIME:
+        return tlismni_time(self->run);
+    case INPUT:
+        return tlismni_inputs(self->run)[v->number];
+    case CHANNEL:
+        return tlismni_channels(self->run)[v->number];
+    case EVENT_COUNT:
+        return (double)tlismni_event_count(self->run);
+    default:
+        return v->start;
+    }
+}
+
+int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, double value[]) {
+    if (!slave_may(self, function, READABLE) || !slave_has_room(self, function, vr, n) ||
+        !slave_has_room(self, function, value, n)) {
+        return STATUS_ERROR;
+    }
+    for (size_t k = 0; k < n; k++) {
+        const Variable *v = find(self, function, vr[k], REAL);
+        if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
+            return STATUS_ERROR;
+        }
+        value[k] = value_of(self, v);
+    }
+    return STATUS_OK;
+}
+
+int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerations, const uint32_t vr[], size_t n,
+                     int64_t value[]) {
+    if (!slave_may(self, function, READABLE) || !slave_has_room(self, function, vr, n) ||
+        !slave_has_room(self, function, value, n)) {
+        return STATUS_ERROR;
+    }
+    for (size_t k = 0; k < n; k++) {
+        const Variable *v = find(self, function, vr[k], kind);
+        if (v && enumerations >= 0 && v->enumeration != enumerations) {
+            return slave_error(self, function, "value reference %lu is %s: use the functions for %s", (unsigned long)vr[k],
+                               enumerations ? "an Int32, no enumeration" : "an enumeration", enumerations ? "Int32" : "Int64");
+        }
+        if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
+            return STATUS_ERROR;
+        }
+        double number = value_of(self, v);
+        value[k] = kind == BOOLEAN ? number != 0.0 : (int64_t)rint(number);
+    }
+    return STATUS_OK;
+}
+
+static int refuse(const Slave *self, const char *function, uint32_t reference) {
+    return slave_error(self, function, "value reference %lu cannot be set: an FMU that needs no Python takes inputs, and "
+                       "its parameters are those that it was exported with; export it with others, or with Python",
+                       (unsigned long)reference);
+}
+
+int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]) {
+    if (!slave_may(self, function, SETTABLE) || !slave_has_room(self, function, vr, n) ||
+        !slave_has_room(self, function, value, n)) {
+        return STATUS_ERROR;
+    }
+    for (size_t k = 0; k < n; k++) { /* all of them or none */
+        const Variable *v = find(self, function, vr[k], REAL);
+        if (!v) {
+            return STATUS_ERROR;
+        }
+        if (v->source != INPUT) {
+            return refuse(self, function, vr[k]);
+        }
+        if (!isfinite(value[k]) || value[k] < v->least || value[k] > v->largest) {
+            const char *name = tlismni_name(self->model, TLISMNI_INPUT, (size_t)v->number);
+            return slave_error(self, function, "'%s' was set to %g, which is not finite or outside its range [%g, %g]: check "
+                               "what feeds it", name ? name : "?", value[k], v->least, v->largest);
+        }
+    }
+    double *inputs = tlismni_inputs(self->run);
+    for (size_t k = 0; k < n; k++) {
+        inputs[self->variables[vr[k] - 1].number] = value[k];
+    }
+    self->fresh = self->fresh && !n;
+    return STATUS_OK;
+}
+
+int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n) {
+    if (!slave_may(self, function, SETTABLE) || !slave_has_room(self, function, vr, n)) {
+        return STATUS_ERROR;
+    }
+    return n ? refuse(self, function, vr[0]) : STATUS_OK;
+}

@@ -1,0 +1,240 @@
+"""Runs without Python (`core/native`): the same bits, states, and what is refused."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tlismni.core import Simulation, SimulationError
+from tlismni.core.compiled.library import LIBRARY
+from tlismni.core.native import NativeError, image_of
+from tlismni.core.native import layout as layouts
+from tlismni.models import load
+
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+NATIVE = Path(layouts.__file__).parent
+
+
+def build(name, t_end=None, **parameters):
+    from tlismni.core.native.in_process import NativeModel, NativeRun
+
+    scenario = load(name, **parameters)
+    settings = {"method": scenario.method, "rtol": scenario.rtol, "atol": scenario.atol, **scenario.options}
+    image = image_of(scenario.model, t_end or scenario.t_end, **settings)
+    return NativeRun(NativeModel(image, LIBRARY)), Simulation(scenario.model, **settings), image
+
+
+def jumping_model():
+    """A pendulum with a marker at its end, pushed from 0.2 to 0.6 s, above a floor."""
+    from tlismni.core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
+    from tlismni.core.contact.laws import NewtonImpact
+    from tlismni.core.description import Model
+    from tlismni.core.elements import AppliedForce2D, Revolute2D, RigidBody2D
+    from tlismni.core.model.markers import Marker2D
+    from tlismni.core.model.outputs import MarkerOutput2D
+    from tlismni.core.model.signals import Step
+
+    end = Marker2D(body="bar", point=(0.5, 0.0), angle=0.3)
+    return Model(
+        name="pushed",
+        bodies=[RigidBody2D(name="bar", mass=1.0, inertia=0.1, position=(0.5, 0.0))],
+        joints=[Revolute2D(name="pin", a=Marker2D(), b=Marker2D(body="bar", point=(-0.5, 0.0)))],
+        forces=[
+            AppliedForce2D(name="push", marker=end, force_y=Step(time=0.2, after=25.0)),
+            AppliedForce2D(name="pull", marker=end, force_y=Step(time=0.6, after=-25.0)),
+        ],
+        contacts=[
+            DiskOnHalfPlane2D(name="floor", plane=HalfPlane2D(marker=Marker2D(point=(0.0, -0.4))),
+                              disk=Disk2D(marker=end, radius=0.05), law=NewtonImpact(restitution=0.5))
+        ],
+        outputs=[MarkerOutput2D(name="tip", marker=end), MarkerOutput2D(name="nail", marker=Marker2D())],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "name, t_end",
+    [
+        ("bouncing_ball", 3.0), ("chain", 0.5), ("pendulum", 3.0), ("rocking_block", 1.0), ("stick_slip", 2.0),
+        ("woodpecker", 0.3), ("slider_crank_stop", 0.5), ("mass_on_rod", 5e-4), ("cable_ground", 0.2),
+        ("sphere_beam", 6e-4), ("split_whole", 0.1),
+    ],
+)  # fmt: skip
+def test_the_same_bits_at_other_times(name, t_end):
+    """Not at those of the proof."""
+    run, sim, _ = build(name, t_end)
+    inputs = [x.start for x in sim.system.inputs]
+    for t in np.sort(np.random.default_rng(3).uniform(0.0, t_end, 40)):
+        found = run.step(float(t), inputs)
+        sim.advance(float(t))
+        assert found.tobytes() == sim.values().tobytes(), t
+    assert (run.events, run.steps) == (len(sim.events), sim.stats["steps"])
+    assert run.model.names(1) == tuple(channel.name for channel in sim.channels)
+
+
+def test_inputs_change_as_in_python():
+    """Some of them make the closed contact let go at once, or slide."""
+    run, sim, _ = build("slider_crank_stop", 1.0)
+    (name,) = run.model.names(0)
+    random = np.random.default_rng(4)
+    for k in range(1, 60):
+        value = float(random.uniform(-30.0, 30.0)) if k % 3 == 0 else run._inputs[0]
+        found = run.step(0.02 * k, [value])
+        sim.set_inputs({name: value})
+        sim.advance(0.02 * k)
+        assert found.tobytes() == sim.values().tobytes(), k
+    assert run.events == len(sim.events) > 5
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_inputs_that_lead_elsewhere(seed):
+    """Positions and contacts that the run without inputs never meets were looked at too."""
+    random = np.random.default_rng(seed)
+    run, sim, _ = build("pendulum_stop")
+    t, torque = 0.0, 0.0
+    for _ in range(80):
+        t += float(random.uniform(0.002, 0.1))
+        if random.random() < 0.5:
+            torque = float(random.uniform(-60.0, 60.0))
+        found = run.step(t, [torque])
+        sim.set_inputs({"torque": torque})
+        sim.advance(t)
+        assert found.tobytes() == sim.values().tobytes(), t
+    assert run.events == len(sim.events)
+
+
+def test_markers_and_forces_that_jump():
+    """Channels of markers, and a force that begins and ends at given times."""
+    from tlismni.core.native.in_process import NativeModel, NativeRun
+
+    model = jumping_model()
+    sim = Simulation(model)
+    run = NativeRun(NativeModel(image_of(model, 1.5), LIBRARY))
+    for t in np.random.default_rng(6).uniform(0.0, 1.5, 30).cumsum() / 16.0:
+        found = run.step(float(t))
+        sim.advance(float(t))
+        assert found.tobytes() == sim.values().tobytes(), t
+    assert run.model.names(1).count("tip.ax") == 1 and sim.t > 0.8
+
+
+def test_events_one_by_one():
+    run, sim, _ = build("woodpecker", 0.5)
+    seen = 0
+    while run.step_to_event(0.5):
+        assert sim.advance_to_event(0.5) and run.t == sim.t
+        assert run.look().tobytes() == sim.values().tobytes()
+        while True:
+            again = run.happen()
+            assert again == sim.handle_event()
+            seen += 1
+            if not again:
+                break
+        assert run.look().tobytes() == sim.values().tobytes()
+    assert not sim.advance_to_event(0.5)
+    assert run.t == sim.t == 0.5 and seen > 20
+
+
+@pytest.mark.parametrize("name, t_end", [("woodpecker", 0.5), ("chain", 1.0), ("pendulum", 6.0)])
+def test_going_back_and_to_other_runs(name, t_end):
+    from tlismni.core.native.in_process import NativeRun
+
+    run, *_ = build(name, t_end)
+    other = NativeRun(run.model)
+    times = np.linspace(0.0, t_end, 21)[1:].tolist()
+    rows, kept, packed = [], [], []
+    for t in times:
+        kept.append(run.save())
+        packed.append(run.pack())
+        rows.append(run.step(t).tobytes())
+    for first in (15, 3, 11):
+        run.restore(kept[first])
+        other.unpack(packed[first])
+        for t, wanted in zip(times[first:], rows[first:], strict=True):
+            assert run.step(t).tobytes() == other.step(t).tobytes() == wanted
+        assert run.pack() == other.pack()
+
+
+def test_packed_states_that_are_none():
+    run, *_ = build("bouncing_ball", 1.0)
+    stranger, *_ = build("bouncing_ball", 1.0, restitution=0.5)
+    before, packed = run.save(), run.pack()
+    broken = bytearray(packed)
+    broken[len(packed) // 2] ^= 1
+    for bad in (b"", packed[:-1], packed + b"\0", bytes(broken), stranger.pack()):
+        with pytest.raises(SimulationError, match="no packed state of this image"):
+            run.unpack(bad)
+    assert run.save() == before
+
+
+def test_images_that_are_none():
+    from tlismni.core.native.in_process import NativeModel
+
+    _, _, image = build("bouncing_ball", 1.0)
+    broken = bytearray(image)
+    broken[-9] ^= 1
+    other = image[:8] + b"0" * 32 + image[40:]
+    for bad, text in ((b"", "no image"), (image[:100], "no image|damaged"), (image[:-8], "damaged"),
+                      (bytes(broken), "damaged"), (other, "another version")):  # fmt: skip
+        with pytest.raises(NativeError, match=text):
+            NativeModel(bytes(bad), LIBRARY)
+
+
+@pytest.mark.parametrize(
+    "name, text",
+    [("split_wall", "motion of a driver"), ("four_bar", "singular position"), ("newtons_cradle", "located")],
+)
+def test_what_takes_python_is_refused(name, text):
+    with pytest.raises(NativeError, match=text):
+        build(name)
+
+
+def test_wrong_times_and_inputs_and_too_many_steps():
+    run, *_ = build("slider_crank_stop", 0.3)
+    run.step(0.1, [0.0])
+    before = run.save()
+    for t, inputs, text in (
+        (0.05, [0.0], "before the present"), (np.nan, [0.0], "not finite"), (0.2, [np.inf], "input is not finite"),
+    ):  # fmt: skip
+        with pytest.raises(SimulationError, match=text):
+            run.step(t, inputs)
+        run._inputs[:] = 0.0
+        assert run.save() == before
+    run.limit_steps(2)
+    with pytest.raises(SimulationError, match="more steps"):
+        run.step(0.3, [0.0])
+    with pytest.raises(SimulationError, match="has failed before"):
+        run.step(0.3, [0.0])
+    run.restore(before)
+    run.limit_steps(0)
+    run.step(0.3, [0.0])
+
+
+def test_numbers_of_c_are_those_of_python():
+    from tlismni.core.events import records as events
+    from tlismni.core.integrate import exchange, records
+    from tlismni.core.system import records as system
+
+    text = (NATIVE / "codes.h").read_text()
+    found = {}
+    for block in re.findall(r"enum \{(.*?)\}", text, re.S):
+        last = -1
+        for item in filter(None, (x.strip() for x in block.split(","))):
+            name, _, value = (part.strip() for part in item.partition("="))
+            last = int(value) if value else last + 1
+            found[name] = last
+    other_names = {"TO": "GOAL", "SETTLE_IT": "SETTLE", "EVENT_FAILED": "FAILED", "WAS_READ": "READ",
+                   "NOT_SETTLED": "DECLINED"}  # fmt: skip
+    checked = 0
+    for module, names in (
+        (exchange, ("NOW", "TO", "LAST_CHANGE", "INTERVAL", "ARRIVED", "WAS_READ")),
+        (records, ("GOAL", "LAST_STOP", "BUDGET", "HANDLED", "HERE", "EVENTS", "STATUS", "STEP_SIZE", "TRIAL_STEP",
+                   "EVENT_SIZE", "GAINS", "REACHED", "EVENT", "FULL", "CHUNK", "STEP_TOO_SMALL", "REPARTITION",
+                   "NEAR_SINGULAR", "VIOLATED", "UNLOCATED", "DUE", "SETTLE_IT", "JAM", "WANTED", "EVENT_FAILED")),
+        (system, ("OUTER_DIVERGED", "INNER_DIVERGED", "SINGULAR", "REANALYZE", "NOT_FINITE", "OUTER_SLOW", "STEPS")),
+        (events, ("SETTLED", "NOT_SETTLED")),
+    ):  # fmt: skip
+        for name in names:
+            assert found[name] == getattr(module, other_names.get(name, name)), name
+            checked += 1
+    head = re.search(r"typedef struct \{(.*?)\} Head;", (NATIVE / "image.h").read_text(), re.S)[1]
+    assert tuple(re.findall(r"\b(?!int64_t)[a-z_]+\b", head)) == layouts.HEAD
+    assert checked > 30

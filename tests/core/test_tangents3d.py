@@ -1,0 +1,140 @@
+"""Tangents and constraint levels of every element in space against differences of its residuals.
+
+Euler parameters are moved off their norm too: the equations hold as functions of all coordinates.
+"""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from test_tangents import SINE, Point, check_levels, check_matrix, draw, quick
+from tlismni.core import (
+    AngleDriver3D,
+    AppliedForce3D,
+    AppliedTorque3D,
+    Axes,
+    AxialSpring3D,
+    AxisAngles,
+    Bushing3D,
+    Constant,
+    ConstantVelocity3D,
+    Cylindrical3D,
+    Distance3D,
+    EulerParameters,
+    Fixed3D,
+    Gear3D,
+    Marker3D,
+    Model,
+    Planar3D,
+    PointMass3D,
+    PointOnLine3D,
+    PointOnPlane3D,
+    PositionDriver3D,
+    Prismatic3D,
+    RackAndPinion3D,
+    Revolute3D,
+    RevoluteSpherical3D,
+    RigidBody3D,
+    RotationVector,
+    Screw3D,
+    Spherical3D,
+    SpringDamper3D,
+    TorsionSpring3D,
+    Universal3D,
+)
+
+A = RigidBody3D(
+    name="a", mass=1.3, inertia=(0.4, 0.5, 0.7), inertia_products=(0.05, -0.08, 0.1), position=(0.1, -0.2, 0.3),
+    attitude=RotationVector(vector=(0.2, -0.1, 0.3)),
+)  # fmt: skip
+B = RigidBody3D(
+    name="b",
+    mass=0.7,
+    inertia=(0.2, 0.25, 0.3),
+    position=(1.1, 0.4, -0.3),
+    attitude=AxisAngles(angles=(0.1, 0.3, -0.2)),
+)
+P = PointMass3D(name="p", mass=2.0, position=(0.5, 1.5, 0.2))
+LEFT = Marker3D(body="a", point=(0.3, -0.2, 0.1), attitude=Axes(z=(0.2, 0.1, 1.0)))
+RIGHT = Marker3D(body="b", point=(-0.4, 0.1, 0.25), attitude=EulerParameters(values=(1.0, 0.1, -0.2, 0.1)))
+GROUND = Marker3D(point=(0.2, 0.1, -0.3), attitude=RotationVector(vector=(0.1, 0.2, -0.1)))
+MASS = Marker3D(body="p")
+
+PAIRS = {"two bodies": (LEFT, RIGHT), "ground": (GROUND, RIGHT), "a point mass": (LEFT, MASS)}
+JOINTS = {
+    Spherical3D: {}, Revolute3D: {}, Universal3D: {}, ConstantVelocity3D: {}, Fixed3D: {}, Cylindrical3D: {},
+    Prismatic3D: {}, Planar3D: {}, PointOnLine3D: {}, PointOnPlane3D: {}, Distance3D: {"length": SINE},
+    RevoluteSpherical3D: {"length": 1.2}, AngleDriver3D: {"angle": SINE}, PositionDriver3D: {"position": SINE},
+}  # fmt: skip
+STIFF = (3.0, 2.0, 4.0, 1.1, 0.7, 0.9)
+COUPLED = tuple(tuple(STIFF[i] if i == j else 0.02 * (i + j) for j in range(6)) for i in range(6))
+LOAD = {"force_x": SINE, "force_y": Constant(value=1.4), "force_z": Constant(value=-0.6)}
+TORQUE = {"torque_x": SINE, "torque_y": Constant(value=1.4), "torque_z": Constant(value=-0.6)}
+FORCES = {
+    "spring": (SpringDamper3D, {"stiffness": 3.0, "damping": 0.7, "natural_length": 0.9}),
+    "axial spring": (AxialSpring3D, {"stiffness": 3.0, "damping": 0.7, "natural_position": 0.2}),
+    "torsion spring": (TorsionSpring3D, {"stiffness": 3.0, "damping": 0.7, "natural_angle": 0.2}),
+    "bushing": (Bushing3D, {"stiffness": STIFF, "damping": (0.2, 0.3, 0.1, 0.2, 0.1, 0.3)}),
+    "coupled bushing": (Bushing3D, {"stiffness": COUPLED, "damping": COUPLED}),
+}
+GEAR = Gear3D(name="j", frame_a=GROUND, wheel_a=LEFT, frame_b=LEFT, wheel_b=RIGHT, radius_a=0.7, radius_b=-0.4)
+RACK = RackAndPinion3D(name="j", frame=GROUND, wheel=LEFT, guide=GROUND, rack=RIGHT, radius=0.3)
+SCREWS = {where: Screw3D(name="j", a=a, b=b, lead=0.8) for where, (a, b) in PAIRS.items() if where != "a point mass"}
+OF_POINTS = (Spherical3D, PointOnLine3D, PointOnPlane3D, Distance3D, PositionDriver3D)
+CASES = {
+    "bodies": {},
+    "gear": {"joints": [GEAR]},
+    "rack": {"joints": [RACK]},
+    **{f"screw {where}": {"joints": [joint]} for where, joint in SCREWS.items()},
+    **{
+        f"{kind.__name__} {where}": {"joints": [kind(name="j", a=a, b=b, **fields)]}
+        for kind, fields in JOINTS.items()
+        for where, (a, b) in PAIRS.items()
+        if where != "a point mass" or kind in OF_POINTS
+    },
+    **{
+        f"{what} {where}": {"forces": [kind(name="f", a=a, b=b, **fields)]}
+        for what, (kind, fields) in FORCES.items()
+        for where, (a, b) in PAIRS.items()
+    },
+    **{
+        f"force{' that follows' * follower} {marker.body}": {
+            "forces": [AppliedForce3D(name="f", marker=marker, follower=follower, **LOAD)]
+        }
+        for follower in (False, True)
+        for marker in (LEFT, RIGHT, MASS)
+    },
+    **{
+        f"torque{' that follows' * follower}": {
+            "forces": [AppliedTorque3D(name="f", marker=LEFT, follower=follower, **TORQUE)]
+        }
+        for follower in (False, True)
+    },
+}
+
+
+def system(case):
+    return Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], **CASES[case]))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_tangent_is_the_derivative_of_the_residual(case):
+    point = system(case)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        check_matrix(point, draw(point, seed))
+
+    check()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_velocity_and_acceleration_level_are_the_derivatives_of_the_position_level(case):
+    point = system(case)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        check_levels(point, draw(point, seed), 4e-3)
+
+    check()

@@ -1,0 +1,222 @@
+"""FMUs without Python: the same bits as those with it, by FMI 2.0 and 3.0, and where there is no Python at all."""
+
+import os
+import random
+import re
+import shutil
+import subprocess
+import zipfile
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave
+from fmpy.validation import validate_fmu
+from fmu_helpers import ball_model
+from native_pair import Pair, scenario_pair
+from tlismni.core.compiled.library import LIBRARY
+from tlismni.fmu_wrapper import export_fmu
+from tlismni.fmu_wrapper.errors import ExportError
+from tlismni.fmu_wrapper.export import fmi2_platform, fmi3_platform
+from tlismni.models import load
+
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+HERE = Path(__file__).parent
+CC = shutil.which("cc")
+WAYS = [(False, False), (False, True), (True, False), (True, True)]
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+@pytest.mark.parametrize("name", ["bouncing_ball", "chain", "slider_crank_stop", "stick_slip", "impact_oscillator"])
+def test_the_same_bits_as_with_python(name, version, tmp_path):
+    pair = scenario_pair(name, tmp_path, version)
+    assert validate_fmu(str(pair.sides[0][0])) == []
+    sides = pair.instances()
+    draw, end = random.Random(5), load(name).t_end
+    inputs = [n for n, v in sides[0].by_name.items() if v.causality == "input"]
+    for side in sides:
+        side.begin()
+    for k in range(60):
+        h = end / 60.0 * draw.uniform(0.2, 1.5)
+        change = {n: draw.uniform(-20.0, 20.0) for n in inputs if draw.random() < 0.4}
+        for side in sides:
+            side.set(**change)
+        if draw.random() < 0.3:  # outputs at once, with the new inputs
+            assert sides[0].read() == sides[1].read(), k
+        assert sides[0].step(h) == sides[1].step(h)
+        if draw.random() < 0.7:
+            assert sides[0].read() == sides[1].read(), k
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_events_and_early_return(way, tmp_path):
+    event_mode, early_return = way
+    pair = scenario_pair("woodpecker", tmp_path, "3.0")
+    sides = pair.instances(eventModeUsed=event_mode, earlyReturnAllowed=early_return)
+    ends = set()
+    for side in sides:
+        side.begin()
+    while sides[0].time < 0.3:
+        ended = sides[0].step(0.01)
+        assert ended == sides[1].step(0.01)
+        ends.add(ended[:3])
+        assert sides[0].read() == sides[1].read()
+        if ended[0]:
+            for side in sides:
+                side.fmu.enterEventMode()
+            assert sides[0].leave_event_mode() == sides[1].leave_event_mode()
+            assert sides[0].read() == sides[1].read()
+    assert (any(e[2] for e in ends), any(e[0] for e in ends)) == (early_return, event_mode and early_return)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_going_back_here_and_in_another_instance(version, tmp_path):
+    pair = scenario_pair("slider_crank_stop", tmp_path, version)
+    here, there = pair.instances()[0], pair.instances()[0]
+    names = ("getFMUState", "setFMUState", "freeFMUState", "serializeFMUState", "deserializeFMUState")
+    if version == "2.0":
+        names = ("getFMUstate", "setFMUstate", "freeFMUstate", "serializeFMUstate", "deSerializeFMUstate")
+    get, put, free, write, read = names
+    here.begin()
+    there.begin()
+    kept, rows = [], []
+    for k in range(20):
+        here.set(load=float(k % 7)) if "load" in here.by_name else None
+        kept.append((here.time, getattr(here.fmu, get)()))
+        here.step(0.05)
+        rows.append(here.read())
+    for first in (16, 2, 9):
+        time, state = kept[first]
+        getattr(here.fmu, put)(state)
+        getattr(there.fmu, put)(getattr(there.fmu, read)(getattr(here.fmu, write)(state)))
+        here.time = there.time = time
+        for k in range(first, 20):
+            for side in (here, there):
+                side.set(load=float(k % 7)) if "load" in here.by_name else None
+                side.step(0.05)
+                assert side.read() == rows[k]
+    state = kept[3][1]
+    getattr(here.fmu, free)(state)
+    data = bytearray(getattr(here.fmu, write)(kept[4][1]))
+    data[len(data) // 2] ^= 1
+    with pytest.raises(FMICallException):
+        getattr(here.fmu, read)(bytes(data))
+
+
+def test_reset_is_a_new_instance(tmp_path):
+    pair = scenario_pair("bouncing_ball", tmp_path, "2.0")
+    side, fresh = pair.instances()[0], pair.instances()[0]
+    side.begin()
+    side.step(1.0)
+    side.fmu.reset()
+    side.time = 0.0
+    for s in (side, fresh):
+        s.begin()
+        s.step(0.7)
+    assert side.read() == fresh.read()
+
+
+def test_errors_leave_a_living_instance(tmp_path):
+    """Wrong calls are errors with a reason, change nothing, and the run goes on."""
+    pair = Pair(ball_model(), tmp_path, "2.0", t_end=2.0)
+    side, plain = pair.instances()[0], pair.instances()[0]
+    vr = {name: v.valueReference for name, v in side.by_name.items()}
+    with pytest.raises(FMICallException):
+        side.step(0.1)
+    for s in (side, plain):
+        s.begin()
+        s.step(0.25)
+    for wrong in (
+        lambda: side.fmu.doStep(0.1, 0.1), lambda: side.fmu.doStep(0.25, -0.1), lambda: side.fmu.doStep(0.25, np.nan),
+        lambda: side.fmu.getReal([9999]), lambda: side.fmu.getInteger([vr["ball.y"]]),
+        lambda: side.fmu.setReal([vr["mass"]], [3.0]), lambda: side.fmu.setReal([vr["push"]], [np.inf]),
+        lambda: side.fmu.setReal([vr["push"], vr["ball.y"]], [5.0, 1.0]), lambda: side.fmu.setupExperiment(),
+        lambda: side.fmu.enterInitializationMode(), lambda: side.fmu.getString([1]),
+        lambda: side.fmu.setRealInputDerivatives([vr["push"]], [1], [1.0]),
+    ):  # fmt: skip
+        with pytest.raises(FMICallException):
+            wrong()
+    for s in (side, plain):
+        s.step(0.5)
+    assert side.read() == plain.read()
+
+
+def test_wrong_token_and_missing_resources(tmp_path):
+    pair = Pair(ball_model(), tmp_path, "2.0", t_end=2.0)
+    _, unzipped, description = pair.sides[0]
+    identifier = description.coSimulation.modelIdentifier
+    with pytest.raises(Exception, match=r"[Ii]nstantiate"):
+        FMU2Slave(guid="{other}", unzipDirectory=unzipped, modelIdentifier=identifier).instantiate()
+    Path(unzipped, "resources", "model.image").unlink()
+    with pytest.raises(Exception, match=r"[Ii]nstantiate"):
+        FMU2Slave(guid=description.guid, unzipDirectory=unzipped, modelIdentifier=identifier).instantiate()
+
+
+def test_it_holds_numbers_not_the_model(tmp_path):
+    path = export_fmu(load("pendulum_stop"), tmp_path / "x.fmu", "3.0", native=True)
+    with zipfile.ZipFile(path) as archive:
+        held = sorted(archive.namelist())
+    folder = f"binaries/{fmi3_platform()}/pendulum_stop"
+    assert [name for name in held if not name.startswith(("terminalsAndIcons", folder))] == [
+        "modelDescription.xml", "resources/model.image", "resources/variables.bin",
+    ]  # fmt: skip
+    description = fmpy.read_model_description(str(path))
+    assert not description.coSimulation.needsExecutionTool
+    assert not [v.name for v in description.modelVariables if v.causality == "parameter"]
+
+
+@pytest.mark.parametrize("name, text", [("split_wall", "motion of a driver"), ("four_bar", "singular position")])
+def test_what_takes_python_is_refused_by_name(name, text, tmp_path):
+    with pytest.raises(ExportError, match=f"'{name}' cannot be an FMU without Python: .*{text}"):
+        export_fmu(load(name), tmp_path / "x.fmu", native=True)
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_bundle_and_no_arrays(tmp_path):
+    for wrong in ({"bundle": True}, {"arrays": True}):
+        with pytest.raises(ExportError, match="no package to bundle and describes no arrays"):
+            export_fmu(load("pendulum"), tmp_path / "x.fmu", "3.0", native=True, **wrong)
+
+
+def jail_of(folder, *programs):
+    """A folder with these files and what they are linked with, and nothing else."""
+    found = {str(p) for p in programs}
+    for program in programs:
+        listed = subprocess.run(["ldd", str(program)], capture_output=True, text=True, check=True).stdout
+        found |= set(re.findall(r"(/\S+)", listed))
+    for name in found:
+        target = folder / name.lstrip("/")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if not target.exists():
+            shutil.copy(os.path.realpath(name), target)
+    assert not [p for p in folder.rglob("*") if "python" in p.name.lower() and "pytest" not in str(p)]
+
+
+@pytest.mark.skipif(CC is None or os.name != "posix" or os.getuid() != 0, reason="needs cc, and root for chroot")
+def test_where_there_is_no_python(tmp_path):
+    """A C host in a root folder with the C library alone."""
+    headers = Path(fmpy.__file__).parent / "c-code"
+    pair = Pair(load("woodpecker"), tmp_path, "2.0")
+    _, unzipped, description = pair.sides[0]
+    jail = tmp_path / "jail"
+    library = Path("/fmu/binaries", fmi2_platform(), f"{description.coSimulation.modelIdentifier}.so")
+    shutil.copytree(unzipped, jail / "fmu")
+    host = tmp_path / "host_of_native"
+    subprocess.run(
+        [CC, "-Wall", "-Werror", f"-I{headers}", "-o", str(host), str(HERE / "host_native.c"), "-ldl"], check=True
+    )
+    jail_of(jail, host, jail / str(library).lstrip("/"))
+    references = [str(v.valueReference) for v in description.modelVariables if v.causality == "output"
+                  and v.type == "Real"]  # fmt: skip
+    command = ["chroot", str(jail), str(host), str(library), "file:///fmu/resources", description.guid, "0.01", "60"]
+    done = subprocess.run([*command, *references], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr + done.stdout
+    found = [[float.fromhex(x) for x in line.split()] for line in done.stdout.splitlines()]
+    side = pair.instances()[1]
+    side.begin()
+    for k, row in enumerate(found):
+        side.fmu.doStep(0.01 * k, 0.01)
+        assert row == side.fmu.getReal([int(r) for r in references])
+    assert len(found) == 60

@@ -1,0 +1,180 @@
+"""Bodies and joints in space: rigid bodies on Euler parameters, joints as exudyn's spherical or generic joint."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ...core.elements import (
+    AngleDriver3D,
+    AxialSpring3D,
+    Bushing3D,
+    ConstantVelocity3D,
+    Cylindrical3D,
+    Distance3D,
+    Fixed3D,
+    Gear3D,
+    Joint3D,
+    Planar3D,
+    PointMass3D,
+    PointOnLine3D,
+    PointOnPlane3D,
+    PositionDriver3D,
+    Prismatic3D,
+    RackAndPinion3D,
+    Revolute3D,
+    RevoluteSpherical3D,
+    RigidBody3D,
+    Screw3D,
+    Spherical3D,
+    SpringDamper3D,
+    TorsionSpring3D,
+    Universal3D,
+)
+from ...core.elements.turn3d import JointAngle, JointPosition
+from ...core.model.angular_velocity import AngularVelocity
+from ...core.model.base import in_space
+from ...core.model.derived import Columns
+from ...core.model.derived import Derived as Group
+from ...core.model.marker_channels3d import Frame3D
+from ...core.model.markers import GROUND, Marker3D
+from ..errors import NotTranslatable
+from .bodies import node_columns
+from .registry import BodyItems, Build, Derived, no_equal, translates
+
+Work = Callable[[np.ndarray], np.ndarray]
+
+no_equal("a Revolute3D with user functions for its offset", AngleDriver3D)
+no_equal("an ObjectConnectorCoordinate between the coordinates of joint-space bodies", Gear3D, RackAndPinion3D, Screw3D)
+no_equal("a Prismatic3D with user functions for its offset", PositionDriver3D)
+no_equal("a Universal3D, where the joint bends little", ConstantVelocity3D)
+no_equal("a thin rod between a Revolute3D and a Spherical3D", RevoluteSpherical3D)
+no_equal("an ObjectConnectorRigidBodySpringDamper with the same stiffness", Bushing3D, AxialSpring3D)
+no_equal("an ObjectConnectorTorsionalSpringDamper about the same axis", TorsionSpring3D)
+
+CONSTRAINED: dict[type[Joint3D], list[int]] = {
+    Fixed3D: [1, 1, 1, 1, 1, 1],
+    Revolute3D: [1, 1, 1, 1, 1, 0],
+    Cylindrical3D: [1, 1, 0, 1, 1, 0],
+    Prismatic3D: [1, 1, 0, 1, 1, 1],
+    Planar3D: [0, 0, 1, 1, 1, 0],
+    Universal3D: [1, 1, 1, 1, 0, 0],
+    PointOnLine3D: [1, 1, 0, 0, 0, 0],
+    PointOnPlane3D: [0, 0, 1, 0, 0, 0],
+}
+"""Axes that ObjectJointGeneric holds: three translations and three rotations in the frame of marker a."""
+YZ = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+"""Columns: our z, x, y axes as x, y, z. exudyn's universal joint holds y of a across z of b, ours x across y."""
+
+
+@translates(RigidBody3D, PointMass3D)
+def spatial_body(record: RigidBody3D | PointMass3D, build: Build) -> None:
+    """NodeRigidBodyEP with ObjectRigidBody, or NodePoint with ObjectMassPoint; reference = start."""
+    q0, v0 = record.initial_state()
+    rigid = isinstance(record, RigidBody3D)
+    node = build.add(
+        "NodeRigidBodyEP" if rigid else "NodePoint",
+        referenceCoordinates=list(q0),
+        initialCoordinates=[0.0] * len(q0),
+        initialVelocities=list(v0),
+    )
+    if isinstance(record, RigidBody3D):
+        xy, xz, yz = record.inertia_products
+        inertia = [*record.inertia, yz, xz, xy]
+        item = build.add("ObjectRigidBody", nodeNumber=node, mass=record.mass, inertia=inertia)
+    else:
+        item = build.add("ObjectMassPoint", nodeNumber=node, mass=record.mass)
+    build.bodies[record.name] = BodyItems(node, item, rigid, reference=tuple(q0))
+    if any(build.model.gravity):
+        marker = build.add("MarkerBodyMass", bodyNumber=item)
+        build.add("LoadMassProportional", markerNumber=marker, loadVector=[*in_space(build.model.gravity)])
+    node_columns(record, build, (node,), q0)
+    if rigid:
+        _derive(build, AngularVelocity(record.name, range(3, 7)), (record.name,))
+
+
+def _derive(build: Build, group: Group, bodies: Sequence[str], work: Work | None = None) -> None:
+    """Channels that follow from the coordinates of some bodies, in this order, as we make them of our own."""
+    names = {body.name: body.coordinate_records() for body in build.model.bodies}
+    records = [(body, record) for body in bodies for record in names[body]]
+
+    def columns(found: dict[str, np.ndarray]) -> Columns:
+        q, v, a = (
+            np.stack([found[f"{body}.{name(record)}"] for body, record in records], axis=1)
+            for name in (lambda r: r.name, lambda r: r.rate, lambda r: r.acceleration)
+        )
+        return Columns(q, v, a, np.zeros((len(q), 0)), lambda _: np.zeros(len(q)) if work is None else work(q))
+
+    def one(k: int) -> Callable[[dict[str, np.ndarray]], np.ndarray]:
+        return lambda found: group(columns(found))[:, k]
+
+    build.derived += [Derived(channel.name, one(k)) for k, channel in enumerate(group.channels)]
+
+
+def _derive_coordinates(record: Joint3D, build: Build) -> None:
+    """The joint's angle and position, turns counted along the samples."""
+    bodies = [marker.body for marker in (record.a, record.b) if marker.body != GROUND]
+    first, frames = 0, []
+    for marker in (record.a, record.b):
+        size = 0 if marker.body == GROUND else len(build.bodies[marker.body].reference)
+        frames.append(Frame3D.of(marker, [first + k if k < size else -1 for k in range(7)]))
+        first += size
+    a, b = frames
+    if record.turns:
+
+        def angle(q: np.ndarray) -> np.ndarray:
+            of_a, x = a.axes(q), b.axes(q)[:, :, 0]
+            along, across = (np.sum(of_a[:, :, k] * x, axis=1) for k in range(2))
+            return np.unwrap(np.arctan2(across, along))
+
+        _derive(build, JointAngle(record.name, a, b, 0.0), bodies, angle)
+    if record.slides:
+        _derive(build, JointPosition(record.name, a, b), bodies)
+
+
+def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = None) -> int:
+    """A marker with its point and axes. Raises NotTranslatable if a point mass is asked for axes."""
+    body = build.ground if marker.body == GROUND else build.bodies[marker.body].item
+    if marker.body != GROUND and not build.bodies[marker.body].rigid:
+        if axes is not None:
+            raise NotTranslatable(f"'{user}' needs the axes of '{marker.body}', a point mass: make it a RigidBody3D")
+        return int(build.add("MarkerBodyPosition", bodyNumber=body))
+    transformation = np.eye(4)
+    transformation[:3, 3] = marker.point
+    if axes is not None:
+        transformation[:3, :3] = axes
+    return int(build.add("MarkerBodyRigid", bodyNumber=body, localHT=transformation))
+
+
+@translates(Spherical3D)
+def spherical(record: Spherical3D, build: Build) -> None:
+    """ObjectJointSpherical."""
+    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
+    build.add("ObjectJointSpherical", markerNumbers=markers)
+
+
+@translates(Distance3D)
+def distance(record: Distance3D, build: Build) -> None:
+    """ObjectConnectorDistance. Raises NotTranslatable for a length over time."""
+    if not isinstance(record.length, float | int):
+        raise NotTranslatable(f"the length of '{record.name}' is driven: no translation to exudyn is written for that")
+    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
+    build.add("ObjectConnectorDistance", markerNumbers=markers, distance=record.length)
+
+
+@translates(*CONSTRAINED)
+def generic(record: Joint3D, build: Build) -> None:
+    """ObjectJointGeneric; its multipliers of rotations are no torques, so that only the motion is compared."""
+    order = YZ if isinstance(record, Universal3D) else np.eye(3)
+    markers = [placed(marker, build, record.name, marker.axes() @ order) for marker in (record.a, record.b)]
+    build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=CONSTRAINED[type(record)])
+    _derive_coordinates(record, build)
+
+
+@translates(SpringDamper3D)
+def spring_damper(record: SpringDamper3D, build: Build) -> None:
+    """ObjectConnectorSpringDamper."""
+    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
+    build.add(
+        "ObjectConnectorSpringDamper", markerNumbers=markers, stiffness=record.stiffness, damping=record.damping,
+        referenceLength=record.natural_length,
+    )  # fmt: skip
