@@ -6,7 +6,7 @@ Euler parameters are moved off their norm too: the equations hold as functions o
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_tangents import SINE, Point, check_levels, check_matrix, draw, quick
+from test_tangents import SINE, H, Point, check_levels, check_matrix, draw, quick
 from tlismni.core import (
     AngleDriver3D,
     AppliedForce3D,
@@ -88,6 +88,8 @@ WHEELS = {
     "rounded disk on the ground": RollingDisk3D(name="j", a=GROUND, b=RIGHT_WHEEL, radius=0.6, rim_radius=0.1),
 }
 SCREWS = {where: Screw3D(name="j", a=a, b=b, lead=0.8) for where, (a, b) in PAIRS.items() if where != "a point mass"}
+SPAN = {"rolling disk": 1.5e-3}
+"""Of the differences, where they are steep: the disk may come to lie nearly flat."""
 OF_POINTS = (Spherical3D, PointOnLine3D, PointOnPlane3D, Distance3D, PositionDriver3D)
 CASES = {
     "bodies": {},
@@ -133,7 +135,7 @@ def test_tangent_is_the_derivative_of_the_residual(case):
     @quick
     @given(st.integers(0, 10**6))
     def check(seed):
-        check_matrix(point, draw(point, seed))
+        check_matrix(point, draw(point, seed), h=SPAN.get(case, H))
 
     check()
 
