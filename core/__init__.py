@@ -3,7 +3,9 @@
 from .compiled_model import CompiledModel, compile_model
 from .contact.angle_stop2d import AngleStop2D
 from .contact.box2d import Box2D, DiskOnBox2D
+from .contact.box3d import Box3D
 from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .contact.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
 from .contact.disk_on_cable import DiskOnCable2D
 from .contact.disk_on_line import DiskOnLine2D, Line2D
@@ -159,6 +161,7 @@ __all__ = [
     "Belt2D",
     "BodyElement",
     "Box2D",
+    "Box3D",
     "BrownMcPheeFriction",
     "Bushing2D",
     "Bushing3D",
@@ -203,6 +206,7 @@ __all__ = [
     "Gear3D",
     "Gonthier",
     "HalfPlane2D",
+    "HalfSpace3D",
     "HerbertMcWhannell",
     "Hertz",
     "HuGuo",
@@ -269,6 +273,9 @@ __all__ = [
     "Sine",
     "SlideFriction2D",
     "SlideSpring2D",
+    "Sphere3D",
+    "SphereOnHalfSpace3D",
+    "SphereOnSphere3D",
     "Spherical3D",
     "SpringDamper2D",
     "SpringDamper3D",

@@ -8,7 +8,7 @@ is met by the next step: nothing feels it at once, but the start of all that is 
 
 from collections.abc import Callable, Iterator
 
-from ..core.contact.contact2d import Contact2D
+from ..core.contact.element import ContactElement
 from ..core.contact.laws import ForceLaw
 from ..core.description import Model
 from ..core.elements import Element
@@ -86,7 +86,7 @@ def _felt_channels(element: Element) -> Iterator[str]:
 
 
 def _is_impact_contact(element: Element) -> bool:
-    return isinstance(element, Contact2D) and not isinstance(element.law, ForceLaw)
+    return isinstance(element, ContactElement) and not isinstance(element.law, ForceLaw)
 
 
 def _groups(model: Model, ties: Callable[[Element], bool]) -> list[set[str]]:
