@@ -42,6 +42,7 @@ from .joints3d import (
     Spherical3D,
     Universal3D,
 )
+from .knife_edge2d import KnifeEdge2D
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
 from .moving_frame2d import MovingFrame2D
@@ -83,6 +84,7 @@ JOINTS = (
     Gear2D,
     Rack2D,
     Belt2D,
+    KnifeEdge2D,
     CoordinateDriver,
     RelativeMotor2D,
     CoordinateRelation,
@@ -167,6 +169,7 @@ __all__ = [
     "Joint",
     "Joint3D",
     "JointElement",
+    "KnifeEdge2D",
     "LinearSystem",
     "MaterialPoint2D",
     "MovingFrame2D",

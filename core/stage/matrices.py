@@ -35,12 +35,13 @@ CHOICE_GROWTH = 3.0
 
 @internal
 def refactor(ws: Any, c_q: float, c_v: float) -> int:
-    """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd."""
+    """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd; of positions alone too,
+    where they have dependent coordinates of their own."""
     rate = vec(ws.rate, RATE_SIZE)
     evaluate_tangent(ws, c_q, c_v)
     rate[FACTOR_AGE] = -1.0
-    for address in (ws.kkt, ws.lu_d):
-        if address == ws.lu_d and ws.m_act == 0:
+    for address in (ws.kkt, ws.lu_d, ws.lu_p):
+        if (address == ws.lu_d and ws.m_act == 0) or (address == ws.lu_p and (ws.m_held == 0 or ws.m_held == ws.m_act)):
             continue
         status = factor(lu_at(address), ws.values)
         if status == 2:
