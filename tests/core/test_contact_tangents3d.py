@@ -19,7 +19,7 @@ from tlismni.core import (
     SphereOnSphere3D,
     TanhFriction,
 )
-from tlismni.core.contact.modes import ACTIVE, CLOSED
+from tlismni.core.state.modes import ACTIVE, CLOSED
 
 HARD = NewtonImpact(restitution=0.5)
 TANH = TanhFriction(coefficient=0.6, transition_speed=2.0)
