@@ -92,8 +92,8 @@ def take_numbers(sim: Simulation, system: Any, assembly: Assembly) -> None:
 def what_differs(a: Assembly, b: Assembly) -> str:
     """In which table, and not only in numbers, two assemblies differ; empty if in none."""
     for name in (
-        "n", "m", "m_joints", "n_internal", "linear", "row_names", "work_names", "input_names", "replaced_rows", "rate_rows",
-        "motions", "placed", "coordinate_names",
+        "n", "m", "m_joints", "n_internal", "linear", "row_names", "work_names", "input_names", "replaced_rows",
+        "rate_rows", "motions", "placed", "coordinate_names",
     ):  # fmt: skip
         if getattr(a, name) != getattr(b, name):
             return name

@@ -87,8 +87,9 @@ class Structure:
                 "partitions": np.zeros(MOST_PARTITIONS, dtype=np.int64),
             },
             {
-                "n_values": self.n_values, "m_act": len(self.active), "m_held": self.m_held, "n_redundant": len(self.redundant),
-                "n_mass": len(self.mass_slot), "n_jacobian": len(self.jacobian_slot),
+                "n_values": self.n_values, "m_act": len(self.active), "m_held": self.m_held,
+                "n_redundant": len(self.redundant), "n_mass": len(self.mass_slot),
+                "n_jacobian": len(self.jacobian_slot),
                 "kkt": self.kkt.address, "kkt_query": self.kkt_query.address, "partition": 0, "n_partitions": 0,
             },
         )  # fmt: skip
