@@ -132,7 +132,9 @@ from .run.state import State
 from .runs import Runs
 from .shapes.angle_stop2d import AngleStop2D
 from .shapes.box2d import Box2D, DiskOnBox2D
+from .shapes.box3d import Box3D
 from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from .shapes.disk_on_cable import DiskOnCable2D
 from .shapes.disk_on_line import DiskOnLine2D, Line2D
@@ -162,6 +164,7 @@ __all__ = [
     "Belt2D",
     "BodyElement",
     "Box2D",
+    "Box3D",
     "BrownMcPheeFriction",
     "Bushing2D",
     "Bushing3D",
@@ -206,6 +209,7 @@ __all__ = [
     "Gear3D",
     "Gonthier",
     "HalfPlane2D",
+    "HalfSpace3D",
     "HerbertMcWhannell",
     "Hertz",
     "HuGuo",
@@ -275,6 +279,9 @@ __all__ = [
     "Sine",
     "SlideFriction2D",
     "SlideSpring2D",
+    "Sphere3D",
+    "SphereOnHalfSpace3D",
+    "SphereOnSphere3D",
     "Spherical3D",
     "SpringDamper2D",
     "SpringDamper3D",

@@ -50,6 +50,7 @@ from tlismni.core import (
     Gear3D,
     Gonthier,
     HalfPlane2D,
+    HalfSpace3D,
     Hertz,
     HuntCrossley,
     Input,
@@ -99,6 +100,9 @@ from tlismni.core import (
     Sine,
     SlideFriction2D,
     SlideSpring2D,
+    Sphere3D,
+    SphereOnHalfSpace3D,
+    SphereOnSphere3D,
     Spherical3D,
     SpringDamper2D,
     SpringDamper3D,
@@ -270,6 +274,7 @@ ELEMENTS = {
         ),
     ],
 }  # fmt: skip
+sphere = st.builds(Sphere3D, marker=marker3d, radius=positive)
 ELEMENTS["bodies"] += [
     st.builds(PointMass3D, name=st.just("x"), mass=positive, position=vector3, velocity=vector3),
     st.builds(
@@ -359,12 +364,21 @@ ELEMENTS["contacts"] += [
         DiskOnBox2D, name=st.just("x"), law=law, disk=disk,
         shape=st.builds(Box2D, marker=marker, width=positive, height=positive),
     ),
+    st.builds(
+        SphereOnHalfSpace3D, name=st.just("x"), law=law, sphere=sphere,
+        plane=st.builds(HalfSpace3D, marker=st.builds(Marker3D, point=vector3, attitude=attitude)),
+    ),
+    st.builds(
+        SphereOnSphere3D, name=st.just("x"), law=law, a=st.builds(Sphere3D, marker=st.builds(Marker3D, point=vector3)),
+        b=sphere,
+    ),
 ]  # fmt: skip
 SPATIAL = {
     "PointMass3D", "RigidBody3D", "Spherical3D", "Revolute3D", "Universal3D", "ConstantVelocity3D", "Fixed3D",
     "Cylindrical3D", "Prismatic3D", "Planar3D", "PointOnLine3D", "PointOnPlane3D", "Distance3D", "RevoluteSpherical3D",
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
-    "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D",
+    "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
+    "SphereOnSphere3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
 SOLID = RigidBody3D(name="s", mass=1.0, inertia=(1.0, 1.0, 1.0))
