@@ -142,6 +142,7 @@ from .shapes.group2d import contacts_between
 from .shapes.rope2d import Rope2D
 from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
 from .shapes.segment2d import DiskOnSegment2D, Segment2D
+from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
 from .simulate import simulate
 from .simulate_many import simulate_many
 from .tables.redundancy import RedundantRow
@@ -152,6 +153,7 @@ __all__ = [
     "AmbrosioFriction",
     "AngleDriver3D",
     "AngleStop2D",
+    "AngleStop3D",
     "AppliedForce2D",
     "AppliedForce3D",
     "AppliedTorque2D",
@@ -266,6 +268,7 @@ __all__ = [
     "RollingDisk3D",
     "RollingSphere3D",
     "Rope2D",
+    "Rope3D",
     "RotationVector",
     "Runs",
     "ScalarContact2D",
@@ -279,6 +282,7 @@ __all__ = [
     "Sine",
     "SlideFriction2D",
     "SlideSpring2D",
+    "SlideStop3D",
     "Sphere3D",
     "SphereOnHalfSpace3D",
     "SphereOnSphere3D",
