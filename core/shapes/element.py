@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from pydantic import model_validator
 
@@ -45,6 +46,10 @@ class ContactElement(Element):
     def extent(self) -> float:
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
         return math.inf
+
+    def disks(self) -> Sequence[Any]:
+        """The planar disks (`Disk2D`) that it brings in touch, for the drawing."""
+        return ()
 
     def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
         """Units of gap and sliding distance in a model with these bodies."""
