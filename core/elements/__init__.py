@@ -42,6 +42,7 @@ from .joints3d import (
     Spherical3D,
     Universal3D,
 )
+from .knife_edge2d import KnifeEdge2D
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
 from .moving_frame2d import MovingFrame2D
@@ -52,6 +53,7 @@ from .reduced_body2d import ReducedBody2D, ReducedPoint
 from .relation3d import Gear3D, RackAndPinion3D, Relation3D, Screw3D
 from .relative_motor2d import RelativeMotor2D
 from .revolute2d import Revolute2D
+from .rolling_joints3d import RollingDisk3D, RollingSphere3D
 from .scalar_force2d import ScalarForce2D, scalar_force
 from .scalar_joint2d import ScalarJoint2D, scalar_constraint
 from .servo2d import Servo2D
@@ -83,6 +85,7 @@ JOINTS = (
     Gear2D,
     Rack2D,
     Belt2D,
+    KnifeEdge2D,
     CoordinateDriver,
     RelativeMotor2D,
     CoordinateRelation,
@@ -103,6 +106,8 @@ JOINTS = (
     Gear3D,
     RackAndPinion3D,
     Screw3D,
+    RollingDisk3D,
+    RollingSphere3D,
 )
 FORCES = (
     SpringDamper2D,
@@ -167,6 +172,7 @@ __all__ = [
     "Joint",
     "Joint3D",
     "JointElement",
+    "KnifeEdge2D",
     "LinearSystem",
     "MaterialPoint2D",
     "MovingFrame2D",
@@ -193,6 +199,8 @@ __all__ = [
     "RevoluteSpherical3D",
     "RigidBody2D",
     "RigidBody3D",
+    "RollingDisk3D",
+    "RollingSphere3D",
     "ScalarForce2D",
     "ScalarJoint2D",
     "Screw3D",

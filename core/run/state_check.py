@@ -31,12 +31,12 @@ from ..state.run_records import (
     REJECTED_HERE,
     STEP_SIZE,
 )
+from .snapshot import FACTORIZATIONS
 from .state import State
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-FACTORIZATIONS = ("kkt", "lu_d", "kkt_query")
 _FINITE = ("t", "q", "v", "a", "aux", "lam", "memory", "probe", "method_weights", "method_times", "method_history")
 _NO_NAN = ("inputs", "watch", "clock")
 _SETTINGS = (MAX_STEP, FIXED_STEP, GROWTH, HOLD, EAGER, B1, B2, A2)
@@ -61,7 +61,8 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     arrays = state.arrays
     _need("dependent", len(set(arrays["dependent"].tolist())) == len(arrays["dependent"]), "names a coordinate twice")
     _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
-    _check_factorizations(arrays, len(structure.active), len(structure.active) + sim.assembly.n)
+    sizes = {"lu_d": len(structure.active), "lu_p": structure.m_held}
+    _check_factorizations(arrays, sizes, len(structure.active) + sim.assembly.n)
     _need_range("counters", arrays["counters"], 0, _LARGEST_COUNT)
     _check_memory(sim, state)
     _check_method(sim, arrays, own.arrays)
@@ -165,9 +166,11 @@ def _check_arrays(state: State, own: State, active: int) -> None:
         _need(name, not np.isnan(arrays[name]).any(), "has values that are no numbers")
 
 
-def _check_factorizations(arrays: dict[str, NDArray[Any]], active: int, size: int) -> None:
+def _check_factorizations(arrays: dict[str, NDArray[Any]], sizes: dict[str, int], size: int) -> None:
     for name in FACTORIZATIONS:
-        n = active if name == "lu_d" else size
+        if f"{name}_perm_r" not in arrays:
+            continue
+        n = sizes.get(name, size)
         for part in ("perm_r", "perm_c", "pivots"):
             array = arrays[f"{name}_{part}"]
             order = len(array) == 0 or np.array_equal(np.sort(array), np.arange(n))

@@ -100,6 +100,8 @@ class Assembly:
     """How large each row of Phi typically is, (m,); None: as far as the coordinates' scales move it."""
     longest_step: float = np.inf
     """Step beyond which error control could miss what a time function does, s."""
+    rate_rows: frozenset[int] = frozenset()
+    """Rows that hold at velocity level only (`elements/base.Form.rate_rows`)."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
     """Rows of massless ends, each with the contacts that take its place when they close."""
     derived: tuple[Derived, ...] = ()
@@ -184,6 +186,7 @@ def assemble(model: Parts) -> Assembly:
     contact_rows: dict[str, tuple[int, ...]] = {}
     massless: dict[int, int] = {}
     placed: list[tuple[int, int]] = []
+    rate_rows: set[int] = set()
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
         own_rows = len(row_names)
@@ -191,6 +194,7 @@ def assemble(model: Parts) -> Assembly:
             form = part.form
             rows = tuple(range(len(row_names), len(row_names) + form.constraint_rows))
             row_names += [element.name] * form.constraint_rows
+            rate_rows |= {rows[k] for k in form.rate_rows}
             if element.name in contact_names:
                 contact_rows[element.name] = rows
             if part.massless >= 0:
@@ -269,6 +273,7 @@ def assemble(model: Parts) -> Assembly:
         body_columns=columns,
         coordinate_scale=_coordinate_scale(numbering.length, columns, len(internal)),
         length=numbering.length,
+        rate_rows=frozenset(rate_rows),
         replaced_rows=_replaced_rows(model, massless, batches),
         derived=tuple(derived),
         motions=tuple(numbering.motions),

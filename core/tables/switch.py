@@ -72,6 +72,7 @@ def take_structure(ws: Any, address: int) -> None:
     ws.structure = address
     ws.n_values, ws.values = st.n_values, st.values
     ws.m_act, ws.active, ws.n_redundant, ws.redundant = st.m_act, st.active, st.n_redundant, st.redundant
+    ws.m_held = st.m_held
     ws.probe, ws.entry_row, ws.entry_col = st.probe, st.entry_row, st.entry_col
     ws.gradient_start, ws.gradient_col, ws.gradient_slot = st.gradient_start, st.gradient_col, st.gradient_slot
     ws.n_mass, ws.mass_slot, ws.kkt, ws.kkt_query = st.n_mass, st.mass_slot, st.kkt, st.kkt_query
@@ -97,7 +98,7 @@ def take_partition(ws: Any, address: int) -> None:
     """Let the partition at `address` be that of the present structure."""
     pt = partition_at(address)
     structure_at(ws.structure).partition = address
-    ws.dependent, ws.lu_d = pt.dependent, pt.lu_d
+    ws.dependent, ws.lu_d, ws.lu_p = pt.dependent, pt.lu_d, pt.lu_p
     ws.n_free, ws.free_row, ws.free_col, ws.free_slot = pt.n_free, pt.free_row, pt.free_col, pt.free_slot
     vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
 
