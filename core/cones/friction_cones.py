@@ -19,20 +19,14 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..linalg.small import call_least_norm, least_norm_size
+from ..rounding import CONES_ENOUGH, CONES_GOOD, CONES_NEAR, CONES_RANK
 
 FAILED, FOUND = 0, 1
-ENOUGH = 1e-14
-"""Of the largest force: what a sweep changes when it is done."""
-NEAR = 1e-12
-"""Of the largest force: what Newton's method may leave."""
-GOOD = 1e-8
-"""Of the largest force: a solution that is worse is none."""
 SWEEPS, MOST_SWEEPS = 20, 20_000
 NEWTON, HALVINGS = 60, 8
 LEAST_PART = 0.125
 ANGLES = 48
 """Parts of a turn in which the angle of sliding is looked for."""
-RANK = 1e-13
 
 
 def friction_cones_size(n: int) -> int:
@@ -220,7 +214,7 @@ def _newton(
                 best[i], r[i, 0] = p[i], -left[i]
             if worst == 0.0:
                 break
-            call_least_norm(least_norm, jac, r, found, RANK, space)
+            call_least_norm(least_norm, jac, r, found, CONES_RANK, space)
         else:
             tried += 1
             if tried > HALVINGS:
@@ -257,7 +251,7 @@ def solve_friction_cones(
             sweeps += 1
             if not found:
                 return FAILED
-            if n == 1 or change <= ENOUGH * largest:
+            if n == 1 or change <= CONES_ENOUGH * largest:
                 return FOUND
         kept = vec(work + 8 * (9 * n * n + 12 * n), 3 * n)
         for i in range(3 * n):
@@ -267,11 +261,11 @@ def solve_friction_cones(
         for i in range(n):
             largest = max(largest, p[i])
         # directions that nearly repeat each other leave what they differ by
-        if left <= NEAR * largest or (left <= GOOD * largest and left > 0.5 * before):
+        if left <= CONES_NEAR * largest or (left <= CONES_GOOD * largest and left > 0.5 * before):
             return FOUND
         before = left
         for i in range(3 * n):
             p[i] = kept[i]
         # sweeps that go round in circles come to rest with smaller steps
         wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
-    return FOUND if change <= GOOD * largest else FAILED
+    return FOUND if change <= CONES_GOOD * largest else FAILED

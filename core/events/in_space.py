@@ -2,7 +2,8 @@
 
 The same parts as those of `touching.py`, `blow.py` and `resting.py`, called in their place; forces are those of
 `cones/friction_cones.py`. The room for directions and responses holds a third block, the second tangents' behind the
-first ones'; inverse masses of all three are in `masses`. The tangents of a contact are those of `shapes/frame3d.py`; what an instant finds out about a direction is kept as WAY.
+first ones'; inverse masses of all three are in `masses`. The tangents of a contact are those of `shapes/frame3d.py`;
+what an instant finds out about a direction is kept as WAY.
 """
 
 import math
@@ -10,13 +11,22 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.cones import IMMOVABLE
 from ..cones.directions import call_independent
 from ..cones.friction_cones import FOUND, solve_friction_cones
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
-from ..rounding import NO_ACCELERATION, PERHAPS_REST, UNSOLVED
+from ..rounding import (
+    IMMOVABLE,
+    NEARLY_JAMMED,
+    NO_ACCELERATION,
+    PERHAPS_REST,
+    REACHES_LIMIT,
+    REACHES_LIMIT_NOW,
+    STANDS,
+    STICKS_STILL,
+    UNSOLVED,
+)
 from ..state.modes import ALONG, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import call_accelerations
@@ -25,7 +35,7 @@ from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.switch import engage_modes
 from .forces import cones_at
 from .laws import POISSON
-from .reading import AT_LIMIT, largest_acceleration, rate_size, unresolved_speed
+from .reading import largest_acceleration, rate_size, unresolved_speed
 from .records import (
     ACCELERATIONS,
     APPROACH,
@@ -105,16 +115,8 @@ from .touching import find_gradient, force_noise, refuse_immovable
 
 BEGINS = 2.0
 """In DIRECTION: sliding begins here."""
-STANDS = 1e-7
-"""Of the speeds: where the direction of sliding ends with less, the contact has stopped."""
 MOST_ROUNDS = 2000
 """Of impacts at one instant."""
-JAMMED = 1e-6
-"""Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
-ABOUT = 1e-6
-"""Friction of a contact whose event is that it reaches its limit: it is that near at least."""
-MOVES = 1e-9
-"""Of the largest acceleration: what sticks moves less along its tangents."""
 
 
 @internal
@@ -458,8 +460,10 @@ def find_forces_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             if direction[i] == 0.0 and mu[i] > 0.0 and p[i] > 0.0:
                 # at its limit, and it moves: it begins to slide, against its friction
                 force, limit = math.sqrt(p[count + i] ** 2 + p[2 * count + i] ** 2), mu[i] * p[i]
-                moves = math.sqrt(w_t * w_t + w_s * w_s) > MOVES * fastest
-                if force >= limit * (1.0 - (ABOUT if slips[i] != 0.0 else AT_LIMIT)) and (moves or slips[i] != 0.0):
+                moves = math.sqrt(w_t * w_t + w_s * w_s) > STICKS_STILL * fastest
+                now = slips[i] != 0.0
+                least = limit * (1.0 - (REACHES_LIMIT_NOW if now else REACHES_LIMIT))
+                if force >= least and (moves or now):
                     direction[i] = BEGINS
                     col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -p[count + i] / force, -p[2 * count + i] / force
                     again = again or slips[i] != 0.0 or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
@@ -493,7 +497,7 @@ def _refuse_jam(ev: Any) -> int:
     """Painleve's paradox: friction turns the effect of the normal force round."""
     for i in range(whole(ev)[COUNT]):
         pressed = col(ev, F_N)[i] > 0.0 or col(ev, WAS)[i] == CLOSED
-        if col(ev, DIRECTION)[i] != 0.0 and pressed and _lightened(ev, i) <= JAMMED:
+        if col(ev, DIRECTION)[i] != 0.0 and pressed and _lightened(ev, i) <= NEARLY_JAMMED:
             whole(ev)[WHO] = ivec(ev.contacts, ev.most)[i]
             return JAMS
     return SETTLED

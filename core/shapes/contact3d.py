@@ -12,13 +12,11 @@ from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction, LuGreFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
+from ..rounding import STILL
 from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
 from .normal3d import SIZE, sphere3d_kernel
-
-STILL = 1e-9
-"""Of the speed that weight gives over the mechanism's size: there the direction of sliding goes on through zero."""
 
 
 class HalfSpace3D(Record):

@@ -3,7 +3,8 @@
 A closed contact that sticks has, beside the gap, two rows at velocity level: the sliding velocity along both tangents
 is zero. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|. Where |u_T| comes to zero a direction has to go
 on through it, for steps end beyond the event before they end at it: with x and y along the tangents, x along the
-direction of sliding at the last event, the angle of friction is atan(x y/(x^2 + STILL^2)), which is that of u_T for x > 0.
+direction of sliding at the last event, the angle of friction is atan(x y/(x^2 + STILL^2)), which for x > 0 is that of
+u_T.
 
 What the rows of a contact that does not stick tell: of an open one x and y; of one that slides x - TURNED |u_T|, whose
 zero is the end of sliding, or a turn of its direction by much, and |u_T|.
