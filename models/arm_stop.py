@@ -63,7 +63,7 @@ def arm_stop(
         start += length
     upper, lower = links
     pin = Axes(z=(0.0, 1.0, 0.0))
-    shoulder = {"a": Marker3D(body="column", attitude=pin), "b": upper.marker_at((0.0, 0.0, 0.0), pin)}
+    socket, head = Marker3D(body="column", attitude=pin), upper.marker_at((0.0, 0.0, 0.0), pin)
     bend = (upper_length, 0.0, 0.0)
     plane = HalfSpace3D(marker=Marker3D(point=(0.0, 0.0, table)))
     balls = {
@@ -89,12 +89,17 @@ def arm_stop(
         bodies=(column, upper, lower),
         joints=(
             Revolute3D(name="base", a=Marker3D(), b=Marker3D(body="column")),
-            Revolute3D(name="shoulder", **shoulder),
+            Revolute3D(name="shoulder", a=socket, b=head),
             Revolute3D(name="elbow", a=upper.marker_at(bend, pin), b=lower.marker_at(bend, pin)),
         ),
         forces=(
             TorsionSpring3D(
-                name="spring", **shoulder, stiffness=shoulder_stiffness, damping=shoulder_damping, natural_angle=0.0
+                name="spring",
+                a=socket,
+                b=head,
+                stiffness=shoulder_stiffness,
+                damping=shoulder_damping,
+                natural_angle=0.0,
             ),
         ),
         contacts=contacts,

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from pydantic import model_validator
 
@@ -35,6 +36,10 @@ class ContactElement(Element):
                 f"a contact with {type(self.law).__name__} is a constraint: give it Coulomb friction"
             )
         return self
+
+    def disks(self) -> Sequence[Any]:
+        """The disks of the plane (`Disk2D`) that it brings in touch, for the drawing."""
+        return ()
 
     def reach(self) -> Sequence[tuple[float, ...]]:
         """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""
