@@ -152,7 +152,10 @@ CONES_ENOUGH = 1e-14
 CONES_NEAR = 1e-12
 """The same: what Newton's method may leave."""
 CONES_GOOD = 1e-8
-"""The same: contacts that nearly repeat each other leave what they differ by; a solution that is worse is none."""
+"""The same: contacts that nearly repeat each other leave what they differ by."""
+CONES_ROUGH = 1e-5
+"""The same: what sweeps may change that come to no end. Friction is in its cones then, and what still approaches is
+struck again."""
 CONES_RANK = 1e-13
 """Of the largest singular value in that Newton's method: a smaller one is zero."""
 STILL = 1e-9

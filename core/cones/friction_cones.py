@@ -19,10 +19,10 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..linalg.small import call_least_norm, least_norm_size
-from ..rounding import CONES_ENOUGH, CONES_GOOD, CONES_NEAR, CONES_RANK
+from ..rounding import CONES_ENOUGH, CONES_GOOD, CONES_NEAR, CONES_RANK, CONES_ROUGH
 
 FAILED, FOUND = 0, 1
-SWEEPS, MOST_SWEEPS = 20, 20_000
+SWEEPS, MOST_SWEEPS = 20, 5000
 NEWTON, HALVINGS = 60, 8
 LEAST_PART = 0.125
 ANGLES = 48
@@ -268,4 +268,4 @@ def solve_friction_cones(
             p[i] = kept[i]
         # sweeps that go round in circles come to rest with smaller steps
         wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
-    return FOUND if change <= CONES_GOOD * largest else FAILED
+    return FOUND if change <= CONES_ROUGH * largest else FAILED

@@ -16,6 +16,7 @@ from ..cones.friction_cones import FOUND, solve_friction_cones
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
+from ..linalg.small import call_least_norm
 from ..rounding import (
     IMMOVABLE,
     NEARLY_JAMMED,
@@ -516,15 +517,38 @@ def _independent(ev: Any, ws: Any, number: int, rank: float) -> int:
 
 
 @internal
+def _carry(ev: Any, ws: Any, kept: int, k: int, rank: float) -> int:
+    """Contact k to those in `some`, the first `kept` of which do not repeat each other; their number. Where it repeats
+    them they take its force, or it takes the place of the first of them whose force would come to zero by that: so
+    those that are kept press with what all did (Caratheodory)."""
+    some, f_n, a = ivec(ev.some, 3 * ev.most), col(ev, F_N), masses(ev, whole(ev)[COUNT])
+    some[kept] = k
+    if _independent(ev, ws, kept + 1, rank) == kept + 1:
+        return kept + 1
+    matrix, right = mat(ev.matrix, kept, kept), mat(ev.matrix + 8 * kept * kept, kept, 1)
+    parts = mat(ev.matrix + 8 * (kept * kept + kept), kept, 1)
+    for i in range(kept):
+        right[i, 0] = a[some[i], k]
+        for j in range(kept):
+            matrix[i, j] = a[some[i], some[j]]
+    call_least_norm(cones_at(ev.cones).least_norm, matrix, right, parts, rank, ev.work)
+    moved, first = f_n[k], -1
+    for i in range(kept):
+        if parts[i, 0] < 0.0 and f_n[some[i]] < -parts[i, 0] * moved:
+            moved, first = f_n[some[i]] / -parts[i, 0], i
+    for i in range(kept):
+        f_n[some[i]] = max(f_n[some[i]] + moved * parts[i, 0], 0.0)
+    f_n[k] -= moved
+    if first >= 0:
+        some[first] = k
+    return kept
+
+
+@internal
 def keep_in_space(ev: Any, ws: Any, rank: float) -> None:
     """As `keep`: normals first, those that carry most before others; then tangents of those that stick. Where both of a
     contact are left to others, or one, it carries its share of friction along with its normal force."""
-    count, some, chosen, flag = (
-        whole(ev)[COUNT],
-        ivec(ev.some, 3 * ev.most),
-        ivec(ev.chosen, 3 * ev.most),
-        col(ev, FLAG),
-    )
+    count, some, flag = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), col(ev, FLAG)
     f_n, f_t, f_s, order = col(ev, F_N), col(ev, F_T), col(ev, F_S), ivec(ev.order, 2 * ev.most)
     real(ev)[RANK] = rank
     clear(flag, count)
@@ -537,19 +561,13 @@ def keep_in_space(ev: Any, ws: Any, rank: float) -> None:
                 at -= 1
             order[at] = i
             normals += 1
+    kept = 0
     for j in range(normals):
-        some[j] = order[j]
-    normals = _independent(ev, ws, normals, rank)
-    for j in range(normals):
-        flag[some[chosen[j]]] = 1.0
-    at = 0
-    for j in range(count):
-        if at < normals and j == chosen[at]:
-            order[at] = some[j]
-            at += 1
-    for j in range(normals):
-        some[j] = order[j]
-    total = normals
+        kept = _carry(ev, ws, kept, order[j], rank)
+    for j in range(kept):
+        order[j] = some[j]
+        flag[some[j]] = 1.0
+    normals = total = kept
     for j in range(normals):
         i = order[j]
         rubs = col(ev, STATIC)[i] > 0.0
