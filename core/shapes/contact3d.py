@@ -1,5 +1,6 @@
 """Contacts in space: spheres and half-spaces, a law along the normal, and friction."""
 
+import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
@@ -7,11 +8,14 @@ from pydantic import model_validator
 
 from ..elements.base import Form, Numbering, Row
 from ..elements.measure3d import DISTANCE, PLACE, columns_of, coordinates_of
+from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction, LuGreFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
+from ..rounding import STILL
 from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
+from .gripping3d import gripping_sphere3d_kernel
 from .normal3d import SIZE, sphere3d_kernel
 
 
@@ -35,12 +39,13 @@ class Sphere3D(Record):
 class Contact3D(ContactElement):
     """Base of the contacts in space.
 
-    Class attributes: `kernel` without friction, `rubbing_kernel` with a regularised law; `kind`, the measure of both
-    markers that the gap is, less the radii.
+    Class attributes: `kernel` without friction, `rubbing_kernel` with a regularised law, `gripping_kernel` with
+    Coulomb's; `kind`, the measure of both markers that the gap is, less the radii.
     """
 
     kernel: ClassVar[Any] = sphere3d_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_sphere3d_kernel
+    gripping_kernel: ClassVar[Any] = gripping_sphere3d_kernel
     kind: ClassVar[int]
 
     @model_validator(mode="after")
@@ -50,10 +55,11 @@ class Contact3D(ContactElement):
                 f"contact '{self.name}': LuGre friction has one bristle and belongs to contacts in the plane; give it "
                 "one of the other laws, such as BrownMcPhee"
             )
-        if isinstance(self.friction, CoulombFriction) and self.friction.sticking_coefficient > 0.0:
+        one_by_one = isinstance(self.law, NewtonImpact) and self.law.propagation == "sequential"
+        if one_by_one and isinstance(self.friction, CoulombFriction):
             raise ValueError(
-                f"contact '{self.name}': contacts in space that are constraints have no Coulomb friction yet: leave it "
-                "out, or give the contact a force law (CCFM) and regularised friction, such as BrownMcPhee"
+                f"contact '{self.name}': blows one after another (propagation='sequential') with friction are for "
+                "contacts in the plane: leave out one of the two"
             )
         return self
 
@@ -62,11 +68,13 @@ class Contact3D(ContactElement):
         raise NotImplementedError
 
     def form(self) -> Form:
-        """A contact with friction has a second row, the sliding speed's."""
+        """A contact with Coulomb friction has rows of both tangents behind that of the gap, with another law of
+        friction one of the sliding speed."""
         kind = type(self)
-        rubs = self.friction is not None
         full = tuple((i, j) for i in range(SIZE) for j in range(SIZE))
-        kernel, rows = (kind.rubbing_kernel, 2) if rubs else (kind.kernel, 1)
+        if isinstance(self.friction, CoulombFriction):
+            return Form(kind.gripping_kernel, 3, full, tuple((k, j) for k in range(3) for j in range(SIZE)), (1, 2))
+        kernel, rows = (kind.kernel, 1) if self.friction is None else (kind.rubbing_kernel, 2)
         return Form(kernel, rows, full, tuple((0, j) for j in range(SIZE)))
 
     def lengths(self) -> Sequence[float]:
@@ -74,7 +82,9 @@ class Contact3D(ContactElement):
 
     def _row_of(self, numbering: Numbering, a: Marker3D, b: Marker3D, radius_a: float, radius_b: float) -> Row:
         law = self._law_columns(numbering)
-        geometry = (float(self.kind), radius_a, radius_b, 0.0, 0.0, 0.0, 0.0)
+        # small against all speeds that weight causes
+        still = STILL * math.sqrt(numbering.length * (math.hypot(*numbering.gravity) or numbering.length))
+        geometry = (float(self.kind), radius_a, radius_b, still, 0.0, 0.0, 0.0)
         return Row(
             (*geometry, *law.parameters, *columns_of(a, b, numbering)), coordinates_of(a, b, numbering), law.extra
         )

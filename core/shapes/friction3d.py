@@ -62,7 +62,7 @@ def regularised(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any,
         r = vec(b.r, b.n_extended)
         for i in range(SIZE):
             r[coord[i]] -= dot(column(work, W, i), pull)
-        vec(b.monitor, b.n_monitor)[b.n_memory + k] = force
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = -force
     elif job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * speed
     elif job == TANGENT:

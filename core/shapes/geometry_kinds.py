@@ -10,6 +10,7 @@ from .coordinate_contact import (
     sliding_coordinate_contact_kernel,
 )
 from .friction3d import rubbing_sphere3d_kernel
+from .gripping3d import gripping_sphere3d_kernel
 from .line2d import bristle_disk_on_line_kernel, disk_on_line_kernel, sliding_disk_on_line_kernel
 from .normal2d import disk_on_disk_kernel, disk_on_half_plane_kernel
 from .normal3d import sphere3d_kernel
@@ -40,6 +41,7 @@ _KINDS: dict[Any, int] = {
     disk_on_cable_kernel: CABLE,
     sphere3d_kernel: SPHERE,
     rubbing_sphere3d_kernel: SPHERE,
+    gripping_sphere3d_kernel: SPHERE,
 }
 MAY_SLEEP = (DISKS, PLANE, SEGMENT, SPHERE)
 """Kinds whose kernels leave out contacts that sleep (`location/asleep.py`), but those with bristles."""

@@ -11,6 +11,7 @@ WORKSPACE = np.dtype(
         for name in (
             # sizes
             "n", "n_ext", "m_ext", "m_act", "m_held", "n_kernels", "n_values", "n_contacts", "n_work", "row_length",
+            "tangents",  # of contacts with Coulomb friction: 1 in the plane, 2 in space
             # the current point
             "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
             "values", "coef", "energy", "monitor", "memory", "inputs",

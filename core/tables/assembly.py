@@ -51,6 +51,8 @@ class ContactInfo:
     """Distance over which the shapes could pass through each other within a step, m."""
     slide_row: int = -1
     """Row of the sliding distance; -1: without friction."""
+    tangents: int = 1
+    """How many rows of tangents there are from `slide_row` on, with Coulomb friction: 1 in the plane, 2 in space."""
     friction: Friction | None = None
     bristle: int = -1
     """Index of its friction's internal coordinate, whose velocity is the deflection of the bristles; -1: none."""
@@ -119,6 +121,11 @@ class Assembly:
     """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
     user_error: list[BaseException] = field(default_factory=list)
     """An exception that a user's function raised inside the compiled loop."""
+
+    @property
+    def tangents(self) -> int:
+        """How many tangents contacts with Coulomb friction have, all of them."""
+        return max((contact.tangents for contact in self.contacts if contact.coulomb), default=1)
 
     @property
     def massless_contacts(self) -> frozenset[int]:
@@ -223,6 +230,7 @@ def assemble(model: Parts) -> Assembly:
                 np.array([numbering.contact_numbers.get(e.name, -1) for e, _, _ in members], dtype=np.int64),
             )
         )
+    _refuse_mixed_friction(model, contact_rows)
     internal = np.arange(numbering.n - len(numbering.internal_names), numbering.n)
     if len(internal):
         batches.append(_internal_batch(internal))
@@ -256,6 +264,7 @@ def assemble(model: Parts) -> Assembly:
                 numbering.work(f"{c.name}.dissipation"),
                 c.extent(),
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
+                max(len(contact_rows[c.name]) - 1, 1),
                 c.friction,
                 next(iter(numbering.internal(c.name)), -1),
                 kind=kind_of(c.form().kernel),
@@ -282,6 +291,16 @@ def assemble(model: Parts) -> Assembly:
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
+
+
+def _refuse_mixed_friction(model: Parts, rows: Mapping[str, Sequence[int]]) -> None:
+    """Raise ModelError where contacts of the plane and of space both have Coulomb friction."""
+    found = {len(rows[c.name]) - 1: c.name for c in model.contacts if isinstance(c.friction, CoulombFriction)}
+    if len(found) > 1:
+        raise ModelError(
+            f"contacts '{found[1]}' of the plane and '{found[2]}' of space have Coulomb friction both: leave it out in "
+            "one kind, or give one kind a force law (CCFM) and regularised friction"
+        )
 
 
 def _of_outputs(outputs: Sequence[MarkerOutput], numbering: ModelNumbering) -> list[Derived]:

@@ -239,7 +239,7 @@ def build_structure(
     """Structure with contacts `closed` as constraints, along the tangent too for those `sticking`, and `engaged`
     (closed or acting) in the pattern of S, without the redundant rows `dropped`."""
     n, ground = assembly.n, assembly.ground
-    closed_rows = {assembly.contacts[k].row for k in closed} | {assembly.contacts[k].slide_row for k in sticking}
+    closed_rows = {assembly.contacts[k].row for k in closed} | sticking_rows(assembly, sticking)
     left_out = dropped | {row for row, contacts in assembly.replaced_rows.items() if contacts & closed}
     taken = [
         row for row in range(assembly.m) if (row < assembly.m_joints and row not in left_out) or row in closed_rows
@@ -248,7 +248,9 @@ def build_structure(
     held = [row for row in taken if row not in assembly.rate_rows]
     active = np.array([*held, *(row for row in taken if row in assembly.rate_rows)], dtype=np.int64)
     size = n + len(active)
-    contact_rows = np.array([r for c in assembly.contacts for r in (c.row, c.slide_row) if r >= 0], dtype=np.int64)
+    watched_rows = [r for c in assembly.contacts for r in (c.row, c.slide_row) if r >= 0]
+    watched_rows += [c.slide_row + 1 for c in assembly.contacts if c.tangents > 1]
+    contact_rows = np.array(sorted(watched_rows), dtype=np.int64)
     # rows of the matrix, and below it those that are watched only
     matrix_row = np.full(assembly.m + 1, -1, dtype=np.int64)
     watched = np.setdiff1d(contact_rows, active)
@@ -297,6 +299,13 @@ def build_structure(
         kkt_query=kkt.sibling(),
         codes=codes_of(len(assembly.contacts), closed, engaged, sticking),
     )
+
+
+def sticking_rows(assembly: Assembly, sticking: frozenset[int]) -> set[int]:
+    """Rows of Phi of the tangents along which contacts stick: number k of a contact tells its first one, k + (number of
+    contacts) its second one."""
+    count = len(assembly.contacts)
+    return {assembly.contacts[k % count].slide_row + k // count for k in sticking}
 
 
 def _places(batch: Batch, ground: int, matrix_row: NDArray[np.int64], size: int, engaged: frozenset[int]) -> Any:

@@ -39,6 +39,7 @@ from ...core.model.derived import Columns
 from ...core.model.derived import Derived as Group
 from ...core.model.marker_channels3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
+from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from ..errors import NotTranslatable
 from .bodies import node_columns
 from .registry import BodyItems, Build, Derived, no_equal, translates
@@ -67,6 +68,14 @@ CONSTRAINED: dict[type[Joint3D], list[int]] = {
 """Axes that ObjectJointGeneric holds: three translations and three rotations in the frame of marker a."""
 YZ = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Columns: our z, x, y axes as x, y, z. exudyn's universal joint holds y of a across z of b, ours x across y."""
+
+
+no_equal(
+    "closed forms (docs/space.md): exudyn's contacts of spheres have other laws of friction and no planes, and a "
+    "translation of those without friction is not written yet",
+    SphereOnHalfSpace3D,
+    SphereOnSphere3D,
+)
 
 
 @translates(RigidBody3D, PointMass3D)
