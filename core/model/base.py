@@ -19,7 +19,7 @@ from pydantic_core import CoreSchema
 
 from ..errors import ModelError
 from .docstrings import field_docstrings
-from .explain import ALONE, explain, shown
+from .explain import ALONE, explain, problems_of, shown
 
 
 class Record(BaseModel):
@@ -39,7 +39,7 @@ class Record(BaseModel):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise ModelError(explain(error, kind, data)) from None
+            raise ModelError(explain(error, kind, data), problems_of(error, kind, data)) from None
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
