@@ -15,12 +15,12 @@ from .errors import ModelError
 from .model.base import Gravity, Record
 from .model.channels import Formula, Input, Parameter
 from .model.files import is_yaml, read_json, read_yaml, with_lines, write_yaml
-from .model.given_numbers import GRAVITY, with_given_numbers
+from .model.given_numbers import GRAVITY, STANDARD_GRAVITY, with_given_numbers
 from .model.markers import GROUND, Marker
 from .model.open_union import meaning
 from .model.outputs import MarkerOutput
-from .model.places import inside
 from .model.own_types import find_classes, import_paths, own_classes
+from .model.places import inside
 from .model.signals import InputSignal
 
 
@@ -46,15 +46,23 @@ class Model(Record):
     model_config = ConfigDict(json_schema_extra=_with_imports)
 
     format: Literal["tlismni-model-1"] = "tlismni-model-1"
+    """Which edition of this format the file is in."""
     name: str = "model"
+    """Name of the model."""
     description: str = ""
-    gravity: Gravity = (0.0, -9.81, 0.0)
-    """m/s^2; of two components, the third is zero."""
+    """What it is, in words."""
+    gravity: Gravity = STANDARD_GRAVITY
+    """Of two components, the third is zero; m/s^2."""
     bodies: tuple[Body, ...] = ()
+    """What has mass, and frames without."""
     joints: tuple[Joint, ...] = ()
+    """What holds or drives them."""
     forces: tuple[Force, ...] = ()
+    """What acts on them."""
     contacts: tuple[Contact, ...] = ()
+    """Where they may touch."""
     inputs: tuple[Input, ...] = ()
+    """Numbers that come from outside during a run."""
     outputs: tuple[MarkerOutput, ...] = ()
     """Markers whose motion is shown beside what bodies, joints and contacts show by themselves."""
     parameters: tuple[Parameter, ...] = ()

@@ -73,11 +73,13 @@ class Servo2D(ForceElement, PairElement2D):
     target: Signal
     """rad or m over s; with `of_rate` rad/s or m/s."""
     measure: Measure = "angle"
+    """What it moves: the angle of a joint, the slide along a's first axis, or the distance of the markers."""
     gain: NonNegative = 0.0
     """N m/rad or N/m."""
     rate_gain: NonNegative = 0.0
     """N m s/rad or N s/m."""
     of_rate: bool = False
+    """Whether `target` is a rate, not a position."""
 
     @model_validator(mode="after")
     def _check(self) -> "Servo2D":

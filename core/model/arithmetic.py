@@ -85,7 +85,11 @@ def _value(node: ast.expr, numbers: Mapping[str, float], text: str) -> float:
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
             return _BINARY[type(op)](_value(left, numbers, text), _value(right, numbers, text))
         case ast.Call(func=ast.Name(id=name), args=given, keywords=[]) if name in FUNCTIONS:
-            return float(FUNCTIONS[name](*(_value(each, numbers, text) for each in given)))
+            values = [_value(each, numbers, text) for each in given]
+            try:
+                return float(FUNCTIONS[name](*values))
+            except ValueError as error:
+                raise ArithmeticError(f"{error} in {name}") from None
         case ast.Call(func=ast.Name(id=name)):
             raise ValueError(f"formula '{text}': there is no function '{name}'; there are {sorted(FUNCTIONS)}")
     raise ValueError(

@@ -2,9 +2,9 @@
 quantities that a cross-check compares."""
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from .base import Name, Record
 

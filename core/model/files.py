@@ -126,13 +126,17 @@ def with_lines(error: ModelError, text: str | bytes) -> str:
 
 
 def _line_of_named(text: str | bytes, words: str) -> int | None:
-    """The line of the name, in a YAML or JSON text, of the first element that `words` quote."""
-    shown = text.decode("utf-8", "replace") if isinstance(text, bytes) else text
+    """The line, in a YAML or JSON text, of the first element or place ("rod", "rod.mass") that `words` quote."""
+    try:
+        data = read_yaml(text)
+    except (ModelError, ImportError):
+        return None
     about = words.partition(": ")[2] if words.startswith("Model '") else words
     for quoted in about.split("'")[1::2]:
-        name = quoted.partition(".")[0]
-        for number, line in enumerate(shown.splitlines(), 1):
-            written = "".join(line.split()).replace('"', "").replace("'", "")
-            if f"name:{name}," in f"{written},".replace("}", ","):
-                return number
+        name, *parts = quoted.split(".")
+        for kind in ("bodies", "joints", "forces", "contacts", "parameters"):
+            elements = data.get(kind) if isinstance(data, dict) else None
+            for k, element in enumerate(elements if isinstance(elements, list) else ()):
+                if isinstance(element, dict) and element.get("name") == name:
+                    return line_of(text, (kind, k, *(int(p) if p.isdecimal() else p for p in parts or ["name"])))
     return None

@@ -13,6 +13,8 @@ from .places import inside, replaced
 KINDS = ("bodies", "joints", "forces", "contacts")
 GRAVITY = "gravity"
 """The model's own numbers have places too: "gravity.1"."""
+STANDARD_GRAVITY = (0.0, -9.81, 0.0)
+"""m/s^2."""
 SIGN = "="
 """Before a formula that stands in a field's own place."""
 
@@ -96,7 +98,7 @@ def _formulas_in(here: Any, place: str) -> Iterator[tuple[str, str]]:
 def _at(data: Mapping[str, Any], target: str) -> Any:
     """What stands at a place; None where there is nothing, or the element's default."""
     name, *parts = target.split(".")
-    found: Any = data.get(GRAVITY) if name == GRAVITY else None
+    found: Any = data.get(GRAVITY, STANDARD_GRAVITY) if name == GRAVITY else None
     found = next((e for _, _, e in _elements(data) if _get(e, "name") == name), found)
     for part in parts:
         if found is None:
@@ -112,8 +114,9 @@ def _with(data: Mapping[str, Any], target: str, value: float) -> Mapping[str, An
             elements = list(data[kind])
             elements[k] = replaced(element, parts, value, target)
             return {**data, kind: elements}
-    if name == GRAVITY and parts and _is_list(data.get(GRAVITY)):
-        return {**data, GRAVITY: replaced(data[GRAVITY], parts, value, target)}
+    field = data.get(GRAVITY, STANDARD_GRAVITY)
+    if name == GRAVITY and parts and _is_list(field):
+        return {**data, GRAVITY: replaced(field, parts, value, target)}
     raise ValueError(f"parameter target '{target}' must be 'element.field', with the name of an element")
 
 
