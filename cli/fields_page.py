@@ -18,7 +18,15 @@ def page(records: Mapping[str, type]) -> str:
     parts = [HEAD.rstrip()]
     for name, record in records.items():
         words = inspect.cleandoc(vars(record).get("__doc__") or "").split("\n\n")[0].replace("\n", " ")
-        parts += ["", f"## {name}", "", words, "", "| field | takes | unit | default | what it is |", "|---|---|---|---|---|"]
+        parts += [
+            "",
+            f"## {name}",
+            "",
+            words,
+            "",
+            "| field | takes | unit | default | what it is |",
+            "|---|---|---|---|---|",
+        ]
         for f in fields_of(record):  # type: ignore[arg-type]
             default = f"`{f.default}`" if f.default else "must be given"
             row = (f"`{f.name}`", f.kind, f.unit, default, f.description)

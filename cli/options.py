@@ -140,7 +140,9 @@ Native = Annotated[
 Outputs = Annotated[
     list[str] | None,
     typer.Option(
-        "--outputs", metavar="NAME[,NAME]", help="Only these channels become outputs (pendulum.*,stop.gap). All if none."
+        "--outputs",
+        metavar="NAME[,NAME]",
+        help="Only these channels become outputs (pendulum.*,stop.gap). All if none.",
     ),
 ]
 Protect = Annotated[

@@ -65,7 +65,10 @@ def native_resources(
         image = image_of(model, settings.t_end, **solver)
     except NativeError as error:
         raise ExportError(f"'{model.name}' cannot be an FMU without Python: {error}") from error
-    return {"resources/model.image": image, "resources/variables.bin": variables_file(table, token, settings.rtol, channels)}
+    return {
+        "resources/model.image": image,
+        "resources/variables.bin": variables_file(table, token, settings.rtol, channels),
+    }
 
 
 def variables_file(table: VariableTable, token: str, rtol: float, names: Sequence[str]) -> bytes:

@@ -42,7 +42,12 @@ def unit_in(text: str) -> str:
             return "1"
         if _OPEN_POWER.match(words):
             return words
-        if words and not words.isdecimal() and words not in SYMBOLS and parse_unit(_POWER.sub(r"\1", words)) is not None:
+        if (
+            words
+            and not words.isdecimal()
+            and words not in SYMBOLS
+            and parse_unit(_POWER.sub(r"\1", words)) is not None
+        ):
             return words
     return ""
 
@@ -77,7 +82,9 @@ def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
     words = {"float": "number", "int": "whole number", "bool": "true or false", "str": "text"}
     if not plain:
         inner = [w for w in re.findall(r"\b(float|int|bool|str|Literal)\b", text)]
-        records = [w for w in re.findall(r"\b([A-Z][A-Za-z]*[23]D|[A-Z][a-z]+(?:[A-Z][a-z]+)*)\b", text) if w not in _PLAIN]
+        records = [
+            w for w in re.findall(r"\b([A-Z][A-Za-z]*[23]D|[A-Z][a-z]+(?:[A-Z][a-z]+)*)\b", text) if w not in _PLAIN
+        ]
         if "Literal" in inner:
             return "one of " + ", ".join(re.findall(r"'([^']+)'", text))
         what = " or ".join(dict.fromkeys(records[:3] or [words[w] for w in inner]))
@@ -90,7 +97,21 @@ def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
     return " ".join([words.get(text, text), *bounds])
 
 
-_PLAIN = {"Literal", "Annotated", "Field", "Info", "None", "Type", "Union", "Optional", "NoneType", "FieldInfo", "True", "False", "OpenUnion"}
+_PLAIN = {
+    "Literal",
+    "Annotated",
+    "Field",
+    "Info",
+    "None",
+    "Type",
+    "Union",
+    "Optional",
+    "NoneType",
+    "FieldInfo",
+    "True",
+    "False",
+    "OpenUnion",
+}
 
 
 def records() -> dict[str, type[BaseModel]]:
@@ -103,7 +124,11 @@ def records() -> dict[str, type[BaseModel]]:
             yield record
             yield from below(record)
 
-    classes = {record.__name__: record for record in below(Record) if record.__module__.startswith(Record.__module__.split(".model.")[0])}
+    classes = {
+        record.__name__: record
+        for record in below(Record)
+        if record.__module__.startswith(Record.__module__.split(".model.")[0])
+    }
     found = {"Model": Model}
     for name in Model.model_json_schema()["$defs"]:
         kind = classes[name].model_fields.get("type")

@@ -54,7 +54,9 @@ def with_given_numbers(data: Mapping[str, Any]) -> Mapping[str, Any]:
         if isinstance(target, str) and isinstance(text, str):
             try:
                 for name in (n for n in names_in(text) if n not in numbers and n in named):
-                    raise ValueError(f"formula '{text}' asks for parameter '{name}', which has no value: give it `value`")
+                    raise ValueError(
+                        f"formula '{text}' asks for parameter '{name}', which has no value: give it `value`"
+                    )
                 _claim(settings, target, f"formula '{text}'", evaluate(text, numbers))
             except ValueError as error:
                 raise ValueError(f"'{target}': {error}") from None

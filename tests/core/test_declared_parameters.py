@@ -117,7 +117,9 @@ def test_mistakes_are_named_with_line_and_remedy(change: tuple[str, str], said: 
 def test_each_of_several_mistakes_has_its_line(tmp_path: Path) -> None:
     pytest.importorskip("ruamel.yaml")
     path = tmp_path / "rod.yaml"
-    path.write_text(ROD.replace("mass: = mass", "mass: -1").replace("type: Revolute2D", "type: Revolut2D"), encoding="utf-8")
+    path.write_text(
+        ROD.replace("mass: = mass", "mass: -1").replace("type: Revolute2D", "type: Revolut2D"), encoding="utf-8"
+    )
     with pytest.raises(ModelError, match="line 9: .*; line 13: ") as caught:
         Model.load(path)
     assert len(caught.value.problems) == 2
