@@ -1,9 +1,5 @@
-"""The run as one compiled function: steps, event location and what is settled at events, until it reaches its goal or
-something comes up that Python has to do.
-
-`run` makes steps; `drive` goes on where these end at events. What it leaves to Python it leaves untouched, with a code
-of `records` that says what it is.
-"""
+<<<<<<< HEAD
+"""The record of `drive` for one run, and what Python asks of it."""
 
 import logging
 from collections.abc import Sequence
@@ -13,13 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.image import Take, twin
-from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
+from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
+<<<<<<<< HEAD:core/loop/drive.py
 from ..compiled.views import ivec, vec
+========
+>>>>>>>> main:core/run/drive_record.py
 from ..events import Event
 from ..events.instant import Instant
 from ..events.laws import code_of
 from ..events.progress import Progress
+<<<<<<<< HEAD:core/loop/drive.py
 from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, call_part, instant_at
 from ..events.report import MOST_EVENTS
 from ..events.settle import begin_pending_forces, go_on_behind, settle
@@ -32,202 +32,64 @@ from ..methods.history import history_time
 from ..rounding import NO_STEP
 from ..stage.accelerations import solve_accelerations
 from ..state.method_records import METHOD_TYPE
+========
+from ..events.report import MOST_EVENTS
+from ..laws import ForceLaw, ImpactLaw, law_address
+from ..laws.friction import LuGreFriction
+from ..location.search import NEAREST
+from ..loop.drive import (
+    aim_now,
+    begin_forces,
+    drive,
+    open_now,
+    pass_breakpoint,
+    settle_pending,
+    unsettled_now,
+    wake_now,
+)
+from ..loop.loop import accept, run, trial_step
+from ..loop.sample import write_sample
+from ..stage.accelerations import solve_accelerations
+>>>>>>>> main:core/run/drive_record.py
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
     ACCEPT_SIGNATURE,
-    BREAK_TIME,
     BUDGET,
-    CHUNK,
-    CLOCK_SIZE,
     COUNTS_SIZE,
     DRIVE,
-    DUE,
-    EVENT,
     EVENT_KINDS,
     EVENT_ROWS,
     EVENT_SIZE,
     EVENTS,
-    FAILED,
     FORCE_NUMBERS,
     FOUND_SIZE,
-    FULL,
     GAINS,
     GOAL,
     GOALS_SIZE,
-    HANDLED,
     HANDLED_AT,
-    JAM,
     JUMPS,
     LAST_STOP,
-    LOOP_TYPE,
     PASSED,
-    REACHED,
     RUN_SIGNATURE,
     SAMPLE_SIGNATURE,
-    SETTLE,
     SETTLE_SIGNATURE,
     STATUS,
-    STOP_TIME,
-    TARGET_TIME,
     TRIAL_SIGNATURE,
-    UNLOCATED,
-    WANTED,
-    call_run,
-    call_settle,
 )
+<<<<<<<< HEAD:core/loop/drive.py
 from ..state.workspace_records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
 from ..tables.assembly import Assembly, ContactInfo
 from .loop import accept, run, trial_step
 from .sample import write_sample
 from .sliding import any_slides, may_have_jammed
+========
+from ..tables.assembly import Assembly, ContactInfo
+>>>>>>>> main:core/run/drive_record.py
 
 if TYPE_CHECKING:
     from ..run.engine import Engine
 
-MANY = 6
-"""Contacts from which on it pays to let those sleep that are far from touching."""
-
 logger = logging.getLogger(__name__)
-workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
-
-
-@internal
-def _aim(dr: Any, ms: Any, lc: Any) -> int:
-    """Set the clock of the loop for the way to the goal; REACHED or DUE where there is no way to go."""
-    goals, clock = vec(dr.goals, GOALS_SIZE), vec(lc.clock, CLOCK_SIZE)
-    breakpoints = vec(dr.breakpoints, dr.n_breakpoints)
-    now, goal, ahead = history_time(ms, 0), goals[GOAL], np.inf
-    if now >= goal:
-        return REACHED
-    for i in range(dr.n_breakpoints):
-        if now < breakpoints[i] < ahead:
-            ahead = breakpoints[i]
-    # steps end just before a breakpoint, so that they see what holds to the left of it
-    last, goals[PASSED] = np.nextafter(ahead, -np.inf), ahead
-    if last - now <= NO_STEP * abs(now):
-        return DUE
-    if goal - now <= NO_STEP * abs(goal):
-        return REACHED
-    clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(goals[LAST_STOP], last), goal
-    return REACHED if clock[STOP_TIME] - now <= NO_STEP * abs(now) else OK
-
-
-@internal
-def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
-    """Steps and events up to the goal; `hold`: only up to where events are pending."""
-    lc.may_sleep = 1 if ws.n_contacts >= MANY else 0
-    code = _drive_on(dr, ws, ms, lc, hold)
-    lc.may_sleep = 0
-    # whoever builds what is wanted does not look at gaps, and comes back at once
-    if code != WANTED:
-        wake_all(ws, ms, lc)
-    return code
-
-
-@internal
-def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
-    counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
-    last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
-    while True:
-        if _is_due(dr, ws):
-            # which redundant rows are left out is for Python to look at, at every instant
-            if hold or ws.n_redundant > 0 or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
-                return SETTLE
-            status = call_settle(dr.settle, dr)
-            if status != SETTLED:
-                counts[STATUS] = status
-                return SETTLE if status == DECLINED else (WANTED if status <= WANT_PIVOTS else FAILED)
-            continue
-        code = _aim(dr, ms, lc)
-        if code == DUE and ws.n_redundant == 0:
-            if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
-                return FULL
-            status = call_settle(dr.pass_breakpoint, dr)
-            if status != SETTLED:
-                counts[STATUS] = status
-                return WANTED if status <= WANT_PIVOTS else FAILED
-            continue
-        if code != OK:
-            return code
-        left = last - steps[STEPS] - counts[HANDLED]
-        if left <= 0:
-            return CHUNK
-        # while a contact slides, each step is looked at
-        sliding, before = any_slides(ws), history_time(ms, 0)
-        code = call_run(dr.run, ws, ms, lc, 1 if sliding else left)
-        if code == CHUNK and sliding:
-            if history_time(ms, 0) > before and may_have_jammed(ws):
-                return JAM
-            continue
-        if code == REACHED:
-            continue
-        if code != EVENT:
-            return code
-        if locate(dr, ws, ms, lc) != OK:
-            return UNLOCATED
-
-
-@internal
-def _is_due(dr: Any, ws: Any) -> bool:
-    """True if events are pending."""
-    pending = ivec(dr.pending, ws.n_contacts)
-    for k in range(ws.n_contacts):
-        if pending[k] != 0:
-            return True
-    return False
-
-
-@compiled_unlocked
-def drive(dr: Any, hold: bool) -> int:
-    """Go to the goal; a code of `records` or the status of a step that cannot be made."""
-    return drive_on(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop), hold)
-
-
-@compiled
-def aim_now(dr: Any) -> int:
-    """`_aim`, for Python."""
-    return _aim(dr, method_at(dr.method), loop_at(dr.loop))
-
-
-@compiled
-def wake_now(dr: Any) -> None:
-    """`wake_all`, for Python."""
-    wake_all(workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
-
-
-@compiled
-def settle_pending(dr: Any) -> int:
-    """Let the pending events happen at the newest row: a status of `events/records.py`."""
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    return settle(dr, instant_at(dr.instant), ws, ms, lc)
-
-
-@compiled
-def pass_breakpoint(dr: Any) -> int:
-    """Go on behind the breakpoint `PASSED` of the goals: a status of `events/records.py`."""
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    return go_on_behind(dr, instant_at(dr.instant), ws, ms, lc)
-
-
-@compiled
-def begin_forces(dr: Any) -> int:
-    """`begin_pending_forces`, for Python."""
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    return begin_pending_forces(dr, instant_at(dr.instant), ws, ms, lc)
-
-
-@compiled
-def unsettled_now(dr: Any) -> bool:
-    """`find_unsettled` at the current point, for Python."""
-    ws, ev = workspace_at(dr.workspace), instant_at(dr.instant)
-    return find_unsettled(ev, ws, ivec(ev.unsettled, ws.n_contacts))
-
-
-@compiled
-def open_now(dr: Any) -> int:
-    """`open_touching` at the current point, for Python."""
-    ev = instant_at(dr.instant)
-    return call_part(ev.open_touching, ev, dr, workspace_at(dr.workspace), method_at(dr.method))
 
 
 def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
@@ -436,3 +298,199 @@ class Drive:
         for t in dict.fromkeys(t for t, _, _ in jumps):
             _warn_of_jump(t, [(name, jump) for at, name, jump in jumps if at == t])
         return found
+=======
+"""The run as one compiled function: steps, event location and what is settled at events, until it reaches its goal or
+something comes up that Python has to do.
+
+`run` makes steps; `drive` goes on where these end at events. What it leaves to Python it leaves untouched, with a code
+of `state/run_records` that says what it is.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled, compiled_unlocked, internal, record_view
+from ..compiled.views import ivec, vec
+from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, call_part, instant_at
+from ..events.settle import begin_pending_forces, go_on_behind, settle
+from ..events.unsettled import find_unsettled
+from ..location.asleep import wake_all
+from ..location.search import locate
+from ..methods.history import history_time
+from ..rounding import NO_STEP
+from ..state.method_records import METHOD_TYPE
+from ..state.run_records import (
+    BREAK_TIME,
+    BUDGET,
+    CHUNK,
+    CLOCK_SIZE,
+    COUNTS_SIZE,
+    DUE,
+    EVENT,
+    FAILED,
+    FULL,
+    GOAL,
+    GOALS_SIZE,
+    HANDLED,
+    JAM,
+    LAST_STOP,
+    LOOP_TYPE,
+    PASSED,
+    REACHED,
+    SETTLE,
+    STATUS,
+    STOP_TIME,
+    TARGET_TIME,
+    UNLOCATED,
+    WANTED,
+    call_run,
+    call_settle,
+)
+from ..state.workspace_records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
+from .sliding import any_slides, may_have_jammed
+
+MANY = 6
+"""Contacts from which on it pays to let those sleep that are far from touching."""
+
+workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
+
+
+@internal
+def _aim(dr: Any, ms: Any, lc: Any) -> int:
+    """Set the clock of the loop for the way to the goal; REACHED or DUE where there is no way to go."""
+    goals, clock = vec(dr.goals, GOALS_SIZE), vec(lc.clock, CLOCK_SIZE)
+    breakpoints = vec(dr.breakpoints, dr.n_breakpoints)
+    now, goal, ahead = history_time(ms, 0), goals[GOAL], np.inf
+    if now >= goal:
+        return REACHED
+    for i in range(dr.n_breakpoints):
+        if now < breakpoints[i] < ahead:
+            ahead = breakpoints[i]
+    # steps end just before a breakpoint, so that they see what holds to the left of it
+    last, goals[PASSED] = np.nextafter(ahead, -np.inf), ahead
+    if last - now <= NO_STEP * abs(now):
+        return DUE
+    if goal - now <= NO_STEP * abs(goal):
+        return REACHED
+    clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(goals[LAST_STOP], last), goal
+    return REACHED if clock[STOP_TIME] - now <= NO_STEP * abs(now) else OK
+
+
+@internal
+def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
+    """Steps and events up to the goal; `hold`: only up to where events are pending."""
+    lc.may_sleep = 1 if ws.n_contacts >= MANY else 0
+    code = _drive_on(dr, ws, ms, lc, hold)
+    lc.may_sleep = 0
+    # whoever builds what is wanted does not look at gaps, and comes back at once
+    if code != WANTED:
+        wake_all(ws, ms, lc)
+    return code
+
+
+@internal
+def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
+    counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
+    last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
+    while True:
+        if _is_due(dr, ws):
+            # which redundant rows are left out is for Python to look at, at every instant
+            if hold or ws.n_redundant > 0 or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
+                return SETTLE
+            status = call_settle(dr.settle, dr)
+            if status != SETTLED:
+                counts[STATUS] = status
+                return SETTLE if status == DECLINED else (WANTED if status <= WANT_PIVOTS else FAILED)
+            continue
+        code = _aim(dr, ms, lc)
+        if code == DUE and ws.n_redundant == 0:
+            if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+                return FULL
+            status = call_settle(dr.pass_breakpoint, dr)
+            if status != SETTLED:
+                counts[STATUS] = status
+                return WANTED if status <= WANT_PIVOTS else FAILED
+            continue
+        if code != OK:
+            return code
+        left = last - steps[STEPS] - counts[HANDLED]
+        if left <= 0:
+            return CHUNK
+        # while a contact slides, each step is looked at
+        sliding, before = any_slides(ws), history_time(ms, 0)
+        code = call_run(dr.run, ws, ms, lc, 1 if sliding else left)
+        if code == CHUNK and sliding:
+            if history_time(ms, 0) > before and may_have_jammed(ws):
+                return JAM
+            continue
+        if code == REACHED:
+            continue
+        if code != EVENT:
+            return code
+        if locate(dr, ws, ms, lc) != OK:
+            return UNLOCATED
+
+
+@internal
+def _is_due(dr: Any, ws: Any) -> bool:
+    """True if events are pending."""
+    pending = ivec(dr.pending, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if pending[k] != 0:
+            return True
+    return False
+
+
+@compiled_unlocked
+def drive(dr: Any, hold: bool) -> int:
+    """Go to the goal; a code of `records` or the status of a step that cannot be made."""
+    return drive_on(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop), hold)
+
+
+@compiled
+def aim_now(dr: Any) -> int:
+    """`_aim`, for Python."""
+    return _aim(dr, method_at(dr.method), loop_at(dr.loop))
+
+
+@compiled
+def wake_now(dr: Any) -> None:
+    """`wake_all`, for Python."""
+    wake_all(workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
+
+
+@compiled
+def settle_pending(dr: Any) -> int:
+    """Let the pending events happen at the newest row: a status of `events/records.py`."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return settle(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
+def pass_breakpoint(dr: Any) -> int:
+    """Go on behind the breakpoint `PASSED` of the goals: a status of `events/records.py`."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return go_on_behind(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
+def begin_forces(dr: Any) -> int:
+    """`begin_pending_forces`, for Python."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return begin_pending_forces(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
+def unsettled_now(dr: Any) -> bool:
+    """`find_unsettled` at the current point, for Python."""
+    ws, ev = workspace_at(dr.workspace), instant_at(dr.instant)
+    return find_unsettled(ev, ws, ivec(ev.unsettled, ws.n_contacts))
+
+
+@compiled
+def open_now(dr: Any) -> int:
+    """`open_touching` at the current point, for Python."""
+    ev = instant_at(dr.instant)
+    return call_part(ev.open_touching, ev, dr, workspace_at(dr.workspace), method_at(dr.method))
+>>>>>>> main

@@ -24,6 +24,10 @@ from ..tables.partition import prepare
 from ..tables.redundancy import RedundantRow, choose_rows, describe
 from ..tables.scales import Scales
 from ..tables.workspace import Workspace
+<<<<<<< HEAD
+=======
+from .drive_record import Drive
+>>>>>>> main
 from .failures import failure_of
 from .settings import Settings
 
