@@ -13,7 +13,7 @@ SECRET = ("solver", "scenario", "parameter", "law")
 
 
 def with_outputs(table: VariableTable, wanted: Sequence[str]) -> VariableTable:
-    """The table with those channels only whose names match one of `wanted` ("rod.angle", "stop.*"); all if there is none.
+    """The table with those channels only whose names match one of `wanted` ("rod.angle", "stop.*"); none given: all.
 
     Raises
     ------

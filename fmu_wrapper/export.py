@@ -87,8 +87,8 @@ def export_fmu(
     native : an FMU that needs no Python where it runs (docs/native-fmu.md): it carries machine code and numbers, not
         the model, and its parameters are constants. Not every model can be one.
     outputs : names of the channels that become outputs; "*" and "?" stand for any characters ("stop.*"). All if none.
-    protect : show nothing of what the model is made of: no parameters, laws, settings, descriptions (docs/fmu.md says what
-        can be seen still). Only an FMU without Python (`native`) can do that: the other kind carries the model.
+    protect : show nothing of what the model is made of: no parameters, laws, settings, descriptions (docs/fmu.md says
+        what can be seen still). Only an FMU without Python (`native`) can do that: the other kind carries the model.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -111,8 +111,8 @@ def export_fmu(
         )
     if protect and not native:
         raise ExportError(
-            "an FMU that runs with Python carries the model as text, so it cannot be protected: export it with native=True "
-            "(--native) too, whose FMU holds numbers only"
+            "an FMU that runs with Python carries the model as text, so it cannot be protected: export it with "
+            "native=True (--native) too, whose FMU holds numbers only"
         )
     if native and (bundle or arrays):
         raise ExportError(
@@ -151,7 +151,7 @@ def export_fmu(
     if native:
         files = {
             "modelDescription.xml": described,
-            **native_resources(slave.model, slave.settings, slave.variables, token),
+            **native_resources(slave.model, slave.settings, slave.variables, token, channels),
             **native_binaries(folder(), identifier, fmi_version, platforms),
         }
         return write_archive(path, files)

@@ -1,7 +1,7 @@
 """Arithmetic in model files: "mass * length**2 / 12" with numbers by name. Nothing else can be said in it.
 
-The text is parsed by Python's own parser and walked here, node by node; what is not arithmetic is refused. So a file with
-formulas is data still.
+The text is parsed by Python's own parser and walked here, node by node; what is not arithmetic is refused. So a file
+with formulas is data still.
 """
 
 import ast

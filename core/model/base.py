@@ -23,8 +23,8 @@ from .explain import ALONE, explain, problems_of, shown
 
 
 class _DescribesItself(type(BaseModel)):  # type: ignore[misc]
-    """Class of the classes of records: their docstring, for `help()`, ends with their fields. It is made when it is asked
-    for, since that reads their source."""
+    """Class of the classes of records: their docstring, for `help()`, ends with their fields. It is made when it is
+    asked for, since that reads their source."""
 
     @property
     def __doc__(cls) -> str | None:  # type: ignore[override]

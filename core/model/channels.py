@@ -25,8 +25,8 @@ class Input(Record):
 class Parameter(Record):
     """A number of the model that may be changed from outside before a run, by name.
 
-    With a `value` it is declared here, and put into its `targets`; without, its value is what stands at the first target.
-    Formulas of a model may ask for it.
+    With a `value` it is declared here, and put into its `targets`; without, its value is what stands at the first
+    target. Formulas of a model may ask for it.
     """
 
     name: Name
@@ -48,8 +48,8 @@ class Parameter(Record):
     def _check(self) -> "Parameter":
         if self.value is None and not self.targets:
             raise ValueError(
-                f"parameter '{self.name}' has neither a `value` nor `targets`: give its value, or where its number stands "
-                'in the model, e.g. targets=["rod.mass"]'
+                f"parameter '{self.name}' has neither a `value` nor `targets`: give its value, or where its number "
+                'stands in the model, e.g. targets=["rod.mass"]'
             )
         if self.minimum is not None and self.maximum is not None and self.minimum > self.maximum:
             raise ValueError(
@@ -67,7 +67,7 @@ class Parameter(Record):
 
 
 class Formula(Record):
-    """A number of the model that follows from parameters. In a file it may also stand in its own place: "= mass / 2"."""
+    """A number of the model that follows from parameters. In a file it may stand in its own place: "= mass / 2"."""
 
     target: str
     """Where the number stands: "element.field", or deeper, as for a parameter."""

@@ -1,5 +1,5 @@
-"""What each field of a record is: unit, default, range, words. The one source are the docstrings below the fields; the JSON
-schema, `help()`, the command `tlismni fields` and the page of the docs show them.
+"""What each field of a record is: unit, default, range, words. The one source are the docstrings below the fields; the
+JSON schema, `help()`, the command `tlismni fields` and the page of the docs show them.
 
 A unit is a part of the docstring by itself ("Length of the rod, m."); a field without one has none.
 """
@@ -81,7 +81,7 @@ def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
     text = re.sub(r"[A-Za-z_]+\.", "", annotation.__name__ if plain else str(annotation))
     words = {"float": "number", "int": "whole number", "bool": "true or false", "str": "text"}
     if not plain:
-        inner = [w for w in re.findall(r"\b(float|int|bool|str|Literal)\b", text)]
+        inner = re.findall(r"\b(float|int|bool|str|Literal)\b", text)
         records = [
             w for w in re.findall(r"\b([A-Z][A-Za-z]*[23]D|[A-Z][a-z]+(?:[A-Z][a-z]+)*)\b", text) if w not in _PLAIN
         ]

@@ -91,8 +91,8 @@ def write_yaml(data: Mapping[str, Any]) -> str:
 
 
 def line_of(text: str | bytes, places: Sequence[Any]) -> int | None:
-    """The line, from 1, of what stands at `places` (keys and numbers in lists) in a YAML or JSON text; None where that is
-    not known. Parts of `places` that lead nowhere (names of types) are passed over."""
+    """The line, from 1, of what stands at `places` (keys and numbers in lists) in a YAML or JSON text; None where that
+    is not known. Parts of `places` that lead nowhere (names of types) are passed over."""
     try:
         from ruamel.yaml import YAML
         from ruamel.yaml.error import YAMLError

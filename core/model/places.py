@@ -23,7 +23,8 @@ def inside(here: Any, part: str, place: str) -> Any:
         if part.isdecimal() and int(part) < len(here):
             return here[int(part)]
         raise ValueError(
-            f"parameter target '{place}': '{part}' is no place in a list of {len(here)}: count from 0 to {len(here) - 1}"
+            f"parameter target '{place}': '{part}' is no place in a list of {len(here)}: count from 0 to "
+            f"{len(here) - 1}"
         )
     raise ValueError(f"parameter target '{place}': there is no field '{part}' in {here!r}")
 

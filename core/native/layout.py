@@ -45,11 +45,7 @@ def called_symbols(library: Library) -> list[str]:
     """Symbols of CALLED."""
     found = []
     for name in CALLED:
-<<<<<<< HEAD
-        full = f"tlismni.core.run.{_MODULES[name]}.{name}"
-=======
         full = f"tlismni.core.{_MODULES[name]}.{name}"
->>>>>>> main
         (signature,) = library.signatures(full)
         found.append(library.entries[f"{full} {signature}"])
     return found

@@ -10,28 +10,10 @@ from numpy.typing import NDArray
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
-<<<<<<<< HEAD:core/loop/drive.py
-from ..compiled.views import ivec, vec
-========
->>>>>>>> main:core/run/drive_record.py
 from ..events import Event
 from ..events.instant import Instant
 from ..events.laws import code_of
 from ..events.progress import Progress
-<<<<<<<< HEAD:core/loop/drive.py
-from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, call_part, instant_at
-from ..events.report import MOST_EVENTS
-from ..events.settle import begin_pending_forces, go_on_behind, settle
-from ..events.unsettled import find_unsettled
-from ..laws import ForceLaw, ImpactLaw, law_address
-from ..laws.friction import LuGreFriction
-from ..location.asleep import wake_all
-from ..location.search import NEAREST, locate
-from ..methods.history import history_time
-from ..rounding import NO_STEP
-from ..stage.accelerations import solve_accelerations
-from ..state.method_records import METHOD_TYPE
-========
 from ..events.report import MOST_EVENTS
 from ..laws import ForceLaw, ImpactLaw, law_address
 from ..laws.friction import LuGreFriction
@@ -49,7 +31,6 @@ from ..loop.drive import (
 from ..loop.loop import accept, run, trial_step
 from ..loop.sample import write_sample
 from ..stage.accelerations import solve_accelerations
->>>>>>>> main:core/run/drive_record.py
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
     ACCEPT_SIGNATURE,
@@ -75,18 +56,10 @@ from ..state.run_records import (
     STATUS,
     TRIAL_SIGNATURE,
 )
-<<<<<<<< HEAD:core/loop/drive.py
-from ..state.workspace_records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
 from ..tables.assembly import Assembly, ContactInfo
-from .loop import accept, run, trial_step
-from .sample import write_sample
-from .sliding import any_slides, may_have_jammed
-========
-from ..tables.assembly import Assembly, ContactInfo
->>>>>>>> main:core/run/drive_record.py
 
 if TYPE_CHECKING:
-    from ..run.engine import Engine
+    from .engine import Engine
 
 logger = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""Model files that declare numbers: parameters with a value, formulas of them, comments, and what is said of mistakes."""
+"""Model files that declare numbers: parameters with a value, formulas, comments; and what is said of mistakes."""
 
 import json
 from pathlib import Path
@@ -120,7 +120,7 @@ def test_each_of_several_mistakes_has_its_line(tmp_path: Path) -> None:
     path.write_text(
         ROD.replace("mass: = mass", "mass: -1").replace("type: Revolute2D", "type: Revolut2D"), encoding="utf-8"
     )
-    with pytest.raises(ModelError, match="line 9: .*; line 13: ") as caught:
+    with pytest.raises(ModelError, match=r"line 9: .*; line 13: ") as caught:
         Model.load(path)
     assert len(caught.value.problems) == 2
 
@@ -133,7 +133,7 @@ def test_what_a_formula_sets_is_not_set_by_its_place() -> None:
 def test_one_place_has_one_source() -> None:
     found = data()
     found["parameters"].append({"name": "other", "value": 1.0, "targets": ["rod.mass"]})
-    with pytest.raises(ModelError, match="'rod.mass' is set twice"):
+    with pytest.raises(ModelError, match=r"'rod.mass' is set twice"):
         Model.from_json(json.dumps(found))
 
 

@@ -35,7 +35,7 @@ def test_an_unknown_output_is_refused_with_near_names(tmp_path):
 
 
 def test_an_fmu_with_python_cannot_be_protected(tmp_path):
-    with pytest.raises(ExportError, match="carries the model as text.*native=True"):
+    with pytest.raises(ExportError, match=r"carries the model as text.*native=True"):
         export_fmu(ball_model(), tmp_path / "x.fmu", protect=True)
 
 
