@@ -8,7 +8,8 @@ from ..core.model.fields import fields_of
 HEAD = """# Fields of a model file
 
 Every type and every field, as `help()`, the JSON schema and `tlismni fields TYPE` show them. This page is written by
-`tlismni fields --markdown`; the words stand in the source, below each field. How a file is made: [model files](model-files.md).
+`tlismni fields --markdown`; the words stand in the source, below each field. How a file is made:
+[model files](model-files.md).
 
 """
 

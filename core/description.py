@@ -186,8 +186,8 @@ class Model(Record):
         for formula in self.formulas:
             if formula.target == target:
                 raise ModelError(
-                    f"'{target}' follows from the formula '{formula.formula}': set the parameters in it, or take the formula "
-                    "out of the model"
+                    f"'{target}' follows from the formula '{formula.formula}': set the parameters in it, or take the "
+                    "formula out of the model"
                 )
         for parameter in self.parameters:
             if parameter.value is not None and target in parameter.targets:
@@ -266,8 +266,8 @@ class Model(Record):
 
     @classmethod
     def load(cls, path: str | Path, *, allow_imports: bool | Collection[str] = False) -> "Model":
-        """Read a model file, JSON or (.yaml, .yml) YAML; `allow_imports` as in `from_json`. Raises ModelError if it cannot
-        be read or is no model, with the lines."""
+        """Read a model file, JSON or (.yaml, .yml) YAML; `allow_imports` as in `from_json`. Raises ModelError if it
+        cannot be read or is no model, with the lines."""
         try:
             text = Path(path).read_bytes()
         except OSError as error:

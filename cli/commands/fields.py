@@ -19,11 +19,11 @@ def fields(
     debug: Debug = False,
 ) -> None:
     """Show the types of a model file, or the fields of one: unit, default, meaning."""
-    from ...core import ModelError
+    from ...core import Model, ModelError
     from ...core.model.arithmetic import near
     from ...core.model.fields import fields_of, records
 
-    known = records()
+    known = records(Model)
     if kind is not None and kind not in known:
         raise ModelError(f"there is no type '{kind}'{near(kind, known)}")
     chosen = {kind: known[kind]} if kind is not None else known

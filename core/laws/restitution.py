@@ -15,7 +15,7 @@ class ImpactLaw(Record):
     """
 
     restitution: Restitution
-    """e, dimensionless: separation over approach speed, or (Poisson) impulse of restitution over that of compression."""
+    """e, dimensionless: separation over approach speed, or (Poisson) impulse of restitution over compression's."""
     rest_ratio: Annotated[float, Field(ge=0.0, lt=1.0)] = 1e-6
     """A contact rests once it bounces slower than this part of its largest approach speed, dimensionless."""
 

@@ -114,23 +114,18 @@ _PLAIN = {
 }
 
 
-def records() -> dict[str, type[BaseModel]]:
-    """All records of a model file by the name of their type, `Model` first."""
-    from ..description import Model
-    from .base import Record
+def records(root: type[BaseModel]) -> dict[str, type[BaseModel]]:
+    """All records of this library that data of `root` (a `Model`) may hold, by the name of their type; `root` first."""
+    home = __name__.rpartition(".model.")[0]
 
     def below(base: type[BaseModel]) -> Iterable[type[BaseModel]]:
         for record in base.__subclasses__():
             yield record
             yield from below(record)
 
-    classes = {
-        record.__name__: record
-        for record in below(Record)
-        if record.__module__.startswith(Record.__module__.split(".model.")[0])
-    }
-    found = {"Model": Model}
-    for name in Model.model_json_schema()["$defs"]:
+    classes = {record.__name__: record for record in below(BaseModel) if record.__module__.startswith(home)}
+    found = {root.__name__: root}
+    for name in root.model_json_schema()["$defs"]:
         kind = classes[name].model_fields.get("type")
         found[name if kind is None else str(kind.default)] = classes[name]
     return found

@@ -19,9 +19,12 @@ UNITS_DEPEND = {
 MATRICES = {"LinearSystem", "ReducedBody2D", "ReducedPoint"}
 
 
-@pytest.mark.parametrize("name", records())
+RECORDS = records(Model)
+
+
+@pytest.mark.parametrize("name", RECORDS)
 def test_every_field_has_words_and_every_number_a_unit(name: str) -> None:
-    for field in fields_of(records()[name]):
+    for field in fields_of(RECORDS[name]):
         assert field.description, f"{name}.{field.name}: write a docstring below it"
         number = "number" in field.kind and "whole" not in field.kind
         if number and name not in MATRICES and field.name not in UNITS_DEPEND.get(name, ()):
@@ -49,4 +52,4 @@ def test_the_page_of_fields_is_the_present_one() -> None:
     from tlismni.cli.fields_page import page
 
     written = (Path(__file__).parents[2] / "docs" / "model-fields.md").read_text(encoding="utf-8")
-    assert written == page(records()), "write it anew: tlismni fields --markdown > docs/model-fields.md"
+    assert written == page(RECORDS), "write it anew: tlismni fields --markdown > docs/model-fields.md"
