@@ -28,7 +28,7 @@ def page(records: Mapping[str, type]) -> str:
             "| field | takes | unit | default | what it is |",
             "|---|---|---|---|---|",
         ]
-        for f in fields_of(record):  # type: ignore[arg-type]
+        for f in fields_of(record):
             default = f"`{f.default}`" if f.default else "must be given"
             row = (f"`{f.name}`", f.kind, f.unit, default, f.description)
             parts.append("| " + " | ".join(cell.replace("|", "\\|").replace("<", "&lt;") for cell in row) + " |")
