@@ -50,4 +50,5 @@ if __name__ == "__main__":
     file = Path(sys.argv[1] if len(sys.argv) > 1 else "cylinder_linkage.html")
     found = run()
     plot(found, file) if file.suffix == ".png" else found["result"].animate(file, channels=["stop.normal_force"])
-    print(f"torque on the stop {found['stop_torque']:.3f} N m, from statics {found['expected_stop_torque']:.3f}; {file}")
+    torque, expected = found["stop_torque"], found["expected_stop_torque"]
+    print(f"torque on the stop {torque:.3f} N m, by statics {expected:.3f} N m; wrote {file}")

@@ -16,10 +16,9 @@ def run() -> dict[str, Any]:
     """The same with a rod of steel and with one that hardly bends."""
     found: dict[str, Any] = {}
     for name, modulus in (("result", 2e11), ("stiff", STIFF)):
-        scenario = load("flexible_slider_crank_stop", youngs_modulus=modulus)
-        found[name] = simulate(scenario.model, scenario.t_end, atol=scenario.atol, t_eval=np.linspace(0.0, scenario.t_end, 801), **scenario.options)
-    rigid = load("slider_crank_stop")
-    del rigid
+        s = load("flexible_slider_crank_stop", youngs_modulus=modulus)
+        times = np.linspace(0.0, s.t_end, 801)
+        found[name] = simulate(s.model, s.t_end, atol=s.atol, t_eval=times, **s.options)
     blows = [next(event for event in found[name].events if event.kind == "impact") for name in ("result", "stiff")]
     return {
         **found,

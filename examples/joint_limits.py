@@ -16,6 +16,7 @@ def build() -> Model:
     def end(name: str, side: float) -> Marker2D:
         return Marker2D(body=name, point=(side * LENGTH / 2.0, 0.0))
 
+    law = NewtonImpact(restitution=0.4)
     links = [
         RigidBody2D(name=name, mass=MASS, inertia=MASS * LENGTH**2 / 12.0, position=(x, 0.0), angular_velocity=0.0)
         for name, x in (("arm", LENGTH / 2.0), ("forearm", 1.5 * LENGTH))
@@ -29,7 +30,7 @@ def build() -> Model:
             Revolute2D(name="elbow", a=end("arm", 1), b=end("forearm", -1)),
         ],
         contacts=[
-            AngleStop2D(name=side, a=end("arm", 1), b=end("forearm", -1), side=side, limit=limit, law=NewtonImpact(restitution=0.4))
+            AngleStop2D(name=side, a=end("arm", 1), b=end("forearm", -1), side=side, limit=limit, law=law)
             for side, limit in zip(("lower", "upper"), RANGE, strict=True)
         ],
     )  # fmt: skip
