@@ -14,6 +14,4 @@ class Words(griffe.Extension):
 
     def on_object(self, *, obj: griffe.Object, **_: Any) -> None:
         if obj.docstring is not None:
-            obj.docstring.value = SECTION.sub(
-                lambda section: ENTRY.sub(r"\1\n    \2", section[0]), obj.docstring.value
-            )
+            obj.docstring.value = SECTION.sub(lambda section: ENTRY.sub(r"\1\n    \2", section[0]), obj.docstring.value)

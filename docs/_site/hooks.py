@@ -1,6 +1,7 @@
 """What the site is made of beside its pages: gallery from the examples, changelog, packages for the API pages."""
 
 import ast
+import json
 import os
 import re
 from pathlib import Path
@@ -37,6 +38,10 @@ def on_files(files: Files, config: Any) -> Files:
         page.inclusion = InclusionLevel.NOT_IN_NAV
         files.append(page)
     files.append(File.generated(config, "gallery/index.md", content=gallery_page(examples)))
+    for path in sorted((ROOT / "docs" / "notebooks").glob("*.ipynb")):
+        page = File.generated(config, f"notebooks/{path.stem}.md", content=notebook_page(path))
+        page.inclusion = InclusionLevel.NOT_IN_NAV
+        files.append(page)
     files.append(File.generated(config, "changelog.md", content=(ROOT / "CHANGELOG.md").read_text(encoding="utf-8")))
     return files
 
@@ -51,6 +56,15 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
 
     text = re.sub(r"\]\((?:\.\./)+examples/([^)#]+)\)", linked, markdown)
     return text.replace("gallery/embedding.md", "embedding.md").replace("](../docs/", "](").replace("](docs/", "](")
+
+
+def notebook_page(path: Path) -> str:
+    """The cells of a notebook; the notebook itself lies beside the page."""
+    parts = []
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        text = "".join(cell["source"])
+        parts += [text, ""] if cell["cell_type"] == "markdown" else ["```python", text, "```", ""]
+    return "\n".join([*parts, f"[The notebook itself]({path.name})", ""])
 
 
 def title_of(path: Path) -> str:

@@ -78,6 +78,16 @@ def test_the_messages_of_the_page_on_trouble_are_those_of_the_library() -> None:
         assert any(message in text for text in joined), message
 
 
+def test_the_page_on_the_cross_check_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("exudyn", "jinja2", "plotly", "matplotlib"):
+        pytest.importorskip(module)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    (code,) = [text for language, _, text in blocks(DOCS / "cross-check.md") if language == "python"]
+    exec(code, names)
+    assert names["found"].ok and any((tmp_path / "out" / "check").iterdir())
+
+
 def test_the_rod_of_the_page_on_model_files_runs(tmp_path: Path) -> None:
     pytest.importorskip("ruamel.yaml")
     from tlismni.core import Model, simulate
@@ -85,7 +95,7 @@ def test_the_rod_of_the_page_on_model_files_runs(tmp_path: Path) -> None:
     (text,) = [text for language, _, text in blocks(DOCS / "model-files.md") if language == "yaml"]
     model = Model.from_yaml(text)
     assert model.bodies[0].inertia == 2.0 * 1.5**2 / 12.0
-    assert abs(simulate(model, 0.5)["energy.balance"]).max() < 1e-6
+    assert abs(simulate(model, 0.5, rtol=1e-9)["energy.balance"]).max() < 1e-6
 
 
 @pytest.mark.slow
@@ -102,3 +112,19 @@ def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
     assert len(pages) > 40 and (tmp_path / "site" / "gallery" / "slack_rope" / "index.html").is_file()
     api = (tmp_path / "site" / "api" / "running" / "index.html").read_text(encoding="utf-8")
     assert "simulate" in api and "Parameters" in api
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(path.name for path in (DOCS / "notebooks").glob("*.ipynb")))
+def test_a_notebook_runs_from_top_to_bottom(name: str, tmp_path: Path) -> None:
+    for module in ("nbclient", "nbformat", "ipykernel", "matplotlib"):
+        pytest.importorskip(module)
+    import nbformat
+    from nbclient import NotebookClient
+
+    notebook = nbformat.read(DOCS / "notebooks" / name, as_version=4)
+    nbformat.validate(notebook)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "stored without results"
+    done = NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output for cell in done.cells for output in cell.get("outputs", ())]
+    assert shown and not any(output.output_type == "error" for output in shown)
