@@ -19,20 +19,15 @@ def build() -> tl.Model:
         tl.RigidBody2D(name="driver", mass=1.0, inertia=0.01, angular_velocity=SWING * RATE),
         tl.RigidBody2D(name="driven", mass=2.0, inertia=INERTIA, position=(sum(RADII), 0.0)),
     ]
-    pins = [
-        tl.Revolute2D(name=f"{w.name}_pin", a=tl.Marker2D(point=w.position), b=tl.Marker2D(body=w.name)) for w in wheels
-    ]
-    flanks = [
-        tl.CoordinateContact(
-            name=name, offset=BACKLASH / 2.0, law=tl.NewtonImpact(restitution=0.2),
-            terms=[
-                tl.CoordinateTerm(body=w.name, coordinate="angle", factor=side * r, unit="m/rad")
-                for w, r in zip(wheels, RADII, strict=True)
-            ],
-        )
-        for name, side in (("front", 1.0), ("back", -1.0))
-    ]  # fmt: skip
-    swing = tl.Sine(amplitude=SWING, angular_frequency=RATE)
+    m = tl.Marker2D
+    pins = [tl.Revolute2D(name=f"{w.name}_pin", a=m(point=w.position), b=m(body=w.name)) for w in wheels]
+
+    def flank(name: str, side: float) -> tl.CoordinateContact:
+        pairs = zip(("driver", "driven"), RADII, strict=True)
+        terms = [tl.CoordinateTerm(body=n, coordinate="angle", factor=side * r, unit="m/rad") for n, r in pairs]
+        return tl.CoordinateContact(name=name, offset=BACKLASH / 2.0, terms=terms, law=tl.NewtonImpact(restitution=0.2))
+
+    flanks, swing = [flank("front", 1.0), flank("back", -1.0)], tl.Sine(amplitude=SWING, angular_frequency=RATE)
     drive = tl.CoordinateDriver(name="drive", body="driver", coordinate="angle", motion=swing)
     return tl.Model(name="gear_backlash", gravity=(0.0, 0.0), bodies=wheels, joints=[*pins, drive], contacts=flanks)
 
@@ -49,8 +44,17 @@ def plot(figures: dict[str, Any], path: Path) -> None:
     figures["result"].plot("driver.angle", "driven.angle", "front.gap", "back.gap", path=path)
 
 
+def animate(figures: dict[str, Any], path: Path) -> None:
+    outlines = {}
+    for name, radius, teeth in zip(("driver", "driven"), RADII, (16, 24), strict=True):
+        angles = np.linspace(0.0, 2.0 * np.pi, 12 * teeth, endpoint=False)
+        rim = radius * (1.0 + 0.05 * np.sign(np.sin(teeth * angles + 0.1)))
+        outlines[name] = list(zip((rim * np.cos(angles)).tolist(), (rim * np.sin(angles)).tolist(), strict=True))
+    figures["result"].animate(path, channels=["driven.angle"], outlines=outlines)
+
+
 if __name__ == "__main__":
     file = Path(sys.argv[1] if len(sys.argv) > 1 else "gear_backlash.html")
     found = run()
-    plot(found, file) if file.suffix == ".png" else found["result"].animate(file, channels=["driven.angle"])
+    (plot if file.suffix == ".png" else animate)(found, file)
     print(f"{found['blows']} blows, the first at {found['first'].t:.6f} s; wrote {file}")

@@ -20,8 +20,7 @@ from ..core.shapes.rope2d import Rope2D
 from .bodies import Stage
 from .drawing import symbols
 from .drawing.shapes import INK, TOUCH, Circle, Drawing, Path, turned
-from .fixtures import SPOKES, _anchor, _disk, _on_marker, _reach, place
-from .scene import Link
+from .fixtures import SPOKES, _disk, _on_marker, _reach, place, stretched
 
 REACH = 0.14
 """Length of the marks of an end stop, in parts of the scene's size."""
@@ -33,7 +32,7 @@ TURNS, SPIRAL = 2.5, 0.035
 def _(element: Servo2D | RelativeMotor2D, stage: Stage) -> None:
     """A cylinder between its ends; a ring about the joint that it turns."""
     if element.measure == "distance":
-        _stretched(stage, element.name, "damper", element.a, element.b)
+        stretched(stage, element.name, "damper", element.a, element.b)
     elif element.measure == "angle":
         drawing = Drawing(stage.size)
         drawing.shapes.append(Circle((0.0, 0.0), 0.03 * stage.size, symbols.SPRING, None, 0.7))
@@ -42,18 +41,18 @@ def _(element: Servo2D | RelativeMotor2D, stage: Stage) -> None:
 
 @place.register
 def _(element: Rope2D, stage: Stage) -> None:
-    _stretched(stage, element.name, "rod", element.a, element.b)
+    stretched(stage, element.name, "rod", element.a, element.b)
 
 
 @place.register
 def _(element: TableSpring2D, stage: Stage) -> None:
-    _stretched(stage, element.name, "spring-damper" if element.damping else "spring", element.a, element.b)
+    stretched(stage, element.name, "spring-damper" if element.damping else "spring", element.a, element.b)
 
 
 @place.register
 def _(element: SlideSpring2D, stage: Stage) -> None:
     kind = "spring" if not element.damping else "spring-damper" if element.stiffness else "damper"
-    _stretched(stage, element.name, kind, element.a, element.b)
+    stretched(stage, element.name, kind, element.a, element.b)
 
 
 @place.register
@@ -120,7 +119,3 @@ def _wheel(stage: Stage, marker: Marker2D, radius: float) -> None:
     for k in range(SPOKES):
         drawing.shapes.append(Path(((0.0, 0.0), turned((r, 0.0), 2.0 * math.pi * k / SPOKES)), INK, width=0.3))
     _on_marker(stage, marker, 0, drawing)
-
-
-def _stretched(stage: Stage, name: str, kind: str, a: Marker2D, b: Marker2D) -> None:
-    stage.scene.links.append(Link(name, kind, _anchor(stage, a), _anchor(stage, b)))
