@@ -14,7 +14,7 @@ from .errors import ModelError
 from .model.base import Gravity, Record
 from .model.channels import Formula, Input, Parameter
 from .model.files import is_yaml, read_json, read_yaml, with_lines, write_yaml
-from .model.given_numbers import GRAVITY, STANDARD_GRAVITY, with_given_numbers
+from .model.given_numbers import GRAVITY, KINDS, STANDARD_GRAVITY, with_given_numbers
 from .model.markers import GROUND, Marker
 from .model.open_union import meaning
 from .model.outputs import MarkerOutput
@@ -22,6 +22,7 @@ from .model.own_types import find_classes, import_paths, own_classes
 from .model.places import inside
 from .model.signals import InputSignal
 from .shapes import Contact
+from .shapes.group2d import ContactGroup2D, with_groups
 
 
 def _with_imports(schema: dict[str, Any]) -> None:
@@ -61,6 +62,8 @@ class Model(Record):
     """What acts on them."""
     contacts: tuple[Contact, ...] = ()
     """Where they may touch."""
+    groups: tuple[ContactGroup2D, ...] = ()
+    """Shapes of which each may touch each other; their contacts are made of them."""
     inputs: tuple[Input, ...] = ()
     """Numbers that come from outside during a run."""
     outputs: tuple[MarkerOutput, ...] = ()
@@ -73,7 +76,7 @@ class Model(Record):
     @model_validator(mode="before")
     @classmethod
     def _give_numbers(cls, data: Any) -> Any:
-        return with_given_numbers(data) if isinstance(data, Mapping) else data
+        return with_groups(with_given_numbers(data)) if isinstance(data, Mapping) else data
 
     @model_validator(mode="after")
     def _check(self) -> "Model":
@@ -115,7 +118,10 @@ class Model(Record):
         return self
 
     def _number_at(self, who: str, target: str) -> float:
-        value = self._value_at(target)
+        value, name = self._value_at(target), target.partition(".")[0]
+        owner = next((g.name for g in self.groups if name in {c.name for c in g.contacts()}), None)
+        if owner is not None:
+            raise ValueError(f"{who}: '{name}' is a contact of group '{owner}': set the number in the group")
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError(f"{who}: '{target}' holds {value!r}, which is no number")
         return value
@@ -154,7 +160,8 @@ class Model(Record):
 
     def _value_at(self, target: str) -> Any:
         name, *fields = target.split(".")
-        found: Any = {e.name: e for e in self.elements()}.get(name, self.gravity if name == GRAVITY else None)
+        named: dict[str, Any] = {group.name: group for group in self.groups} | {e.name: e for e in self.elements()}
+        found: Any = named.get(name, self.gravity if name == GRAVITY else None)
         if found is None or not fields:
             raise ValueError(f"parameter target '{target}' must be 'element.field', with the name of an element")
         for field in fields:
@@ -204,7 +211,7 @@ class Model(Record):
             sets.
         """
         data = self.model_dump(mode="json")
-        elements = {e["name"]: e for kind in ("bodies", "joints", "forces", "contacts") for e in data[kind]}
+        elements = {e["name"]: e for kind in KINDS for e in data[kind]}
         declared = {p["name"]: p for p in data["parameters"]}
         for name, value in values.items():
             parameter = self._place(name) if "." in name else self._parameter(name)
@@ -227,7 +234,10 @@ class Model(Record):
 
     def to_json(self) -> str:
         """The model as JSON text. Own classes are named under `imports`, where they can be imported from."""
-        text, imports = self.model_dump_json(indent=2), import_paths(self)
+        made = {contact.name for group in self.groups for contact in group.contacts()}
+        kept = tuple(contact for contact in self.contacts if contact.name not in made)  # groups make theirs anew
+        bare = self.model_copy(update={"contacts": kept}) if made else self
+        text, imports = bare.model_dump_json(indent=2), import_paths(self)
         if not imports:
             return text
         return f'{{\n  "imports": {json.dumps(imports)},{text[1:]}'

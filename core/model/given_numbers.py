@@ -10,7 +10,7 @@ from .arithmetic import evaluate, names_in
 from .base import Record
 from .places import inside, replaced
 
-KINDS = ("bodies", "joints", "forces", "contacts")
+KINDS = ("bodies", "joints", "forces", "contacts", "groups")
 GRAVITY = "gravity"
 """The model's own numbers have places too: "gravity.1"."""
 STANDARD_GRAVITY = (0.0, -9.81, 0.0)
