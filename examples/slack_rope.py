@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from tlismni.core import Marker2D, Model, NewtonImpact, PointMass2D, Rope2D, simulate
 
-LENGTH, MASS, G, BESIDE = 1.0, 2.0, 9.81, 0.6
-"""Rope, m; bob, kg; m/s^2; where the bob starts beside the pin, m."""
+LENGTH, MASS, G, BESIDE, ABOVE = 1.0, 2.0, 9.81, 0.95, 0.3
+"""Rope, m; bob, kg; m/s^2; where the bob starts beside and above the pin, m."""
 
 
-def build(velocity: tuple[float, float] = (0.0, 0.0)) -> Model:
-    bob = PointMass2D(name="bob", mass=MASS, position=(BESIDE, 0.0), velocity=velocity)
+def build() -> Model:
+    bob = PointMass2D(name="bob", mass=MASS, position=(BESIDE, ABOVE))
     rope = Rope2D(name="rope", b=Marker2D(body="bob"), length=LENGTH, law=NewtonImpact(restitution=0.0))
     return Model(name="slack_rope", gravity=(0.0, -G), bodies=[bob], contacts=[rope])
 
@@ -22,11 +22,11 @@ def run() -> dict[str, Any]:
     """The jerk takes the part of the velocity along the rope: m v cos a, and the energy of that part."""
     result = simulate(build(), 2.5, rtol=1e-9, atol=1e-11, t_eval=np.linspace(0.0, 2.5, 501))
     drop = math.sqrt(LENGTH**2 - BESIDE**2)
-    speed = math.sqrt(2.0 * G * drop) * drop / LENGTH
+    speed = math.sqrt(2.0 * G * (drop + ABOVE)) * drop / LENGTH
     return {
         "result": result,
         "jerk": next(event for event in result.events if event.kind == "impact"),
-        "expected_time": math.sqrt(2.0 * drop / G),
+        "expected_time": math.sqrt(2.0 * (drop + ABOVE) / G),
         "expected_impulse": MASS * speed,
         "expected_loss": 0.5 * MASS * speed**2,
         "longest": float(np.hypot(result["bob.x"], result["bob.y"]).max()),

@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Annotated, Any, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import numpy as np
 from pydantic import (
@@ -21,18 +21,25 @@ from pydantic_core import CoreSchema
 from ..errors import ModelError
 from .explain import ALONE, explain, problems_of, shown
 
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
 
-class _DescribesItself(type(BaseModel)):  # type: ignore[misc]
+
+class _DescribesItself(ModelMetaclass):
     """Class of the classes of records: their docstring, for `help()`, ends with their fields. It is made when it is
     asked for, since that reads their source."""
 
-    @property
-    def __doc__(cls) -> str | None:  # type: ignore[override]
-        from .fields import described
+    if not TYPE_CHECKING:
 
-        own = vars(cls).get("__doc__")
-        text = described(cls) if getattr(cls, "__pydantic_complete__", False) else ""
-        return f"{inspect.cleandoc(own or '')}\n\n{text}" if text else own
+        @property
+        def __doc__(cls) -> str | None:
+            from .fields import described
+
+            own = vars(cls).get("__doc__")
+            text = described(cls) if getattr(cls, "__pydantic_complete__", False) else ""
+            return f"{inspect.cleandoc(own or '')}\n\n{text}" if text else own
 
 
 class Record(BaseModel, metaclass=_DescribesItself):

@@ -96,7 +96,7 @@ class ContactGroup2D(Record):
 
     def contacts(self) -> tuple[Contact2D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
-        shapes = (*self.disks, *self.boxes, *self.segments, *self.half_planes)
+        shapes: tuple[GroupShape, ...] = (*self.disks, *self.boxes, *self.segments, *self.half_planes)
         return contacts_between(
             self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies
         )

@@ -78,6 +78,17 @@ def test_the_messages_of_the_page_on_trouble_are_those_of_the_library() -> None:
         assert any(message in text for text in joined), message
 
 
+def test_the_page_on_embedding_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tlismni.core.compiled.library import LIBRARY
+
+    if LIBRARY is None:
+        pytest.skip("needs the library of machine code (tlismni.core.ahead)")
+    monkeypatch.chdir(tmp_path)
+    (code,) = [text for language, _, text in blocks(DOCS / "embedding.md") if language == "python"]
+    exec(code, {"Path": Path})
+    assert (tmp_path / "control.image").stat().st_size > 1000
+
+
 def test_the_page_on_the_cross_check_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in ("exudyn", "jinja2", "plotly", "matplotlib"):
         pytest.importorskip(module)
