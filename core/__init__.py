@@ -121,7 +121,7 @@ from .laws.friction import (
 from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .methods.registry import METHODS
 from .model.attitude import Axes, AxisAngles, EulerParameters, RotationVector
-from .model.channels import Channel, Input, Parameter
+from .model.channels import Channel, Formula, Input, Parameter
 from .model.markers import Marker2D, Marker3D
 from .model.outputs import MarkerOutput2D, MarkerOutput3D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
@@ -138,7 +138,7 @@ from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, Sphere
 from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from .shapes.disk_on_cable import DiskOnCable2D
 from .shapes.disk_on_line import DiskOnLine2D, Line2D
-from .shapes.group2d import contacts_between
+from .shapes.group2d import ContactGroup2D, contacts_between
 from .shapes.rope2d import Rope2D
 from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
 from .shapes.segment2d import DiskOnSegment2D, Segment2D
@@ -178,6 +178,7 @@ __all__ = [
     "ConsistencyError",
     "Constant",
     "ConstantVelocity3D",
+    "ContactGroup2D",
     "CoordinateContact",
     "CoordinateDriver",
     "CoordinateLoad",
@@ -204,6 +205,7 @@ __all__ = [
     "Flores",
     "ForceElement",
     "ForceLaw",
+    "Formula",
     "Frame2D",
     "FrictionLaw",
     "GapContact",
