@@ -44,7 +44,7 @@ def nodes(values, width):
 
 def test_cantilever_bends_as_in_the_plane():
     """A load that bends it by half its length and stretches it, in a plane askew."""
-    load = (40.0, -3.0)
+    load = (1.0, -0.9)
     flat = Model(
         gravity=(0.0, 0.0),
         bodies=[
@@ -105,7 +105,7 @@ def test_swings_in_a_plane_askew_as_in_the_plane(method):
     near = 1e-4 if method == "hht" else 1e-8
     assert np.abs(found[:, :2] - expected).max() < near
     assert np.abs(found[:, 2]).max() < 1e-9
-    assert other["energy.total"] == pytest.approx(one["energy.total"], abs=30.0 * near)
+    assert other["energy.balance"] == pytest.approx(one["energy.balance"], abs=30.0 * near)
 
 
 def bent(elements):
@@ -117,10 +117,10 @@ def bent(elements):
     return tuple(map(tuple, np.hstack([place, slope]).tolist()))
 
 
-def momenta(sim):
+def momenta(sim, model):
     """Momentum and angular momentum about the origin: sums over nodes with the consistent mass."""
     arrays, n = sim.workspace.arrays, sim.assembly.n
-    system = System(sim.model)
+    system = System(model)
     mass = system.mass_and_stiffness(arrays["q"][:n].copy())[0]
     p, q = (mass @ arrays["v"][:n]).reshape(-1, 2, 3), arrays["q"][:n].reshape(-1, 2, 3)
     return p[:, 0].sum(axis=0), np.cross(q, p).sum(axis=(0, 1))
@@ -136,14 +136,13 @@ def test_free_flight_keeps_momentum_angular_momentum_and_energy():
         ],
     )  # fmt: skip
     sim = Simulation(model, "irk", rtol=1e-10, atol=1e-12)
-    sim.model = model
-    before, values = momenta(sim), dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    before, values = momenta(sim, model), dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
     sim.advance(0.5)
-    after, later = momenta(sim), dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    after, later = momenta(sim, model), dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
     assert np.abs(before[1]).max() > 0.5
     for x, y in zip(before, after, strict=True):
         assert y == pytest.approx(x, abs=1e-8)
-    assert later["energy.total"] == pytest.approx(values["energy.total"], rel=1e-8)
+    assert later["energy.balance"] == pytest.approx(values["energy.balance"], abs=1e-8)
     assert abs(later["energy.kinetic"] - values["energy.kinetic"]) > 1e-2
 
 
@@ -163,7 +162,7 @@ def test_clamp_moves_with_its_body():
         joints=[CableClamp3D(name="clamp", cable="cable", s=0.0, marker=marker)],
     )  # fmt: skip
     sim = Simulation(model, "ebdf", rtol=1e-9, atol=1e-11)
-    energy = [c.name for c in sim.table.channels].index("energy.total")
+    energy = [c.name for c in sim.table.channels].index("energy.balance")
     start = sim.values()[energy]
     sim.advance(0.4)
     values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
