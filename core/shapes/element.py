@@ -37,10 +37,6 @@ class ContactElement(Element):
             )
         return self
 
-    def disks(self) -> Sequence[Any]:
-        """The disks of the plane (`Disk2D`) that it brings in touch, for the drawing."""
-        return ()
-
     def reach(self) -> Sequence[tuple[float, ...]]:
         """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""
         points = [marker.point for marker in self.markers() if marker.body != GROUND]

@@ -15,6 +15,8 @@ from tlismni.core import (
     AxialSpring3D,
     AxisAngles,
     Bushing3D,
+    Cable3D,
+    CableClamp3D,
     Constant,
     ConstantVelocity3D,
     Cylindrical3D,
@@ -23,6 +25,7 @@ from tlismni.core import (
     Fixed3D,
     Gear3D,
     Marker3D,
+    MaterialPoint3D,
     Model,
     Planar3D,
     PointMass3D,
@@ -61,6 +64,10 @@ RIGHT = Marker3D(body="b", point=(-0.4, 0.1, 0.25), attitude=EulerParameters(val
 RIGHT_WHEEL = Marker3D(body="b", point=(-0.4, 0.1, 0.25), attitude=Axes(z=(1.0, 0.6, 0.1)))
 GROUND = Marker3D(point=(0.2, 0.1, -0.3), attitude=RotationVector(vector=(0.1, 0.2, -0.1)))
 MASS = Marker3D(body="p")
+CABLE = Cable3D(
+    name="c", elements=2, length=1.5, mass_per_length=1.3, axial_stiffness=5.0, bending_stiffness=0.7,
+    axial_damping=0.4, reference_strain=0.02, attitude=RotationVector(vector=(0.4, 0.2, -0.3)),
+)  # fmt: skip
 
 PAIRS = {"two bodies": (LEFT, RIGHT), "ground": (GROUND, RIGHT), "a point mass": (LEFT, MASS)}
 JOINTS = {
@@ -96,6 +103,15 @@ CASES = {
     "gear": {"joints": [GEAR]},
     "rack": {"joints": [RACK]},
     **{f"rolling {what}": {"joints": [joint]} for what, joint in WHEELS.items()},
+    "cable": {"bodies": [CABLE]},
+    "material point": {"bodies": [CABLE, MaterialPoint3D(name="m", body="c", s=0.7)]},
+    **{
+        f"cable clamp {marker.body}": {
+            "bodies": [CABLE],
+            "joints": [CableClamp3D(name="j", cable="c", s=0.7, marker=marker)],
+        }
+        for marker in (GROUND, RIGHT)
+    },
     **{f"screw {where}": {"joints": [joint]} for where, joint in SCREWS.items()},
     **{
         f"{kind.__name__} {where}": {"joints": [kind(name="j", a=a, b=b, **fields)]}
@@ -125,7 +141,8 @@ CASES = {
 
 
 def system(case):
-    return Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], **CASES[case]))
+    given = {**CASES[case]}
+    return Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B, *given.pop("bodies", ())], **given))
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -149,7 +149,9 @@ def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = 
     if marker.body != GROUND and not build.bodies[marker.body].rigid:
         if axes is not None:
             raise NotTranslatable(f"'{user}' needs the axes of '{marker.body}', a point mass: make it a RigidBody3D")
-        return int(build.add("MarkerBodyPosition", bodyNumber=body))
+        return int(
+            build.add("MarkerBodyPosition", bodyNumber=body, localPosition=[*build.bodies[marker.body].local, 0.0])
+        )
     transformation = np.eye(4)
     transformation[:3, 3] = marker.point
     if axes is not None:
