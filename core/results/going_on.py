@@ -187,9 +187,9 @@ def _(body: Cable3D, q: Floats, v: Floats) -> dict[str, Any]:
     matrix[:, 0, :, :3] = np.eye(3)
     for c in range(3):
         matrix[..., 3 + c] = np.cross(np.eye(3)[c], nodes)
-    matrix = matrix.reshape(v.size, 6)
-    motion, *_ = np.linalg.lstsq(matrix, v, rcond=None)
-    if float(np.max(np.abs(matrix @ motion - v))) > RIGID * max(float(np.max(np.abs(v))), 1e-300):
+    columns = matrix.reshape(v.size, 6)
+    motion, *_ = np.linalg.lstsq(columns, v, rcond=None)
+    if float(np.max(np.abs(columns @ motion - v))) > RIGID * max(float(np.max(np.abs(v))), 1e-300):
         raise ModelError(f"cable '{body.name}' swings, and its record has no place for that: {REMEDY}")
     return {
         "shape": tuple(tuple(node) for node in nodes.reshape(-1, 6).tolist()), "position": (0.0, 0.0, 0.0),

@@ -99,7 +99,7 @@ class ContactGroup2D(Record):
     except_bodies: tuple[tuple[str, str], ...] = ()
     """Pairs of bodies that do not touch, such as those that a joint holds together."""
 
-    def contacts(self) -> tuple[Contact2D, ...]:
+    def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
         shapes: tuple[GroupShape, ...] = (*self.disks, *self.boxes, *self.segments, *self.half_planes)
         return contacts_between(

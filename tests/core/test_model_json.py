@@ -24,6 +24,8 @@ from tlismni.core import (
     Bushing2D,
     Bushing3D,
     Cable2D,
+    Cable3D,
+    CableClamp3D,
     Clamp2D,
     Constant,
     ConstantVelocity3D,
@@ -66,6 +68,7 @@ from tlismni.core import (
     MarkerOutput2D,
     MarkerOutput3D,
     MaterialPoint2D,
+    MaterialPoint3D,
     Model,
     ModelError,
     MovingFrame2D,
@@ -380,6 +383,22 @@ ELEMENTS["contacts"] += [
         b=sphere,
     ),
 ]  # fmt: skip
+ELEMENTS["bodies"] += [
+    st.builds(
+        Cable3D, name=st.just("x"), elements=st.just(1), length=positive, mass_per_length=positive,
+        axial_stiffness=positive, bending_stiffness=positive, axial_damping=positive, reference_strain=number,
+        integration=st.sampled_from(["full", "reduced"]), position=vector3, attitude=attitude, velocity=vector3,
+        shape=st.none() | st.tuples(st.tuples(*5 * [number], positive)).map(lambda node: 2 * node),
+        angular_velocity=vector3,
+    ),
+    st.builds(MaterialPoint3D, name=st.just("x"), body=st.just("line"), s=st.floats(0.0, 1.0)),
+]  # fmt: skip
+ELEMENTS["joints"].append(
+    st.builds(
+        CableClamp3D, name=st.just("x"), cable=st.just("line"), s=st.floats(0.0, 1.0),
+        marker=st.builds(Marker3D, point=vector3, attitude=attitude),
+    )
+)  # fmt: skip
 ELEMENTS["joints"].append(st.builds(KnifeEdge2D, name=st.just("x"), marker=marker))
 ELEMENTS["joints"] += [
     st.builds(
@@ -404,15 +423,17 @@ SPATIAL = {
     "Cylindrical3D", "Prismatic3D", "Planar3D", "PointOnLine3D", "PointOnPlane3D", "Distance3D", "RevoluteSpherical3D",
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
     "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
-    "SphereOnSphere3D", "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
+    "SphereOnSphere3D", "Cable3D", "MaterialPoint3D", "CableClamp3D", "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
 SOLID = RigidBody3D(name="s", mass=1.0, inertia=(1.0, 1.0, 1.0))
 ROPE = Cable2D(name="rope", elements=1, length=1.0, mass_per_length=1.0, axial_stiffness=1.0, bending_stiffness=0.0)
 
+LINE = Cable3D(name="line", elements=1, length=1.0, mass_per_length=1.0, axial_stiffness=1.0, bending_stiffness=0.0)
+
 
 def model_with(kind, element):
-    parts = {"bodies": [BODY, ROPE, SOLID], "joints": [], "forces": [], "contacts": [], "outputs": []}
+    parts = {"bodies": [BODY, ROPE, SOLID, LINE], "joints": [], "forces": [], "contacts": [], "outputs": []}
     parts["inputs"] = [Input(name="u", unit="N")]
     parts[kind] = [*parts[kind], element]
     return Model(name="journey", **parts)
