@@ -8,13 +8,14 @@ OUT := out/demo
 # what an installation depends on: the FMU shim is compiled by it
 SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/shim/*)
 
-.PHONY: demo test lint bench clean help
+.PHONY: demo test lint docs bench clean help
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo   co-simulation of an exported FMU, and a cross-check with exudyn; results in $(OUT)"
 	@echo "make test   the tests"
 	@echo "make lint   ruff"
+	@echo "make docs   the docs as a site, in build/site"
 	@echo "make bench  speed and work-precision against exudyn (minutes)"
 	@echo "make clean  remove .venv, build products and caches"
 
@@ -31,6 +32,9 @@ test: $(VENV)/.installed-dev
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+
+docs: $(VENV)/.installed-dev
+	$(BIN)/mkdocs build --strict
 
 bench: $(VENV)/.installed-dev
 	cd benchmarks && ../$(BIN)/python chain_speed.py

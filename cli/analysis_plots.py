@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.analysis import Eigenmodes, Equilibrium, Mobility, ParameterSensitivities, StateSpace
+from ..core.elements import Cable2D
 from ..core.extras import require
 from ..models import Scenario
 from ..viewer.build import scene_of_start
@@ -18,6 +19,8 @@ from .plots import save
 MOST_SHAPES = 6
 SWING = 0.12
 """Size of a drawn mode, in parts of the mechanism's."""
+PIECES = 16
+"""Of the line between two nodes of a cable."""
 POINTS = 2000
 """Frequencies of a Bode diagram."""
 
@@ -98,9 +101,10 @@ def plot_modes(found: Eigenmodes, name: str, path: Path) -> Path:
         largest = float(np.max(np.hypot(*moved.T), initial=0.0))
         factor = SWING * size / largest if largest > 0.0 else 0.0
         for line in _lines(found.coordinates, points):
-            axis.plot(*place[line].T, ".-", color="0.75", ms=4, lw=1.0)
-            for sign, colour in ((1.0, "tab:blue"), (-1.0, "tab:orange")):
-                axis.plot(*(place + sign * factor * moved)[line].T, ".-", color=colour, ms=4, lw=1.0)
+            for sign, colour in ((0.0, "0.75"), (1.0, "tab:blue"), (-1.0, "tab:orange")):
+                q = rest + sign * factor * shape
+                axis.plot(*(place + sign * factor * moved)[line].T, ".", color=colour, ms=4)
+                axis.plot(*_course(found, [points[i] for i in line], q).T, "-", color=colour, lw=1.0)
         axis.set_aspect("equal", "datalim")
         axis.set_title(f"{found.frequencies[k]:.4g} Hz, damping {found.damping_ratios[k]:.2g}", fontsize=9)
         axis.tick_params(labelsize=7)
@@ -127,6 +131,23 @@ def _lines(names: tuple[str, ...], points: list[tuple[int, int]]) -> list[list[i
     if all(len(nodes) == 1 for nodes in bodies.values()):
         return [list(range(len(points)))]
     return list(bodies.values())
+
+
+def _course(found: Eigenmodes, nodes: list[tuple[int, int]], q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 2) of the line through nodes: cubics by the slopes of a cable's nodes, straight without."""
+    place = np.array([[q[x], q[y]] for x, y in nodes])
+    body = found.coordinates[nodes[0][0]].rpartition(".")[0]
+    index = {name: k for k, name in enumerate(found.coordinates)}
+    numbers = [found.coordinates[x].rpartition(".x")[2] for x, _ in nodes]
+    slopes = [(index.get(f"{body}.slope_x{n}"), index.get(f"{body}.slope_y{n}")) for n in numbers]
+    record = next((b for b in found.equilibrium.model.bodies if b.name == body), None)
+    if len(nodes) < 2 or not isinstance(record, Cable2D) or any(None in pair for pair in slopes):
+        return place
+    tangent = np.array([[q[x], q[y]] for x, y in slopes]) * record.length / record.elements
+    s = np.linspace(0.0, 1.0, PIECES + 1)[:, None]
+    h = 2.0 * s**3 - 3.0 * s**2 + 1.0, s**3 - 2.0 * s**2 + s, 3.0 * s**2 - 2.0 * s**3, s**3 - s**2
+    parts = zip(place, tangent, place[1:], tangent[1:], strict=False)
+    return np.concatenate([h[0] * a + h[1] * da + h[2] * b + h[3] * db for a, da, b, db in parts])
 
 
 def plot_bode(found: StateSpace, name: str, path: Path) -> Path:

@@ -9,6 +9,7 @@ from .commands import (
     crosscheck,
     equilibrium,
     export,
+    fields,
     info,
     linearise,
     lyapunov,
@@ -60,6 +61,7 @@ def tlismni(
 
 app.command("list", epilog=list_command.EXAMPLES)(list_command.list_scenarios)
 app.command("methods", epilog=methods.EXAMPLES)(methods.methods)
+app.command("fields", epilog=fields.EXAMPLES)(fields.fields)
 app.command("run", epilog=run.EXAMPLES)(run.run)
 app.command("show", epilog=show.EXAMPLES)(show.show)
 app.command("play", epilog=play.EXAMPLES)(play.play)

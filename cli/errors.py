@@ -12,7 +12,7 @@ EXTRAS = {
     "fmpy": "fmu", "lxml": "fmu", "exudyn": "validation", "jinja2": "validation", "plotly": "validation",
     "matplotlib": "plot", "pandas": "data", "pyarrow": "data", "xarray": "data", "h5netcdf": "data", "h5py": "data",
     "PIL": "film", "imageio_ffmpeg": "film", "dask": "sweep", "distributed": "sweep", "ziglang": "cross",
-    "numba": "own",
+    "numba": "own", "ruamel": "yaml",
 }  # fmt: skip
 """Which extra of the package brings a module."""
 

@@ -137,6 +137,18 @@ Native = Annotated[
     bool,
     typer.Option("--native", help="An FMU that needs no Python where it runs; not every model can be one."),
 ]
+Outputs = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--outputs",
+        metavar="NAME[,NAME]",
+        help="Only these channels become outputs (pendulum.*,stop.gap). All if none.",
+    ),
+]
+Protect = Annotated[
+    bool,
+    typer.Option("--protect", help="With --native: show no parameters, laws and settings of the model."),
+]
 Arrays = Annotated[
     bool, typer.Option("--arrays", help="FMI 3: describe vectors as arrays too; not every master reads such FMUs.")
 ]

@@ -84,7 +84,7 @@ def read_source(
 
 def is_file(source: str) -> bool:
     """True if `source` means a model file, not a scenario's name."""
-    return source.lower().endswith(".json") or "/" in source or os.sep in source
+    return source.lower().endswith((".json", ".yaml", ".yml")) or "/" in source or os.sep in source
 
 
 def _scenario(name: str, changes: dict[str, str]) -> Scenario:

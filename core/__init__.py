@@ -17,6 +17,8 @@ from .elements import (
     Bushing2D,
     Bushing3D,
     Cable2D,
+    Cable3D,
+    CableClamp3D,
     Clamp2D,
     ConstantVelocity3D,
     CoordinateDriver,
@@ -36,6 +38,7 @@ from .elements import (
     KnifeEdge2D,
     LinearSystem,
     MaterialPoint2D,
+    MaterialPoint3D,
     MovingFrame2D,
     Planar3D,
     PointMass2D,
@@ -121,7 +124,7 @@ from .laws.friction import (
 from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .methods.registry import METHODS
 from .model.attitude import Axes, AxisAngles, EulerParameters, RotationVector
-from .model.channels import Channel, Input, Parameter
+from .model.channels import Channel, Formula, Input, Parameter
 from .model.markers import Marker2D, Marker3D
 from .model.outputs import MarkerOutput2D, MarkerOutput3D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
@@ -138,10 +141,11 @@ from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, Sphere
 from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from .shapes.disk_on_cable import DiskOnCable2D
 from .shapes.disk_on_line import DiskOnLine2D, Line2D
-from .shapes.group2d import contacts_between
+from .shapes.group2d import ContactGroup2D, contacts_between
 from .shapes.rope2d import Rope2D
 from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
 from .shapes.segment2d import DiskOnSegment2D, Segment2D
+from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
 from .simulate import simulate
 from .simulate_many import simulate_many
 from .tables.redundancy import RedundantRow
@@ -152,6 +156,7 @@ __all__ = [
     "AmbrosioFriction",
     "AngleDriver3D",
     "AngleStop2D",
+    "AngleStop3D",
     "AppliedForce2D",
     "AppliedForce3D",
     "AppliedTorque2D",
@@ -169,6 +174,8 @@ __all__ = [
     "Bushing2D",
     "Bushing3D",
     "Cable2D",
+    "Cable3D",
+    "CableClamp3D",
     "CarvalhoMartins",
     "Channel",
     "Clamp2D",
@@ -176,6 +183,7 @@ __all__ = [
     "ConsistencyError",
     "Constant",
     "ConstantVelocity3D",
+    "ContactGroup2D",
     "CoordinateContact",
     "CoordinateDriver",
     "CoordinateLoad",
@@ -202,6 +210,7 @@ __all__ = [
     "Flores",
     "ForceElement",
     "ForceLaw",
+    "Formula",
     "Frame2D",
     "FrictionLaw",
     "GapContact",
@@ -232,6 +241,7 @@ __all__ = [
     "MarkerOutput3D",
     "Material",
     "MaterialPoint2D",
+    "MaterialPoint3D",
     "Model",
     "ModelError",
     "MovingFrame2D",
@@ -266,6 +276,7 @@ __all__ = [
     "RollingDisk3D",
     "RollingSphere3D",
     "Rope2D",
+    "Rope3D",
     "RotationVector",
     "Runs",
     "ScalarContact2D",
@@ -279,6 +290,7 @@ __all__ = [
     "Sine",
     "SlideFriction2D",
     "SlideSpring2D",
+    "SlideStop3D",
     "Sphere3D",
     "SphereOnHalfSpace3D",
     "SphereOnSphere3D",

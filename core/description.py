@@ -12,13 +12,17 @@ from pydantic import ConfigDict, model_validator
 from .elements import Body, BodyElement, Element, Force, Joint
 from .errors import ModelError
 from .model.base import Gravity, Record
-from .model.channels import Input, Parameter
+from .model.channels import Formula, Input, Parameter
+from .model.files import is_yaml, read_json, read_yaml, with_lines, write_yaml
+from .model.given_numbers import GRAVITY, KINDS, STANDARD_GRAVITY, with_given_numbers
 from .model.markers import GROUND, Marker
 from .model.open_union import meaning
 from .model.outputs import MarkerOutput
 from .model.own_types import find_classes, import_paths, own_classes
+from .model.places import inside
 from .model.signals import InputSignal
 from .shapes import Contact
+from .shapes.group2d import ContactGroup2D, with_groups
 
 
 def _with_imports(schema: dict[str, Any]) -> None:
@@ -43,18 +47,36 @@ class Model(Record):
     model_config = ConfigDict(json_schema_extra=_with_imports)
 
     format: Literal["tlismni-model-1"] = "tlismni-model-1"
+    """Which edition of this format the file is in."""
     name: str = "model"
+    """Name of the model."""
     description: str = ""
-    gravity: Gravity = (0.0, -9.81, 0.0)
-    """m/s^2; of two components, the third is zero."""
+    """What it is, in words."""
+    gravity: Gravity = STANDARD_GRAVITY
+    """Of two components, the third is zero; m/s^2."""
     bodies: tuple[Body, ...] = ()
+    """What has mass, and frames without."""
     joints: tuple[Joint, ...] = ()
+    """What holds or drives them."""
     forces: tuple[Force, ...] = ()
+    """What acts on them."""
     contacts: tuple[Contact, ...] = ()
+    """Where they may touch."""
+    groups: tuple[ContactGroup2D, ...] = ()
+    """Shapes of which each may touch each other; their contacts are made of them."""
     inputs: tuple[Input, ...] = ()
+    """Numbers that come from outside during a run."""
     outputs: tuple[MarkerOutput, ...] = ()
     """Markers whose motion is shown beside what bodies, joints and contacts show by themselves."""
     parameters: tuple[Parameter, ...] = ()
+    """Numbers that may be set before a run, by name."""
+    formulas: tuple[Formula, ...] = ()
+    """Numbers that follow from parameters."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _give_numbers(cls, data: Any) -> Any:
+        return with_groups(with_given_numbers(data)) if isinstance(data, Mapping) else data
 
     @model_validator(mode="after")
     def _check(self) -> "Model":
@@ -88,15 +110,20 @@ class Model(Record):
         for output in self.outputs:
             self._check_marker(output.name, output.marker, bodies)
         for parameter in self.parameters:
-            parameter.refuse_outside(self._number_at(parameter, parameter.targets[0]))
-            for target in parameter.targets[1:]:
-                self._number_at(parameter, target)
+            for target in parameter.targets:
+                self._number_at(f"parameter '{parameter.name}'", target)
+            parameter.refuse_outside(self.parameter_value(parameter.name))
+        for formula in self.formulas:
+            self._number_at(f"formula '{formula.formula}'", formula.target)
         return self
 
-    def _number_at(self, parameter: Parameter, target: str) -> float:
-        value = self._value_at(target)
+    def _number_at(self, who: str, target: str) -> float:
+        value, name = self._value_at(target), target.partition(".")[0]
+        owner = next((g.name for g in self.groups if name in {c.name for c in g.contacts()}), None)
+        if owner is not None:
+            raise ValueError(f"{who}: '{name}' is a contact of group '{owner}': set the number in the group")
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"parameter '{parameter.name}': '{target}' holds {value!r}, which is no number")
+            raise ValueError(f"{who}: '{target}' holds {value!r}, which is no number")
         return value
 
     @classmethod
@@ -133,19 +160,18 @@ class Model(Record):
 
     def _value_at(self, target: str) -> Any:
         name, *fields = target.split(".")
-        found = {e.name: e for e in self.elements()}.get(name)
+        named: dict[str, Any] = {group.name: group for group in self.groups} | {e.name: e for e in self.elements()}
+        found: Any = named.get(name, self.gravity if name == GRAVITY else None)
         if found is None or not fields:
             raise ValueError(f"parameter target '{target}' must be 'element.field', with the name of an element")
-        value: Any = found
         for field in fields:
-            if not isinstance(value, Record) or field not in type(value).model_fields:
-                raise ValueError(f"parameter target '{target}': there is no field '{field}' in {type(value).__name__}")
-            value = getattr(value, field)
-        return value
+            found = inside(found, field, target)
+        return found
 
     def parameter_value(self, name: str) -> float:
         """Present value of the parameter `name`. Raises ModelError for an unknown name."""
-        return float(self._value_at(self._parameter(name).targets[0]))
+        parameter = self._parameter(name)
+        return float(self._value_at(parameter.targets[0]) if parameter.value is None else parameter.value)
 
     def _parameter(self, name: str) -> Parameter:
         for parameter in self.parameters:
@@ -160,23 +186,33 @@ class Model(Record):
 
     def _place(self, target: str) -> Parameter:
         """What stands for the number at `target`."""
-        parameter = Parameter.model_construct(name=target, targets=(target,))
         try:
-            self._number_at(parameter, target)
+            self._number_at(f"parameter '{target}'", target)
         except ValueError as error:
             raise ModelError(str(error)) from None
-        return parameter
+        for formula in self.formulas:
+            if formula.target == target:
+                raise ModelError(
+                    f"'{target}' follows from the formula '{formula.formula}': set the parameters in it, or take the "
+                    "formula out of the model"
+                )
+        for parameter in self.parameters:
+            if parameter.value is not None and target in parameter.targets:
+                return parameter
+        return Parameter.model_construct(name=target, targets=(target,))
 
     def with_parameters(self, values: Mapping[str, float]) -> "Model":
-        """The same model with other parameter values. Numbers that no parameter stands for go by their place, as in
-        `Parameter.targets` ("ball.mass").
+        """The same model with other parameter values; what follows from them by formulas follows. Numbers that no
+        parameter stands for go by their place, as in `Parameter.targets` ("ball.mass").
 
         Raises
         ------
-        ModelError : for an unknown name, or a value outside the parameter's or the field's range.
+        ModelError : for an unknown name, a value outside the parameter's or the field's range, a place that a formula
+            sets.
         """
         data = self.model_dump(mode="json")
-        elements = {e["name"]: e for kind in ("bodies", "joints", "forces", "contacts") for e in data[kind]}
+        elements = {e["name"]: e for kind in KINDS for e in data[kind]}
+        declared = {p["name"]: p for p in data["parameters"]}
         for name, value in values.items():
             parameter = self._place(name) if "." in name else self._parameter(name)
             if isinstance(value, bool) or not isinstance(value, Real):
@@ -185,18 +221,23 @@ class Model(Record):
                 parameter.refuse_outside(value)
             except ValueError as error:
                 raise ModelError(str(error)) from None
+            if parameter.value is not None:
+                declared[parameter.name]["value"] = float(value)
             for target in parameter.targets:
                 element, *path, last = target.split(".")
-                record = elements[element]
+                record = elements.get(element, data[GRAVITY] if element == GRAVITY else None)
                 for field in path:
-                    record = record[field]
-                record[last] = float(value)
+                    record = record[int(field) if isinstance(record, list) else field]
+                record[int(last) if isinstance(record, list) else last] = float(value)
         with meaning(own_classes(self)):
             return Model(**data)
 
     def to_json(self) -> str:
         """The model as JSON text. Own classes are named under `imports`, where they can be imported from."""
-        text, imports = self.model_dump_json(indent=2), import_paths(self)
+        made = {contact.name for group in self.groups for contact in group.contacts()}
+        kept = tuple(contact for contact in self.contacts if contact.name not in made)  # groups make theirs anew
+        bare = self.model_copy(update={"contacts": kept}) if made else self
+        text, imports = bare.model_dump_json(indent=2), import_paths(self)
         if not imports:
             return text
         return f'{{\n  "imports": {json.dumps(imports)},{text[1:]}'
@@ -214,31 +255,37 @@ class Model(Record):
         ------
         ModelError : with the place and the cause if it is none, or needs what may not be imported.
         """
-        try:
-            data = json.loads(text)
-        except (ValueError, UnicodeDecodeError) as error:
-            raise ModelError(f"this is not JSON: {error}") from None
+        return cls._from_data(read_json(text), "JSON object", allow_imports)
+
+    @classmethod
+    def from_yaml(cls, text: str | bytes, *, allow_imports: bool | Collection[str] = False) -> "Model":
+        """The model in a YAML text, which may hold comments. The rest is as for `from_json`."""
+        return cls._from_data(read_yaml(text), "YAML mapping", allow_imports)
+
+    @classmethod
+    def _from_data(cls, data: Any, kind: str, allow_imports: bool | Collection[str]) -> "Model":
         if not isinstance(data, dict):
-            raise ModelError(f"a model file holds one JSON object, not {type(data).__name__}")
+            raise ModelError(f"a model file holds one {kind}, not {type(data).__name__}")
         with meaning(find_classes(data.pop("imports", {}), allow_imports)):
             return cls(**data)
 
     def save(self, path: str | Path) -> None:
-        """Write the model file."""
-        Path(path).write_text(self.to_json(), encoding="utf-8")
+        """Write the model file: YAML if its name ends with .yaml or .yml, else JSON."""
+        text = write_yaml(json.loads(self.to_json())) if is_yaml(path) else self.to_json()
+        Path(path).write_text(text, encoding="utf-8")
 
     @classmethod
     def load(cls, path: str | Path, *, allow_imports: bool | Collection[str] = False) -> "Model":
-        """Read a model file; `allow_imports` as in `from_json`. Raises ModelError if it cannot be read or is no
-        model."""
+        """Read a model file, JSON or (.yaml, .yml) YAML; `allow_imports` as in `from_json`. Raises ModelError if it
+        cannot be read or is no model, with the lines."""
         try:
             text = Path(path).read_bytes()
         except OSError as error:
             raise ModelError(f"model file '{path}' cannot be read: {error.strerror or error}") from None
         try:
-            return cls.from_json(text, allow_imports=allow_imports)
+            return (cls.from_yaml if is_yaml(path) else cls.from_json)(text, allow_imports=allow_imports)
         except ModelError as error:
-            raise ModelError(f"model file '{path}': {error}") from None
+            raise ModelError(f"model file '{path}': {with_lines(error, text)}", error.problems) from None
 
     def assemble(self) -> Any:
         """The model as flat tables (`Assembly`)."""

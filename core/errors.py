@@ -8,7 +8,16 @@ class TlismniError(Exception):
 
 
 class ModelError(TlismniError, ValueError):
-    """A model, or something said about one, is wrong."""
+    """A model, or something said about one, is wrong.
+
+    Attributes
+    ----------
+    problems : of a record with several faults: what is wrong, and where in its data (keys and numbers in lists).
+    """
+
+    def __init__(self, message: str = "", problems: tuple[tuple[str, tuple[Any, ...]], ...] = ()) -> None:
+        super().__init__(message)
+        self.problems = problems
 
 
 class UnknownNameError(TlismniError, KeyError):

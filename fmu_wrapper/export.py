@@ -16,6 +16,7 @@ from typing import Any
 from ..viewer.drawing import draw, to_png, to_svg
 from .archive import write_archive
 from .bundle import package_archive
+from .chosen import with_outputs, without_secrets
 from .dependencies import Dependencies
 from .description_parts import About
 from .documentation import documentation
@@ -57,6 +58,8 @@ def export_fmu(
     version: str | None = None,
     needs_execution_tool: bool = True,
     native: bool = False,
+    outputs: Sequence[str] = (),
+    protect: bool = False,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
@@ -83,6 +86,9 @@ def export_fmu(
         `bundle` too. Some masters refuse such FMUs, though the FMU finds its Python itself: say False for them.
     native : an FMU that needs no Python where it runs (docs/native-fmu.md): it carries machine code and numbers, not
         the model, and its parameters are constants. Not every model can be one.
+    outputs : names of the channels that become outputs; "*" and "?" stand for any characters ("stop.*"). All if none.
+    protect : show nothing of what the model is made of: no parameters, laws, settings, descriptions (docs/fmu.md says
+        what can be seen still). Only an FMU without Python (`native`) can do that: the other kind carries the model.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -103,6 +109,11 @@ def export_fmu(
         raise ExportError(
             f"arrays were asked of FMI {fmi_version}, which has none: export for FMI 3.0, or without them"
         )
+    if protect and not native:
+        raise ExportError(
+            "an FMU that runs with Python carries the model as text, so it cannot be protected: export it with "
+            "native=True (--native) too, whose FMU holds numbers only"
+        )
     if native and (bundle or arrays):
         raise ExportError(
             "an FMU without Python (native) has no package to bundle and describes no arrays: leave out "
@@ -119,13 +130,16 @@ def export_fmu(
     if solver_data["communication_step"] is None:
         solver_data["communication_step"] = recommended_step(simulation, slave.model, slave.settings.t_end)
     variables = with_nominals(slave.variables, slave.model, slave.settings, simulation)
+    channels = [v.name for v in variables.block("channel")]
+    variables = with_outputs(variables, [outputs] if isinstance(outputs, str) else outputs)
     if native:
-        variables = native_table(variables)
+        variables = native_table(without_secrets(variables) if protect else variables)
     slave = Slave(slave.model, variables=variables, origin=slave.origin, **solver_data)
     identifier, code = c_identifier(slave.model.name), OwnCode.of(slave.model)
     content = slave.identity + (code.digest if code.types else "")
     token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"tlismni:{content}")) + "}"
     text = slave.model.description or getattr(source, "description", "") or slave.model.name
+    text = slave.model.name if protect else text
     generator = f"tlismni {package_version()}"
     about = About(
         identifier, slave.model.name, token, text, generator, derivatives=not native, arrays=arrays, native=native,
@@ -137,7 +151,7 @@ def export_fmu(
     if native:
         files = {
             "modelDescription.xml": described,
-            **native_resources(slave.model, slave.settings, slave.variables, token),
+            **native_resources(slave.model, slave.settings, slave.variables, token, channels),
             **native_binaries(folder(), identifier, fmi_version, platforms),
         }
         return write_archive(path, files)

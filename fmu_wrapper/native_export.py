@@ -44,8 +44,10 @@ def _minimum(v: Variable) -> float | None:
     return None if v.role == "parameter" else v.minimum
 
 
-def native_resources(model: Model, settings: Settings, table: VariableTable, token: str) -> dict[str, bytes]:
-    """The files in the folder `resources`.
+def native_resources(
+    model: Model, settings: Settings, table: VariableTable, token: str, channels: Sequence[str]
+) -> dict[str, bytes]:
+    """The files in the folder `resources`; `channels` are all that the run has, in its order.
 
     Raises
     ------
@@ -63,16 +65,20 @@ def native_resources(model: Model, settings: Settings, table: VariableTable, tok
         image = image_of(model, settings.t_end, **solver)
     except NativeError as error:
         raise ExportError(f"'{model.name}' cannot be an FMU without Python: {error}") from error
-    return {"resources/model.image": image, "resources/variables.bin": variables_file(table, token, settings.rtol)}
+    return {
+        "resources/model.image": image,
+        "resources/variables.bin": variables_file(table, token, settings.rtol, channels),
+    }
 
 
-def variables_file(table: VariableTable, token: str, rtol: float) -> bytes:
+def variables_file(table: VariableTable, token: str, rtol: float, names: Sequence[str]) -> bytes:
     """The list of variables, as `native/files.c` reads it. Raises ExportError for a token that is too long."""
     text = token.encode()
     if len(text) >= _TOKEN:
         raise ExportError(f"the token '{token}' is longer than {_TOKEN - 1} characters")
     inputs = {v.reference: k for k, v in enumerate(table.block("input"))}
-    channels = {v.reference: k for k, v in enumerate(table.block("channel"))}
+    places = {name: k for k, name in enumerate(names)}
+    channels = {v.reference: places[v.name] for v in table.block("channel")}
     rows = [struct.pack("<8sqqd64s", _MAGIC, _VERSION, len(table.variables), rtol, text)]
     for v in table.variables:
         source = "constant" if v.role == "constant" else v.block

@@ -26,6 +26,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     rocking_block,
     rod_rod,
     rod_wall,
+    rolling_disk,
     slider_crank,
     slider_crank_stop,
     spatial_cradle,

@@ -106,6 +106,7 @@ CASES: Mapping[str, Sequence[Case]] = {
     "spatial_slider_crank_stop": (Case("spatial_slider_crank_stop", not_comparable=NOT_WRITTEN),),
     "spinning_sphere": (Case("spinning_sphere", not_comparable=NOT_WRITTEN),),
     "heavy_top": (Case("heavy_top", coarse={"t_end": 0.3}),),
+    "rolling_disk": (Case("rolling_disk", coarse={"t_end": 0.3}),),
     "chain": (Case("chain", coarse={"t_end": 0.5, "links": 3}),),
     "four_bar": (Case("four_bar", t_end=0.6, why="at 0.7 s it passes its stretched position, where its constraints "
                       "lose rank and exudyn's Newton iteration fails", coarse={"t_end": 0.4}),),

@@ -10,7 +10,7 @@ from ..core.description import Model
 from ..core.elements import FlexibleBody, PlanarFrame, SpatialFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
-from . import fixtures3d  # noqa: F401  (importing it teaches `place` its joints)
+from . import fixtures3d, mechanical  # noqa: F401  (importing them teaches `place` their elements)
 from .bodies import Stage, add_bodies, add_dot, add_output
 from .drawing.shapes import Circle, Point
 from .fields import NO_SECTIONS, CrossSection

@@ -111,8 +111,13 @@ def _(element: Gear2D, stage: Stage) -> None:
 def _link(element: SpringDamper2D | Bushing2D, stage: Stage) -> None:
     damped, stiff = element.damping > 0.0, element.stiffness > 0.0
     kind = "spring-damper" if damped and stiff else "damper" if damped else "spring"
-    stage.scene.links.append(Link(element.name, kind, _anchor(stage, element.a), _anchor(stage, element.b)))
-    for marker, other in ((element.a, element.b), (element.b, element.a)):
+    stretched(stage, element.name, kind, element.a, element.b)
+
+
+def stretched(stage: Stage, name: str, kind: str, a: Marker2D, b: Marker2D) -> None:
+    """A link between two markers, with a wall where it is held by the ground."""
+    stage.scene.links.append(Link(name, kind, _anchor(stage, a), _anchor(stage, b)))
+    for marker, other in ((a, b), (b, a)):
         if marker.body == GROUND:
             at, far = stage.motion.places.at(marker), stage.motion.places.at(other)
             across = turned((0.0, 1.0), math.atan2(far[1] - at[1], far[0] - at[0]))

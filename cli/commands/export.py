@@ -23,7 +23,9 @@ from ..options import (
     MethodOption,
     ModelVersion,
     Native,
+    Outputs,
     Platforms,
+    Protect,
     Rtol,
     Set,
     Source,
@@ -38,6 +40,7 @@ EXAMPLES = (
     "  tlismni export pendulum_stop -o pendulum3.fmu --fmi 3\n\n"
     "  tlismni export pendulum_stop -o anywhere.fmu --bundle --platform all\n\n"
     "  tlismni export pendulum_stop -o pendulum.fmu --native\n\n"
+    "  tlismni export pendulum_stop -o pendulum.fmu --native --protect --outputs 'pendulum.*,stop.gap'\n\n"
     "  tlismni export system.toml -o system.ssp\n\n"
     "  tlismni export my_model.json -o ball.fmu --t-end 2 --method ebdf --option k=3 --set restitution=0.5"
 )
@@ -58,6 +61,8 @@ def export(
     option: MethodOption = None,
     bundle: Bundle = False,
     native: Native = False,
+    outputs: Outputs = None,
+    protect: Protect = False,
     arrays: Arrays = False,
     platform: Platforms = None,
     author: Author = None,
@@ -73,6 +78,8 @@ def export(
             sets,
             *solver,
             native or None,
+            outputs,
+            protect or None,
             arrays or None,
             author,
             model_version,
@@ -99,6 +106,8 @@ def export(
             communication_step=communication_step,
             bundle=bundle,
             native=native,
+            outputs=outputs_of(outputs),
+            protect=protect,
             platforms=platforms,
             arrays=arrays,
             author=author,
@@ -127,6 +136,11 @@ def export(
     else:
         carried = ", with tlismni inside" if bundle else ", without Python" if native else ""
         say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB, for {', '.join(held)}{carried})")
+
+
+def outputs_of(given: list[str] | None) -> list[str]:
+    """Names and patterns, from texts in which commas part them."""
+    return [name.strip() for text in given or () for name in text.split(",") if name.strip()]
 
 
 def _system(source: str, output: Path, json: bool, more: bool, bundle: bool, platform: list[str] | None) -> None:

@@ -14,6 +14,8 @@ from .belt2d import Belt2D
 from .bushing2d import Bushing2D
 from .bushing3d import Bushing3D
 from .cable2d import Cable2D
+from .cable3d import Cable3D
+from .cable_clamp3d import CableClamp3D
 from .clamp2d import Clamp2D
 from .coordinate_driver import CoordinateDriver
 from .coordinate_load import CoordinateLoad
@@ -45,6 +47,7 @@ from .joints3d import (
 from .knife_edge2d import KnifeEdge2D
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
+from .material_point3d import MaterialPoint3D
 from .moving_frame2d import MovingFrame2D
 from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
@@ -76,6 +79,8 @@ BODIES = (
     MovingFrame2D,
     PointMass3D,
     RigidBody3D,
+    Cable3D,
+    MaterialPoint3D,
 )
 JOINTS = (
     Revolute2D,
@@ -108,6 +113,7 @@ JOINTS = (
     Screw3D,
     RollingDisk3D,
     RollingSphere3D,
+    CableClamp3D,
 )
 FORCES = (
     SpringDamper2D,
@@ -151,6 +157,8 @@ __all__ = [
     "Bushing2D",
     "Bushing3D",
     "Cable2D",
+    "Cable3D",
+    "CableClamp3D",
     "Clamp2D",
     "ConstantVelocity3D",
     "CoordinateDriver",
@@ -175,6 +183,7 @@ __all__ = [
     "KnifeEdge2D",
     "LinearSystem",
     "MaterialPoint2D",
+    "MaterialPoint3D",
     "MovingFrame2D",
     "Planar3D",
     "PlanarBody",

@@ -63,9 +63,13 @@ class AppliedForce2D(_AppliedLoad2D):
 
     type: Literal["AppliedForce2D"] = "AppliedForce2D"
     marker: Marker2D
+    """Where the force acts."""
     force_x: Signal = Constant(value=0.0)
+    """Along x of space (with `follower`: of the marker), N."""
     force_y: Signal = Constant(value=0.0)
+    """Along y of space (with `follower`: of the marker), N."""
     follower: bool = False
+    """Whether the components are along the marker's axes, which turn with the body, instead of those of space."""
 
     def row(self, numbering: Numbering) -> Row:
         zero = Constant(value=0.0)
@@ -92,7 +96,9 @@ class AppliedTorque2D(_AppliedLoad2D):
 
     type: Literal["AppliedTorque2D"] = "AppliedTorque2D"
     body: Name
+    """Name of the body."""
     torque: Signal
+    """About the axis out of the plane, counter-clockwise positive, N m."""
 
     def row(self, numbering: Numbering) -> Row:
         zero = numbering.signal(Constant(value=0.0))

@@ -108,6 +108,7 @@ class _AppliedLoad3D(ForceElement):
     )  # fmt: skip
 
     marker: Marker3D
+    """Where it acts."""
     follower: bool = False
     """Whether the components are along the marker's axes, which turn with the body, and not along those of space."""
 
@@ -127,8 +128,11 @@ class AppliedForce3D(_AppliedLoad3D):
 
     type: Literal["AppliedForce3D"] = "AppliedForce3D"
     force_x: Signal = NOTHING
+    """Along x, N."""
     force_y: Signal = NOTHING
+    """Along y, N."""
     force_z: Signal = NOTHING
+    """Along z, N."""
 
     def row(self, numbering: Numbering) -> Row:
         return self._row(numbering, (*self.signals(), NOTHING, NOTHING, NOTHING))
@@ -143,8 +147,11 @@ class AppliedTorque3D(_AppliedLoad3D):
 
     type: Literal["AppliedTorque3D"] = "AppliedTorque3D"
     torque_x: Signal = NOTHING
+    """About x, N m."""
     torque_y: Signal = NOTHING
+    """About y, N m."""
     torque_z: Signal = NOTHING
+    """About z, N m."""
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         if self.marker.body != GROUND and isinstance(bodies.get(self.marker.body), PointMass3D):

@@ -147,6 +147,7 @@ class Element(OpenRecord):
     rate_rows: ClassVar[Sequence[int]] = ()
 
     name: Name
+    """Unique in its model; channels begin with it."""
 
     @property
     def linear(self) -> bool:
@@ -237,7 +238,9 @@ class PairElement2D(Element):
     """Base of what acts between two markers of planar bodies: its coordinates are the six of their bodies."""
 
     a: Marker2D
+    """The first marker."""
     b: Marker2D
+    """The second marker."""
 
     def markers(self) -> Sequence[Marker2D]:
         return (self.a, self.b)

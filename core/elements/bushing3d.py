@@ -132,7 +132,9 @@ class Bushing3D(Pair3D):
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL
 
     stiffness: Vector6 | Matrix6
+    """Six numbers (three in N/m, three in N m/rad), or a matrix of six rows."""
     damping: Vector6 | Matrix6 = NONE
+    """Six numbers (three in N s/m, three in N m s/rad), or a matrix of six rows."""
 
     @model_validator(mode="after")
     def _check(self) -> "Bushing3D":

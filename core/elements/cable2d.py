@@ -55,7 +55,7 @@ class Cable2D(FlexibleBody):
     bending_damping: NonNegative = 0.0
     """Bending moment per rate of the curvature, N m^2 s."""
     reference_strain: float = 0.0
-    """Axial strain without force, 1."""
+    """Axial strain without force, dimensionless."""
     reference_curvature: float = 0.0
     """Curvature without moment, 1/m."""
     relaxed: Literal["straight", "start"] = "straight"

@@ -52,6 +52,7 @@ class CoordinateDriver(JointElement):
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 0),)
 
     body: Name
+    """Name of the body."""
     coordinate: Name
     """"x", "y" or "angle" of a planar body, or the name of one of a LinearSystem's."""
     motion: Signal

@@ -36,9 +36,11 @@ class CoordinateLoad(ForceElement):
     kernel: ClassVar[Any] = coordinate_load_kernel
 
     body: Name
+    """Name of the body."""
     coordinate: Name
     """"x", "y" or "angle" of a planar body, or the name of one of a LinearSystem's."""
     load: Signal
+    """Over time, N or N m: it does work on the coordinate."""
 
     @property
     def linear(self) -> bool:

@@ -46,9 +46,11 @@ class RelationTerm(Record):
     """A coordinate of a body times a factor."""
 
     body: Name
+    """Name of the body."""
     coordinate: Name
     """"x", "y" or "angle" of a planar body, or the name of one of any other body's."""
     factor: float = 1.0
+    """Times which the coordinate counts."""
 
 
 class CoordinateRelation(JointElement):
@@ -63,7 +65,9 @@ class CoordinateRelation(JointElement):
     constraint_rows: ClassVar[int] = 1
 
     terms: Annotated[tuple[RelationTerm, ...], Field(min_length=1)]
+    """Their sum is held at `offset`."""
     offset: float = 0.0
+    """In the unit of the terms."""
 
     @model_validator(mode="after")
     def _check(self) -> "CoordinateRelation":

@@ -27,6 +27,7 @@ class Attachment(Record):
     position: NonNegative
     """Distance from the beam's first end, m."""
     direction: Literal["transverse", "axial", "moment"] = "transverse"
+    """Along the beam ("axial") or across it ("transverse")."""
 
 
 class FloatingBeam2D(FloatingBody2D):

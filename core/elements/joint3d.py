@@ -35,7 +35,9 @@ class Joint3D(JointElement):
     """Whether it slides along that axis: channels `position`, `velocity`."""
 
     a: Marker3D
+    """The first marker."""
     b: Marker3D
+    """The second marker."""
 
     def primitives(self) -> Sequence[Primitive]:
         """What it is made of."""

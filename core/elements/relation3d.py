@@ -129,12 +129,17 @@ class Gear3D(Relation3D):
 
     type: Literal["Gear3D"] = "Gear3D"
     frame_a: Marker3D
+    """In which wheel a turns."""
     wheel_a: Marker3D
+    """Wheel a; its z axis is the axis of turning."""
     frame_b: Marker3D
+    """In which wheel b turns."""
     wheel_b: Marker3D
+    """Wheel b; its z axis is the axis of turning."""
     radius_a: float
     """Radius of the pitch circle, or number of teeth, of wheel a."""
     radius_b: float
+    """Radius of the pitch circle, or number of teeth, of wheel b."""
 
     @model_validator(mode="after")
     def _check(self) -> "Gear3D":
@@ -162,9 +167,13 @@ class RackAndPinion3D(Relation3D):
 
     type: Literal["RackAndPinion3D"] = "RackAndPinion3D"
     frame: Marker3D
+    """In which the wheel turns."""
     wheel: Marker3D
+    """The wheel; its z axis is the axis of turning."""
     guide: Marker3D
+    """In which the rack slides."""
     rack: Marker3D
+    """The rack; it slides along the z axis."""
     radius: float
     """m; negative where the rack goes back as the wheel turns forward."""
 
@@ -181,9 +190,11 @@ class Screw3D(Relation3D):
 
     type: Literal["Screw3D"] = "Screw3D"
     a: Marker3D
+    """The first marker."""
     b: Marker3D
+    """The second marker."""
     lead: float
-    """m a turn; negative for a left-hand thread."""
+    """Length a turn, m; negative for a left-hand thread."""
 
     def terms(self) -> Sequence[tuple[float, int, Pair]]:
         return (-self.lead / (2.0 * math.pi), ANGLE, (self.a, self.b)), (1.0, PLACE, (self.a, self.b))

@@ -65,6 +65,7 @@ class RelativeMotor2D(JointElement, PairElement2D):
     motion: Signal
     """What it follows, rad or m over s. The bodies must start where it says."""
     measure: Measure = "angle"
+    """What it moves: the angle of a joint, the slide along a's first axis, or the distance of the markers."""
 
     @model_validator(mode="after")
     def _check(self) -> "RelativeMotor2D":

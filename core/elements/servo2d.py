@@ -2,17 +2,22 @@
 
 F = gain (x - f(t)) + rate_gain (x' - f'(t)) works against the growth of x: a position servo. Without gain and with the
 rate as target (`of_rate`), F = rate_gain (x' - f(t)): a velocity servo. All of its power counts as put in.
+
+A servo that saturates gives F (1 + (F/L)^8)^(-1/8) instead, L its largest force: F itself while that is below L/2 (to
+5e-4), and no more than L. It is smooth, so that nothing has to be located.
 """
 
+import math
 from collections.abc import Sequence
 from functools import cache
 from typing import Any, Literal
 
 from pydantic import model_validator
 
+from ..compiled.jit import inlined
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..model.base import NonNegative
+from ..model.base import NonNegative, Positive
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .base import ForceElement, Form, Numbering, PairElement2D, Row
 from .formula2d import MARKER_COLUMNS, Arguments, caller_of, derivatives, form_ahead
@@ -20,6 +25,18 @@ from .geometry2d import add_hessian, add_product, along
 from .measures2d import MEASURES, Measure
 
 KIND = "servo2d"
+FULL = 1e4
+"""Asked force over the largest one beyond which the difference from that is below rounding."""
+
+
+@inlined
+def saturated(force: float, limit: float) -> tuple[float, float]:
+    """The force that comes out of an asked one, and how much of a change of that comes out."""
+    part = force / limit
+    if abs(part) > FULL:
+        return math.copysign(limit, force), 0.0
+    spare = 1.0 / (1.0 + part**8)
+    return force * spare**0.125, spare**1.125
 
 
 @cache
@@ -46,6 +63,9 @@ def _kernel(measure: str, arguments: Arguments) -> Any:
                 force = rate_gain * (rate - f)
             else:
                 force = gain * (x - f) + rate_gain * (rate - df)
+            limit, slope = par[e, own + 3], 1.0
+            if limit > 0.0:
+                force, slope = saturated(force, limit)
             if job == RESIDUAL:
                 r = vec(b.r, b.n_extended)
                 for i in range(len(gradient)):
@@ -54,12 +74,12 @@ def _kernel(measure: str, arguments: Arguments) -> Any:
                 values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
                 slot = imat(b.slot_s + 8 * n * n * e, n, n)
                 add_hessian(values, slot, gradient, hessian, coef[0] * force)
-                by_value, by_rate = coef[0] * gain + coef[1] * rate_gain, coef[0] * rate_gain
+                by_value, by_rate = slope * (coef[0] * gain + coef[1] * rate_gain), slope * coef[0] * rate_gain
                 add_product(values, slot, gradient, gradient, hessian, v, coord[e], by_value, by_rate)
             else:
                 vec(b.a, b.n_extended)[extra[e, 1]] -= force * rate
 
-    return formula_internal(servo2d_kernel, (formula, evaluate_signal), arguments)
+    return formula_internal(servo2d_kernel, (formula, evaluate_signal, saturated), arguments)
 
 
 class Servo2D(ForceElement, PairElement2D):
@@ -73,11 +93,15 @@ class Servo2D(ForceElement, PairElement2D):
     target: Signal
     """rad or m over s; with `of_rate` rad/s or m/s."""
     measure: Measure = "angle"
+    """What it moves: the angle of a joint, the slide along a's first axis, or the distance of the markers."""
     gain: NonNegative = 0.0
     """N m/rad or N/m."""
     rate_gain: NonNegative = 0.0
     """N m s/rad or N s/m."""
     of_rate: bool = False
+    """Whether `target` is a rate, not a position."""
+    largest: Positive | None = None
+    """Largest force or torque that it gives, N or N m; left out: it gives any."""
 
     @model_validator(mode="after")
     def _check(self) -> "Servo2D":
@@ -106,7 +130,7 @@ class Servo2D(ForceElement, PairElement2D):
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()
-        columns = (*arguments.columns(self), self.gain, self.rate_gain, float(self.of_rate))
+        columns = (*arguments.columns(self), self.gain, self.rate_gain, float(self.of_rate), self.largest or 0.0)
         extra = (numbering.signal(self.target), numbering.work("input"))
         return Row(columns, arguments.coordinates(self, numbering), extra)
 

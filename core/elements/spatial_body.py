@@ -242,6 +242,7 @@ class RigidBody3D(SpatialBody):
     angular_velocity: Vector3 = (0.0, 0.0, 0.0)
     """Initial angular velocity, rad/s, in the axes that `angular_velocity_in` names."""
     angular_velocity_in: Literal["body", "space"] = "body"
+    """Axes of `angular_velocity`: those of the body, or of space."""
 
     @model_validator(mode="after")
     def _check(self) -> "RigidBody3D":

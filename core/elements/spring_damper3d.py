@@ -51,7 +51,9 @@ class Pair3D(ForceElement):
     """Base of what acts between two markers in space."""
 
     a: Marker3D
+    """The first marker."""
     b: Marker3D
+    """The second marker."""
 
     def markers(self) -> Sequence[Marker3D]:
         return (self.a, self.b)
@@ -65,7 +67,9 @@ class _Spring3D(Pair3D):
     kind: ClassVar[int]
 
     stiffness: NonNegative
+    """N/m, of a torsion spring N m/rad."""
     damping: NonNegative = 0.0
+    """N s/m, of a torsion spring N m s/rad."""
 
     def reference(self) -> float:
         """The measure without force."""

@@ -21,7 +21,7 @@ class Hertz(ForceLaw):
     stiffness: Positive
     """K, N/m^n."""
     exponent: Positive = 1.5
-    """n."""
+    """n, dimensionless."""
 
     def parameters(self) -> LawParameters:
         return self.stiffness, self.exponent, 0.0, 0.0

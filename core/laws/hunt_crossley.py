@@ -37,9 +37,9 @@ class HuntCrossleyFamily(ForceLaw):
     stiffness: Positive
     """K, N/m^n."""
     restitution: Restitution
-    """Requested coefficient of restitution e; what comes out differs from law to law."""
+    """Requested coefficient of restitution e, dimensionless; what comes out differs from law to law."""
     exponent: Positive = 1.5
-    """n."""
+    """n, dimensionless."""
 
     def damping_factor(self) -> float:
         """D(e), dimensionless."""
@@ -100,7 +100,7 @@ class DissipativeFamily(HuntCrossleyFamily):
     """Base of the laws whose D grows without bound as e goes to 0: they cover the whole range but e = 0."""
 
     restitution: Annotated[float, Field(gt=0.0, le=1.0)]
-    """Requested coefficient of restitution e > 0; what comes out differs from law to law."""
+    """Requested coefficient of restitution e > 0, dimensionless; what comes out differs from law to law."""
 
 
 class Flores(DissipativeFamily):

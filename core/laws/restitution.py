@@ -15,7 +15,9 @@ class ImpactLaw(Record):
     """
 
     restitution: Restitution
+    """e, dimensionless: separation over approach speed, or (Poisson) impulse of restitution over compression's."""
     rest_ratio: Annotated[float, Field(ge=0.0, lt=1.0)] = 1e-6
+    """A contact rests once it bounces slower than this part of its largest approach speed, dimensionless."""
 
 
 class NewtonImpact(ImpactLaw):
@@ -28,6 +30,7 @@ class NewtonImpact(ImpactLaw):
 
     type: Literal["NewtonImpact"] = "NewtonImpact"
     propagation: Literal["simultaneous", "sequential"] = "simultaneous"
+    """Whether contacts that are struck at one instant act at once, or one after another as in a cradle of balls."""
 
 
 class PoissonImpact(ImpactLaw):

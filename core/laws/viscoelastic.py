@@ -44,7 +44,7 @@ class Tsuji(ReleasedLaw):
     mass: Positive | None = None
     """Effective mass of the two bodies m1 m2/(m1 + m2), kg."""
     restitution: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
-    """Requested coefficient of restitution e."""
+    """Requested coefficient of restitution e, dimensionless."""
     release_rule: Release = "gap"
     """When contact ends: at zero penetration ("gap", the published rule), or when the force would become tensile
     ("force")."""

@@ -69,6 +69,7 @@ class EulerParameters(Record):
 
     type: Literal["EulerParameters"] = "EulerParameters"
     values: Vector4 = (1.0, 0.0, 0.0, 0.0)
+    """Scalar part first; of norm 1."""
 
     @model_validator(mode="after")
     def _check(self) -> "EulerParameters":
@@ -89,6 +90,7 @@ class RotationVector(Record):
 
     type: Literal["RotationVector"] = "RotationVector"
     vector: Vector3
+    """Axis times angle, rad."""
 
     def parameters(self) -> Vector4:
         """Euler parameters of norm 1."""
@@ -137,6 +139,7 @@ class Axes(Record):
     z: Vector3
     """A direction of any length."""
     x: Vector3 | None = None
+    """Where the x axis points, about; left out: by the shortest turn of z."""
 
     @model_validator(mode="after")
     def _check(self) -> "Axes":

@@ -1,8 +1,9 @@
 """Base of all model records: frozen, validated, no unknown fields, no NaN."""
 
+import inspect
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Annotated, Any, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import numpy as np
 from pydantic import (
@@ -18,11 +19,30 @@ from pydantic import (
 from pydantic_core import CoreSchema
 
 from ..errors import ModelError
-from .docstrings import field_docstrings
-from .explain import ALONE, explain, shown
+from .explain import ALONE, explain, problems_of, shown
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
 
 
-class Record(BaseModel):
+class _DescribesItself(ModelMetaclass):
+    """Class of the classes of records: their docstring, for `help()`, ends with their fields. It is made when it is
+    asked for, since that reads their source."""
+
+    if not TYPE_CHECKING:
+
+        @property
+        def __doc__(cls) -> str | None:
+            from .fields import described
+
+            own = vars(cls).get("__doc__")
+            text = described(cls) if getattr(cls, "__pydantic_complete__", False) else ""
+            return f"{inspect.cleandoc(own or '')}\n\n{text}" if text else own
+
+
+class Record(BaseModel, metaclass=_DescribesItself):
     """A validated, immutable piece of a model. JSON in and out; equality by value."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="strings")
@@ -39,15 +59,22 @@ class Record(BaseModel):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise ModelError(explain(error, kind, data)) from None
+            raise ModelError(explain(error, kind, data), problems_of(error, kind, data)) from None
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        from .fields import fields_of
+
         schema = handler(core_schema)
-        properties = handler.resolve_ref_schema(schema).get("properties", {})
-        for name, text in field_docstrings(cls).items():
-            if name in properties:
-                properties[name].setdefault("description", text)
+        own = handler.resolve_ref_schema(schema)
+        if "description" in own:  # the class without its fields, which have their own
+            own["description"] = inspect.cleandoc(vars(cls).get("__doc__") or "")
+        properties = own.get("properties", {})
+        for field in fields_of(cls):
+            if field.name in properties:
+                properties[field.name].setdefault("description", field.description)
+                if field.unit:
+                    properties[field.name]["unit"] = field.unit
         return schema
 
     @model_validator(mode="before")

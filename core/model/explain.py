@@ -41,7 +41,22 @@ NAME_PATTERN = "must be made of letters, digits and underscores, and not begin w
 
 def explain(error: ValidationError, record: type[BaseModel], data: Mapping[str, Any]) -> str:
     """One clause a problem. `data` is what the record was to be made of."""
-    return "; ".join(_clause(problem, record, data) for problem in error.errors())
+    return "; ".join(clause for clause, _ in problems_of(error, record, data))
+
+
+def problems_of(
+    error: ValidationError, record: type[BaseModel], data: Mapping[str, Any]
+) -> tuple[tuple[str, tuple[Any, ...]], ...]:
+    """Each problem in words, and the place in `data` where it is."""
+    found: list[tuple[str, tuple[Any, ...]]] = []
+    for problem in error.errors():
+        words, loc = _clause(problem, record, data), tuple(problem["loc"])
+        within = getattr(problem.get("ctx", {}).get("error"), "problems", ())  # of a record inside, which has said so
+        if words == "; ".join(clause for clause, _ in within):
+            found += [(clause, (*loc, *place)) for clause, place in within]
+        else:
+            found.append((words, (*loc, *within[0][1]) if within else loc))
+    return tuple(found)
 
 
 def _clause(problem: Any, record: type[BaseModel], data: Mapping[str, Any]) -> str:

@@ -23,7 +23,9 @@ class MarkerOutput2D(Record):
 
     type: Literal["MarkerOutput2D"] = "MarkerOutput2D"
     name: Name
+    """Unique in its model; channels begin with it."""
     marker: Marker2D
+    """Whose motion is shown."""
 
     @classmethod
     def derived(cls, outputs: Sequence[Any], frame: Frame) -> Derived:
@@ -42,8 +44,11 @@ class MarkerOutput3D(Record):
 
     type: Literal["MarkerOutput3D"] = "MarkerOutput3D"
     name: Name
+    """Unique in its model; channels begin with it."""
     marker: Marker3D
+    """Whose motion is shown."""
     attitude: Annotated[str, Field(pattern=r"^(none|matrix|xyz|xzy|yxz|yzx|zxy|zyx|xyx|xzx|yxy|yzy|zxz|zyz)$")] = "none"
+    """How its attitude is shown: not, as a matrix, or as three angles in this order."""
 
     @classmethod
     def derived(cls, outputs: Sequence[Any], frame: Frame) -> Derived:

@@ -38,6 +38,7 @@ class Constant(TimeFunction):
 
     type: Literal["Constant"] = "Constant"
     value: float
+    """In the unit of what it drives."""
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
         return [CONSTANT, self.value]
@@ -51,8 +52,11 @@ class Step(TimeFunction):
 
     type: Literal["Step"] = "Step"
     time: float
+    """When it jumps, s."""
     before: float = 0.0
+    """Value before."""
     after: float = 1.0
+    """Value after."""
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
         return [STEP, self.time, self.before, self.after]
@@ -71,9 +75,13 @@ class Ramp(TimeFunction):
 
     type: Literal["Ramp"] = "Ramp"
     start: float
+    """When it begins, s."""
     duration: Positive
+    """How long it takes, s."""
     before: float = 0.0
+    """Value before."""
     after: float = 1.0
+    """Value after."""
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
         return [RAMP, self.start, self.duration, self.before, self.after]
@@ -87,9 +95,13 @@ class Sine(TimeFunction):
 
     type: Literal["Sine"] = "Sine"
     amplitude: float
+    """In the unit of what it drives."""
     angular_frequency: float
+    """rad/s."""
     phase: float = 0.0
+    """rad."""
     offset: float = 0.0
+    """Mean value."""
 
     def longest_step(self) -> float:
         return 0.5 * math.pi / abs(self.angular_frequency) if self.angular_frequency else math.inf
@@ -106,6 +118,7 @@ class Polynomial(TimeFunction):
 
     type: Literal["Polynomial"] = "Polynomial"
     coefficients: Annotated[tuple[float, ...], Field(min_length=1)]
+    """Constant first, of powers of t in s."""
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
         return [POLYNOMIAL, len(self.coefficients), *self.coefficients]
@@ -119,7 +132,9 @@ class Table(TimeFunction):
 
     type: Literal["Table"] = "Table"
     times: Annotated[tuple[float, ...], Field(min_length=4)]
+    """Growing, s."""
     values: Annotated[tuple[float, ...], Field(min_length=4)]
+    """Values at these times, at least four; a cubic spline joins them."""
 
     @model_validator(mode="after")
     def _check(self) -> "Table":
@@ -150,6 +165,7 @@ class InputSignal(TimeFunction):
 
     type: Literal["Input"] = "Input"
     channel: Name
+    """Name of the input whose value it is."""
     rate: Name | None = None
     """Input channel with the velocity of a motion, in the position's unit per s."""
 

@@ -13,6 +13,7 @@ from .disk_on_line import DiskOnLine2D
 from .element import ContactElement
 from .rope2d import Rope2D
 from .segment2d import DiskOnSegment2D
+from .stop3d import AngleStop3D, Rope3D, SlideStop3D
 
 CONTACTS = (
     DiskOnHalfPlane2D,
@@ -26,6 +27,9 @@ CONTACTS = (
     CoordinateContact,
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
+    AngleStop3D,
+    SlideStop3D,
+    Rope3D,
 )
 
 Contact = Annotated[ContactElement, OpenUnion(CONTACTS, ContactElement)]

@@ -26,7 +26,9 @@ class AngleStop2D(ScalarContact2D):
     formula: ClassVar[ScalarContact] = scalar_contact(room)
 
     a: Marker2D = Marker2D()
+    """The first marker."""
     b: Marker2D
+    """The second marker."""
     limit: float
     """rad."""
     side: Literal["upper", "lower"] = "upper"

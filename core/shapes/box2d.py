@@ -20,6 +20,7 @@ class Box2D(Record):
 
     type: Literal["Box2D"] = "Box2D"
     marker: Marker2D
+    """At its centre; the first axis is along its width."""
     width: Positive
     """Along the marker's first axis, m."""
     height: Positive
@@ -84,7 +85,9 @@ class DiskOnBox2D(ScalarContact2D):
     formula: ClassVar[ScalarContact] = scalar_contact(box_gap, box_slide)
 
     shape: Box2D
+    """The box."""
     disk: Disk2D
+    """The disk."""
 
     @property
     def box(self) -> Marker2D:

@@ -23,6 +23,7 @@ class HalfPlane2D(Record):
 
     type: Literal["HalfPlane2D"] = "HalfPlane2D"
     marker: Marker2D = Marker2D()
+    """On its edge; its second axis is the outward normal."""
 
 
 class Disk2D(Record):
@@ -30,6 +31,7 @@ class Disk2D(Record):
 
     type: Literal["Disk2D"] = "Disk2D"
     marker: Marker2D
+    """Its centre."""
     radius: NonNegative = 0.0
     """m."""
 
@@ -102,7 +104,9 @@ class DiskOnHalfPlane2D(Contact2D):
     bristle_kernel: ClassVar[Any] = bristle_disk_on_half_plane_kernel
 
     plane: HalfPlane2D
+    """The half-plane."""
     disk: Disk2D
+    """The disk."""
 
     def disks(self) -> Sequence[Disk2D]:
         return (self.disk,)
@@ -124,7 +128,9 @@ class DiskOnDisk2D(Contact2D):
     bristle_kernel: ClassVar[Any] = bristle_disk_on_disk_kernel
 
     a: Disk2D
+    """The first disk."""
     b: Disk2D
+    """The second disk."""
 
     def disks(self) -> Sequence[Disk2D]:
         return (self.a, self.b)

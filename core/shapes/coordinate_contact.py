@@ -69,8 +69,11 @@ class CoordinateTerm(Record):
     """`factor` times a coordinate of a body."""
 
     body: Name
+    """Name of the body."""
     coordinate: Name
+    """"x", "y" or "angle" of a planar body, or the name of one of its coordinates."""
     factor: float = 1.0
+    """Times which the coordinate counts, in `unit`."""
     unit: str | None = None
     """Unit of the factor: "m/rad" for the radius that makes a length of an angle. Left out: none, where all terms are
     in one unit; m per unit of the coordinate, where they are not."""
@@ -113,7 +116,9 @@ class CoordinateContact(Contact2D):
     offset: float = 0.0
     """Gap at coordinates zero, m or what its terms are in."""
     terms: Annotated[tuple[CoordinateTerm, ...], Field(min_length=1)]
+    """Their sum with `offset` is the gap."""
     slide: tuple[CoordinateTerm, ...] = ()
+    """Their sum is the sliding distance; none: without friction."""
 
     @model_validator(mode="after")
     def _check_terms(self) -> "CoordinateContact":

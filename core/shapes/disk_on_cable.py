@@ -37,6 +37,7 @@ class DiskOnCable2D(Contact2D):
     thickness: NonNegative = 0.0
     """Distance of the cable's surface from its axis, m."""
     disk: Disk2D
+    """The disk."""
 
     @model_validator(mode="after")
     def _check_shapes(self) -> "DiskOnCable2D":

@@ -45,6 +45,7 @@ class Line2D(Record):
     radius: NonNegative = 0.0
     """Half its thickness, m."""
     rounding: Annotated[float, Field(gt=0.0, le=1.0)] = 0.5
+    """Part of each half segment beside a vertex that a parabola takes, dimensionless; 1 is a quadratic spline."""
 
     @property
     def closed(self) -> bool:
@@ -80,7 +81,9 @@ class DiskOnLine2D(Contact2D):
     width: ClassVar[int] = WIDTH
 
     line: Line2D
+    """The line."""
     disk: Disk2D
+    """The disk."""
 
     @model_validator(mode="after")
     def _check_shapes(self) -> "DiskOnLine2D":

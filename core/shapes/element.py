@@ -37,10 +37,6 @@ class ContactElement(Element):
             )
         return self
 
-    def disks(self) -> Sequence[Any]:
-        """The disks of the plane (`Disk2D`) that it brings in touch, for the drawing."""
-        return ()
-
     def reach(self) -> Sequence[tuple[float, ...]]:
         """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""
         points = [marker.point for marker in self.markers() if marker.body != GROUND]
@@ -50,6 +46,10 @@ class ContactElement(Element):
     def extent(self) -> float:
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
         return math.inf
+
+    def disks(self) -> Sequence[Any]:
+        """The planar disks (`Disk2D`) that it brings in touch, for the drawing."""
+        return ()
 
     def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
         """Units of gap and sliding distance in a model with these bodies."""

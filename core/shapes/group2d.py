@@ -6,12 +6,14 @@ its corners. Pairs on one body are left out. Pairs that are far from touching co
 during a run: contacts sleep until their margin is used up (`location/asleep.py`).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations, product
+from typing import Any
 
 from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction
+from ..model.base import Name, Record
 from ..model.markers import GROUND
 from .box2d import Box2D, DiskOnBox2D
 from .box3d import Box3D
@@ -71,6 +73,59 @@ def contacts_between(
             "half-planes, and shapes of one body never touch each other"
         )
     return tuple(made)
+
+
+class ContactGroup2D(Record):
+    """Shapes of which each may touch each other: one record for all their contacts.
+
+    A model makes the contacts of all pairs that can touch, as `contacts_between` does, and calls them
+    name_body1_body2. They sleep while they are far apart. Law and friction are changed here, for all of them.
+    """
+
+    name: Name
+    """Names of its contacts begin with it."""
+    disks: tuple[Disk2D, ...] = ()
+    """They touch all shapes."""
+    boxes: tuple[Box2D, ...] = ()
+    """They touch boxes and half-planes by their corners, and disks."""
+    segments: tuple[Segment2D, ...] = ()
+    """They touch disks."""
+    half_planes: tuple[HalfPlane2D, ...] = ()
+    """They touch disks and boxes."""
+    law: ContactLaw
+    """What happens when a gap closes."""
+    friction: Friction | None = None
+    """What resists sliding; left out: nothing."""
+    except_bodies: tuple[tuple[str, str], ...] = ()
+    """Pairs of bodies that do not touch, such as those that a joint holds together."""
+
+    def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
+        """Its contacts. Raises ModelError as `contacts_between` does."""
+        shapes: tuple[GroupShape, ...] = (*self.disks, *self.boxes, *self.segments, *self.half_planes)
+        return contacts_between(
+            self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies
+        )
+
+
+def with_groups(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The data of a model with the contacts of its `groups` among its `contacts`, made anew where they are there.
+
+    Raises
+    ------
+    ModelError : for a group that is none.
+    """
+    given = data.get("groups")
+    if not given or not isinstance(given, list | tuple):
+        return data
+    groups = [g if isinstance(g, ContactGroup2D) else ContactGroup2D(**g) for g in given]
+    made = [contact for group in groups for contact in group.contacts()]
+    names = {contact.name for contact in made}
+    others = [c for c in data.get("contacts", ()) if _name(c) not in names]
+    return {**data, "groups": groups, "contacts": [*others, *made]}
+
+
+def _name(contact: Any) -> Any:
+    return contact.get("name") if isinstance(contact, Mapping) else getattr(contact, "name", None)
 
 
 def _body(shape: GroupShape) -> str:

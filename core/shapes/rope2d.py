@@ -33,7 +33,9 @@ class Rope2D(ScalarContact2D):
     formula: ClassVar[ScalarContact] = scalar_contact(slack)
 
     a: Marker2D = Marker2D()
+    """The first marker."""
     b: Marker2D
+    """The second marker."""
     length: Positive
     """m."""
 

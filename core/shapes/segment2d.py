@@ -150,7 +150,9 @@ class DiskOnSegment2D(Contact2D):
     bristle_kernel: ClassVar[Any] = bristle_disk_on_segment_kernel
 
     segment: Segment2D
+    """The segment."""
     disk: Disk2D
+    """The disk."""
 
     @model_validator(mode="after")
     def _check_radius(self) -> "DiskOnSegment2D":

@@ -40,8 +40,12 @@ def refactor(ws: Any, c_q: float, c_v: float) -> int:
     rate = vec(ws.rate, RATE_SIZE)
     evaluate_tangent(ws, c_q, c_v)
     rate[FACTOR_AGE] = -1.0
-    for address in (ws.kkt, ws.lu_d, ws.lu_p):
-        if (address == ws.lu_d and ws.m_act == 0) or (address == ws.lu_p and (ws.m_held == 0 or ws.m_held == ws.m_act)):
+    for k in range(3):
+        address, size = ws.kkt, ws.n
+        if k > 0:
+            address, size = (ws.lu_d, ws.m_act) if k == 1 else (ws.lu_p, ws.m_held)
+        # without velocity-level rows the third is the second
+        if size == 0 or (k == 2 and ws.m_held == ws.m_act):
             continue
         status = factor(lu_at(address), ws.values)
         if status == 2:

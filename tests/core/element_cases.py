@@ -69,6 +69,9 @@ CASES = {
         }
         for measure in ("angle", "slide", "distance")
     },
+    "servo that saturates": {
+        "forces": [Servo2D(name="f", **ENDS, target=SINE, measure="distance", gain=2.0, rate_gain=0.7, largest=0.5)]
+    },
     "rate servo": {"forces": [Servo2D(name="f", **ENDS, target=SINE, rate_gain=0.7, of_rate=True)]},
     "taut rope": {"contacts": [Rope2D(name="c", **ENDS, length=1.2, law=HARD)], "mode": CLOSED},
     "elastic rope": {"contacts": [Rope2D(name="c", **ENDS, length=1.2, law=SOFT)], "mode": ACTIVE},

@@ -190,6 +190,22 @@ def test_a_velocity_servo_approaches_its_rate():
     assert result["slider.vx"] == pytest.approx(1.5 * (1.0 - np.exp(-2.0 * result.t)), abs=1e-8)
 
 
+def test_a_servo_that_saturates_pushes_with_its_largest_force():
+    """Far from its target the force is the largest one: uniform acceleration; near it the servo is what it was."""
+    body, guide = slider()
+    servo = Servo2D(
+        name="s", a=GROUND, b=on("slider"), target=Constant(value=50.0), measure="slide", gain=40.0, rate_gain=60.0,
+        largest=6.0,
+    )  # fmt: skip
+    model = Model(gravity=(0.0, 0.0), bodies=[body], joints=[guide], forces=[servo])
+    result = simulate(model, 40.0, **TIGHT)
+    early = result.t < 1.0
+    assert result["slider.x"][early] == pytest.approx(0.5 * 6.0 / body.mass * result.t[early] ** 2, abs=1e-9)
+    assert np.abs(result["slider.ax"]).max() <= 6.0 / body.mass * (1.0 + 1e-12)
+    assert result["slider.x"][-1] == pytest.approx(50.0, abs=1e-6)
+    assert np.abs(result["energy.balance"]).max() < 1e-6
+
+
 @pytest.mark.parametrize("radius", [0.2, -0.2])
 def test_a_rack_drives_a_wheel(radius):
     """Wheel fixed, rack free, torque T: the rack's acceleration is T r/(I + m r^2), and the teeth carry m times it."""

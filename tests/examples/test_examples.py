@@ -193,3 +193,73 @@ def test_identification_finds_restitution_and_damping() -> None:
         k = found.names.index(name)
         assert abs(found.values[k] - value) < 4.0 * found.errors[k]
     assert found.noise == pytest.approx(1.0, abs=0.35)
+
+
+def test_the_boom_rests_on_its_stop_as_statics_say() -> None:
+    f = figures("cylinder_linkage")
+    assert f["stop_torque"] == pytest.approx(f["expected_stop_torque"], rel=1e-6)
+    assert np.degrees(f["result"]["boom.angle"][-1]) == pytest.approx(40.0, abs=1e-6)
+
+
+def test_the_follower_lifts_off_where_its_force_on_the_cam_vanishes() -> None:
+    """Height of the roller on the circle, its second derivative with speed and acceleration of the cam."""
+    e = example("cam_follower")
+    t = np.linspace(0.2, 2.0, 400_001)
+    p, rate = 0.5 * e.GAIN * t**2, e.GAIN * t
+    s, c = e.OFFSET * np.sin(p), e.OFFSET * np.cos(p)
+    root = np.sqrt(e.REACH**2 - c**2)
+    slope, bend = c + c * s / root, -s + (c**2 - s**2) / root - (c * s) ** 2 / root**3
+    pressed = e.MASS * (e.G + bend * rate**2 + slope * e.GAIN) + e.STIFFNESS * (s + root) > 0.0
+    assert figures("cam_follower")["lift_off"] == pytest.approx(t[np.argmin(pressed)], abs=1e-3)
+
+
+def test_the_slack_rope_jerks_as_the_closed_form_says() -> None:
+    f = figures("slack_rope")
+    assert f["jerk"].t == pytest.approx(f["expected_time"], abs=1e-9)
+    assert f["jerk"].impulse == pytest.approx(f["expected_impulse"], rel=1e-8)
+    assert f["jerk"].energy_loss == pytest.approx(f["expected_loss"], rel=1e-8)
+    assert f["longest"] < 1.0 + 1e-8 and f["balance"] < 1e-7
+    assert any(event.kind == "open" for event in f["result"].events)
+
+
+def test_eight_disks_come_to_rest_and_the_walls_carry_their_weight() -> None:
+    f = figures("disks_in_a_box")
+    assert f["carried"] == pytest.approx(f["weight"], rel=1e-9)
+    assert f["kinetic"] < 1e-12 and f["overlap"] < 1e-9 and f["balance"] < 1e-5
+
+
+def test_the_elbow_stays_in_its_range_and_only_blows_take_energy() -> None:
+    f = figures("joint_limits")
+    low, high = example("joint_limits").RANGE
+    assert f["elbow"].min() > low - 1e-9 and f["elbow"].max() < high + 1e-9
+    assert f["lost"] > 1.0 and f["missing"] == pytest.approx(f["lost"], abs=1e-5)
+
+
+def test_the_pulled_block_slips_when_friction_below_it_is_used_up() -> None:
+    f = figures("pulled_block")
+    assert f["slip"] == pytest.approx(f["expected_slip"], abs=1e-9)
+    assert f["balance"] < 1e-6
+
+
+def test_a_rod_that_bends_is_struck_as_the_law_says_and_hardly_otherwise_than_a_stiff_one() -> None:
+    f = figures("flexible_slider_crank")
+    assert f["separation_over_approach"] == pytest.approx(0.5, rel=1e-8)
+    assert f["blow"].t == pytest.approx(f["stiff_blow"].t, abs=1e-4)
+    assert f["balance"] < 1e-4 * f["energy"]
+
+
+def test_gears_with_play_strike_by_one_flank_and_then_by_the_other() -> None:
+    f, e = figures("gear_backlash"), example("gear_backlash")
+    # the driver, a sine, has used up half the play: r a sin(w t) = b/2
+    assert f["first"].t == pytest.approx(np.arcsin(0.5 * e.BACKLASH / (e.RADII[0] * e.SWING)) / e.RATE, abs=1e-9)
+    assert np.abs(f["play"]).max() < 0.5 * e.BACKLASH + 1e-9
+    assert {event.contact for event in f["result"].events if event.kind == "impact"} == {"front", "back"}
+
+
+@pytest.mark.parametrize(
+    "name", ["cam_follower", "cylinder_linkage", "disks_in_a_box", "flexible_slider_crank", "gear_backlash",
+             "joint_limits", "pulled_block", "slack_rope"],
+)  # fmt: skip
+def test_a_model_that_shows_something_is_a_short_script_with_a_moving_picture(name: str) -> None:
+    assert len((EXAMPLES / f"{name}.py").read_text(encoding="utf-8").splitlines()) <= 60
+    assert (EXAMPLES.parent / "docs" / "gallery" / f"{name}.gif").is_file()

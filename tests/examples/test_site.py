@@ -1,0 +1,141 @@
+"""The pages as a site: tutorials do what they say, messages exist, the site builds without a warning."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+TUTORIALS = sorted(path.name for path in (DOCS / "tutorials").glob("*-*.md"))
+BLOCK = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```', re.S | re.M)
+ELSEWHERE = {"README.md"}
+
+
+def blocks(page: Path) -> list[tuple[str, str, str]]:
+    """(language, file name, text) of the blocks of a page."""
+    return BLOCK.findall(page.read_text(encoding="utf-8"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TUTORIALS)
+def test_a_tutorial_does_what_it_says(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files are written, commands are run, Python is executed, in the order of the page."""
+    for module in ("ruamel.yaml", "fmpy", "lxml", "typer", "pyarrow"):
+        pytest.importorskip(module)
+    from tlismni.fmu_wrapper.export import HERE, SHIM
+
+    if "co-simulation" in name and not (HERE / SHIM).is_file():
+        pytest.skip("the FMU shim is not built")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for language, file, text in blocks(DOCS / "tutorials" / name):
+        if file:
+            (tmp_path / file).write_text(text, encoding="utf-8")
+        elif language == "python":
+            exec(compile(text, f"{name}", "exec"), names)
+        else:
+            assert language == "sh", f"nothing says how a block of {language} is run"
+            for line in filter(None, text.splitlines()):
+                words = shlex.split(line)
+                assert words[0] == "tlismni"
+                done = subprocess.run(
+                    [sys.executable, "-m", "tlismni.cli", *words[1:]], capture_output=True, text=True, check=False
+                )
+                assert done.returncode == 0, done.stderr
+    if name.startswith("mechanical"):
+        assert {"gate.html", "start.html", "gate.csv"} <= {path.name for path in tmp_path.iterdir()}
+    if name.startswith("method"):
+        assert names["run"].stats["steps"] > 0 and abs(names["first"].t - 0.48) < 0.01
+
+
+def test_every_page_with_code_is_run_by_a_test() -> None:
+    """A page with Python is named in a test of this folder; the parametrised tests above take the tutorials."""
+    tests = "".join(path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("*.py"))
+    for page in sorted(DOCS.glob("*.md")):
+        if any(language == "python" for language, _, _ in blocks(page)):
+            assert page.name in tests, f"no test runs the code of docs/{page.name}"
+
+
+def test_the_messages_of_the_page_on_trouble_are_those_of_the_library() -> None:
+    page = (DOCS / "troubleshooting.md").read_text(encoding="utf-8")
+    quoted = re.findall(r"^\*\*`([^`]+)`", page, re.M)
+    folders = ("core", "models", "fmu_wrapper", "validation", "cli")
+    # messages are written in pieces: quotes and line ends between them are no part of what is said
+    joined = [
+        re.sub(r'"\s*(f|rf|r)?"', "", path.read_text(encoding="utf-8"))
+        for folder in folders
+        for path in (ROOT / folder).rglob("*.py")
+    ]
+    assert len(quoted) > 15
+    for message in quoted:
+        assert any(message in text for text in joined), message
+
+
+def test_the_page_on_embedding_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tlismni.core.compiled.library import LIBRARY
+
+    if LIBRARY is None:
+        pytest.skip("needs the library of machine code (tlismni.core.ahead)")
+    monkeypatch.chdir(tmp_path)
+    (code,) = [text for language, _, text in blocks(DOCS / "embedding.md") if language == "python"]
+    exec(code, {"Path": Path})
+    assert (tmp_path / "control.image").stat().st_size > 1000
+
+
+def test_the_page_on_the_cross_check_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("exudyn", "jinja2", "plotly", "matplotlib"):
+        pytest.importorskip(module)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    (code,) = [text for language, _, text in blocks(DOCS / "cross-check.md") if language == "python"]
+    exec(code, names)
+    assert names["found"].ok and any((tmp_path / "out" / "check").iterdir())
+
+
+def test_the_rod_of_the_page_on_model_files_runs(tmp_path: Path) -> None:
+    pytest.importorskip("ruamel.yaml")
+    from tlismni.core import Model, simulate
+
+    (text,) = [text for language, _, text in blocks(DOCS / "model-files.md") if language == "yaml"]
+    model = Model.from_yaml(text)
+    assert model.bodies[0].inertia == 2.0 * 1.5**2 / 12.0
+    assert abs(simulate(model, 0.5, rtol=1e-9)["energy.balance"]).max() < 1e-6
+
+
+@pytest.mark.slow
+def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
+    for module in ("mkdocs", "material", "mkdocstrings"):
+        if find_spec(module) is None:
+            pytest.skip(f"{module} is not installed (extra docs)")
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path / "site")],
+        cwd=ROOT, capture_output=True, text=True, check=False, env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    pages = list((tmp_path / "site").rglob("index.html"))
+    assert len(pages) > 40 and (tmp_path / "site" / "gallery" / "slack_rope" / "index.html").is_file()
+    api = (tmp_path / "site" / "api" / "running" / "index.html").read_text(encoding="utf-8")
+    assert "simulate" in api and "Parameters" in api
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(path.name for path in (DOCS / "notebooks").glob("*.ipynb")))
+def test_a_notebook_runs_from_top_to_bottom(name: str, tmp_path: Path) -> None:
+    for module in ("nbclient", "nbformat", "ipykernel", "matplotlib"):
+        pytest.importorskip(module)
+    import nbformat
+    from nbclient import NotebookClient
+
+    notebook = nbformat.read(DOCS / "notebooks" / name, as_version=4)
+    nbformat.validate(notebook)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "stored without results"
+    done = NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output for cell in done.cells for output in cell.get("outputs", ())]
+    assert shown and not any(output.output_type == "error" for output in shown)
