@@ -28,7 +28,7 @@ PARAMETERS = (
     ScenarioParameter("velocity_x", 0.0, "m/s", "velocity at the start, along x"),
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, against z", 0.0, exclusive=True),
     *law_parameters(restitution=0.2, stiffness=1e6),
-    *friction_parameters(0.3, None, 1e-3),
+    *friction_parameters(0.0, None, 1e-3),
 )  # fmt: skip
 
 
@@ -39,7 +39,11 @@ def dropped_box(
     damping: float | None, relaxation_time: float | None, friction: float, static_friction: float | None,
     transition_speed: float,
 ) -> Scenario:  # fmt: skip
-    """Body `box`, contacts `floor_ground_box_1` to `_8` of its corners with the floor at z = 0."""
+    """Body `box`, contacts `floor_ground_box_1` to `_8` of its corners with the floor at z = 0.
+
+    Without friction it comes to lie flat. With friction and law newton the last small blows of its corners may end in
+    an error (the contact chatters): take a force law.
+    """
     contact = contact_law(
         law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping,
         relaxation_time=relaxation_time, mass=0.25 * mass,
