@@ -17,6 +17,8 @@ from .elements import (
     Bushing2D,
     Bushing3D,
     Cable2D,
+    Cable3D,
+    CableClamp3D,
     Clamp2D,
     ConstantVelocity3D,
     CoordinateDriver,
@@ -33,8 +35,10 @@ from .elements import (
     Gear3D,
     Joint3D,
     JointElement,
+    KnifeEdge2D,
     LinearSystem,
     MaterialPoint2D,
+    MaterialPoint3D,
     MovingFrame2D,
     Planar3D,
     PointMass2D,
@@ -56,6 +60,8 @@ from .elements import (
     RevoluteSpherical3D,
     RigidBody2D,
     RigidBody3D,
+    RollingDisk3D,
+    RollingSphere3D,
     ScalarForce2D,
     ScalarJoint2D,
     Screw3D,
@@ -129,7 +135,9 @@ from .run.state import State
 from .runs import Runs
 from .shapes.angle_stop2d import AngleStop2D
 from .shapes.box2d import Box2D, DiskOnBox2D
+from .shapes.box3d import Box3D
 from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from .shapes.disk_on_cable import DiskOnCable2D
 from .shapes.disk_on_line import DiskOnLine2D, Line2D
@@ -137,6 +145,7 @@ from .shapes.group2d import ContactGroup2D, contacts_between
 from .shapes.rope2d import Rope2D
 from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
 from .shapes.segment2d import DiskOnSegment2D, Segment2D
+from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
 from .simulate import simulate
 from .simulate_many import simulate_many
 from .tables.redundancy import RedundantRow
@@ -147,6 +156,7 @@ __all__ = [
     "AmbrosioFriction",
     "AngleDriver3D",
     "AngleStop2D",
+    "AngleStop3D",
     "AppliedForce2D",
     "AppliedForce3D",
     "AppliedTorque2D",
@@ -159,10 +169,13 @@ __all__ = [
     "Belt2D",
     "BodyElement",
     "Box2D",
+    "Box3D",
     "BrownMcPheeFriction",
     "Bushing2D",
     "Bushing3D",
     "Cable2D",
+    "Cable3D",
+    "CableClamp3D",
     "CarvalhoMartins",
     "Channel",
     "Clamp2D",
@@ -205,6 +218,7 @@ __all__ = [
     "Gear3D",
     "Gonthier",
     "HalfPlane2D",
+    "HalfSpace3D",
     "HerbertMcWhannell",
     "Hertz",
     "HuGuo",
@@ -214,6 +228,7 @@ __all__ = [
     "Joint3D",
     "JointElement",
     "KelvinVoigt",
+    "KnifeEdge2D",
     "KuwabaraKono",
     "LankaraniNikravesh",
     "LeeWang",
@@ -226,6 +241,7 @@ __all__ = [
     "MarkerOutput3D",
     "Material",
     "MaterialPoint2D",
+    "MaterialPoint3D",
     "Model",
     "ModelError",
     "MovingFrame2D",
@@ -257,7 +273,10 @@ __all__ = [
     "RevoluteSpherical3D",
     "RigidBody2D",
     "RigidBody3D",
+    "RollingDisk3D",
+    "RollingSphere3D",
     "Rope2D",
+    "Rope3D",
     "RotationVector",
     "Runs",
     "ScalarContact2D",
@@ -271,6 +290,10 @@ __all__ = [
     "Sine",
     "SlideFriction2D",
     "SlideSpring2D",
+    "SlideStop3D",
+    "Sphere3D",
+    "SphereOnHalfSpace3D",
+    "SphereOnSphere3D",
     "Spherical3D",
     "SpringDamper2D",
     "SpringDamper3D",

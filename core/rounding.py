@@ -138,6 +138,28 @@ STICKING_MOVES = 1e-9
 """Of the motion that friction is to take away: with more left of it, contacts do not all stick."""
 BEYOND_LIMIT, NO_FRICTION = 1e-12, 1e-14
 """Parts of a limit and of the largest friction by which friction may be beyond its limit."""
+REACHES_LIMIT_NOW = 1e-6
+"""Of the limit, in space: friction of a contact whose event is that it reaches it is that near at least."""
+STICKS_STILL = 1e-9
+"""Of the largest acceleration, in space: what sticks moves less along its tangents."""
+STANDS = 1e-7
+"""Of the speeds, in space: where the direction of sliding ends with less, the contact has stopped. Both velocities
+along the tangents vanish together to what the location of the first one's zero leaves of the second."""
+NEARLY_JAMMED = 1e-6
+"""Of a contact's inverse effective mass, in space: with less left of it by friction, it jams."""
+CONES_ENOUGH = 1e-14
+"""Of the largest force of several contacts in space: what a sweep changes when it is done."""
+CONES_NEAR = 1e-12
+"""The same: what Newton's method may leave."""
+CONES_GOOD = 1e-8
+"""The same: contacts that nearly repeat each other leave what they differ by."""
+CONES_ROUGH = 1e-5
+"""The same: what sweeps may change that come to no end. Friction is in its cones then, and what still approaches is
+struck again."""
+CONES_RANK = 1e-13
+"""Of the largest singular value in that Newton's method: a smaller one is zero."""
+STILL = 1e-9
+"""Of the speed that weight gives over the mechanism's size: there the direction of sliding goes on through zero."""
 TO_SPARE = 1e-6
 """Of its limit: what a new distribution of sticking friction must leave to each contact."""
 LCP_PIVOT = 1e-11

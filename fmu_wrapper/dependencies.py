@@ -13,7 +13,7 @@ from ..core.elements import Element
 from ..core.elements.base import BodyElement
 from ..core.laws import ForceLaw
 from ..core.model.markers import GROUND
-from ..core.shapes.contact2d import Contact2D
+from ..core.shapes.element import ContactElement
 from .variables import EVENTS, Variable, VariableTable
 
 ACCELERATIONS = ("ax", "ay", "angular_acceleration")
@@ -86,7 +86,7 @@ def _felt_channels(element: Element) -> Iterator[str]:
 
 
 def _is_impact_contact(element: Element) -> bool:
-    return isinstance(element, Contact2D) and not isinstance(element.law, ForceLaw)
+    return isinstance(element, ContactElement) and not isinstance(element.law, ForceLaw)
 
 
 def _groups(model: Model, ties: Callable[[Element], bool]) -> list[set[str]]:

@@ -4,6 +4,7 @@ A new scenario is one file with its parameter table and its builder, and its imp
 """
 
 from . import (  # noqa: F401  (importing a scenario's file puts it in the catalogue)
+    arm_stop,
     bouncing_ball,
     bricard,
     cable_ground,
@@ -11,6 +12,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     cantilever,
     chain,
     double_pendulum_wall,
+    dropped_box,
     flexible_slider_crank_stop,
     four_bar,
     free_body,
@@ -24,10 +26,14 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     rocking_block,
     rod_rod,
     rod_wall,
+    rolling_disk,
     slider_crank,
     slider_crank_stop,
+    spatial_cradle,
     spatial_slider_crank,
+    spatial_slider_crank_stop,
     sphere_beam,
+    spinning_sphere,
     split_contact,
     stick_slip,
     universal_pendulum,

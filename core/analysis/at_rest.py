@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..loop.sample import write_sample
 from ..run.simulation import Simulation
+from ..tables.assembly import Assembly
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 Floats = NDArray[np.float64]
@@ -44,14 +45,27 @@ class Matrices:
         return basis.T @ self.mass @ basis, basis.T @ self.damping @ basis, basis.T @ self.stiffness @ basis
 
 
-def run_of(system: Any, t0: float = 0.0, **settings: Any) -> Simulation:
-    """A run of `system` that has not left its start.
+def refuse_rate_rows(assembly: Assembly) -> None:
+    """Raise ModelError for a model with velocity-level rows: its positions have more freedom than its velocities."""
+    if assembly.rate_rows:
+        names = sorted({assembly.row_names[row] for row in assembly.rate_rows})
+        raise ModelError(
+            f"{', '.join(repr(name) for name in names)} hold velocities without holding positions (nonholonomic): "
+            "analyses of small motions take constraints that hold positions. Replace them by a joint or a force with "
+            "friction for this analysis, or simulate"
+        )
+
+
+def run_of(system: Any, t0: float = 0.0, rate_rows: bool = False, **settings: Any) -> Simulation:
+    """A run of `system` that has not left its start; `rate_rows`: also of one with velocity-level rows.
 
     Raises
     ------
     ModelError : beyond MOST_COORDINATES; ConsistencyError : for a start that does not meet the constraints.
     """
     sim = Simulation(system, t0=t0, **settings)
+    if not rate_rows:
+        refuse_rate_rows(sim.assembly)
     if sim.assembly.n > MOST_COORDINATES:
         raise ModelError(
             f"the system has {sim.assembly.n} coordinates; analyses at rest use dense matrices, up to "

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..equations.system import EquationSystem
 from ..run.simulation import Simulation
+from .at_rest import refuse_rate_rows
 from .flight import VARYING
 from .linearise import colour_columns, matrix_at, tangent_rate
 
@@ -37,6 +38,7 @@ class Layout:
     @classmethod
     def of(cls, sim: Simulation) -> "Layout":
         """The layout of the structure that `sim` has now."""
+        refuse_rate_rows(sim.assembly)
         structure, n = sim.workspace.structure, sim.assembly.n
         dependent = structure.dependent
         if dependent is None:

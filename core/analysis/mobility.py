@@ -53,14 +53,14 @@ class Mobility:
 
 
 def mobility(system: Any) -> Mobility:
-    """The mobility of `system` at its start.
+    """The mobility of `system` at its start; with velocity-level rows that of its velocities.
 
     Raises
     ------
     ConsistencyError : for constraints that contradict each other, a start that they do not allow, or a singular
         position: names the joints.
     """
-    sim = run_of(system)
+    sim = run_of(system, rate_rows=True)
     assembly, arrays, active = sim.assembly, sim.workspace.arrays, sim.workspace.structure.active
     place(sim, arrays["q"][: assembly.n].copy(), np.zeros(len(active)))
     found: Matrices = matrices(sim)

@@ -14,6 +14,8 @@ from .belt2d import Belt2D
 from .bushing2d import Bushing2D
 from .bushing3d import Bushing3D
 from .cable2d import Cable2D
+from .cable3d import Cable3D
+from .cable_clamp3d import CableClamp3D
 from .clamp2d import Clamp2D
 from .coordinate_driver import CoordinateDriver
 from .coordinate_load import CoordinateLoad
@@ -42,8 +44,10 @@ from .joints3d import (
     Spherical3D,
     Universal3D,
 )
+from .knife_edge2d import KnifeEdge2D
 from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
+from .material_point3d import MaterialPoint3D
 from .moving_frame2d import MovingFrame2D
 from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
@@ -52,6 +56,7 @@ from .reduced_body2d import ReducedBody2D, ReducedPoint
 from .relation3d import Gear3D, RackAndPinion3D, Relation3D, Screw3D
 from .relative_motor2d import RelativeMotor2D
 from .revolute2d import Revolute2D
+from .rolling_joints3d import RollingDisk3D, RollingSphere3D
 from .scalar_force2d import ScalarForce2D, scalar_force
 from .scalar_joint2d import ScalarJoint2D, scalar_constraint
 from .servo2d import Servo2D
@@ -74,6 +79,8 @@ BODIES = (
     MovingFrame2D,
     PointMass3D,
     RigidBody3D,
+    Cable3D,
+    MaterialPoint3D,
 )
 JOINTS = (
     Revolute2D,
@@ -83,6 +90,7 @@ JOINTS = (
     Gear2D,
     Rack2D,
     Belt2D,
+    KnifeEdge2D,
     CoordinateDriver,
     RelativeMotor2D,
     CoordinateRelation,
@@ -103,6 +111,9 @@ JOINTS = (
     Gear3D,
     RackAndPinion3D,
     Screw3D,
+    RollingDisk3D,
+    RollingSphere3D,
+    CableClamp3D,
 )
 FORCES = (
     SpringDamper2D,
@@ -146,6 +157,8 @@ __all__ = [
     "Bushing2D",
     "Bushing3D",
     "Cable2D",
+    "Cable3D",
+    "CableClamp3D",
     "Clamp2D",
     "ConstantVelocity3D",
     "CoordinateDriver",
@@ -167,8 +180,10 @@ __all__ = [
     "Joint",
     "Joint3D",
     "JointElement",
+    "KnifeEdge2D",
     "LinearSystem",
     "MaterialPoint2D",
+    "MaterialPoint3D",
     "MovingFrame2D",
     "Planar3D",
     "PlanarBody",
@@ -193,6 +208,8 @@ __all__ = [
     "RevoluteSpherical3D",
     "RigidBody2D",
     "RigidBody3D",
+    "RollingDisk3D",
+    "RollingSphere3D",
     "ScalarForce2D",
     "ScalarJoint2D",
     "Screw3D",

@@ -118,6 +118,10 @@ class Form:
     """Local (i, j) pairs where d r_i / d q_j may be nonzero."""
     jacobian_pattern: Sequence[tuple[int, int]]
     """Local (row, j) pairs where Phi_q may be nonzero."""
+    rate_rows: Sequence[int] = ()
+    """Local rows that hold at velocity level only, W(q) v = w(t), without a position form (nonholonomic). Their kernel
+    writes 0 to phi, W v - w to phid and its time derivative to phidd; W stands in the rows of Phi_q, W^T lambda in r,
+    and the tangent of r has d(W^T lambda)/dq."""
 
 
 @dataclass(frozen=True)
@@ -140,6 +144,7 @@ class Element(OpenRecord):
     constraint_rows: ClassVar[int] = 0
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = ()
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ()
+    rate_rows: ClassVar[Sequence[int]] = ()
 
     name: Name
     """Unique in its model; channels begin with it."""
@@ -152,7 +157,7 @@ class Element(OpenRecord):
     def form(self) -> Form:
         """Kernel, number of constraint rows and patterns of this element."""
         kind = type(self)
-        return Form(kind.kernel, kind.constraint_rows, kind.tangent_pattern, kind.jacobian_pattern)
+        return Form(kind.kernel, kind.constraint_rows, kind.tangent_pattern, kind.jacobian_pattern, kind.rate_rows)
 
     def form_in(self, bodies: "Mapping[str, BodyElement]") -> Form:
         """Its form in a model with these bodies, for elements whose size depends on another."""

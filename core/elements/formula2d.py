@@ -223,8 +223,8 @@ def form_ahead(kind: str, formulas: tuple[Callable[..., Any], ...], arguments: A
         return None
     from ..compiled.prebuilt import Prebuilt
 
-    patterns = (tuple((i, j) for i, j in found[pattern]) for pattern in ("tangent", "jacobian"))
-    return Form(Prebuilt(formulas[0], "internal", name), found["rows"], *patterns)
+    tangent, jacobian = (tuple((i, j) for i, j in found[pattern]) for pattern in ("tangent", "jacobian"))
+    return Form(Prebuilt(formulas[0], "internal", name), found["rows"], tangent, jacobian)
 
 
 def caller_of(formula: Callable[..., Any], arguments: Arguments, first: int) -> Any:

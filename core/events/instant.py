@@ -17,6 +17,7 @@ from ..cones.directions import (
     independent_directions,
     independent_size,
 )
+from ..cones.friction_cones import friction_cones_size
 from ..laws import ForceLaw
 from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
@@ -24,6 +25,7 @@ from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
 from ..tables.assembly import Assembly
 from .force_contact import settle_forces
 from .impact import strike
+from .in_space import begin_rest_in_space, find_forces_in_space, open_in_space, strike_in_space
 from .prepare import use_modes
 from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, WHO, WHOLES
 from .resting import begin_rest, find_forces
@@ -39,9 +41,18 @@ FEW = 8
 """Touching contacts that there is room for at first."""
 
 
+IN_SPACE = {
+    "open_touching": open_in_space, "strike": strike_in_space, "begin_rest": begin_rest_in_space,
+    "find_forces": find_forces_in_space,
+}  # fmt: skip
+"""What takes the place of parts where contacts have two tangents."""
+
+
 def _functions(assembly: Assembly) -> dict[str, int]:
     """Addresses of what the record calls; zeros, and nothing to compile, where it never will."""
     parts = [(part.py_func.__name__, part, PART_SIGNATURE) for part in PARTS]
+    if assembly.tangents == 2:
+        parts = [(name, IN_SPACE.get(name, part), signature) for name, part, signature in parts]
     needed = {name: bool(assembly.contacts) for name, _, _ in (*parts, *_OTHERS)}
     needed["settle_forces"] = any(isinstance(contact.law, ForceLaw) for contact in assembly.contacts)
     needed["use_modes"] = needed["use_modes"] or bool(assembly.breakpoints)
@@ -58,7 +69,10 @@ class Instant:
         most = self.most = max(min(most, contacts), 1)
         entries = sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches)
         space = self.rows_space = rows_space or 4 * (entries + n)
-        work = max(independent_size(2 * most, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
+        # normals and tangents of so many contacts
+        blocks = 1 + assembly.tangents
+        every, spatial = blocks * most, 3 * most if blocks == 3 else 0
+        work = max(independent_size(every, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
         of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS, most)
         self._cones = BlockRecord(
             CONES,
@@ -69,13 +83,15 @@ class Instant:
             INSTANT,
             {
                 **dict.fromkeys(("velocities", "bounced", "noise", "sum", "terms"), n_ext),
-                **dict.fromkeys(("some", "chosen", "order"), 2 * most),
+                **dict.fromkeys(("some", "chosen", "order"), every),
                 "contacts": most, "table": COLUMNS * most, "reals": REALS, "wholes": WHOLES,
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
-                "directions": 2 * most * n, "responses": 2 * most * n,
+                "directions": every * n, "responses": every * n,
                 "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
                 "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
+                "space_a": spatial * spatial, "space_b": spatial, "space_p": spatial,
+                "space_room": spatial * spatial + 4 * spatial + friction_cones_size(most) if spatial else 0,
                 "slots_work": n + sum(len(b.coord) * len(b.tangent_pattern) for b in assembly.batches),
             },
             {

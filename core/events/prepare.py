@@ -47,6 +47,8 @@ def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
     if code == OK and ws.m_act > 0:
         code = call_analyze(ws.analyze, lu_at(ws.lu_d), ws.values)
+    if code == OK and 0 < ws.m_held < ws.m_act:
+        code = call_analyze(ws.analyze, lu_at(ws.lu_p), ws.values)
     if code != OK:
         return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_MATRIX
     if not follow(lu_at(ws.kkt_query), lu_at(ws.kkt)):

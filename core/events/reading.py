@@ -7,7 +7,8 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
-from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
+from ..tables.held import held_friction, is_held
 from ..tables.levels import force_level, position_level, rate_level
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
 
@@ -78,8 +79,8 @@ def read_before(ev: Any, dr: Any, ws: Any) -> None:
             continue
         # a force is found less finely than a velocity: the event is of what is nearer to zero
         part = force / strongest
-        if slid[i] == STICKS:
-            friction = -lam[slide]
+        if is_held(ws, k):
+            friction = -lam[slide] if ws.tangents == 1 else held_friction(ws, k, lam)
             if abs(friction) >= static[k] * force * (1.0 - REACHES_LIMIT):
                 slips[i] = -np.sign(friction)
             else:

@@ -26,8 +26,9 @@ INSTANT = np.dtype(
             "table",                     # (COLUMNS, most) float64: of each of them
             "reals", "wholes",           # (REALS,) float64, (WHOLES,) int64
             "a",                         # (2 most, 2 most) float64: inverse effective masses, normals first
-            "directions", "responses",   # (2 most, n) float64: gradients, and the motions that unit impulses cause
-            "some", "chosen", "order",   # (2 most,) int64
+            # (2 most, n) float64, in space (3 most, n): gradients, and the motions that unit impulses cause
+            "directions", "responses",
+            "some", "chosen", "order",   # (2 most,) int64, in space (3 most,)
             "kept_memory",               # (n_contacts, MEMORY_SIZE) float64
             "kept_rate", "kept_counters",  # (RATE_SIZE,) float64, (COUNTERS_SIZE,) int64
             "velocities", "bounced",     # (n_ext,) float64
@@ -41,6 +42,8 @@ INSTANT = np.dtype(
             "modes",                     # (n_contacts,) float64: before the instant
             "unsettled",                 # (n_contacts,) int64
             "massless_rates",            # (n_contacts,) float64
+            # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
+            "space_a", "space_b", "space_p", "space_room",
         )
     ]
 )  # fmt: skip
@@ -74,8 +77,12 @@ instant_at = record_view(INSTANT_TYPE)
     SLOW,                              # sliding below it counts as none, m/s
     STOP_IMPULSE, STOP_LOSS,           # N s and J of what stopped without a collision
     FIRST,                             # the higher, the earlier its tangent is kept where some repeat others
-) = range(70)  # fmt: skip
-COLUMNS = 70
+    # in space, along the second tangent: rate, free acceleration, force and acceleration with it, impulse, rate before
+    SWAY_RATE, B_S, F_S, W_S, P_S, SWAY_BEFORE,
+    COS_WAY, SIN_WAY,                  # direction of sliding, from the first tangent
+    AXIS_NOW,                          # that angles are counted from (`shapes/frame3d.py`)
+) = range(79)  # fmt: skip
+COLUMNS = 79
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

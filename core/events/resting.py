@@ -285,7 +285,7 @@ def _stand_apart(ev: Any, ws: Any, ms: Any) -> None:
         copy(col(ev, one), col(ev, other), count)
     whole(ev)[SLIPPING], whole(ev)[STICKS] = slipping, sticks
     _swap_forces(ev, count)
-    _note_loaded(ev, ws)
+    note_loaded(ev, ws)
 
 
 @internal
@@ -359,7 +359,7 @@ def _solve(ev: Any, ws: Any, ms: Any) -> int:
         if among(ev, count, takes, col(ev, DIRECTION), col(ev, DIRECTION)) == NO_SOLUTION:
             _name_jammed(ev)
             return NO_FORCES
-        _note_loaded(ev, ws)
+        note_loaded(ev, ws)
         # one that leaves does so unless the others' forces press it together again
         again = False
         for i in range(count):
@@ -412,7 +412,7 @@ def _tries(ev: Any, ws: Any, tried: Any, keeps: bool, spare: float) -> bool:
     count, static, full, order = whole(ev)[COUNT], col(ev, STATIC), col(ev, FULL), ivec(ev.order, 2 * ev.most)
     if among(ev, count, col(ev, TAKES), tried, col(ev, DIRECTION)) == NO_SOLUTION:
         return False
-    _note_loaded(ev, ws)
+    note_loaded(ev, ws)
     free = 0
     for i in range(count):
         if _loaded(ev, i) and tried[i] == 0.0 and static[i] > 0.0:
@@ -429,7 +429,7 @@ def _tries(ev: Any, ws: Any, tried: Any, keeps: bool, spare: float) -> bool:
 
 
 @internal
-def _note_loaded(ev: Any, ws: Any) -> None:
+def note_loaded(ev: Any, ws: Any) -> None:
     """Which touching contacts press, to `LOADED`."""
     count, contacts, largest = whole(ev)[COUNT], ivec(ev.contacts, ev.most), vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
     level, rows, scale = position_level(ws), ivec(ws.contact_rows, ws.n_contacts), vec(ws.row_scale, ws.m_ext)

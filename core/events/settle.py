@@ -6,6 +6,8 @@ it puts everything back and says so; once Python has built what it needs, it dec
 
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.complementarity import MANY
@@ -14,6 +16,7 @@ from ..location.watch import remember
 from ..methods.history import history_time, recall, restart
 from ..rounding import DIRECTION_RANK, GAP_ROUNDING, UNSOLVED
 from ..state.modes import (
+    AXIS,
     CLOSED,
     GAP_START,
     IMPULSE_JUMP,
@@ -24,6 +27,7 @@ from ..state.modes import (
     RATIO,
     SLIDE,
     SLIDE_START,
+    WAY,
 )
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import (
@@ -52,6 +56,7 @@ from ..tables.switch import take_partition, take_structure
 from .blow import impact
 from .breakpoint import pass_breakpoint
 from .crowding import count_instant
+from .in_space import BEGINS, keep_in_space
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
 from .meeting import meet_constraints
@@ -60,8 +65,11 @@ from .progress import COUNT as GUARDED
 from .reading import largest_acceleration, rate_size, read_before
 from .records import (
     ACCELERATIONS,
+    AXIS_NOW,
+    COS_WAY,
     COUNT,
     DECLINED,
+    DIRECTION,
     FIRST,
     FLAG,
     GAP,
@@ -79,6 +87,7 @@ from .records import (
     RESTS,
     ROUNDING,
     SETTLED,
+    SIN_WAY,
     SINGULAR_MATRIX,
     SLID,
     SLIDE_RATE,
@@ -296,25 +305,35 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         if status == SETTLED:
             status = choose(ev, dr, ws, ms)
         # one contact alone that jams is for the user to hear of
-        if status != NO_FORCES or whole(ev)[WHO] >= 0 or ms.exact == 0 or not wedge(ev, dr, ws, ms):
+        given_up = whole(ev)[WHO] >= 0 or ms.exact == 0 or ws.tangents == 2
+        if status != NO_FORCES or given_up or not wedge(ev, dr, ws, ms):
             break
     if status != SETTLED:
         return status
     _account_stops(ev, ws)
     rank = DIRECTION_RANK if count <= MANY else RANK_OF_MANY
-    keep(ev, ws, min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK))
+    _keep_some(ev, ws, min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK))
     while True:
         status = _take(ev, dr, ws, ms)
         repeats = status == REPEATED_ROWS or status == SINGULAR_MATRIX or status == NO_ACCELERATIONS
-        if (repeats or (status == SETTLED and pulls(ev, ws))) and keep_others(ev, ws):
+        others = ws.tangents == 1 and (repeats or (status == SETTLED and pulls(ev, ws)))
+        if others and keep_others(ev, ws):
             continue
         # contacts that each can be told from any other repeat each other together
         if not repeats or real(ev)[RANK] >= LOOSEST_RANK or not _any(ev, FLAG):
             break
-        keep(ev, ws, min(100.0 * real(ev)[RANK], LOOSEST_RANK))
+        _keep_some(ev, ws, min(100.0 * real(ev)[RANK], LOOSEST_RANK))
     if status == SETTLED:
         _report(ev, dr, ws, ms)
     return status
+
+
+@internal
+def _keep_some(ev: Any, ws: Any, rank: float) -> None:
+    if ws.tangents == 2:
+        keep_in_space(ev, ws, rank)
+    else:
+        keep(ev, ws, rank)
 
 
 @internal
@@ -371,7 +390,9 @@ def _take(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             memory[GAP_START] = gap if abs(gap) <= level * scale[rows[k]] else 0.0
         kept = was == CLOSED and col(ev, SLID)[i] == memory[SLIDE]
         changed = changed or not kept
-        if memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
+        if ws.tangents == 2:
+            memory[WAY], memory[AXIS] = np.arctan2(col(ev, SIN_WAY)[i], col(ev, COS_WAY)[i]), col(ev, AXIS_NOW)[i]
+        elif memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
             memory[SLIDE_START] = col(ev, SLIDE_VALUE)[i]
     if some:
         status = call_part(ev.use_modes, ev, dr, ws, ms)
@@ -399,7 +420,7 @@ def _report(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
             kind = OPENS
         elif not closed and whole(ev)[STRUCK] == 0 and pending[k] != 0 and started:
             kind = GRAZE
-        elif closed and slides[k] >= 0 and memory[SLIDE] != slid:
+        elif closed and slides[k] >= 0 and (memory[SLIDE] != slid or col(ev, DIRECTION)[i] == BEGINS):
             kind = SLIP if abs(memory[SLIDE]) == 1.0 else (STICK if abs(slid) == 1.0 else -1)
         if kind >= 0:
             report(dr, t, kind, k, 0.0, 0.0, 0.0, max(phid[rows[k]], 0.0) if kind == OPENS else 0.0, 0.0, 0.0)

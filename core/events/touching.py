@@ -63,7 +63,7 @@ def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
 
 
 @internal
-def _gradient(ws: Any, row: int, out: Any) -> None:
+def find_gradient(ws: Any, row: int, out: Any) -> None:
     """Gradient (n,) of row `row` of Phi, which is none of the matrix."""
     start, values = ivec(ws.gradient_start, ws.m_ext), vec(ws.values, ws.n_values)
     for i in range(ws.n):
@@ -90,9 +90,9 @@ def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     directions = mat(ev.directions, 2 * count, ws.n)
     for i in range(count):
         k = contacts[i]
-        _gradient(ws, rows[k], directions[i])
+        find_gradient(ws, rows[k], directions[i])
         if slides[k] >= 0:
-            _gradient(ws, slides[k], directions[count + i])
+            find_gradient(ws, slides[k], directions[count + i])
         else:
             clear(directions[count + i], ws.n)
         memory[k, MODE] = OPEN
@@ -102,7 +102,7 @@ def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     if code != OK:
         return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_JOINTS
     _respond(ev, ws, count, slides)
-    return _refuse_immovable(ev, ws, count)
+    return refuse_immovable(ev, ws, count)
 
 
 @internal
@@ -133,7 +133,7 @@ def _respond(ev: Any, ws: Any, count: int, slides: Any) -> None:
 
 
 @internal
-def _refuse_immovable(ev: Any, ws: Any, count: int) -> int:
+def refuse_immovable(ev: Any, ws: Any, count: int) -> int:
     """A contact whose shapes joints and drivers hold both takes no impulse."""
     n, values, slots = ws.n, vec(ws.values, ws.n_values), ivec(ws.mass_slot, ws.n_mass)
     entry_row, entry_col = ivec(ws.entry_row, ws.n_values), ivec(ws.entry_col, ws.n_values)

@@ -5,9 +5,10 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
-from ..state.modes import CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..state.modes import CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..state.workspace_records import OK, structure_at
+from ..tables.held import held_friction, is_held
 from ..tables.levels import force_level
 from .laws import MASSLESS
 from .reading import comes_back
@@ -48,8 +49,8 @@ def find_unsettled(ev: Any, ws: Any, found: Any) -> bool:
             if force < -_contact_noise(ev, ws, rows[k]):
                 found[k], any_found = 1, True
                 continue
-        if slides[k] >= 0 and memory[k, SLIDE] == STICKS:
-            if abs(lam[slides[k]]) > static[k] * force * (1.0 + SLIP_EXCESS) + none:
+        if slides[k] >= 0 and is_held(ws, k):
+            if held_friction(ws, k, lam) > static[k] * force * (1.0 + SLIP_EXCESS) + none:
                 found[k], any_found = 1, True
     return any_found
 

@@ -45,6 +45,8 @@ def look_now(ws: Any, lc: Any, k: int) -> None:
         values[row] = looked[row]
         if slide >= 0:
             values[slide] = looked[slide]
+            if ws.tangents == 2:
+                values[slide + 1] = looked[slide + 1]
 
 
 @internal

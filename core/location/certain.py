@@ -23,9 +23,10 @@ from ..shapes.cable_line import BOTH as CABLE_BOTH
 from ..shapes.cable_line import LENGTH as CABLE_LENGTH
 from ..shapes.cable_line import POINT as CABLE_POINT
 from ..shapes.cable_line import VECTORS
-from ..shapes.geometry_kinds import CABLE, DISKS, EQUATIONS, LINE, LINEAR, OWN, PLANE, SEGMENT
+from ..shapes.geometry_kinds import CABLE, DISKS, EQUATIONS, LINE, LINEAR, OWN, PLANE, SEGMENT, SPHERE
 from ..shapes.line2d import BOTH as LINE_BOTH
 from ..shapes.line2d import NODES, POINTS
+from ..shapes.travel3d import way_of_sphere
 from .motion_bounds import control_points, gap_bounds
 from .probe import KIND, NEAR_SIZE, VIEW, look, probe_of, state_of_pair
 
@@ -67,6 +68,8 @@ def way_of_gap(ws: Any, lc: Any, k: int, fastest: int) -> float:
             arm = math.hypot(q[c[3]] - q[c[0]], q[c[4]] - q[c[1]]) + math.hypot(p[2], p[3])
             total += way[c[2]] * (arm + way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]])
         return total
+    if kind == SPHERE:
+        return way_of_sphere(vec(ws.q, ws.n_ext), coord[0], par[0], way)
     largest = 0.0
     if kind == LINE:
         for e in range(batch.count):

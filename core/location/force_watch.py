@@ -14,9 +14,10 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time
 from ..methods.multistep import rows_available
 from ..rounding import AS_LONG, SLIP_EXCESS
-from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE, STICKS
+from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, WATCH, call_accelerations
 from ..state.workspace_records import OK
+from ..tables.held import held_friction, is_held
 from .certain import SHORTEST
 from .probe import BRACKET, HAPPENS, VIEW, between, look
 
@@ -43,8 +44,8 @@ def _margins(ws: Any, k: int, lam: Any) -> Any:
     """(normal force, sticking friction that is left) of closed contact k, N; infinite where there is none."""
     force, left = -lam[ivec(ws.contact_rows, ws.n_contacts)[k]], np.inf
     most = vec(ws.contact_sticking, ws.n_contacts)[k]
-    if most > 0.0 and mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS:
-        left = (1.0 + SLIP_EXCESS) * most * force - abs(lam[ivec(ws.contact_slide_rows, ws.n_contacts)[k]])
+    if most > 0.0 and is_held(ws, k):
+        left = (1.0 + SLIP_EXCESS) * most * force - held_friction(ws, k, lam)
     return force, left
 
 
@@ -188,7 +189,7 @@ def sliding_turns(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
     """True if the sliding velocity of closed contact k changes its sign within the step and back."""
     slide = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE]
     row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    if slide == STICKS or slide == IDLE or row < 0:
+    if is_held(ws, k) or slide == IDLE or row < 0:
         return False
     start = mat(lc.watch, ws.n_contacts, WATCH)[k]
     stack, rests, left = np.empty((DEPTH + 1, VIEW)), np.empty(DEPTH + 1), np.empty(VIEW)

@@ -5,8 +5,9 @@ from typing import Any
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
-from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE, STICKS
+from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE
 from ..state.run_records import WATCH
+from ..tables.held import held_friction, is_held
 from ..tables.levels import force_level, position_level, rate_level
 from .asleep import sleeps_on
 from .certain import first_root, way_of_gap
@@ -35,8 +36,8 @@ def friction_margin(ws: Any, k: int) -> float:
     while it sticks (N); its sliding velocity in the direction of sliding while it slides (m/s)."""
     memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
     row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    if memory[SLIDE] == STICKS:
-        friction = abs(vec(ws.lam, ws.m_ext)[row])
+    if is_held(ws, k):
+        friction = held_friction(ws, k, vec(ws.lam, ws.m_ext))
         return vec(ws.contact_sticking, ws.n_contacts)[k] * vec(ws.monitor, ws.n_contacts)[k] - friction
     if memory[SLIDE] == IDLE:
         return 0.0
@@ -75,8 +76,7 @@ def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
             return True
         if vec(ws.contact_sticking, ws.n_contacts)[k] == 0.0:
             return False
-        sticks = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS
-        if sticks:
+        if is_held(ws, k):
             limit = vec(ws.contact_sticking, ws.n_contacts)[k] * force
             return friction_margin(ws, k) < -max(no_force, SLIP_EXCESS * limit)
         return friction_margin(ws, k) < -_no_sliding(ws, k)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled.jit import compiled
 from ..compiled.views import ivec, mat, vec
-from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE
+from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, SLIDE
 from ..tables.evaluate import evaluate_energy, recorded_norm
 
 
@@ -56,6 +56,11 @@ def write_sample(ws: Any, out: Any) -> None:
             acts = with_friction and (mode == ACTIVE or mode == CLOSED)
             out[at + 6 * contacts + k] = monitor[contacts + k] if acts else 0.0
             out[at + 7 * contacts + k] = phid[slide_rows[k]] if with_friction else 0.0
+            if ws.tangents == 2 and vec(ws.contact_sticking, contacts)[k] > 0.0:
+                # in space: how fast it slides
+                x, y = phid[slide_rows[k]], phid[slide_rows[k] + 1]
+                slides = mode == CLOSED and abs(memory[k, SLIDE]) == 1.0
+                out[at + 7 * contacts + k] = y if slides else np.sqrt(x * x + y * y)
         at += 8 * contacts
     evaluate_energy(ws)
     energy = vec(ws.energy, 3)

@@ -18,7 +18,7 @@ from ..events.prepare import use_modes
 from ..laws import ForceLaw
 from ..run.drive_record import Drive
 from ..tables.patterns import MOST_STRUCTURES
-from ..tables.switch import APART, ENGAGED, HELD, STUCK, key_of
+from ..tables.switch import APART, ENGAGED, HELD, STUCK, STUCK_TWICE, key_of
 from .errors import NativeError
 from .scratch import factorizations_of
 from .wander import Key, know, nearly_full, wander
@@ -103,7 +103,9 @@ def _codes(contact: Any) -> tuple[int, ...]:
     """What a contact can be."""
     if isinstance(contact.law, ForceLaw):
         return APART, ENGAGED
-    return (APART, HELD, STUCK) if contact.slide_row >= 0 else (APART, HELD)
+    if contact.slide_row < 0:
+        return APART, HELD
+    return (APART, HELD, STUCK) if contact.tangents == 1 else (APART, HELD, STUCK, STUCK_TWICE)
 
 
 def _make_room(sim: Any) -> None:

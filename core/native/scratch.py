@@ -36,7 +36,8 @@ def scratch_of(sim: Any) -> list[NDArray[Any]]:
 
 def factorizations_of(structure: Any) -> list[Any]:
     """All factorisations of a structure."""
-    return [structure.kkt, structure.kkt_query, *(partition.lu_d for partition in structure.known.values())]
+    of_partitions = [lu for partition in structure.known.values() for lu in partition.factorizations]
+    return [structure.kkt, structure.kkt_query, *of_partitions]
 
 
 def own_of(sim: Any) -> list[NDArray[Any]]:

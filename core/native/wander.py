@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import ConsistencyError, SimulationError
 from ..linalg import SingularMatrixError
 from ..linalg.record import MOST_ANALYSES
-from ..state.modes import ACTIVE, CLOSED, MODE, OPEN, SLIDE, STICKS
+from ..state.modes import ACTIVE, ALONG, CLOSED, MODE, OPEN, SLIDE, STICKS
 from ..state.run_records import STEP_SIZE
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.partition import prepare
@@ -59,6 +59,8 @@ def _set_modes(sim: Any, closed: frozenset[int], engaged: frozenset[int], sticki
         memory[MODE] = CLOSED if k in closed else ACTIVE if k in engaged else OPEN
         if contact.slide_row >= 0:
             memory[SLIDE] = STICKS if k in sticking else 1.0
+            if contact.tangents > 1 and k in sticking and k + len(sim.assembly.contacts) not in sticking:
+                memory[SLIDE] = ALONG
 
 
 def wander(sim: Any, keys: Sequence[Key]) -> None:

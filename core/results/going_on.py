@@ -12,9 +12,11 @@ from ..elements import (
     AxialRod,
     BodyElement,
     Cable2D,
+    Cable3D,
     FloatingBody2D,
     LinearSystem,
     MaterialPoint2D,
+    MaterialPoint3D,
     MovingFrame2D,
     PointMass2D,
     PointMass3D,
@@ -22,7 +24,7 @@ from ..elements import (
     RigidBody3D,
 )
 from ..errors import ModelError
-from ..model.attitude import EulerParameters
+from ..model.attitude import UPRIGHT, EulerParameters
 
 if TYPE_CHECKING:
     from .result import Result
@@ -140,6 +142,7 @@ def _(body: LinearSystem, q: Floats, v: Floats) -> dict[str, Any]:
     return {"position": tuple(q.tolist()), "velocity": tuple(v.tolist())}
 
 
+@moved.register(MaterialPoint3D)
 @moved.register(MaterialPoint2D)
 @moved.register(MovingFrame2D)
 def _(body: BodyElement, q: Floats, v: Floats) -> dict[str, Any]:
@@ -174,6 +177,24 @@ def _(body: Cable2D, q: Floats, v: Floats) -> dict[str, Any]:
         )
     shape = tuple(tuple(node) for node in nodes.tolist())
     return {"shape": shape, "position": (0.0, 0.0), "angle": 0.0, "velocity": (vx, vy), "angular_velocity": turn}
+
+
+@moved.register
+def _(body: Cable3D, q: Floats, v: Floats) -> dict[str, Any]:
+    """It starts in any shape, but turning as if rigid."""
+    nodes = q.reshape(-1, 2, 3)
+    matrix = np.zeros((*nodes.shape, 6))
+    matrix[:, 0, :, :3] = np.eye(3)
+    for c in range(3):
+        matrix[..., 3 + c] = np.cross(np.eye(3)[c], nodes)
+    columns = matrix.reshape(v.size, 6)
+    motion, *_ = np.linalg.lstsq(columns, v, rcond=None)
+    if float(np.max(np.abs(columns @ motion - v))) > RIGID * max(float(np.max(np.abs(v))), 1e-300):
+        raise ModelError(f"cable '{body.name}' swings, and its record has no place for that: {REMEDY}")
+    return {
+        "shape": tuple(tuple(node) for node in nodes.reshape(-1, 6).tolist()), "position": (0.0, 0.0, 0.0),
+        "attitude": UPRIGHT, "velocity": tuple(motion[:3].tolist()), "angular_velocity": tuple(motion[3:].tolist()),
+    }  # fmt: skip
 
 
 def _frame(q: Floats, v: Floats) -> dict[str, Any]:

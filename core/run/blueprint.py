@@ -93,7 +93,7 @@ def what_differs(a: Assembly, b: Assembly) -> str:
     """In which table, and not only in numbers, two assemblies differ; empty if in none."""
     for name in (
         "n", "m", "m_joints", "n_internal", "linear", "row_names", "work_names", "input_names", "replaced_rows",
-        "motions", "placed", "coordinate_names",
+        "rate_rows", "motions", "placed", "coordinate_names",
     ):  # fmt: skip
         if getattr(a, name) != getattr(b, name):
             return name

@@ -1,7 +1,7 @@
 """What the handling of force contacts, and studies, may ask of a run and do with it, at the workspace's point."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..events.records import SETTLED, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
 from ..methods.registry import Formula
 from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
-from ..state.modes import ACTIVE, CLOSED, MODE, SLIDE, STICKS
+from ..state.modes import ACTIVE, ALONG, CLOSED, MODE, SLIDE, STICKS
 from ..state.run_records import HANDLED, HERE
 from ..state.workspace_records import OK
 from ..tables.assembly import Assembly
@@ -112,9 +112,7 @@ class ContactSide:
         modes = self.memory[: len(self.assembly.contacts), MODE]
         closed = frozenset(int(k) for k in np.flatnonzero(modes == CLOSED))
         engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
-        sticking = frozenset(
-            k for k in closed if self.assembly.contacts[k].coulomb is not None and self.memory[k, SLIDE] == STICKS
-        )
+        sticking = frozenset(self._sticking(closed))
         if self.workspace.key != (closed, engaged, sticking):
             self.workspace.engage(closed, engaged, sticking)
         if choose_rows(self.workspace):
@@ -122,6 +120,15 @@ class ContactSide:
         prepare(self.workspace)
         if accelerations:
             self.solve_accelerations()
+
+    def _sticking(self, closed: Collection[int]) -> Iterator[int]:
+        """Those that stick, as `tables/switch.codes_of` takes them."""
+        for k in closed:
+            contact, slide = self.assembly.contacts[k], self.memory[k, SLIDE]
+            if contact.coulomb is not None and slide in (STICKS, ALONG):
+                yield k
+                if contact.tangents > 1 and slide == STICKS:
+                    yield k + len(self.assembly.contacts)
 
     def note_redundant(self) -> None:
         """Other rows are left out than before: add them to what the result tells."""

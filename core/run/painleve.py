@@ -52,7 +52,7 @@ def refuse_passed_jam(sim: "Engine", sliding: list[int]) -> None:
     active, rhs = workspace.structure.active, workspace.arrays["rhs"]
     for k in sliding:
         contact = sim.assembly.contacts[k]
-        row = n + int(np.searchsorted(active, contact.row))
+        row = n + int(np.flatnonzero(active == contact.row)[0])
         rhs[: n + len(active)] = 0.0
         rhs[row] = 1.0
         # multiplier that gives the gap a unit acceleration: -1/(A_NN + RATIO A_NT), the other contacts included

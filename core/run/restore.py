@@ -76,7 +76,8 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
     workspace.set_probe(parts.probe)
     if present is None:
         raise RuntimeError("a structure has a partition once one was chosen")
-    for factorization, factors in zip((structure.kkt, present.lu_d, structure.kkt_query), parts.factors, strict=True):
+    factorizations = (structure.kkt, structure.kkt_query, *present.factorizations)
+    for factorization, factors in zip(factorizations, parts.factors, strict=True):
         perm_r, perm_c = factorization.analysis()
         if not (_same(perm_r, factors.perm_r) and _same(perm_c, factors.perm_c)):
             factorization.analyze_with(factors.perm_r, factors.perm_c)

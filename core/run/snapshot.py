@@ -15,7 +15,8 @@ from ..tables.state_fields import STATE
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-FACTORIZATIONS = ("kkt", "lu_d", "kkt_query")
+FACTORIZATIONS = ("kkt", "kkt_query", "lu_d", "lu_p")
+"""The last one is there in models with velocity-level rows only."""
 _OF_METHOD = ("history", "times", "ring", "parameters", "weights", "error", "choice")
 
 Key = tuple[frozenset[int], frozenset[int], frozenset[int]]
@@ -59,7 +60,7 @@ class Snapshot(NamedTuple):
         state = self.buffer.view(self.layout)
         arrays: dict[str, NDArray[Any]] = {name: state[name][0] for name in names}
         arrays["dependent"], arrays["probe"] = self.dependent, self.probe
-        for name, factors in zip(FACTORIZATIONS, self.factors, strict=True):
+        for name, factors in zip(FACTORIZATIONS, self.factors, strict=False):
             arrays |= {f"{name}_{part}": x for part, x in factors._asdict().items()}
         return arrays
 
@@ -93,7 +94,7 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         workspace.state.dtype,
         tuple([
             Factors(*lu.analysis(), lu.lu_values.copy(), lu.pivots.copy())
-            for lu in (structure.kkt, partition.lu_d, structure.kkt_query)
+            for lu in (structure.kkt, structure.kkt_query, *partition.factorizations)
         ]),
         partition.dependent,
         structure.probe.copy(),
@@ -123,7 +124,13 @@ def snapshot_of(arrays: dict[str, NDArray[Any]], facts: dict[str, Any], layout: 
     return Snapshot(
         state.view(np.uint8),
         layout,
-        tuple(Factors(*(arrays[f"{name}_{part}"] for part in Factors._fields)) for name in FACTORIZATIONS),
+        tuple(
+            [
+                Factors(*(arrays[f"{name}_{part}"] for part in Factors._fields))
+                for name in FACTORIZATIONS
+                if f"{name}_perm_r" in arrays
+            ]
+        ),
         arrays["dependent"],
         np.ascontiguousarray(arrays["probe"]),
         (frozenset(facts["closed"]), frozenset(facts["engaged"]), frozenset(facts["sticking"])),

@@ -15,7 +15,7 @@ from ..events import Event
 from ..methods.order_selection import MOST_K
 from ..stage import OUTER_LOOPS
 from ..state.method_records import NEXT_K, K
-from ..state.modes import CLOSED, IDLE, MODE, MODE_NAMES, SLIDE, STICKS
+from ..state.modes import ALONG, CLOSED, IDLE, MODE, MODE_NAMES, SLIDE, STICKS
 from ..state.run_records import (
     A2,
     B1,
@@ -31,12 +31,12 @@ from ..state.run_records import (
     REJECTED_HERE,
     STEP_SIZE,
 )
+from .snapshot import FACTORIZATIONS
 from .state import State
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-FACTORIZATIONS = ("kkt", "lu_d", "kkt_query")
 _FINITE = ("t", "q", "v", "a", "aux", "lam", "memory", "probe", "method_weights", "method_times", "method_history")
 _NO_NAN = ("inputs", "watch", "clock")
 _SETTINGS = (MAX_STEP, FIXED_STEP, GROWTH, HOLD, EAGER, B1, B2, A2)
@@ -44,7 +44,7 @@ _SETTINGS = (MAX_STEP, FIXED_STEP, GROWTH, HOLD, EAGER, B1, B2, A2)
 _NOT_NEGATIVE = (HELD, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE)
 _LARGEST_COUNT = 2**53
 _HUGE = 1e300
-_SLIDES = (STICKS, IDLE, 1.0, -1.0)
+_SLIDES = (STICKS, IDLE, ALONG, 1.0, -1.0)
 
 
 def check_state(sim: "Simulation", state: State, own: State) -> None:
@@ -61,7 +61,8 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     arrays = state.arrays
     _need("dependent", len(set(arrays["dependent"].tolist())) == len(arrays["dependent"]), "names a coordinate twice")
     _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
-    _check_factorizations(arrays, len(structure.active), len(structure.active) + sim.assembly.n)
+    sizes = {"lu_d": len(structure.active), "lu_p": structure.m_held}
+    _check_factorizations(arrays, sizes, len(structure.active) + sim.assembly.n)
     _need_range("counters", arrays["counters"], 0, _LARGEST_COUNT)
     _check_memory(sim, state)
     _check_method(sim, arrays, own.arrays)
@@ -113,14 +114,15 @@ def _check_facts(sim: "Simulation", state: State) -> None:
     }  # fmt: skip
     _need("facts", set(facts) == own, f"are {sorted(facts)}, needed are {sorted(own)}")
     for name, count in (
-        ("closed", contacts), ("engaged", contacts), ("sticking", contacts), ("pending", contacts),
+        ("closed", contacts), ("engaged", contacts), ("sticking", 2 * contacts), ("pending", contacts),
         ("dropped", assembly.m_joints),
     ):  # fmt: skip
         _need(name, _indices(facts[name], count), f"is {facts[name]!r}: a list of different numbers below {count}")
     closed, sticking = set(facts["closed"]), set(facts["sticking"])
     _need("engaged", closed <= set(facts["engaged"]), "lacks contacts that are closed")
     slides = {k for k, contact in enumerate(assembly.contacts) if contact.slide_row >= 0}
-    _need("sticking", sticking <= closed & slides, "has contacts that are not closed, or have no friction")
+    twice = {k + contacts for k in closed & slides if assembly.contacts[k].tangents > 1 and k in sticking}
+    _need("sticking", sticking <= closed & slides | twice, "has contacts that are not closed, or have no friction")
     _need("t", _number(facts["t"]), f"is {facts['t']!r}, no time")
     handled, times = facts["handled"], facts["input_times"]
     counted = isinstance(handled, list) and len(handled) == 2 and _text_number(handled[0], True)
@@ -165,9 +167,11 @@ def _check_arrays(state: State, own: State, active: int) -> None:
         _need(name, not np.isnan(arrays[name]).any(), "has values that are no numbers")
 
 
-def _check_factorizations(arrays: dict[str, NDArray[Any]], active: int, size: int) -> None:
+def _check_factorizations(arrays: dict[str, NDArray[Any]], sizes: dict[str, int], size: int) -> None:
     for name in FACTORIZATIONS:
-        n = active if name == "lu_d" else size
+        if f"{name}_perm_r" not in arrays:
+            continue
+        n = sizes.get(name, size)
         for part in ("perm_r", "perm_c", "pivots"):
             array = arrays[f"{name}_{part}"]
             order = len(array) == 0 or np.array_equal(np.sort(array), np.arange(n))

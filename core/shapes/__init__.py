@@ -5,12 +5,15 @@ from typing import Annotated
 from ..model.open_union import OpenUnion
 from .angle_stop2d import AngleStop2D
 from .box2d import DiskOnBox2D
-from .contact2d import Contact2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from .contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from .contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from .coordinate_contact import CoordinateContact
 from .disk_on_cable import DiskOnCable2D
 from .disk_on_line import DiskOnLine2D
+from .element import ContactElement
 from .rope2d import Rope2D
 from .segment2d import DiskOnSegment2D
+from .stop3d import AngleStop3D, Rope3D, SlideStop3D
 
 CONTACTS = (
     DiskOnHalfPlane2D,
@@ -22,7 +25,12 @@ CONTACTS = (
     Rope2D,
     AngleStop2D,
     CoordinateContact,
+    SphereOnHalfSpace3D,
+    SphereOnSphere3D,
+    AngleStop3D,
+    SlideStop3D,
+    Rope3D,
 )
 
-Contact = Annotated[Contact2D, OpenUnion(CONTACTS, Contact2D)]
-"""Planar contacts: two shapes, a law along the normal, and friction; a user's own subclasses of Contact2D too."""
+Contact = Annotated[ContactElement, OpenUnion(CONTACTS, ContactElement)]
+"""Contacts: two shapes, a law along the normal, and friction; a user's own subclasses of Contact2D too."""

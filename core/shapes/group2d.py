@@ -1,7 +1,8 @@
 """Contacts between groups of shapes, instead of pairs listed by hand.
 
 Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box or a segment; a box with a
-half-plane and with a box by its corners. Pairs on one body are left out. Pairs that are far from touching cost nothing
+half-plane and with a box by its corners; in space a sphere with a half-space and a sphere, a box with a half-space by
+its corners. Pairs on one body are left out. Pairs that are far from touching cost nothing
 during a run: contacts sleep until their margin is used up (`location/asleep.py`).
 """
 
@@ -13,12 +14,16 @@ from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction
 from ..model.base import Name, Record
-from ..model.markers import GROUND, Marker2D
+from ..model.markers import GROUND
 from .box2d import Box2D, DiskOnBox2D
+from .box3d import Box3D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .segment2d import DiskOnSegment2D, Segment2D
 
-GroupShape = Disk2D | HalfPlane2D | Box2D | Segment2D
+PlanarShape = Disk2D | HalfPlane2D | Box2D | Segment2D
+SpatialShape = Sphere3D | HalfSpace3D | Box3D
+GroupShape = PlanarShape | SpatialShape
 
 MOST_PAIRS = 200_000
 
@@ -31,7 +36,7 @@ def contacts_between(
     law: ContactLaw,
     friction: Friction | None = None,
     except_bodies: Iterable[tuple[str, str]] = (),
-) -> tuple[Contact2D, ...]:
+) -> tuple[Contact2D | Contact3D, ...]:
     """Contacts of all pairs of `shapes` with each other, or of `shapes` with `others`, for a model's `contacts`.
 
     Parameters
@@ -94,7 +99,7 @@ class ContactGroup2D(Record):
     except_bodies: tuple[tuple[str, str], ...] = ()
     """Pairs of bodies that do not touch, such as those that a joint holds together."""
 
-    def contacts(self) -> tuple[Contact2D, ...]:
+    def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
         shapes: tuple[GroupShape, ...] = (*self.disks, *self.boxes, *self.segments, *self.half_planes)
         return contacts_between(
@@ -124,12 +129,13 @@ def _name(contact: Any) -> Any:
 
 
 def _body(shape: GroupShape) -> str:
-    marker: Marker2D = shape.marker
-    return marker.body
+    return str(shape.marker.body)
 
 
 def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape]]:
-    """Pairs (what, disk) that say the contact of two shapes."""
+    """Pairs (what, disk or sphere) that say the contact of two shapes."""
+    if isinstance(a, Sphere3D | HalfSpace3D | Box3D) or isinstance(b, Sphere3D | HalfSpace3D | Box3D):
+        return _touching_in_space(a, b)
     if isinstance(b, Disk2D):
         return ((a, b),)
     if isinstance(a, Disk2D):
@@ -152,7 +158,32 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
     )
 
 
-def _contact(name: str, a: GroupShape, disk: GroupShape, law: ContactLaw, friction: Friction | None) -> Contact2D:
+def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape]]:
+    if isinstance(a, Sphere3D) and isinstance(b, Sphere3D):
+        # two points never touch
+        return ((a, b),) if a.radius + b.radius > 0.0 else ()
+    if isinstance(b, HalfSpace3D):
+        a, b = b, a
+    if isinstance(a, HalfSpace3D) and isinstance(b, Sphere3D):
+        return ((a, b),)
+    if isinstance(a, HalfSpace3D) and isinstance(b, Box3D):
+        return tuple((a, corner) for corner in b.corners())
+    if _body(a) == _body(b) == GROUND:
+        return ()
+    raise ModelError(
+        f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: in space a "
+        "sphere touches spheres and half-spaces, a box touches half-spaces; give the box spheres at its corners"
+    )
+
+
+def _contact(
+    name: str, a: GroupShape, disk: GroupShape, law: ContactLaw, friction: Friction | None
+) -> Contact2D | Contact3D:
+    if isinstance(disk, Sphere3D):
+        if isinstance(a, HalfSpace3D):
+            return SphereOnHalfSpace3D(name=name, plane=a, sphere=disk, law=law, friction=friction)
+        if isinstance(a, Sphere3D):
+            return SphereOnSphere3D(name=name, a=a, b=disk, law=law, friction=friction)
     if not isinstance(disk, Disk2D):
         raise TypeError("the second shape of a pair is a disk")
     if isinstance(a, HalfPlane2D):
@@ -161,4 +192,6 @@ def _contact(name: str, a: GroupShape, disk: GroupShape, law: ContactLaw, fricti
         return DiskOnDisk2D(name=name, a=a, b=disk, law=law, friction=friction)
     if isinstance(a, Box2D):
         return DiskOnBox2D(name=name, shape=a, disk=disk, law=law, friction=friction)
-    return DiskOnSegment2D(name=name, segment=a, disk=disk, law=law, friction=friction)
+    if isinstance(a, Segment2D):
+        return DiskOnSegment2D(name=name, segment=a, disk=disk, law=law, friction=friction)
+    raise TypeError("a disk touches no shapes of space")

@@ -99,9 +99,11 @@ def solve_rows(ws: Any, c_q: float, c_v: float, index: int) -> None:
     for i in range(ws.m_act):
         k = active[i]
         if index == 1:
-            moved = 1.0 + 2.0 * alpha * c_v + beta * beta * c_q
+            moved = 1.0 + 2.0 * alpha * c_v
+            if i < ws.m_held:
+                moved += beta * beta * c_q
             rhs[n + i] = -(phidd[k] + 2.0 * alpha * phid[k] + beta * beta * phi[k]) / moved
-        elif index == 2:
+        elif index == 2 or i >= ws.m_held:
             rhs[n + i] = -phid[k] / c_v
         else:
             rhs[n + i] = -phi[k] / c_q
@@ -121,7 +123,8 @@ def _correct_coordinates(ws: Any, c_q: float, c_v: float) -> float:
     for i in range(n):
         rhs[i] = 0.0
     for i in range(ws.m_act):
-        rhs[n + i] = -phi[active[i]] + c_q / c_v * phid[active[i]]
+        # along what velocity-level rows allow
+        rhs[n + i] = -phi[active[i]] + c_q / c_v * phid[active[i]] if i < ws.m_held else 0.0
     solve(lu_at(ws.kkt_query), ws.rhs)
     q = vec(ws.q, n)
     for i in range(n):
@@ -139,7 +142,14 @@ def _holds(ws: Any, index: int) -> bool:
     if not constraint_norm(ws, ws.phi) <= bound:
         return False
     bound = CONSTRAINT_SLACK * control[VELOCITY_TOLERANCE] * rate_level(ws)
-    return index == 3 or constraint_norm(ws, ws.phid) <= bound
+    if index == 2:
+        return constraint_norm(ws, ws.phid) <= bound
+    # positions say all of the others
+    active, phid, row_scale = ivec(ws.active, ws.m_act), vec(ws.phid, ws.m_ext), vec(ws.row_scale, ws.m_ext)
+    for i in range(ws.m_held, ws.m_act):
+        if not abs(phid[active[i]]) <= bound * row_scale[active[i]]:
+            return False
+    return True
 
 
 @inlined

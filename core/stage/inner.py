@@ -1,6 +1,8 @@
 """The inner loop: dependent coordinates, velocities and accelerations from the constraints.
 
-Newton on Phi with the square sparse matrix Phi_qd; velocities and accelerations use the same factorisation.
+Newton on Phi with the square sparse matrix Phi_qd; velocities and accelerations use the same factorisation. Velocity-
+level rows W v = w come behind those of Phi: their dependent velocities and accelerations are solved for with
+[Phi_q; W]_d, the positions of these coordinates stay as the formula integrates them.
 """
 
 from typing import Any
@@ -32,17 +34,17 @@ STRAINED = 8.0  # growth of the condition beyond which the constraints are solve
 
 
 @internal
-def correct_dependent(ws: Any, lu_address: int, residual_address: int, x_address: int) -> None:
-    """x_d -= Phi_qd^-1 residual."""
-    active = ivec(ws.active, ws.m_act)
-    dependent = ivec(ws.dependent, ws.m_act)
+def correct_dependent(ws: Any, lu_address: int, m: int, residual_address: int, x_address: int) -> None:
+    """x_d -= Phi_qd^-1 residual, of the first m active rows."""
+    active = ivec(ws.active, m)
+    dependent = ivec(ws.dependent, m)
     residual = vec(residual_address, ws.m_ext)
-    rhs = vec(ws.rhs, ws.m_act)
-    for i in range(ws.m_act):
+    rhs = vec(ws.rhs, m)
+    for i in range(m):
         rhs[i] = residual[active[i]]
     solve(lu_at(lu_address), ws.rhs)
     x = vec(x_address, ws.n_ext)
-    for i in range(ws.m_act):
+    for i in range(m):
         x[dependent[i]] -= rhs[i]
 
 
@@ -104,11 +106,11 @@ def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> 
             return OK
         counters[INNER] += 1
         if correct_p:
-            correct_dependent(ws, lu_address, ws.phi, ws.q)
+            correct_dependent(ws, ws.lu_p, ws.m_held, ws.phi, ws.q)
         if correct_v:
-            correct_dependent(ws, lu_address, ws.phid, ws.v)
+            correct_dependent(ws, lu_address, ws.m_act, ws.phid, ws.v)
         if correct_a:
-            correct_dependent(ws, lu_address, ws.phidd, ws.a)
+            correct_dependent(ws, lu_address, ws.m_act, ws.phidd, ws.a)
         evaluate_constraints(ws)
     met = constraint_norm(ws, ws.phi) <= enough_p and constraint_norm(ws, ws.phid) <= enough_v
     if met and constraint_norm(ws, ws.phidd) <= enough_a:

@@ -35,12 +35,17 @@ CHOICE_GROWTH = 3.0
 
 @internal
 def refactor(ws: Any, c_q: float, c_v: float) -> int:
-    """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd."""
+    """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd; of positions alone too,
+    where they have dependent coordinates of their own."""
     rate = vec(ws.rate, RATE_SIZE)
     evaluate_tangent(ws, c_q, c_v)
     rate[FACTOR_AGE] = -1.0
-    for address in (ws.kkt, ws.lu_d):
-        if address == ws.lu_d and ws.m_act == 0:
+    for k in range(3):
+        address, size = ws.kkt, ws.n
+        if k > 0:
+            address, size = (ws.lu_d, ws.m_act) if k == 1 else (ws.lu_p, ws.m_held)
+        # without velocity-level rows the third is the second
+        if size == 0 or (k == 2 and ws.m_held == ws.m_act):
             continue
         status = factor(lu_at(address), ws.values)
         if status == 2:

@@ -10,6 +10,7 @@ MODE_NAMES: dict[float, str] = {OPEN: "open", CLOSED: "closed", ACTIVE: "active"
 # how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
 STICKS = 0.0  # its sliding distance is a constraint
 IDLE = 2.0  # it cannot slide because others hold it, and carries a share of its normal force (RATIO)
+ALONG = 3.0  # in space: its sliding is zero along the first tangent, others hold it along the second
 
 # columns of the memory
 MODE = 0
@@ -17,10 +18,13 @@ APPROACH_SPEED = 1  # at the last first touch, m/s
 LARGEST_APPROACH = 2  # since the start, m/s
 IMPULSE_JUMP = 3  # sum of impact impulses, N s
 LOSS_JUMP = 4  # sum of energy lost at impacts and releases, J
-SLIDE = 5  # STICKS, IDLE, +1 or -1
+SLIDE = 5  # STICKS, IDLE, ALONG, +1 or -1 (in space +1: along WAY)
 SLIDE_START = 6  # sliding distance at which the contact began to stick, m
 RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slides
 GAP_START = 8  # gap at which a contact constraint holds, next to nothing, m
 BEGUN_IMPULSE = 9  # impulse of a contact force when it began to act, N s
 BEGUN_LOSS = 10  # its dissipation then, J
 MEMORY_SIZE = 11
+# of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):
+WAY = SLIDE_START  # angle of the first tangent, rad
+AXIS = BEGUN_IMPULSE  # which axis of the first marker angles are counted from: 1, 2, 3; 0: not chosen

@@ -10,7 +10,8 @@ WORKSPACE = np.dtype(
         (name, np.int64)
         for name in (
             # sizes
-            "n", "n_ext", "m_ext", "m_act", "n_kernels", "n_values", "n_contacts", "n_work", "row_length",
+            "n", "n_ext", "m_ext", "m_act", "m_held", "n_kernels", "n_values", "n_contacts", "n_work", "row_length",
+            "tangents",  # of contacts with Coulomb friction: 1 in the plane, 2 in space
             # the current point
             "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
             "values", "coef", "energy", "monitor", "memory", "inputs",
@@ -23,7 +24,7 @@ WORKSPACE = np.dtype(
             "wanted_dependent",  # (m_act,) int64: the partition that compiled code has chosen
             # structure (changes with the set of engaged contacts)
             "active", "redundant", "n_redundant", "probe",
-            "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
+            "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "lu_p", "kkt_query",
             # gradients of contacts that are no constraints now, by row of Phi; the block of the mass matrix
             "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "mass_slot", "n_mass",
             # stage solver
@@ -47,7 +48,7 @@ STRUCTURE = np.dtype(
         (name, np.int64)
         for name in (
             # what the workspace takes over, under the same names
-            "n_values", "values", "m_act", "active", "n_redundant", "redundant", "probe",
+            "n_values", "values", "m_act", "m_held", "active", "n_redundant", "redundant", "probe",
             "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "n_mass", "mass_slot",
             "kkt", "kkt_query",
             "codes",                                  # (contacts,) int64: which it is for (`switch.py`)
@@ -60,7 +61,7 @@ STRUCTURE = np.dtype(
 STRUCTURE_TYPE = types.from_dtype(STRUCTURE)
 
 PARTITION = np.dtype(
-    [(name, np.int64) for name in ("dependent", "n_free", "free_row", "free_col", "free_slot", "lu_d")]
+    [(name, np.int64) for name in ("dependent", "n_free", "free_row", "free_col", "free_slot", "lu_d", "lu_p")]
 )
 PARTITION_TYPE = types.from_dtype(PARTITION)
 structure_at, partition_at = record_view(STRUCTURE_TYPE), record_view(PARTITION_TYPE)

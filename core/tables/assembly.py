@@ -51,6 +51,8 @@ class ContactInfo:
     """Distance over which the shapes could pass through each other within a step, m."""
     slide_row: int = -1
     """Row of the sliding distance; -1: without friction."""
+    tangents: int = 1
+    """How many rows of tangents there are from `slide_row` on, with Coulomb friction: 1 in the plane, 2 in space."""
     friction: Friction | None = None
     bristle: int = -1
     """Index of its friction's internal coordinate, whose velocity is the deflection of the bristles; -1: none."""
@@ -100,6 +102,8 @@ class Assembly:
     """How large each row of Phi typically is, (m,); None: as far as the coordinates' scales move it."""
     longest_step: float = np.inf
     """Step beyond which error control could miss what a time function does, s."""
+    rate_rows: frozenset[int] = frozenset()
+    """Rows that hold at velocity level only (`elements/base.Form.rate_rows`)."""
     replaced_rows: dict[int, frozenset[int]] = field(default_factory=dict)
     """Rows of massless ends, each with the contacts that take its place when they close."""
     derived: tuple[Derived, ...] = ()
@@ -117,6 +121,11 @@ class Assembly:
     """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
     user_error: list[BaseException] = field(default_factory=list)
     """An exception that a user's function raised inside the compiled loop."""
+
+    @property
+    def tangents(self) -> int:
+        """How many tangents contacts with Coulomb friction have, all of them."""
+        return max((contact.tangents for contact in self.contacts if contact.coulomb), default=1)
 
     @property
     def massless_contacts(self) -> frozenset[int]:
@@ -184,6 +193,7 @@ def assemble(model: Parts) -> Assembly:
     contact_rows: dict[str, tuple[int, ...]] = {}
     massless: dict[int, int] = {}
     placed: list[tuple[int, int]] = []
+    rate_rows: set[int] = set()
     contact_names = set(numbering.contact_numbers)
     for element in model.elements():
         own_rows = len(row_names)
@@ -191,6 +201,7 @@ def assemble(model: Parts) -> Assembly:
             form = part.form
             rows = tuple(range(len(row_names), len(row_names) + form.constraint_rows))
             row_names += [element.name] * form.constraint_rows
+            rate_rows |= {rows[k] for k in form.rate_rows}
             if element.name in contact_names:
                 contact_rows[element.name] = rows
             if part.massless >= 0:
@@ -219,6 +230,7 @@ def assemble(model: Parts) -> Assembly:
                 np.array([numbering.contact_numbers.get(e.name, -1) for e, _, _ in members], dtype=np.int64),
             )
         )
+    _refuse_mixed_friction(model, contact_rows)
     internal = np.arange(numbering.n - len(numbering.internal_names), numbering.n)
     if len(internal):
         batches.append(_internal_batch(internal))
@@ -252,6 +264,7 @@ def assemble(model: Parts) -> Assembly:
                 numbering.work(f"{c.name}.dissipation"),
                 c.extent(),
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
+                max(len(contact_rows[c.name]) - 1, 1),
                 c.friction,
                 next(iter(numbering.internal(c.name)), -1),
                 kind=kind_of(c.form().kernel),
@@ -269,6 +282,7 @@ def assemble(model: Parts) -> Assembly:
         body_columns=columns,
         coordinate_scale=_coordinate_scale(numbering.length, columns, len(internal)),
         length=numbering.length,
+        rate_rows=frozenset(rate_rows),
         replaced_rows=_replaced_rows(model, massless, batches),
         derived=tuple(derived),
         motions=tuple(numbering.motions),
@@ -277,6 +291,16 @@ def assemble(model: Parts) -> Assembly:
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
+
+
+def _refuse_mixed_friction(model: Parts, rows: Mapping[str, Sequence[int]]) -> None:
+    """Raise ModelError where contacts of the plane and of space both have Coulomb friction."""
+    found = {len(rows[c.name]) - 1: c.name for c in model.contacts if isinstance(c.friction, CoulombFriction)}
+    if len(found) > 1:
+        raise ModelError(
+            f"contacts '{found[1]}' of the plane and '{found[2]}' of space have Coulomb friction both: leave it out in "
+            "one kind, or give one kind a force law (CCFM) and regularised friction"
+        )
 
 
 def _of_outputs(outputs: Sequence[MarkerOutput], numbering: ModelNumbering) -> list[Derived]:

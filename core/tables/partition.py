@@ -86,7 +86,7 @@ def prepare(workspace: Workspace) -> None:
     counters = workspace.arrays["counters"]
     counters[PARTITIONS] += 1
     counters[ANALYSES] += 1
-    for factorization in (structure.kkt, structure.lu_d):
+    for factorization in (structure.kkt, structure.lu_d, structure.lu_p):
         if factorization is None or factorization.n == 0:
             continue
         try:

@@ -140,6 +140,8 @@ def choose_rows(workspace: Workspace) -> bool:
     dropped = workspace.dropped
     if not dropped or workspace.assembly.m_joints * workspace.assembly.n > LARGEST_CHOICE:
         return False
+    if workspace.assembly.rate_rows:
+        return False  # a velocity-level row does not say what one with a position form says
     # importing scipy costs more than most runs: only who needs it pays
     from scipy.linalg import qr
 

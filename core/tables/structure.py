@@ -26,7 +26,11 @@ class Structure:
     """The matrix [S, Phi_q^T; Phi_q, 0] as slots, for one set of active rows and engaged contacts."""
 
     active: NDArray[np.int64]
-    """Rows of Phi that are constraints now, (m_act,)."""
+    """Rows of Phi that are constraints now, (m_act,): those with a position form first."""
+    m_held: int
+    """How many these are."""
+    two_partitions: bool
+    """Whether dependent positions may be others than dependent velocities: the model has velocity-level rows."""
     redundant: NDArray[np.int64]
     """Rows of joints that repeat active ones: not solved for, but checked."""
     rows: NDArray[np.int64]
@@ -83,8 +87,9 @@ class Structure:
                 "partitions": np.zeros(MOST_PARTITIONS, dtype=np.int64),
             },
             {
-                "n_values": self.n_values, "m_act": len(self.active), "n_redundant": len(self.redundant),
-                "n_mass": len(self.mass_slot), "n_jacobian": len(self.jacobian_slot),
+                "n_values": self.n_values, "m_act": len(self.active), "m_held": self.m_held,
+                "n_redundant": len(self.redundant), "n_mass": len(self.mass_slot),
+                "n_jacobian": len(self.jacobian_slot),
                 "kkt": self.kkt.address, "kkt_query": self.kkt_query.address, "partition": 0, "n_partitions": 0,
             },
         )  # fmt: skip
@@ -107,6 +112,11 @@ class Structure:
         """Factorisation of Phi_qd of the present partition."""
         return None if self.present is None else self.present.lu_d
 
+    @property
+    def lu_p(self) -> Factorization | None:
+        """That of Phi_qd for positions alone, where it is another one (`partitions.py`)."""
+        return None if self.present is None or self.m_held == len(self.active) else self.present.lu_p
+
     def use_units(self, units: NDArray[np.float64], n: int) -> None:
         """Let pivots be chosen with rows and columns in one unit: `units` (n + m + 1,) of coordinates and rows."""
         self.units = units
@@ -118,7 +128,9 @@ class Structure:
 
     def _units_of(self, partition: Partition, n: int) -> None:
         if self.units is not None:
-            partition.lu_d.use_units(self.units[n + self.active], self.units[partition.dependent])
+            for factorization in partition.factorizations:
+                m = factorization.n
+                factorization.use_units(self.units[n + self.active[:m]], self.units[partition.dependent[:m]])
 
     def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
         """Own arrays and records: numbers, factorisations, and the present partition. All others never change."""
@@ -170,14 +182,15 @@ class Structure:
     def know_partition(self, dependent: NDArray[np.int64]) -> None:
         """Have the partition with these dependent coordinates (m_act,) ready for compiled code."""
         if dependent.tobytes() not in self.known:
-            self._new_partition(dependent).lu_d.order_columns()
+            for factorization in self._new_partition(dependent).factorizations:
+                factorization.order_columns()
 
     def _new_partition(self, dependent: NDArray[np.int64]) -> Partition:
         n, key = int(self.kkt.n) - len(self.active), dependent.tobytes()
         new = None if self.shared is None else self.shared.get(key)
         if new is None:
             jacobian = self.jacobian_row, self.jacobian_col, self.jacobian_slot
-            new = build_partition(dependent, jacobian, n, self.n_values)
+            new = build_partition(dependent, jacobian, n, self.n_values, self.m_held if self.two_partitions else None)
             if self.shared is not None and len(self.shared) < MOST_PARTITIONS:
                 self.shared[key] = new
         if self.shared is not None:
@@ -193,7 +206,8 @@ class Structure:
     def make_wanted(self) -> None:
         """Make what compiled code has asked for to choose pivots."""
         self.kkt_query.order_columns(self.kkt)
-        factorizations = [self.kkt, self.kkt_query, *(partition.lu_d for partition in self.known.values())]
+        of_partitions = [lu for partition in self.known.values() for lu in partition.factorizations]
+        factorizations = [self.kkt, self.kkt_query, *of_partitions]
         wanting = [factorization for factorization in factorizations if factorization.wants]
         for factorization in wanting:
             factorization.make_wanted()
@@ -225,14 +239,18 @@ def build_structure(
     """Structure with contacts `closed` as constraints, along the tangent too for those `sticking`, and `engaged`
     (closed or acting) in the pattern of S, without the redundant rows `dropped`."""
     n, ground = assembly.n, assembly.ground
-    closed_rows = {assembly.contacts[k].row for k in closed} | {assembly.contacts[k].slide_row for k in sticking}
+    closed_rows = {assembly.contacts[k].row for k in closed} | sticking_rows(assembly, sticking)
     left_out = dropped | {row for row, contacts in assembly.replaced_rows.items() if contacts & closed}
-    active = np.array(
-        [row for row in range(assembly.m) if (row < assembly.m_joints and row not in left_out) or row in closed_rows],
-        dtype=np.int64,
-    )
+    taken = [
+        row for row in range(assembly.m) if (row < assembly.m_joints and row not in left_out) or row in closed_rows
+    ]
+    # so the pivots of the first rows are the dependent coordinates of a partition of the positions
+    held = [row for row in taken if row not in assembly.rate_rows]
+    active = np.array([*held, *(row for row in taken if row in assembly.rate_rows)], dtype=np.int64)
     size = n + len(active)
-    contact_rows = np.array([r for c in assembly.contacts for r in (c.row, c.slide_row) if r >= 0], dtype=np.int64)
+    watched_rows = [r for c in assembly.contacts for r in (c.row, c.slide_row) if r >= 0]
+    watched_rows += [c.slide_row + 1 for c in assembly.contacts if c.tangents > 1]
+    contact_rows = np.array(sorted(watched_rows), dtype=np.int64)
     # rows of the matrix, and below it those that are watched only
     matrix_row = np.full(assembly.m + 1, -1, dtype=np.int64)
     watched = np.setdiff1d(contact_rows, active)
@@ -262,6 +280,8 @@ def build_structure(
     kkt = Factorization(size, rows, cols, everything, source_size=len(unique) + 1)
     return Structure(
         active,
+        m_held=len(held),
+        two_partitions=bool(assembly.rate_rows),
         redundant=np.array(sorted(dropped), dtype=np.int64),
         rows=rows,
         cols=cols,
@@ -279,6 +299,13 @@ def build_structure(
         kkt_query=kkt.sibling(),
         codes=codes_of(len(assembly.contacts), closed, engaged, sticking),
     )
+
+
+def sticking_rows(assembly: Assembly, sticking: frozenset[int]) -> set[int]:
+    """Rows of Phi of the tangents along which contacts stick: number k of a contact tells its first one, k + (number of
+    contacts) its second one."""
+    count = len(assembly.contacts)
+    return {assembly.contacts[k % count].slide_row + k // count for k in sticking}
 
 
 def _places(batch: Batch, ground: int, matrix_row: NDArray[np.int64], size: int, engaged: frozenset[int]) -> Any:

@@ -13,29 +13,31 @@ from numpy.typing import NDArray
 from ..compiled.jit import compiled, internal
 from ..compiled.kernels import batch_at
 from ..compiled.views import ivec, mat, vec
-from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
+from ..state.modes import ACTIVE, ALONG, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..state.workspace_records import CONDITION, FACTOR_AGE, RATE_SIZE, partition_at, structure_at
 
-APART, ENGAGED, HELD, STUCK = range(4)
-"""A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too."""
+APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
+"""A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too; in
+space its sliding along both tangents."""
 
 
 def codes_of(
     count: int, closed: Collection[int], engaged: Collection[int], sticking: Collection[int]
 ) -> NDArray[np.int64]:
-    """Codes of `count` contacts, (max(count, 1),)."""
+    """Codes of `count` contacts, (max(count, 1),); k + count in `sticking`: k sticks along its second tangent too."""
     codes = np.full(max(count, 1), APART, dtype=np.int64)
-    for contacts, code in ((engaged, ENGAGED), (closed, HELD), (sticking, STUCK)):
+    first, second = [k for k in sticking if k < count], [k - count for k in sticking if k >= count]
+    for contacts, code in ((engaged, ENGAGED), (closed, HELD), (first, STUCK), (second, STUCK_TWICE)):
         codes[list(contacts)] = code
     return codes
 
 
 def key_of(codes: NDArray[np.int64]) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
-    """Contacts closed, engaged (closed or acting) and sticking."""
-    closed, engaged, sticking = (
-        frozenset(int(k) for k in np.flatnonzero(codes >= least)) for least in (HELD, ENGAGED, STUCK)
+    """Contacts closed, engaged (closed or acting) and sticking, as `codes_of` takes them."""
+    closed, engaged, sticking, twice = (
+        frozenset(int(k) for k in np.flatnonzero(codes >= least)) for least in (HELD, ENGAGED, STUCK, STUCK_TWICE)
     )
-    return closed, engaged, sticking
+    return closed, engaged, sticking | {k + len(codes) for k in twice}
 
 
 @internal
@@ -47,7 +49,11 @@ def want(ws: Any) -> None:
         mode = memory[k, MODE]
         wanted[k] = ENGAGED if mode == ACTIVE else APART
         if mode == CLOSED:
-            wanted[k] = STUCK if slides[k] >= 0 and memory[k, SLIDE] == STICKS else HELD
+            wanted[k] = HELD
+            if slides[k] >= 0 and memory[k, SLIDE] == STICKS:
+                wanted[k] = STUCK if ws.tangents == 1 else STUCK_TWICE
+            elif memory[k, SLIDE] == ALONG:
+                wanted[k] = STUCK
 
 
 @internal
@@ -72,6 +78,7 @@ def take_structure(ws: Any, address: int) -> None:
     ws.structure = address
     ws.n_values, ws.values = st.n_values, st.values
     ws.m_act, ws.active, ws.n_redundant, ws.redundant = st.m_act, st.active, st.n_redundant, st.redundant
+    ws.m_held = st.m_held
     ws.probe, ws.entry_row, ws.entry_col = st.probe, st.entry_row, st.entry_col
     ws.gradient_start, ws.gradient_col, ws.gradient_slot = st.gradient_start, st.gradient_col, st.gradient_slot
     ws.n_mass, ws.mass_slot, ws.kkt, ws.kkt_query = st.n_mass, st.mass_slot, st.kkt, st.kkt_query
@@ -97,7 +104,7 @@ def take_partition(ws: Any, address: int) -> None:
     """Let the partition at `address` be that of the present structure."""
     pt = partition_at(address)
     structure_at(ws.structure).partition = address
-    ws.dependent, ws.lu_d = pt.dependent, pt.lu_d
+    ws.dependent, ws.lu_d, ws.lu_p = pt.dependent, pt.lu_d, pt.lu_p
     ws.n_free, ws.free_row, ws.free_col, ws.free_slot = pt.n_free, pt.free_row, pt.free_col, pt.free_slot
     vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
 

@@ -125,12 +125,14 @@ class Workspace:
             WORKSPACE,
             record_arrays,
             {
-                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "n_redundant": 0, "n_free": 0, "n_mass": 0,
-                "n_kernels": len(a.batches), "n_values": 1, "n_basis": 1, "n_contacts": contacts,
+                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "m_held": 0,
+                "n_redundant": 0, "n_free": 0, "n_mass": 0, "n_kernels": len(a.batches), "n_values": 1,
+                "n_basis": 1, "n_contacts": contacts, "tangents": a.tangents,
                 "n_work": len(a.work_names), "structure": 0, "n_known": 0,
                 "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
                 "stage_function": 0, "analyze": address_of(analyze, ANALYZE_SIGNATURE),
-                "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE), "kkt": 0, "lu_d": 0, "kkt_query": 0,
+                "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE),
+                "kkt": 0, "lu_d": 0, "lu_p": 0, "kkt_query": 0,
             },
         )  # fmt: skip
         self.structure: Structure

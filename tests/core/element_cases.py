@@ -6,6 +6,7 @@ from tlismni.core import (
     Belt2D,
     CoordinateRelation,
     KelvinVoigt,
+    KnifeEdge2D,
     NewtonImpact,
     Rack2D,
     RelationTerm,
@@ -40,6 +41,7 @@ CASES = {
             )
         ]
     },
+    "knife edge": {"joints": [KnifeEdge2D(name="j", marker=RIGHT)]},
     "rack": {"joints": [Rack2D(name="j", **ENDS, radius=0.7)]},
     "rack above": {"joints": [Rack2D(name="j", a=RIGHT, b=on("ground", 0.2, 1.0, 0.5), radius=-0.7)]},
     "belt": {"joints": [Belt2D(name="j", **ENDS, radius_a=0.7, radius_b=0.4)]},

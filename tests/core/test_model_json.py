@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from tlismni.core import (
     AngleDriver3D,
     AngleStop2D,
+    AngleStop3D,
     AppliedForce2D,
     AppliedForce3D,
     AppliedTorque2D,
@@ -23,6 +24,8 @@ from tlismni.core import (
     Bushing2D,
     Bushing3D,
     Cable2D,
+    Cable3D,
+    CableClamp3D,
     Clamp2D,
     Constant,
     ConstantVelocity3D,
@@ -50,11 +53,13 @@ from tlismni.core import (
     Gear3D,
     Gonthier,
     HalfPlane2D,
+    HalfSpace3D,
     Hertz,
     HuntCrossley,
     Input,
     InputSignal,
     KelvinVoigt,
+    KnifeEdge2D,
     LankaraniNikravesh,
     Line2D,
     LinearSystem,
@@ -63,6 +68,7 @@ from tlismni.core import (
     MarkerOutput2D,
     MarkerOutput3D,
     MaterialPoint2D,
+    MaterialPoint3D,
     Model,
     ModelError,
     MovingFrame2D,
@@ -91,7 +97,10 @@ from tlismni.core import (
     RevoluteSpherical3D,
     RigidBody2D,
     RigidBody3D,
+    RollingDisk3D,
+    RollingSphere3D,
     Rope2D,
+    Rope3D,
     RotationVector,
     Screw3D,
     Segment2D,
@@ -99,6 +108,10 @@ from tlismni.core import (
     Sine,
     SlideFriction2D,
     SlideSpring2D,
+    SlideStop3D,
+    Sphere3D,
+    SphereOnHalfSpace3D,
+    SphereOnSphere3D,
     Spherical3D,
     SpringDamper2D,
     SpringDamper3D,
@@ -270,6 +283,7 @@ ELEMENTS = {
         ),
     ],
 }  # fmt: skip
+sphere = st.builds(Sphere3D, marker=marker3d, radius=positive)
 ELEMENTS["bodies"] += [
     st.builds(PointMass3D, name=st.just("x"), mass=positive, position=vector3, velocity=vector3),
     st.builds(
@@ -328,6 +342,7 @@ ELEMENTS["forces"] += [
     ),
 ]  # fmt: skip
 ENDS = {"name": st.just("x"), "a": st.builds(Marker2D, point=vector), "b": marker}
+SIDES = st.sampled_from(["upper", "lower"])
 MEASURES = st.sampled_from(["angle", "slide", "distance"])
 ELEMENTS["joints"] += [
     st.builds(Rack2D, **ENDS, radius=positive),
@@ -354,25 +369,71 @@ ELEMENTS["forces"] += [
 ]  # fmt: skip
 ELEMENTS["contacts"] += [
     st.builds(Rope2D, **ENDS, law=law, length=positive),
-    st.builds(AngleStop2D, **ENDS, law=law, limit=number, side=st.sampled_from(["upper", "lower"])),
+    st.builds(AngleStop2D, **ENDS, law=law, limit=number, side=SIDES),
     st.builds(
         DiskOnBox2D, name=st.just("x"), law=law, disk=disk,
         shape=st.builds(Box2D, marker=marker, width=positive, height=positive),
     ),
+    st.builds(
+        SphereOnHalfSpace3D, name=st.just("x"), law=law, sphere=sphere,
+        plane=st.builds(HalfSpace3D, marker=st.builds(Marker3D, point=vector3, attitude=attitude)),
+    ),
+    st.builds(
+        SphereOnSphere3D, name=st.just("x"), law=law, a=st.builds(Sphere3D, marker=st.builds(Marker3D, point=vector3)),
+        b=sphere,
+    ),
 ]  # fmt: skip
+ELEMENTS["bodies"] += [
+    st.builds(
+        Cable3D, name=st.just("x"), elements=st.just(1), length=positive, mass_per_length=positive,
+        axial_stiffness=positive, bending_stiffness=positive, axial_damping=positive, reference_strain=number,
+        integration=st.sampled_from(["full", "reduced"]), position=vector3, attitude=attitude, velocity=vector3,
+        shape=st.none() | st.tuples(st.tuples(*5 * [number], positive)).map(lambda node: 2 * node),
+        angular_velocity=vector3,
+    ),
+    st.builds(MaterialPoint3D, name=st.just("x"), body=st.just("line"), s=st.floats(0.0, 1.0)),
+]  # fmt: skip
+ELEMENTS["joints"].append(
+    st.builds(
+        CableClamp3D, name=st.just("x"), cable=st.just("line"), s=st.floats(0.0, 1.0),
+        marker=st.builds(Marker3D, point=vector3, attitude=attitude),
+    )
+)  # fmt: skip
+ELEMENTS["joints"].append(st.builds(KnifeEdge2D, name=st.just("x"), marker=marker))
+ELEMENTS["joints"] += [
+    st.builds(
+        RollingDisk3D, name=st.just("x"), a=st.builds(Marker3D), radius=st.floats(1.0, 2.0),
+        rim_radius=st.floats(0.0, 0.5),
+        b=st.just(Marker3D(body="s", attitude=Axes(z=(1.0, 0.0, 0.0)))),
+    ),
+    st.builds(RollingSphere3D, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, radius=positive),
+]  # fmt: skip
+ELEMENTS["contacts"] += [
+    st.builds(kind, name=st.just("x"), a=st.builds(Marker3D), b=marker3d, law=law, limit=number, side=SIDES)
+    for kind in (AngleStop3D, SlideStop3D)
+]
+ELEMENTS["contacts"].append(
+    st.builds(
+        Rope3D, name=st.just("x"), b=st.just(Marker3D(body="s", point=(1.0, 0.0, 0.0))), law=law,
+        length=st.floats(0.5, 2.0),
+    )
+)  # fmt: skip
 SPATIAL = {
     "PointMass3D", "RigidBody3D", "Spherical3D", "Revolute3D", "Universal3D", "ConstantVelocity3D", "Fixed3D",
     "Cylindrical3D", "Prismatic3D", "Planar3D", "PointOnLine3D", "PointOnPlane3D", "Distance3D", "RevoluteSpherical3D",
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
-    "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D",
+    "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
+    "SphereOnSphere3D", "Cable3D", "MaterialPoint3D", "CableClamp3D", "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
 SOLID = RigidBody3D(name="s", mass=1.0, inertia=(1.0, 1.0, 1.0))
 ROPE = Cable2D(name="rope", elements=1, length=1.0, mass_per_length=1.0, axial_stiffness=1.0, bending_stiffness=0.0)
 
+LINE = Cable3D(name="line", elements=1, length=1.0, mass_per_length=1.0, axial_stiffness=1.0, bending_stiffness=0.0)
+
 
 def model_with(kind, element):
-    parts = {"bodies": [BODY, ROPE, SOLID], "joints": [], "forces": [], "contacts": [], "outputs": []}
+    parts = {"bodies": [BODY, ROPE, SOLID, LINE], "joints": [], "forces": [], "contacts": [], "outputs": []}
     parts["inputs"] = [Input(name="u", unit="N")]
     parts[kind] = [*parts[kind], element]
     return Model(name="journey", **parts)
@@ -410,7 +471,7 @@ def test_the_list_of_elements_above_is_complete():
         "Clamp2D", "Gear2D", "AxialRod", "MovingFrame2D", "MarkerOutput2D", "ReducedBody2D", "FloatingBeam2D",
         "DiskOnCable2D", "Rack2D", "Belt2D", "RelativeMotor2D", "CoordinateRelation", "TorsionSpring2D",
         "SlideSpring2D", "TableSpring2D", "RevoluteFriction2D", "SlideFriction2D", "Servo2D", "Rope2D", "AngleStop2D",
-        "DiskOnBox2D", *SPATIAL,
+        "DiskOnBox2D", "KnifeEdge2D", *SPATIAL,
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

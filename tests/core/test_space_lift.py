@@ -5,8 +5,15 @@ import math
 import numpy as np
 import pytest
 from tlismni.core import (
+    Axes,
+    BrownMcPheeFriction,
+    Disk2D,
+    DiskOnHalfPlane2D,
     Distance2D,
     Distance3D,
+    HalfPlane2D,
+    HalfSpace3D,
+    KelvinVoigt,
     Marker2D,
     Marker3D,
     Model,
@@ -18,6 +25,8 @@ from tlismni.core import (
     RigidBody2D,
     RigidBody3D,
     RotationVector,
+    Sphere3D,
+    SphereOnHalfSpace3D,
     simulate,
 )
 from tlismni.models import load
@@ -51,8 +60,22 @@ def lifted(model: Model, turn: float = 0.0) -> Model:
         else:
             assert isinstance(joint, Distance2D)
             joints.append(Distance3D(**pair, length=joint.length))
+    contacts = []
+    for contact in model.contacts:
+        assert isinstance(contact, DiskOnHalfPlane2D)
+        plane, disk, turn = contact.plane.marker, contact.disk, contact.plane.marker.angle
+        normal = (-math.sin(turn), math.cos(turn), 0.0)
+        contacts.append(
+            SphereOnHalfSpace3D(
+                name=contact.name, law=contact.law, friction=contact.friction,
+                plane=HalfSpace3D(
+                    marker=Marker3D(body=plane.body, point=(*plane.point, 0.0), attitude=Axes(z=normal))
+                ),
+                sphere=Sphere3D(marker=marker(disk.marker), radius=disk.radius),
+            )
+        )  # fmt: skip
     planar = [] if any(isinstance(b, RigidBody3D) for b in bodies) else [_in_plane(b.name) for b in bodies]
-    return Model(name=model.name, gravity=model.gravity, bodies=bodies, joints=[*joints, *planar])
+    return Model(name=model.name, gravity=model.gravity, bodies=bodies, joints=[*joints, *planar], contacts=contacts)
 
 
 def _in_plane(body):
@@ -83,3 +106,48 @@ def test_redundant_rows_of_a_planar_loop_in_space_are_named():
     found = simulate(lifted(model), 0.1).redundant
     assert len(found) == 3 and all(row.constraint in {j.name for j in model.joints} for row in found)
     assert not simulate(model, 0.1).redundant
+
+
+@pytest.mark.parametrize(
+    "name, t_end, parameters",
+    [
+        ("bouncing_ball", 4.0, {}), ("bouncing_ball", 2.0, {"law": "gonthier"}),
+        ("bouncing_ball", 2.0, {"law": "hertz"}),
+        ("bouncing_ball", 2.0, {"law": "hunt_crossley"}), ("pendulum_stop", 4.0, {"driven": False}),
+    ],
+)  # fmt: skip
+def test_lifted_contact_strikes_as_the_planar_one(name, t_end, parameters):
+    model = load(name, **parameters).model
+    times = np.linspace(0.0, t_end, 41)
+    flat, spatial = (
+        simulate(m, t_end, rtol=1e-13, atol=1e-15, t_eval=times) for m in (model, lifted(model))
+    )  # fmt: skip
+    body = model.bodies[0].name
+    for axis in "xy":
+        assert np.abs(flat[f"{body}.{axis}"] - spatial[f"{body}.{axis}"]).max() < 1e-10
+    kinds = [[(event.kind, event.contact) for event in result.events] for result in (flat, spatial)]
+    assert kinds[0] == kinds[1] and len(kinds[0]) > 3
+    for one, other in zip(flat.events, spatial.events, strict=True):
+        assert abs(one.t - other.t) < 1e-10
+        assert abs(one.impulse - other.impulse) < 1e-9
+
+
+def test_lifted_friction_of_a_force_slides_as_the_planar_one():
+    """A disk with back spin on a springy floor; in space a sphere with the same moment about the axis."""
+    disk = RigidBody2D(
+        name="disk", mass=1.0, inertia=0.004, position=(0.0, 0.0999), velocity=(1.0, 0.0), angular_velocity=20.0
+    )
+    floor = DiskOnHalfPlane2D(
+        name="floor", plane=HalfPlane2D(), disk=Disk2D(marker=Marker2D(body="disk"), radius=0.1),
+        law=KelvinVoigt(stiffness=1e5, damping=300.0),
+        friction=BrownMcPheeFriction(coefficient=0.3, static_coefficient=0.4, transition_speed=0.05),
+    )  # fmt: skip
+    model = Model(gravity=(0.0, -9.81), bodies=[disk], contacts=[floor])
+    times = np.linspace(0.0, 1.5, 31)
+    flat, spatial = (simulate(m, 1.5, rtol=1e-12, atol=1e-14, t_eval=times) for m in (model, lifted(model)))
+    assert np.abs(flat["disk.x"] - spatial["disk.x"]).max() < 1e-8
+    assert np.abs(flat["disk.angular_velocity"] - spatial["disk.angular_velocity_z"]).max() < 1e-7
+    assert np.abs(np.abs(flat["floor.friction_force"]) + spatial["floor.friction_force"]).max() < 1e-5
+    assert np.abs(np.abs(flat["floor.sliding_velocity"]) - spatial["floor.sliding_velocity"]).max() < 1e-8
+    # back spin: it came back
+    assert flat["disk.vx"][-1] < 0.5

@@ -235,17 +235,21 @@ def system(case):
 
 
 def check_matrix(point, state, c_q=0.6, c_v=0.8, h=H):
-    """S = dr/da + c_v dr/dv + c_q dr/dq; Phi_q; its transpose; and nothing below."""
+    """S = dr/da + c_v dr/dv + c_q dr/dq; Phi_q, W of velocity-level rows; its transpose; and nothing below."""
     n, active = point.n, point.workspace.structure.active
     point.at(*state)
     matrix = point.tangent(c_q, c_v)
     zero, unit = np.zeros(n), np.eye(n)
     no_lam = np.zeros(point.m)
     s = np.array([point.derivative(0, (0.0, c_q * e, c_v * e, e, no_lam), state, h) for e in unit]).T
-    jacobian = np.array([point.derivative(1, (0.0, e, zero, zero, no_lam), state, h) for e in unit]).T[active]
+    jacobian = np.array([point.derivative(2, (0.0, zero, e, zero, no_lam), state, h) for e in unit]).T[active]
+    by_place = np.array([point.derivative(1, (0.0, e, zero, zero, no_lam), state, h) for e in unit]).T[active]
+    held = ~np.isin(active, list(point.workspace.assembly.rate_rows))
     scale = max(1.0, np.abs(s).max())
     assert np.abs(matrix[:n, :n] - s).max() < 1e-8 * scale
     assert np.abs(matrix[n:, :n] - jacobian).max(initial=0.0) < 1e-8
+    assert np.abs(matrix[n:, :n] - by_place)[held].max(initial=0.0) < 1e-8
+    assert not by_place[~held].any()
     assert np.array_equal(matrix[:n, n:], matrix[n:, :n].T)
     assert not matrix[n:, n:].any()
     for row in active:  # forces of a constraint: r changes with its multiplier by Phi_q^T
@@ -260,7 +264,8 @@ def check_levels(point, state, h=H):
     point.at(*state)
     first = point.derivative(1, (1.0, v, np.zeros_like(q), np.zeros_like(q), np.zeros_like(lam)), state, h)
     _, _, phid, phidd = point.at(*state)
-    assert np.abs(phid - first).max(initial=0.0) < 1e-8
+    held = np.setdiff1d(np.arange(point.m), list(point.workspace.assembly.rate_rows))
+    assert np.abs(phid - first)[held].max(initial=0.0) < 1e-8
     second = point.derivative(2, (1.0, v, a, np.zeros_like(q), np.zeros_like(lam)), state, h)
     assert np.abs(phidd - second).max(initial=0.0) < 1e-8
 

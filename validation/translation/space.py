@@ -24,6 +24,8 @@ from ...core.elements import (
     Revolute3D,
     RevoluteSpherical3D,
     RigidBody3D,
+    RollingDisk3D,
+    RollingSphere3D,
     Screw3D,
     Spherical3D,
     SpringDamper3D,
@@ -37,6 +39,7 @@ from ...core.model.derived import Columns
 from ...core.model.derived import Derived as Group
 from ...core.model.marker_channels3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
+from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from ..errors import NotTranslatable
 from .bodies import node_columns
 from .registry import BodyItems, Build, Derived, no_equal, translates
@@ -47,6 +50,7 @@ no_equal("a Revolute3D with user functions for its offset", AngleDriver3D)
 no_equal("an ObjectConnectorCoordinate between the coordinates of joint-space bodies", Gear3D, RackAndPinion3D, Screw3D)
 no_equal("a Prismatic3D with user functions for its offset", PositionDriver3D)
 no_equal("a Universal3D, where the joint bends little", ConstantVelocity3D)
+no_equal("a sphere on a ground plane with large friction", RollingSphere3D)
 no_equal("a thin rod between a Revolute3D and a Spherical3D", RevoluteSpherical3D)
 no_equal("an ObjectConnectorRigidBodySpringDamper with the same stiffness", Bushing3D, AxialSpring3D)
 no_equal("an ObjectConnectorTorsionalSpringDamper about the same axis", TorsionSpring3D)
@@ -64,6 +68,14 @@ CONSTRAINED: dict[type[Joint3D], list[int]] = {
 """Axes that ObjectJointGeneric holds: three translations and three rotations in the frame of marker a."""
 YZ = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Columns: our z, x, y axes as x, y, z. exudyn's universal joint holds y of a across z of b, ours x across y."""
+
+
+no_equal(
+    "closed forms (docs/space.md): exudyn's contacts of spheres have other laws of friction and no planes, and a "
+    "translation of those without friction is not written yet",
+    SphereOnHalfSpace3D,
+    SphereOnSphere3D,
+)
 
 
 @translates(RigidBody3D, PointMass3D)
@@ -137,7 +149,9 @@ def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = 
     if marker.body != GROUND and not build.bodies[marker.body].rigid:
         if axes is not None:
             raise NotTranslatable(f"'{user}' needs the axes of '{marker.body}', a point mass: make it a RigidBody3D")
-        return int(build.add("MarkerBodyPosition", bodyNumber=body))
+        return int(
+            build.add("MarkerBodyPosition", bodyNumber=body, localPosition=[*build.bodies[marker.body].local, 0.0])
+        )
     transformation = np.eye(4)
     transformation[:3, 3] = marker.point
     if axes is not None:
@@ -168,6 +182,20 @@ def generic(record: Joint3D, build: Build) -> None:
     markers = [placed(marker, build, record.name, marker.axes() @ order) for marker in (record.a, record.b)]
     build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=CONSTRAINED[type(record)])
     _derive_coordinates(record, build)
+
+
+@translates(RollingDisk3D)
+def rolling_disk(record: RollingDisk3D, build: Build) -> None:
+    """ObjectJointRollingDisc, which holds the disk's velocity on the ground. Raises NotTranslatable for a plane that
+    moves and for a rounded rim."""
+    if record.a.body != GROUND or record.rim_radius:
+        raise NotTranslatable(
+            f"'{record.name}' rolls on a body or on a rounded rim: exudyn's disk is sharp, on the ground"
+        )
+    # its axle is the x axis: others are not well tested, its manual says
+    axes = (record.a.axes(), record.b.axes() @ YZ)
+    markers = [placed(m, build, record.name, of) for m, of in zip((record.a, record.b), axes, strict=True)]
+    build.add("ObjectJointRollingDisc", markerNumbers=markers, discRadius=record.radius)
 
 
 @translates(SpringDamper3D)

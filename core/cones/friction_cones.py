@@ -1,0 +1,271 @@
+"""Forces (or impulses) of several contacts in space with Coulomb friction: exact cones, not polygons.
+
+With w = b + A P, each contact with a normal and two tangential directions: 0 <= w_N, P_N - base >= 0, their product
+0; |P_T| <= mu P_N, and P_T = -mu P_N w_T/|w_T| where w_T is not zero. Where a direction of sliding is known, P_T is
+against it whatever w_T is.
+
+One contact is solved by itself: it separates, sticks, or slides with the angle at which w_T and -P_T are parallel, a
+root of one scalar function (`one_cone`). Several: sweeps of that over all contacts, and Newton's method on the
+projections of Alart and Curnier (1991), P_N = max(base, P_N - r w_N), P_T = projection of P_T - r w_T on the disk
+mu P_N, which is semismooth and ends in few steps; where it does not get nearer, sweeps go on, in smaller steps, until
+nothing changes (Jourdan, Alart, Jean 1998).
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import mat, vec
+from ..linalg.small import call_least_norm, least_norm_size
+from ..rounding import CONES_ENOUGH, CONES_GOOD, CONES_NEAR, CONES_RANK, CONES_ROUGH
+
+FAILED, FOUND = 0, 1
+SWEEPS, MOST_SWEEPS = 20, 5000
+NEWTON, HALVINGS = 60, 8
+LEAST_PART = 0.125
+ANGLES = 48
+"""Parts of a turn in which the angle of sliding is looked for."""
+
+
+def friction_cones_size(n: int) -> int:
+    """Numbers (of 8 bytes) in the scratch of `solve_friction_cones` for n contacts."""
+    m = 3 * n
+    return m * m + 5 * m + least_norm_size(m, m, 1)
+
+
+@internal
+def _slide(a: Any, b: Any, mu: float, base: float, angle: float) -> Any:
+    """(P_N, w_T x d, w_T . d) of one contact that slides along d at this angle; P_N < 0 where there is none."""
+    c, s = math.cos(angle), math.sin(angle)
+    grows = a[0] - mu * (a[1] * c + a[2] * s)
+    if grows <= 0.0:
+        return -1.0, 0.0, 0.0
+    p = max(base, -b[0] / grows)
+    x = b[1] + p * (a[1] - mu * (a[3] * c + a[4] * s))
+    y = b[2] + p * (a[2] - mu * (a[4] * c + a[5] * s))
+    return p, x * s - y * c, x * c + y * s
+
+
+@internal
+def one_cone(a: Any, b: Any, mu: float, base: float) -> Any:
+    """(found, P_N, P_1, P_2) of one contact whose friction is not known; a: inverse mass N N, N 1, N 2, 1 1, 1 2, 2 2,
+    1/kg; b: motion without it."""
+    if mu == 0.0 or not a[3] + a[5] > 0.0:
+        p = max(base, -b[0] / a[0])
+        return True, p, 0.0, 0.0
+    if base == 0.0 and b[0] >= 0.0:
+        return True, 0.0, 0.0, 0.0
+    # it sticks: the tangents take what is left of the normal
+    det = a[3] * a[5] - a[4] * a[4]
+    if det > 1e-14 * a[3] * a[5]:
+        n1, n2 = (a[5] * a[1] - a[4] * a[2]) / det, (a[3] * a[2] - a[4] * a[1]) / det
+        m1, m2 = (a[5] * b[1] - a[4] * b[2]) / det, (a[3] * b[2] - a[4] * b[1]) / det
+    else:
+        # one tangent, or none, can move
+        n1 = n2 = m1 = m2 = 0.0
+        if a[3] >= a[5]:
+            n1, m1 = a[1] / a[3], b[1] / a[3]
+        else:
+            n2, m2 = a[2] / a[5], b[2] / a[5]
+    grows = a[0] - a[1] * n1 - a[2] * n2
+    p = max(base, -(b[0] - a[1] * m1 - a[2] * m2) / grows) if grows > 1e-12 * a[0] else base
+    p1, p2 = -m1 - n1 * p, -m2 - n2 * p
+    if p >= base and p1 * p1 + p2 * p2 <= mu * mu * p * p:
+        return True, p, p1, p2
+    # it slides; most contacts, and all spheres, as they would without friction
+    first = math.atan2(b[2], b[1])
+    step = 2.0 * math.pi / ANGLES
+    best_angle, best = first, math.inf
+    p, f, along = _slide(a, b, mu, base, first)
+    if p >= 0.0 and along >= 0.0 and abs(f) <= 1e-16 * abs(along):
+        return True, p, -mu * p * math.cos(first), -mu * p * math.sin(first)
+    left, f_left, ok_left = first - 0.5 * step, 0.0, False
+    for k in range(ANGLES + 1):
+        right = first + (k - 0.5) * step
+        p, f, along = _slide(a, b, mu, base, right)
+        ok = p >= 0.0
+        if k > 0 and ok and ok_left and (f > 0.0) != (f_left > 0.0):
+            low, high, f_low = left, right, f_left
+            for _ in range(60):
+                middle = 0.5 * (low + high)
+                p, f_middle, along = _slide(a, b, mu, base, middle)
+                if (f_middle > 0.0) == (f_low > 0.0):
+                    low = middle
+                else:
+                    high = middle
+            angle = 0.5 * (low + high)
+            p, f_middle, along = _slide(a, b, mu, base, angle)
+            # of several the one that is nearest to the motion before
+            away = abs(angle - first - 2.0 * math.pi * np.rint((angle - first) / (2.0 * math.pi)))
+            if p >= 0.0 and along >= 0.0 and away < best:
+                best_angle, best = angle, away
+        left, f_left, ok_left = right, f, ok
+    if best == math.inf:
+        return False, 0.0, 0.0, 0.0
+    p, _, _ = _slide(a, b, mu, base, best_angle)
+    return True, p, -mu * p * math.cos(best_angle), -mu * p * math.sin(best_angle)
+
+
+@internal
+def _motion(a: Any, b: Any, p: Any, i: int) -> float:
+    total = b[i]
+    for j in range(len(b)):
+        total += a[i, j] * p[j]
+    return total
+
+
+@internal
+def _sweep(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, part: float) -> Any:
+    """(found, largest change, largest force) of one sweep over all contacts, each of which goes `part` of its way."""
+    change, largest = 0.0, 0.0
+    for i in range(n):
+        j, k = n + i, 2 * n + i
+        own = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k])
+        old = p[i], p[j], p[k]
+        rest_n, rest_1, rest_2 = _motion(a, b, p, i), _motion(a, b, p, j), _motion(a, b, p, k)
+        rest_n -= own[0] * old[0] + own[1] * old[1] + own[2] * old[2]
+        rest_1 -= own[1] * old[0] + own[3] * old[1] + own[4] * old[2]
+        rest_2 -= own[2] * old[0] + own[4] * old[1] + own[5] * old[2]
+        if known[i] != 0.0:
+            grows = own[0] - mu[i] * (own[1] * way[0, i] + own[2] * way[1, i])
+            if grows <= 0.0:
+                return False, 0.0, 0.0
+            p[i] = max(base[i], -rest_n / grows)
+            p[j], p[k] = -mu[i] * p[i] * way[0, i], -mu[i] * p[i] * way[1, i]
+        else:
+            found, p[i], p[j], p[k] = one_cone(own, (rest_n, rest_1, rest_2), mu[i], base[i])
+            if not found:
+                return False, 0.0, 0.0
+        change = max(change, abs(p[i] - old[0]), abs(p[j] - old[1]), abs(p[k] - old[2]))
+        if part < 1.0:
+            p[i], p[j], p[k] = (
+                old[0] + part * (p[i] - old[0]),
+                old[1] + part * (p[j] - old[1]),
+                old[2] + part * (p[k] - old[2]),
+            )
+        largest = max(largest, p[i])
+    return True, change, largest
+
+
+@internal
+def _residual(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, r: Any, jac: Any) -> float:
+    """P less its projection, and its derivative by P; the largest of it."""
+    m, worst = 3 * n, 0.0
+    for i in range(m):
+        for j in range(m):
+            jac[i, j] = 1.0 if i == j else 0.0
+    for i in range(n):
+        j, k = n + i, 2 * n + i
+        step = 1.0 / a[i, i]
+        trial = p[i] - step * _motion(a, b, p, i)
+        if trial > base[i]:
+            r[i] = p[i] - trial
+            for l in range(m):
+                jac[i, l] = step * a[i, l]
+        else:
+            r[i] = p[i] - base[i]
+        if known[i] != 0.0:
+            r[j], r[k] = p[j] + mu[i] * p[i] * way[0, i], p[k] + mu[i] * p[i] * way[1, i]
+            jac[j, i], jac[k, i] = mu[i] * way[0, i], mu[i] * way[1, i]
+        else:
+            size = a[j, j] + a[k, k]
+            step = 1.0 / size if size > 0.0 else 0.0
+            x, y = p[j] - step * _motion(a, b, p, j), p[k] - step * _motion(a, b, p, k)
+            length, limit = math.sqrt(x * x + y * y), mu[i] * max(p[i], 0.0)
+            if step == 0.0 or limit == 0.0:
+                r[j], r[k] = p[j], p[k]
+            elif length <= limit:
+                r[j], r[k] = p[j] - x, p[k] - y
+                for l in range(m):
+                    jac[j, l], jac[k, l] = step * a[j, l], step * a[k, l]
+            else:
+                c, s = x / length, y / length
+                r[j], r[k] = p[j] - limit * c, p[k] - limit * s
+                part = limit / length
+                for l in range(m):
+                    d_x = (1.0 if l == j else 0.0) - step * a[j, l]
+                    d_y = (1.0 if l == k else 0.0) - step * a[k, l]
+                    turn = part * (c * d_y - s * d_x)
+                    jac[j, l] += s * turn
+                    jac[k, l] -= c * turn
+                jac[j, i] -= mu[i] * c
+                jac[k, i] -= mu[i] * s
+        worst = max(worst, abs(r[i]), abs(r[j]), abs(r[k]))
+    return worst
+
+
+@internal
+def _newton(
+    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
+) -> float:
+    """Semismooth Newton from p, which becomes the best point found: the residual there."""
+    m = 3 * n
+    jac, r, found = mat(work, m, m), mat(work + 8 * m * m, m, 1), mat(work + 8 * (m * m + m), m, 1)
+    best, left = vec(work + 8 * (m * m + 2 * m), m), vec(work + 8 * (m * m + 3 * m), m)
+    space, least = work + 8 * (m * m + 5 * m), math.inf
+    tried = 0
+    for _ in range(NEWTON):
+        worst = _residual(n, a, b, mu, base, known, way, p, left, jac)
+        if worst < least:
+            least, tried = worst, 0
+            for i in range(m):
+                best[i], r[i, 0] = p[i], -left[i]
+            if worst == 0.0:
+                break
+            call_least_norm(least_norm, jac, r, found, CONES_RANK, space)
+        else:
+            tried += 1
+            if tried > HALVINGS:
+                break
+        for i in range(m):
+            p[i] = best[i] + 0.5**tried * found[i, 0]
+    for i in range(m):
+        p[i] = best[i]
+    return least
+
+
+@internal
+def solve_friction_cones(
+    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
+) -> int:
+    """Forces p (3 n,) of n contacts: normals, first and second tangents; FOUND or FAILED.
+
+    Parameters
+    ----------
+    least_norm : address of `linalg.small.least_norm`.
+    a, b : inverse masses (3 n, 3 n) and motion without forces (3 n,), in the same order.
+    mu, base : coefficients and least normal forces (n,).
+    known, way : where not 0, the contact slides along the direction `way` (2, n).
+    work : address of `friction_cones_size` numbers.
+    """
+    for i in range(3 * n):
+        p[i] = 0.0
+    for i in range(n):
+        p[i] = base[i]
+    sweeps, wait, part, before, change, largest = 0, SWEEPS, 1.0, math.inf, 0.0, 0.0
+    while sweeps < MOST_SWEEPS:
+        for _ in range(wait):
+            found, change, largest = _sweep(n, a, b, mu, base, known, way, p, part)
+            sweeps += 1
+            if not found:
+                return FAILED
+            if n == 1 or change <= CONES_ENOUGH * largest:
+                return FOUND
+        kept = vec(work + 8 * (9 * n * n + 12 * n), 3 * n)
+        for i in range(3 * n):
+            kept[i] = p[i]
+        largest = 0.0
+        left = _newton(least_norm, n, a, b, mu, base, known, way, p, work)
+        for i in range(n):
+            largest = max(largest, p[i])
+        # directions that nearly repeat each other leave what they differ by
+        if left <= CONES_NEAR * largest or (left <= CONES_GOOD * largest and left > 0.5 * before):
+            return FOUND
+        before = left
+        for i in range(3 * n):
+            p[i] = kept[i]
+        # sweeps that go round in circles come to rest with smaller steps
+        wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
+    return FOUND if change <= CONES_ROUGH * largest else FAILED

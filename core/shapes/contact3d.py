@@ -1,0 +1,139 @@
+"""Contacts in space: spheres and half-spaces, a law along the normal, and friction."""
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar, Literal
+
+from pydantic import model_validator
+
+from ..elements.base import Form, Numbering, Row
+from ..elements.measure3d import DISTANCE, PLACE, columns_of, coordinates_of
+from ..laws import NewtonImpact
+from ..laws.friction import CoulombFriction, LuGreFriction
+from ..model.base import NonNegative, Record
+from ..model.markers import Marker3D
+from ..rounding import STILL
+from .element import ContactElement
+from .friction3d import rubbing_sphere3d_kernel
+from .gripping3d import gripping_sphere3d_kernel
+from .normal3d import SIZE, sphere3d_kernel
+
+
+class HalfSpace3D(Record):
+    """The half-space behind a plane through the marker; its outward normal is the marker's z axis: a half-space on the
+    ground without attitude is a floor."""
+
+    type: Literal["HalfSpace3D"] = "HalfSpace3D"
+    marker: Marker3D = Marker3D()
+
+
+class Sphere3D(Record):
+    """A sphere about the marker; radius 0 is a point."""
+
+    type: Literal["Sphere3D"] = "Sphere3D"
+    marker: Marker3D
+    radius: NonNegative = 0.0
+    """m."""
+
+
+class Contact3D(ContactElement):
+    """Base of the contacts in space.
+
+    Class attributes: `kernel` without friction, `rubbing_kernel` with a regularised law, `gripping_kernel` with
+    Coulomb's; `kind`, the measure of both markers that the gap is, less the radii.
+    """
+
+    kernel: ClassVar[Any] = sphere3d_kernel
+    rubbing_kernel: ClassVar[Any] = rubbing_sphere3d_kernel
+    gripping_kernel: ClassVar[Any] = gripping_sphere3d_kernel
+    kind: ClassVar[int]
+
+    @model_validator(mode="after")
+    def _friction_in_space(self) -> "Contact3D":
+        if isinstance(self.friction, LuGreFriction):
+            raise ValueError(
+                f"contact '{self.name}': LuGre friction has one bristle and belongs to contacts in the plane; give it "
+                "one of the other laws, such as BrownMcPhee"
+            )
+        one_by_one = isinstance(self.law, NewtonImpact) and self.law.propagation == "sequential"
+        if one_by_one and isinstance(self.friction, CoulombFriction):
+            raise ValueError(
+                f"contact '{self.name}': blows one after another (propagation='sequential') with friction are for "
+                "contacts in the plane: leave out one of the two"
+            )
+        return self
+
+    def spheres(self) -> Sequence[Sphere3D]:
+        """The spheres that it brings in touch."""
+        raise NotImplementedError
+
+    def form(self) -> Form:
+        """A contact with Coulomb friction has rows of both tangents behind that of the gap, with another law of
+        friction one of the sliding speed."""
+        kind = type(self)
+        full = tuple((i, j) for i in range(SIZE) for j in range(SIZE))
+        if isinstance(self.friction, CoulombFriction):
+            return Form(kind.gripping_kernel, 3, full, tuple((k, j) for k in range(3) for j in range(SIZE)), (1, 2))
+        kernel, rows = (kind.kernel, 1) if self.friction is None else (kind.rubbing_kernel, 2)
+        return Form(kernel, rows, full, tuple((0, j) for j in range(SIZE)))
+
+    def lengths(self) -> Sequence[float]:
+        return tuple(sphere.radius for sphere in self.spheres())
+
+    def _row_of(self, numbering: Numbering, a: Marker3D, b: Marker3D, radius_a: float, radius_b: float) -> Row:
+        law = self._law_columns(numbering)
+        # small against all speeds that weight causes
+        still = STILL * math.sqrt(numbering.length * (math.hypot(*numbering.gravity) or numbering.length))
+        geometry = (float(self.kind), radius_a, radius_b, still, 0.0, 0.0, 0.0)
+        return Row(
+            (*geometry, *law.parameters, *columns_of(a, b, numbering)), coordinates_of(a, b, numbering), law.extra
+        )
+
+
+class SphereOnHalfSpace3D(Contact3D):
+    """Contact of a sphere (or point) with a half-space: gap = height of the centre over the plane - radius."""
+
+    type: Literal["SphereOnHalfSpace3D"] = "SphereOnHalfSpace3D"
+    kind: ClassVar[int] = PLACE
+
+    plane: HalfSpace3D
+    sphere: Sphere3D
+
+    def spheres(self) -> Sequence[Sphere3D]:
+        return (self.sphere,)
+
+    def row(self, numbering: Numbering) -> Row:
+        return self._row_of(numbering, self.plane.marker, self.sphere.marker, 0.0, self.sphere.radius)
+
+    def markers(self) -> Sequence[Marker3D]:
+        return (self.plane.marker, self.sphere.marker)
+
+
+class SphereOnSphere3D(Contact3D):
+    """Contact of two spheres: gap = distance of the centres - sum of the radii."""
+
+    type: Literal["SphereOnSphere3D"] = "SphereOnSphere3D"
+    kind: ClassVar[int] = DISTANCE
+
+    a: Sphere3D
+    b: Sphere3D
+
+    @model_validator(mode="after")
+    def _not_two_points(self) -> "SphereOnSphere3D":
+        if not self.a.radius + self.b.radius > 0.0:
+            raise ValueError(
+                f"contact '{self.name}' is between two points, whose distance is never negative: give one a radius"
+            )
+        return self
+
+    def spheres(self) -> Sequence[Sphere3D]:
+        return (self.a, self.b)
+
+    def extent(self) -> float:
+        return self.a.radius + self.b.radius
+
+    def row(self, numbering: Numbering) -> Row:
+        return self._row_of(numbering, self.a.marker, self.b.marker, self.a.radius, self.b.radius)
+
+    def markers(self) -> Sequence[Marker3D]:
+        return (self.a.marker, self.b.marker)

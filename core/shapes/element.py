@@ -1,0 +1,87 @@
+"""Base of all contacts: a gap between two shapes, a law along the normal, and friction."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import model_validator
+
+from ..elements.base import BodyElement, Element, Numbering, Row
+from ..laws import ContactLaw, ForceLaw
+from ..laws.friction import CoulombFriction, Friction, LuGreFriction
+from ..model.markers import GROUND
+
+
+class ContactElement(Element):
+    """What may stand in a model's `contacts`, in the plane or in space."""
+
+    law: ContactLaw
+    """What happens when the gap closes."""
+    friction: Friction | None = None
+    """What resists sliding: Coulomb's for contacts as constraints, a regularised law or LuGre's for forces."""
+
+    @model_validator(mode="after")
+    def _friction_fits(self) -> "ContactElement":
+        if self.friction is None:
+            return self
+        coulomb = isinstance(self.friction, CoulombFriction)
+        if coulomb and isinstance(self.law, ForceLaw):
+            raise ValueError(
+                f"contact '{self.name}': Coulomb friction is set-valued and needs a constraint law such as "
+                f"NewtonImpact, not {type(self.law).__name__}; give a regularised law such as Tanh or BrownMcPhee"
+            )
+        if not coulomb and not isinstance(self.law, ForceLaw):
+            raise ValueError(
+                f"contact '{self.name}': friction '{self.friction.type}' is regularised and belongs to a force law; "
+                f"a contact with {type(self.law).__name__} is a constraint: give it Coulomb friction"
+            )
+        return self
+
+    def reach(self) -> Sequence[tuple[float, ...]]:
+        """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""
+        points = [marker.point for marker in self.markers() if marker.body != GROUND]
+        fixed = [marker.point for marker in self.markers() if marker.body == GROUND]
+        return [*points, *sorted(fixed, key=lambda point: max(abs(x) for x in point))[:1]]
+
+    def extent(self) -> float:
+        """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
+        return math.inf
+
+    def disks(self) -> Sequence[Any]:
+        """The planar disks (`Disk2D`) that it brings in touch, for the drawing."""
+        return ()
+
+    def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
+        """Units of gap and sliding distance in a model with these bodies."""
+        return "m", "m"
+
+    def _law_columns(self, numbering: Numbering) -> Row:
+        """What every contact's row has: columns 7 to 15 of the parameters, and the extra indices."""
+        if isinstance(self.law, ForceLaw):
+            parameters = self.law.formula_parameters()
+            address = numbering.law_address(self.law)
+        else:
+            parameters, address = (0.0, 0.0, 0.0, 0.0), 0
+        friction, friction_address = self._friction(numbering)
+        return Row(
+            (*parameters, *friction),
+            (),
+            (
+                numbering.contact(self.name),
+                address,
+                numbering.work(f"{self.name}.impulse"),
+                numbering.work(f"{self.name}.dissipation"),
+                0,
+                friction_address,
+            ),
+        )
+
+    def _friction(self, numbering: Numbering) -> tuple[tuple[float, ...], int]:
+        """Its numbers in the table of parameters, and the address of its formula (0: Coulomb's, or none)."""
+        if self.friction is None:
+            return (0.0,) * 5, 0
+        if isinstance(self.friction, CoulombFriction):
+            return (self.friction.coefficient, 0.0, 0.0, 0.0, 0.0), 0
+        if isinstance(self.friction, LuGreFriction):
+            return self.friction.parameters()[:-1], 0
+        return self.friction.formula_parameters(), numbering.friction_address(self.friction)

@@ -1,0 +1,102 @@
+"""Regularised friction of contacts in space: a law of the sliding speed, against the direction of sliding.
+
+F_T = F(|u_T|, F_N) u_T/|u_T|, u_T = u - n (n.u) the sliding velocity (`tangent3d.py`); F < 0. The contact's second row
+says the sliding speed.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..elements.measure3d import product
+from ..elements.rotation3d import dot, less, plus, times
+from ..laws.friction import call_friction
+from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from .normal2d import act, asleep, evaluate_law
+from .normal3d import KIND, PACKED, RADIUS_A, RADIUS_B, SIZE, gap_of, pair_of
+from .sliding2d import FRICTION, FRICTION_ADDRESS
+from .tangent3d import NORMAL, ROWS, U, W, add_directions, column, tangent_of_batch
+
+SLOW = 1e-150
+"""m/s: below it the direction of sliding is lost to rounding, and the law's slope at rest says the force."""
+
+
+@internal
+def _law(b: Any, e: int, speed: float, normal: float) -> Any:
+    """(F, dF/d speed, dF/dF_N) of element e of a batch."""
+    par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
+    return call_friction(
+        extra[FRICTION_ADDRESS], speed, normal,
+        par[FRICTION], par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
+    )  # fmt: skip
+
+
+@internal
+def regularised(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any, work: Any) -> None:
+    """The friction of element e of a batch, whose gap has been evaluated."""
+    par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
+    coord, k, pair = imat(b.coord, b.count, SIZE)[e], extra[0], pair_of(b, e)
+    v = vec(b.v, b.n_extended)
+    n, u, beta_a, beta_b, size = tangent_of_batch(b, e, int(par[KIND]), par[RADIUS_A], par[RADIUS_B], coord, pair, work)
+    across = dot(n, u)
+    slide = less(u, times(across, n))
+    speed = math.sqrt(dot(slide, slide))
+    if job == RESIDUAL:
+        row = imat(b.row, b.count, 2)[e, 1]
+        vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
+        vec(b.phidd, b.m_extended)[row] = 0.0
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
+    if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
+        return
+    found, normal_d, normal_dd, _, _ = evaluate_law(b, e, k, g, product(gradient, v, coord))
+    normal = max(found, 0.0)
+    force, by_rate, by_normal = _law(b, e, speed, normal)
+    along = times(1.0 / speed, slide) if speed > SLOW else (0.0, 0.0, 0.0)
+    over_speed = force / speed if speed > SLOW else by_rate
+    pull = times(over_speed, slide)
+    if job == RESIDUAL:
+        r = vec(b.r, b.n_extended)
+        for i in range(SIZE):
+            r[coord[i]] -= dot(column(work, W, i), pull)
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = -force
+    elif job == POWER:
+        vec(b.a, b.n_extended)[extra[3]] -= force * speed
+    elif job == TANGENT:
+        values, slot, coef = vec(b.values, b.n_values), imat(b.slot_s + 8 * SIZE * SIZE * e, SIZE, SIZE), vec(b.coef, 2)
+        if not found > 0.0:
+            by_normal = 0.0
+        add_directions(values, slot, vec(b.q, b.n_extended), coord, pair, work, beta_a, beta_b, size, pull, -coef[0])
+        for j in range(SIZE):
+            by_n, of_v = column(work, NORMAL, j), column(work, W, j)
+            of_q = less(column(work, U, j), times(across, by_n))
+            of_q = less(of_q, times(dot(by_n, u) + dot(n, column(work, U, j)), n))
+            of_v = less(of_v, times(dot(n, of_v), n))
+            turn = 0.0
+            for i in range(SIZE):
+                turn += hessian[i, j] * v[coord[i]]
+            # penetration and its rate are less the gap and its rate
+            of_normal = -coef[0] * (normal_d * gradient[j] + normal_dd * turn) - coef[1] * normal_dd * gradient[j]
+            slides = plus(times(coef[0], of_q), times(coef[1], of_v))
+            forward = dot(along, slides)
+            change = plus(
+                times(over_speed, less(slides, times(forward, along))),
+                times(by_rate * forward + by_normal * of_normal, along),
+            )
+            for i in range(SIZE):
+                values[slot[i, j]] -= dot(column(work, W, i), change)
+
+
+@internal
+def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
+    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
+    work = np.empty((ROWS, SIZE))
+    for e in range(b.count):
+        if asleep(b, e):
+            continue
+        g = gap_of(b, e, gradient, hessian, packed)
+        act(b, job, e, g, gradient, packed)
+        regularised(b, job, e, g, gradient, hessian, work)

@@ -1,0 +1,142 @@
+"""Coulomb friction of contacts in space that are constraints.
+
+A closed contact that sticks has, beside the gap, two rows at velocity level: the sliding velocity along both tangents
+is zero. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|. Where |u_T| comes to zero a direction has to go
+on through it, for steps end beyond the event before they end at it: with x and y along the tangents, x along the
+direction of sliding at the last event, the angle of friction is atan(x y/(x^2 + STILL^2)), which for x > 0 is that of
+u_T.
+
+What the rows of a contact that does not stick tell: of an open one x and y; of one that slides x - TURNED |u_T|, whose
+zero is the end of sliding, or a turn of its direction by much, and |u_T|.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT
+from ..compiled.views import imat, mat, vec
+from ..elements.rotation3d import dot, less, plus, times
+from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS, WAY
+from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
+from .normal2d import act, asleep
+from .normal3d import KIND, PACKED, RADIUS_A, RADIUS_B, SIZE, gap_of, pair_of
+from .tangent3d import U, W, add_directions, column, product_with, tangent_of_batch
+
+STILL_SPEED = 3
+"""Column of the parameters: STILL, m/s."""
+TURNED = 0.2
+"""Cosine of the angle by which the direction of sliding has turned when it is taken anew."""
+
+
+@internal
+def _direction(x: float, y: float, still: float) -> Any:
+    """(cosine, sine) of the angle of friction from the first tangent, and its derivatives by x and y."""
+    square = x * x + still * still
+    w = x * y / square
+    scale = 1.0 / (1.0 + w * w)
+    c = math.sqrt(scale)
+    return c, w * c, scale * y * (still * still - x * x) / (square * square), scale * x / square
+
+
+@internal
+def _levels(b: Any, e: int, x: float, y: float, x_rate: float, y_rate: float, slides: bool) -> None:
+    """The rows of the tangents at all levels."""
+    first = imat(b.row, b.count, 3)[e, 1]
+    phi, phid, phidd = vec(b.phi, b.m_extended), vec(b.phid, b.m_extended), vec(b.phidd, b.m_extended)
+    phi[first] = phi[first + 1] = 0.0
+    if not slides:
+        phid[first], phid[first + 1], phidd[first], phidd[first + 1] = x, y, x_rate, y_rate
+        return
+    speed = math.sqrt(x * x + y * y)
+    faster = (x * x_rate + y * y_rate) / speed if speed > 0.0 else math.sqrt(x_rate * x_rate + y_rate * y_rate)
+    phid[first], phid[first + 1] = x - TURNED * speed, speed
+    phidd[first], phidd[first + 1] = x_rate - TURNED * faster, faster
+
+
+@internal
+def grip(b: Any, job: int, e: int, work: Any) -> None:
+    """The friction of element e of a batch, whose gap has been evaluated."""
+    memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
+    closed = memory[MODE] == CLOSED
+    if job != RESIDUAL and not (closed and (job == TANGENT or job == POWER)):
+        return
+    par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
+    coord, k, pair = imat(b.coord, b.count, SIZE)[e], extra[0], pair_of(b, e)
+    row, lam, v = imat(b.row, b.count, 3)[e], vec(b.lam, b.m_extended), vec(b.v, b.n_extended)
+    n, u, beta_a, beta_b, size = tangent_of_batch(b, e, int(par[KIND]), par[RADIUS_A], par[RADIUS_B], coord, pair, work)
+    axis, angle = int(memory[AXIS]), memory[WAY]
+    if not closed or axis == 0:
+        axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
+    t1, t2 = tangents(b, coord, pair, axis, angle, n, work)
+    x, y = dot(u, t1), dot(u, t2)
+    held = memory[SLIDE]
+    slides = closed and abs(held) == 1.0
+    both, one = closed and held == STICKS, closed and held == ALONG
+    # force on the second shape; how it goes with the normal's multiplier
+    share, pull = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    c, s, by_x, by_y = 1.0, 0.0, 0.0, 0.0
+    if slides or (closed and held == IDLE):
+        if slides:
+            c, s, by_x, by_y = _direction(x, y, par[STILL_SPEED])
+        share = times(-memory[RATIO], plus(times(c, t1), times(s, t2)))
+        pull = times(lam[row[0]], share)
+    elif both or one:
+        pull = times(-lam[row[1]], t1)
+        if both:
+            pull = less(pull, times(lam[row[2]], t2))
+    if job == RESIDUAL:
+        a = vec(b.a, b.n_extended)
+        u_rate = plus(product_with(work, W, a, coord), product_with(work, U, v, coord))
+        t1_rate, t2_rate = product_with(work, T1, v, coord), product_with(work, T2, v, coord)
+        _levels(b, e, x, y, dot(u_rate, t1) + dot(u, t1_rate), dot(u_rate, t2) + dot(u, t2_rate), slides)
+        force = math.sqrt(dot(pull, pull))
+        # of an open contact nobody asks for friction: what an instant has to know of its tangents stands there
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = force if closed else float(axis)
+        r = vec(b.r, b.n_extended)
+        for i in range(SIZE):
+            r[coord[i]] -= dot(column(work, W, i), pull)
+    elif job == POWER:
+        vec(b.a, b.n_extended)[extra[3]] -= dot(pull, u)
+    else:
+        values, slot, c_q = (
+            vec(b.values, b.n_values),
+            imat(b.slot_s + 8 * SIZE * SIZE * e, SIZE, SIZE),
+            vec(b.coef, 2)[0],
+        )
+        slot_j, slot_jt = imat(b.slot_j, b.count, 3 * SIZE)[e], imat(b.slot_jt, b.count, 3 * SIZE)[e]
+        add_directions(values, slot, vec(b.q, b.n_extended), coord, pair, work, beta_a, beta_b, size, pull, -c_q)
+        across, load = plus(times(-s, t1), times(c, t2)), -memory[RATIO] * lam[row[0]]
+        for j in range(SIZE):
+            of_v, by_t1, by_t2 = column(work, W, j), column(work, T1, j), column(work, T2, j)
+            along_1, along_2 = dot(of_v, t1), dot(of_v, t2)
+            if both or one:
+                values[slot_j[SIZE + j]] += along_1
+                values[slot_jt[SIZE + j]] += along_1
+                change = times(-c_q * lam[row[1]], by_t1)
+                if both:
+                    values[slot_j[2 * SIZE + j]] += along_2
+                    values[slot_jt[2 * SIZE + j]] += along_2
+                    change = less(change, times(c_q * lam[row[2]], by_t2))
+            else:
+                values[slot_jt[j]] -= dot(of_v, share)
+                of_q = column(work, U, j)
+                turn = c_q * (by_x * (dot(of_q, t1) + dot(u, by_t1)) + by_y * (dot(of_q, t2) + dot(u, by_t2)))
+                turn += vec(b.coef, 2)[1] * (by_x * along_1 + by_y * along_2)
+                change = plus(times(load * turn, across), times(c_q * load, plus(times(c, by_t1), times(s, by_t2))))
+            for i in range(SIZE):
+                values[slot[i, j]] -= dot(column(work, W, i), change)
+
+
+@internal
+def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
+    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
+    work = np.empty((FRAME_ROWS, SIZE))
+    for e in range(b.count):
+        if asleep(b, e):
+            continue
+        g = gap_of(b, e, gradient, hessian, packed)
+        act(b, job, e, g, gradient, packed)
+        grip(b, job, e, work)

@@ -1,0 +1,167 @@
+"""Tangents and levels of contacts in space against differences of their residuals, friction included."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from test_tangents import Point, check_levels, check_matrix, draw, quick
+from test_tangents3d import GROUND, LEFT, MASS, RIGHT, A, B, P
+from tlismni.core import (
+    BrownMcPheeFriction,
+    CoulombFriction,
+    HalfSpace3D,
+    Hertz,
+    HuntCrossley,
+    KelvinVoigt,
+    Model,
+    NewtonImpact,
+    Sphere3D,
+    SphereOnHalfSpace3D,
+    SphereOnSphere3D,
+    TanhFriction,
+)
+from tlismni.core.shapes.gripping3d import TURNED
+from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, IDLE, MODE, RATIO, SLIDE, STICKS, WAY
+
+HARD = NewtonImpact(restitution=0.5)
+TANH = TanhFriction(coefficient=0.6, transition_speed=2.0)
+PEAK = BrownMcPheeFriction(coefficient=0.4, static_coefficient=0.6, transition_speed=1.5)
+
+
+def on_plane(law, a, b, **more):
+    return SphereOnHalfSpace3D(
+        name="c", plane=HalfSpace3D(marker=a), sphere=Sphere3D(marker=b, radius=2.7), law=law, **more
+    )
+
+
+def on_sphere(law, a, b, **more):
+    first, second = Sphere3D(marker=a, radius=1.6), Sphere3D(marker=b, radius=2.1)
+    return SphereOnSphere3D(name="c", a=first, b=second, law=law, **more)
+
+
+KELVIN = KelvinVoigt(stiffness=4.0, damping=0.8)
+HUNT = HuntCrossley(stiffness=3.0, exponent=1.5, restitution=0.6)
+PLACES = {"two bodies": (LEFT, RIGHT), "ground": (GROUND, RIGHT), "a point mass": (LEFT, MASS)}
+CASES = {
+    f"{shape.__name__}, {where}, {law.type}, {None if friction is None else friction.type}": (
+        shape(law, *ends, friction=friction), CLOSED if law is HARD else ACTIVE,
+    )
+    for shape in (on_plane, on_sphere)
+    for where, ends in PLACES.items()
+    for law, friction in ((HARD, None), (KELVIN, None), (KELVIN, TANH), (HUNT, PEAK), (Hertz(stiffness=2.0), TANH))
+}  # fmt: skip
+
+
+def system(case):
+    contact, mode = CASES[case]
+    return Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], contacts=[contact]), mode)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_tangent_is_the_derivative_of_the_residual(case):
+    point = system(case)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        state = draw(point, seed)
+        point.at(*state)
+        # friction has a kink where the normal force vanishes
+        assume(abs(point.workspace.arrays["monitor"][0]) > 0.5)
+        check_matrix(point, state, h=4e-3)
+
+    check()
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if case.endswith("None")])
+def test_velocity_and_acceleration_level_are_the_derivatives_of_the_position_level(case):
+    point = system(case)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        check_levels(point, draw(point, seed), 4e-3)
+
+    check()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_contact_forces_really_act_in_these_tests(case):
+    point, free = system(case), Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B]))
+    for seed in range(5):
+        state = draw(point, seed)
+        with_force = point.at(*state)
+        rows = point.m - free.m
+        without = free.at(*state[:4], state[4][: free.m])
+        if CASES[case][1] == ACTIVE:
+            assert with_force[1][free.m] < 0.0
+        assert rows >= 1
+        assert np.abs(with_force[0] - without[0]).max() > 1e-3
+
+
+GRIP = CoulombFriction(coefficient=0.4)
+SLIDES = {"sliding": 1.0, "sticking": STICKS, "held along one": ALONG, "carrying a share": IDLE, "open": None}
+
+
+def gripping(shape, where, slide):
+    contact = shape(HARD, *PLACES[where], friction=GRIP)
+    point = Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], contacts=[contact]))
+    if slide is not None:
+        twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
+        point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
+        axis = 1 if shape is on_plane else (3 if where == "a point mass" else 2)
+        columns = [MODE, SLIDE, RATIO, WAY, AXIS]
+        point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis
+    return point
+
+
+def forward(point, state):
+    """True if it slides along the direction of the last event, not about across it."""
+    first = point.workspace.assembly.contacts[0].slide_row
+    point.at(*state)
+    arrays = point.workspace.arrays
+    x = arrays["phid"][first] + TURNED * arrays["phid"][first + 1]
+    return x > 0.3 * arrays["phid"][first + 1]
+
+
+@pytest.mark.parametrize("shape", [on_plane, on_sphere])
+@pytest.mark.parametrize("where", PLACES)
+@pytest.mark.parametrize("slides", SLIDES)
+def test_tangent_of_coulomb_friction(shape, where, slides):
+    """Rows of sticking at velocity level: their W is the derivative of phid by v."""
+    point = gripping(shape, where, SLIDES[slides])
+    n, active = point.n, point.workspace.structure.active
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        state = draw(point, seed)
+        assume(SLIDES[slides] != 1.0 or forward(point, state))
+        point.at(*state)
+        matrix, zero, unit, no_lam = point.tangent(0.6, 0.8), np.zeros(n), np.eye(n), np.zeros(point.m)
+        s = np.array([point.derivative(0, (0.0, 0.6 * e, 0.8 * e, e, no_lam), state, 4e-3) for e in unit]).T
+        assert np.abs(matrix[:n, :n] - s).max() < 1e-8 * max(1.0, np.abs(s).max())
+        jacobian = np.array([point.derivative(2, (0.0, zero, e, zero, no_lam), state, 4e-3) for e in unit]).T[active]
+        assert np.abs(matrix[n:, :n] - jacobian).max(initial=0.0) < 1e-8
+        for i, row in enumerate(active):
+            force = point.derivative(0, (0.0, zero, zero, zero, np.eye(point.m)[row]), state)
+            assert np.abs(force - matrix[:n, n + i]).max() < 1e-9
+
+    check()
+
+
+@pytest.mark.parametrize("shape", [on_plane, on_sphere])
+@pytest.mark.parametrize("slides", SLIDES)
+def test_rates_of_the_tangents_rows_fit_their_velocities(shape, slides):
+    point = gripping(shape, "two bodies", SLIDES[slides])
+    rows = point.workspace.assembly.contacts[0].slide_row + np.arange(2)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        state = draw(point, seed)
+        _, q, v, a, lam = state
+        second = point.derivative(2, (1.0, v, a, np.zeros_like(q), np.zeros_like(lam)), state, 4e-3)
+        assert np.abs(point.at(*state)[3][rows] - second[rows]).max() < 1e-8
+
+    check()

@@ -1,0 +1,97 @@
+"""Exact friction cones of several contacts: residuals of random problems, one contact against its closed forms."""
+
+import math
+
+import numba
+import numpy as np
+import pytest
+from tlismni.core.compiled.jit import address_of
+from tlismni.core.cones.friction_cones import FOUND, friction_cones_size, solve_friction_cones
+from tlismni.core.linalg.small import LEAST_NORM_SIGNATURE, least_norm
+
+
+@numba.njit
+def _solve(address, n, a, b, mu, base, known, way, p, work):
+    return solve_friction_cones(address, n, a, b, mu, base, known, way, p, work)
+
+
+def solve(a, b, mu, base=None, known=None, way=None):
+    n = len(mu)
+    p, work = np.zeros(3 * n), np.zeros(friction_cones_size(n))
+    base = np.zeros(n) if base is None else base
+    known, way = np.zeros(n) if known is None else known, np.zeros((2, n)) if way is None else way
+    address = address_of(least_norm, LEAST_NORM_SIGNATURE)
+    status = _solve(address, n, a, b, np.asarray(mu, float), base, known, way, p, work.ctypes.data)
+    assert status == FOUND
+    return p, b + a @ p
+
+
+def off(p, w, mu, base=0.0):
+    """The largest violation of the cones, of complementarity and of opposite directions."""
+    n = len(mu)
+    normal, friction, slide = p[:n], p[n:].reshape(2, n), w[n:].reshape(2, n)
+    speed = np.hypot(*slide)
+    return max(
+        np.max(base - normal), np.max(-w[:n]), np.max(np.abs((normal - base) * w[:n])),
+        np.max(np.hypot(*friction) - mu * normal), np.max(np.abs(friction * speed + mu * normal * slide)),
+    )  # fmt: skip
+
+
+def box(height=0.1):
+    """Rows of the velocities of a box's lower corners: normals, first and second tangents."""
+    corners = [np.array([x, y, -height]) for x in (0.2, -0.2) for y in (0.15, -0.15)]
+    return np.array([np.r_[axis, np.cross(c, axis)] for axis in np.eye(3)[[2, 0, 1]] for c in corners])
+
+
+INVERSE = np.diag([0.5, 0.5, 0.5, 50.0, 33.0, 25.0])
+
+
+@pytest.mark.parametrize("mu", [0.1, 0.4, 0.8])
+@pytest.mark.parametrize("seed", range(60))
+def test_four_corners_of_a_box(mu, seed):
+    """Four contacts with six degrees of freedom: forces are not unique, motion is."""
+    random = np.random.default_rng(seed)
+    g = box()
+    v = random.normal(size=6) * [1, 1, 0.3, 2, 2, 2] - [0, 0, 0.5, 0, 0, 0]
+    a, b, friction = g @ INVERSE @ g.T, g @ v, np.full(4, mu)
+    p, w = solve(a, b, friction)
+    assert off(p, w, friction) < 1e-8
+    # friction takes energy away
+    after = v + INVERSE @ g.T @ p
+    mass = np.linalg.inv(INVERSE)
+    assert after @ mass @ after <= v @ mass @ v * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_one_contact_of_any_body(seed):
+    """A full block: the direction of sliding turns in the blow."""
+    random = np.random.default_rng(seed)
+    g = random.normal(size=(3, 6))
+    a, b = g @ g.T, random.normal(size=3) * [0.2, 1, 1] - [1, 0, 0]
+    friction = np.array([random.uniform(0.0, 0.6)])
+    p, w = solve(a, b, friction)
+    assert off(p, w, friction) < 1e-12 * max(1.0, np.abs(p).max() * np.abs(a).max())
+
+
+def test_sphere_slides_against_its_slip_or_sticks():
+    """P_T = min(mu P_N, 2/7 m |slip|)."""
+    a, slip = np.diag([1.0, 3.5, 3.5]), np.array([0.6, -0.8])
+    for mu in (0.05, 0.5):
+        p, _ = solve(a, np.array([-2.0, *slip]), [mu])
+        assert p[0] == pytest.approx(2.0, rel=1e-15)
+        assert p[1:] == pytest.approx(-min(mu * 2.0, 2.0 / 7.0) * slip, rel=1e-14)
+
+
+def test_known_directions_and_forces_that_act_in_any_case():
+    a, way = np.diag([1.0, 3.5, 3.5]), np.array([[0.6], [0.8]])
+    p, _ = solve(a, np.array([-2.0, 0.0, 0.0]), [0.3], known=np.ones(1), way=way)
+    assert p == pytest.approx([2.0, -0.36, -0.48])
+    p, w = solve(a, np.array([1.0, 0.9, 0.0]), [0.1], base=np.array([0.5]))
+    assert p == pytest.approx([0.5, -0.05, 0.0]) and w[0] == pytest.approx(1.5)
+
+
+def test_a_polygon_would_err_in_direction():
+    """Sliding at 20 degrees: the force is against it to rounding, not along the nearest edge."""
+    angle = math.radians(20.0)
+    p, _ = solve(np.diag([1.0, 3.5, 3.5]), np.array([-1.0, 5.0 * math.cos(angle), 5.0 * math.sin(angle)]), [0.3])
+    assert math.atan2(p[2], p[1]) == pytest.approx(angle - math.pi, abs=1e-14)

@@ -1,0 +1,97 @@
+"""Scenarios with contact in space: closed forms, momentum, and energy that never grows."""
+
+import numpy as np
+import pytest
+from tlismni.core import simulate
+from tlismni.models import ScenarioError, load
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def run(name, method="ebdf", **parameters):
+    scenario = load(name, **parameters)
+    return scenario, simulate(scenario.model, scenario.t_end, method, rtol=1e-9, atol=1e-11)
+
+
+def total(result):
+    return result["energy.kinetic"] + result["energy.potential"] + result["energy.strain"]
+
+
+def vector(result, name, at):
+    return np.array([result[f"{name}{axis}"][at] for axis in "xyz"])
+
+
+def test_spinning_sphere_bounces_slides_and_rolls():
+    _, result = run("spinning_sphere")
+    v, w, radius = np.array([2.0, -0.5, 0.0]), np.array([30.0, -60.0, 20.0]), 0.1
+    rolls = (5.0 * v + 2.0 * radius * np.cross(w, UP)) / 7.0
+    assert vector(result, "ball.v", -1) == pytest.approx(rolls, abs=1e-6)
+    kinds = [event.kind for event in result.events]
+    assert kinds.count("impact") > 10 and "rest" in kinds
+    assert np.all(np.diff(total(result)) < 1e-7)
+    assert result["floor.sliding_velocity"][-1] < 1e-12
+
+
+def test_spinning_sphere_with_a_force_law_comes_near():
+    _, hard = run("spinning_sphere")
+    _, soft = run("spinning_sphere", law="hunt_crossley", stiffness=1e7, restitution=0.3)
+    assert vector(soft, "ball.v", -1)[:2] == pytest.approx(vector(hard, "ball.v", -1)[:2], abs=0.02)
+
+
+def test_spatial_cradle_keeps_energy_and_strikes_beside_the_middle():
+    _, result = run("spatial_cradle")
+    energy = total(result)
+    assert np.abs(energy - energy[0]).max() < 1e-6 * abs(energy[0])
+    blows = [event for event in result.events if event.kind == "impact"]
+    assert len(blows) >= 4
+    assert all(event.separation_speed == pytest.approx(event.approach_speed, rel=1e-8) for event in blows)
+    assert abs(result["ball2.vy"]).max() > 1e-3
+
+
+def test_spatial_cradle_without_a_pull_aside_stays_in_its_plane():
+    _, result = run("spatial_cradle", aside=0.0)
+    _, flat = run("newtons_cradle", balls=3, gap=2e-3, radius=0.02)
+    assert np.abs(result["ball1.y"]).max() < 1e-12
+    times = [[e.t for e in r.events if e.kind == "impact"][:4] for r in (result, flat)]
+    assert times[0] == pytest.approx(times[1], abs=1e-7)
+
+
+def test_arm_keeps_its_angular_momentum_about_the_vertical():
+    """The shoulder's spring acts inside, the table has no friction."""
+    scenario, result = run("arm_stop")
+    assert [event for event in result.events if event.kind == "impact"]
+    momentum = []
+    for at in (0, -1):
+        found = 0.0
+        for body in scenario.model.bodies:
+            x, v = vector(result, f"{body.name}.", at), vector(result, f"{body.name}.v", at)
+            found += body.mass * np.cross(x, v)[2]
+            e0, e = result[f"{body.name}.e0"][at], np.array([result[f"{body.name}.e{k}"][at] for k in (1, 2, 3)])
+            tilde = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
+            turn = (e0**2 - e @ e) * np.eye(3) + 2.0 * np.outer(e, e) + 2.0 * e0 * tilde
+            w = vector(result, f"{body.name}.body_angular_velocity_", at)
+            found += (turn @ np.diag(body.inertia) @ w)[2]
+        momentum.append(found)
+    assert momentum[1] == pytest.approx(momentum[0], rel=1e-7)
+    assert np.all(np.diff(total(result)) < 1e-7)
+
+
+def test_slider_crank_in_space_strikes_its_stop():
+    _, free = run("spatial_slider_crank_stop", stop=0.5)
+    assert not free.events
+    _, result = run("spatial_slider_crank_stop")
+    first = next(event for event in result.events if event.kind == "impact")
+    assert first.separation_speed == pytest.approx(0.6 * first.approach_speed, rel=1e-8)
+    assert result["stop.gap"].min() > -1e-9
+    assert np.all(np.diff(total(result)) < 1e-6)
+    with pytest.raises(ScenarioError, match="behind the stop"):
+        load("spatial_slider_crank_stop", stop=0.1)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_dropped_box_comes_to_rest(friction):
+    _, result = run("dropped_box", friction=friction)
+    assert np.all(np.diff(total(result)) < 1e-6 * total(result)[0])
+    if friction:
+        assert result["energy.kinetic"][-1] < 1e-10
+    assert min(result[f"floor_ground_box_{k}.gap"].min() for k in range(1, 9)) > -1e-9
