@@ -63,7 +63,7 @@ class Cable3D(BodyElement):
     axial_damping: NonNegative = 0.0
     """Axial force per rate of the axial strain, N s."""
     reference_strain: float = 0.0
-    """Axial strain without force, 1."""
+    """Axial strain without force, dimensionless."""
     integration: Literal["full", "reduced"] = "full"
     """Gauss points of an element: 5 for the axial and 3 for the bending strain, or 4 and 2."""
     position: Vector3 = (0.0, 0.0, 0.0)
