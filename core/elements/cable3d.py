@@ -76,7 +76,7 @@ class Cable3D(BodyElement):
     velocity: Vector3 = (0.0, 0.0, 0.0)
     """Initial velocity of the place `position`, m/s."""
     angular_velocity: Vector3 = (0.0, 0.0, 0.0)
-    """It starts turning about `position` as if rigid, rad/s in the axes of space."""
+    """It starts turning about `position` as if rigid, rad/s, in the axes of space."""
 
     @model_validator(mode="after")
     def _check(self) -> "Cable3D":
