@@ -63,7 +63,7 @@ class Cable3D(BodyElement):
     axial_damping: NonNegative = 0.0
     """Axial force per rate of the axial strain, N s."""
     reference_strain: float = 0.0
-    """Axial strain without force, 1."""
+    """Axial strain without force, dimensionless."""
     integration: Literal["full", "reduced"] = "full"
     """Gauss points of an element: 5 for the axial and 3 for the bending strain, or 4 and 2."""
     position: Vector3 = (0.0, 0.0, 0.0)
@@ -76,7 +76,7 @@ class Cable3D(BodyElement):
     velocity: Vector3 = (0.0, 0.0, 0.0)
     """Initial velocity of the place `position`, m/s."""
     angular_velocity: Vector3 = (0.0, 0.0, 0.0)
-    """It starts turning about `position` as if rigid, rad/s in the axes of space."""
+    """It starts turning about `position` as if rigid, rad/s, in the axes of space."""
 
     @model_validator(mode="after")
     def _check(self) -> "Cable3D":

@@ -62,6 +62,7 @@ class KnifeEdge2D(JointElement):
     rate_rows: ClassVar[Sequence[int]] = (0,)
 
     marker: Marker2D
+    """Where the edge touches; its first axis is along the edge."""
 
     def markers(self) -> Sequence[Marker2D]:
         return (self.marker,)

@@ -25,6 +25,7 @@ class HalfSpace3D(Record):
 
     type: Literal["HalfSpace3D"] = "HalfSpace3D"
     marker: Marker3D = Marker3D()
+    """On its surface; its z axis is the outward normal."""
 
 
 class Sphere3D(Record):
@@ -32,6 +33,7 @@ class Sphere3D(Record):
 
     type: Literal["Sphere3D"] = "Sphere3D"
     marker: Marker3D
+    """Its centre."""
     radius: NonNegative = 0.0
     """m."""
 
@@ -97,7 +99,9 @@ class SphereOnHalfSpace3D(Contact3D):
     kind: ClassVar[int] = PLACE
 
     plane: HalfSpace3D
+    """The half-space."""
     sphere: Sphere3D
+    """The sphere."""
 
     def spheres(self) -> Sequence[Sphere3D]:
         return (self.sphere,)
@@ -116,7 +120,9 @@ class SphereOnSphere3D(Contact3D):
     kind: ClassVar[int] = DISTANCE
 
     a: Sphere3D
+    """The first sphere."""
     b: Sphere3D
+    """The second sphere."""
 
     @model_validator(mode="after")
     def _not_two_points(self) -> "SphereOnSphere3D":

@@ -63,7 +63,9 @@ class Stop3D(ContactElement):
     measured: ClassVar[int]
 
     a: Marker3D = Marker3D()
+    """The first marker."""
     b: Marker3D
+    """The second marker."""
 
     @model_validator(mode="after")
     def _no_friction(self) -> "Stop3D":

@@ -89,6 +89,31 @@ def test_the_page_on_embedding_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert (tmp_path / "control.image").stat().st_size > 1000
 
 
+def test_the_page_on_fmus_without_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tlismni.core.compiled.library import LIBRARY
+
+    if LIBRARY is None:
+        pytest.skip("needs the library of machine code (tlismni.core.ahead)")
+    monkeypatch.chdir(tmp_path)
+    from tlismni.fmu_wrapper import export_fmu
+    from tlismni.models import load
+
+    names: dict[str, Any] = {"export_fmu": export_fmu, "scenario": load("pendulum_stop")}
+    for language, _, text in blocks(DOCS / "native-fmu.md"):
+        if language == "python":
+            exec(text, names)
+    assert list(tmp_path.glob("*.fmu"))
+
+
+def test_the_page_on_space_runs() -> None:
+    names: dict[str, Any] = {}
+    for language, _, text in blocks(DOCS / "space.md"):
+        if language == "python":
+            exec(text, names)
+    found = names["result"]
+    assert abs(found["energy.balance"]).max() < 1e-5 * found["energy.kinetic"].max()
+
+
 def test_the_page_on_the_cross_check_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in ("exudyn", "jinja2", "plotly", "matplotlib"):
         pytest.importorskip(module)
