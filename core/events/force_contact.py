@@ -8,7 +8,7 @@ from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..laws import call_law
 from ..methods.history import history_time
-from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, LEAST_APPROACH
+from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, GAP_ROUNDING, LEAST_APPROACH
 from ..state.modes import (
     ACTIVE,
     APPROACH_SPEED,
@@ -32,6 +32,7 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from ..tables.evaluate import evaluate_residuals
+from ..tables.levels import position_level
 from .laws import FORCE
 from .records import COUNT, NO_ACCELERATIONS, SETTLED, call_part, delassus, whole
 from .report import report
@@ -92,18 +93,22 @@ def _end(dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> None:
     memory, row = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(ws.contact_rows, ws.n_contacts)[k]
     gap, rate = vec(ws.phi, ws.m_ext)[row], vec(ws.phid, ws.m_ext)[row]
     if memory[MODE] == RELEASED:
-        if gap >= 0.0 or rate > 0.0:
+        # either the shapes come apart, where the spring holds nothing against the damper, or the force is back at zero,
+        # where it holds as much: while they still separate, if something pushes them together
+        force, _, _, spring, _ = _law(dr, ws, k, max(-gap, 0.0), -rate, memory[APPROACH_SPEED])
+        apart = gap >= -GAP_ROUNDING * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        if apart or (rate > 0.0 and force <= -0.5 * spring):
             memory[MODE] = OPEN
         else:
             # pressed again before the shapes came apart
             memory[MODE] = ACTIVE
-            memory[LOSS_JUMP] -= _law(dr, ws, k, max(-gap, 0.0))[4]
+            memory[LOSS_JUMP] -= _at_rest(dr, ws, k, max(-gap, 0.0))[4]
             _start_small(lc, vec(ws.row_scale, ws.m_ext)[row], memory[APPROACH_SPEED])
         return
     early = ivec(dr.ends_early, ws.n_contacts)[k] != 0
     if early:
         # what the spring still holds when the force has reached zero is never given back
-        memory[LOSS_JUMP] += _law(dr, ws, k, max(-gap, 0.0))[4]
+        memory[LOSS_JUMP] += _at_rest(dr, ws, k, max(-gap, 0.0))[4]
     memory[MODE] = RELEASED if early else OPEN
     _let_bristles_go(dr, ws, k)
     impulse, loss = _impulse(dr, ws, k) - memory[BEGUN_IMPULSE], _loss(dr, ws, k) - memory[BEGUN_LOSS]
@@ -111,10 +116,16 @@ def _end(dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> None:
 
 
 @internal
-def _law(dr: Any, ws: Any, k: int, penetration: float) -> Any:
-    """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) of contact k at rest."""
+def _law(dr: Any, ws: Any, k: int, penetration: float, rate: float, approach: float) -> Any:
+    """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) of contact k."""
     p = mat(dr.force_numbers, ws.n_contacts, FORCE_NUMBERS)[k]
-    return call_law(ivec(dr.force_law, ws.n_contacts)[k], penetration, 0.0, 1.0, p[0], p[1], p[2], p[3])
+    return call_law(ivec(dr.force_law, ws.n_contacts)[k], penetration, rate, approach, p[0], p[1], p[2], p[3])
+
+
+@internal
+def _at_rest(dr: Any, ws: Any, k: int, penetration: float) -> Any:
+    """The same while nothing moves."""
+    return _law(dr, ws, k, penetration, 0.0, 1.0)
 
 
 @internal
@@ -126,13 +137,13 @@ def _settling_speed(dr: Any, ws: Any, k: int, pressing: float, mass: float, size
     spring holds nothing.
     """
     low, high, weight = 0.0, FIRST_PENETRATION * size, pressing * mass
-    while _law(dr, ws, k, high)[3] < weight:
+    while _at_rest(dr, ws, k, high)[3] < weight:
         low, high = high, 2.0 * high
         if high > DEEPEST * size:
             return 0.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if _law(dr, ws, k, middle)[3] < weight:
+        if _at_rest(dr, ws, k, middle)[3] < weight:
             low = middle
         else:
             high = middle
