@@ -26,7 +26,7 @@ from ..contact.laws.base import LAW_SIGNATURE, ForceLaw
 from ..events import instant
 from ..integrate import dense_output, drive, exchange, loop, mend, sample, watch
 from ..integrate import records as run_records
-from ..linalg import dense, record, row_pivoting, small, sparse, symbolic
+from ..linalg import dense, ordering, record, row_pivoting, small, sparse, symbolic
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, follow, use_analysis
 from ..linalg.solve import _no_solution, _not_analysed, factor, solve
 from ..methods import adams, history, order_selection, park
@@ -129,6 +129,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     matrix = (_WHOLE, _WHOLE, _WHOLES, _WHOLES, _REALS, _REALS, _REAL)
     factors = (_REALS, _WHOLES, _WHOLES, _REALS, _WHOLES, _WHOLES, _REALS)
     yield row_pivoting.eliminate, (*matrix, *(_WHOLES,) * 5, *factors)
+    yield ordering.order_now, (_WHOLE,) * 6
     yield symbolic._search, (_WHOLE, *(_WHOLES,) * 9)
     tables = types.Array(types.uint32, 2, "C")
     yield (

@@ -12,8 +12,9 @@ from .analyze import analyze, follow, use_analysis
 from .check_pattern import check_pattern
 from .choice import work_size
 from .errors import SingularMatrixError
-from .ordering import order_columns, singular_place
+from .ordering import order_columns
 from .record import LU, OK, WANT_ANALYSIS, WANT_ROOM
+from .singular import singular_place
 from .solve import factor, functions_of, solve
 
 Floats = NDArray[np.float64]
