@@ -237,14 +237,17 @@ def _by_neighbours(n: int, nnz: int, rows: int, cols: int, order: int, work: int
     for i in range(n):
         length[i], mark[i] = 0, -1
     for e in range(nnz):
-        length[row[e]] += 1
-        length[col[e]] += 1
+        if row[e] != col[e]:
+            length[row[e]] += 1
+            length[col[e]] += 1
     start[0] = 0
     for i in range(n):
         start[i + 1] = start[i] + length[i]
         length[i] = 0
     for e in range(nnz):
         i, j = row[e], col[e]
+        if i == j:
+            continue
         other[start[i] + length[i]], other[start[j] + length[j]] = j, i
         length[i] += 1
         length[j] += 1
