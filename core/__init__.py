@@ -1,46 +1,6 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
 
 from .compiled_model import CompiledModel, compile_model
-from .contact.angle_stop2d import AngleStop2D
-from .contact.box2d import Box2D, DiskOnBox2D
-from .contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from .contact.coordinate_contact import CoordinateContact, CoordinateTerm
-from .contact.disk_on_cable import DiskOnCable2D
-from .contact.disk_on_line import DiskOnLine2D, Line2D
-from .contact.friction import (
-    AmbrosioFriction,
-    BrownMcPheeFriction,
-    CoulombFriction,
-    FrictionLaw,
-    LuGreFriction,
-    StepFriction,
-    TanhFriction,
-    ThrelfallFriction,
-)
-from .contact.group2d import contacts_between
-from .contact.laws import (
-    CarvalhoMartins,
-    Flores,
-    ForceLaw,
-    Gonthier,
-    HerbertMcWhannell,
-    Hertz,
-    HuGuo,
-    HuntCrossley,
-    KelvinVoigt,
-    KuwabaraKono,
-    LankaraniNikravesh,
-    LeeWang,
-    NewtonImpact,
-    PoissonImpact,
-    Tsuji,
-    ZhiyingQishao,
-    force_formula,
-)
-from .contact.rope2d import Rope2D
-from .contact.scalar_contact2d import ScalarContact2D, scalar_contact
-from .contact.segment2d import DiskOnSegment2D, Segment2D
-from .contact.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .courses import Courses
 from .description import Model
 from .elements import (
@@ -126,20 +86,60 @@ from .flexible.section_loads import (
     section,
     stress,
 )
-from .integrate.simulation import Simulation
+from .laws import (
+    CarvalhoMartins,
+    Flores,
+    ForceLaw,
+    Gonthier,
+    HerbertMcWhannell,
+    Hertz,
+    HuGuo,
+    HuntCrossley,
+    KelvinVoigt,
+    KuwabaraKono,
+    LankaraniNikravesh,
+    LeeWang,
+    NewtonImpact,
+    PoissonImpact,
+    Tsuji,
+    ZhiyingQishao,
+    force_formula,
+)
+from .laws.friction import (
+    AmbrosioFriction,
+    BrownMcPheeFriction,
+    CoulombFriction,
+    FrictionLaw,
+    LuGreFriction,
+    StepFriction,
+    TanhFriction,
+    ThrelfallFriction,
+)
+from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .methods.registry import METHODS
 from .model.attitude import Axes, AxisAngles, EulerParameters, RotationVector
 from .model.channels import Channel, Input, Parameter
 from .model.markers import Marker2D, Marker3D
 from .model.outputs import MarkerOutput2D, MarkerOutput3D
 from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
-from .result import Result
+from .results.result import Result
 from .results.stored import load_result
+from .run.simulation import Simulation
+from .run.state import State
 from .runs import Runs
+from .shapes.angle_stop2d import AngleStop2D
+from .shapes.box2d import Box2D, DiskOnBox2D
+from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
+from .shapes.disk_on_cable import DiskOnCable2D
+from .shapes.disk_on_line import DiskOnLine2D, Line2D
+from .shapes.group2d import contacts_between
+from .shapes.rope2d import Rope2D
+from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
+from .shapes.segment2d import DiskOnSegment2D, Segment2D
 from .simulate import simulate
 from .simulate_many import simulate_many
-from .state import State
-from .system.redundancy import RedundantRow
+from .tables.redundancy import RedundantRow
 from .tolerances import OfScales
 
 __all__ = [

@@ -14,7 +14,7 @@ from .errors import ModelError, SimulationError
 from .runs import Runs
 
 if TYPE_CHECKING:
-    from .integrate.simulation import Simulation
+    from .run.simulation import Simulation
 
 
 def run_into(

@@ -12,9 +12,9 @@ from .compiled.image import twin
 from .compiled.notices import compile_notices
 from .description import Model
 from .errors import ModelError
-from .integrate.blueprint import Blueprint, Unstarted, can_be_copied, take_numbers, what_differs
-from .integrate.simulation import Simulation
-from .system.assembly import Assembly
+from .run.blueprint import Blueprint, Unstarted, can_be_copied, take_numbers, what_differs
+from .run.simulation import Simulation
+from .tables.assembly import Assembly
 
 Numbers = Mapping[str, float]
 

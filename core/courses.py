@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import ModelError
 
 if TYPE_CHECKING:
-    from .integrate.simulation import Simulation
+    from .run.simulation import Simulation
 
 Floats = NDArray[np.float64]
 Between = Literal["linear", "hold"]

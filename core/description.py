@@ -9,7 +9,6 @@ from typing import Any, Literal
 
 from pydantic import ConfigDict, model_validator
 
-from .contact import Contact
 from .elements import Body, BodyElement, Element, Force, Joint
 from .errors import ModelError
 from .model.base import Gravity, Record
@@ -19,6 +18,7 @@ from .model.open_union import meaning
 from .model.outputs import MarkerOutput
 from .model.own_types import find_classes, import_paths, own_classes
 from .model.signals import InputSignal
+from .shapes import Contact
 
 
 def _with_imports(schema: dict[str, Any]) -> None:
@@ -242,7 +242,7 @@ class Model(Record):
 
     def assemble(self) -> Any:
         """The model as flat tables (`Assembly`)."""
-        from .system.assembly import assemble
+        from .tables.assembly import assemble
 
         return assemble(self)
 
@@ -252,6 +252,6 @@ class Model(Record):
 
     def coordinate_channels(self, assembly: Any, layout: Any) -> Any:
         """Channels of the bodies' coordinates."""
-        from .system.sample_layout import body_coordinate_channels
+        from .tables.sample_layout import body_coordinate_channels
 
         return body_coordinate_channels(assembly, layout)

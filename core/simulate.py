@@ -13,8 +13,8 @@ from .compiled.watch import RunWatch
 from .compiled_model import compile_model
 from .courses import Courses, Given, courses
 from .errors import ModelError, SimulationError, TlismniError
-from .integrate.simulation import Simulation
-from .result import Result
+from .results.result import Result
+from .run.simulation import Simulation
 from .tolerances import DEFAULT_ATOL
 
 MOST_STEPS = 1e12

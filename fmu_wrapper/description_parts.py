@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from ..core.contact.laws import LAWS
+from ..core.laws import LAWS
 from ..core.methods.registry import METHODS
 from ..core.model.units import parse_unit
 from .log import CATEGORIES

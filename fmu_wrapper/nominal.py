@@ -20,7 +20,7 @@ from ..core.description import Model
 from ..core.elements.floating_body2d import FloatingBody2D
 from ..core.elements.linear_system import LinearSystem
 from ..core.errors import SimulationError, TlismniError
-from ..core.integrate.simulation import Simulation
+from ..core.run.simulation import Simulation
 from ..core.simulate import simulate
 from .scales import Scales, round_number
 from .settings import Settings

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Iterator
 from itertools import count
 from typing import Any
 
-from ..core.contact.laws import LAWS
 from ..core.description import Model
 from ..core.errors import ModelError
+from ..core.laws import LAWS
 from ..core.methods.registry import METHODS
 from ..core.model.channels import Channel, Input, Parameter
 from .origin import Origin

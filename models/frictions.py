@@ -1,7 +1,7 @@
 """Friction by plain coefficients: Coulomb's at contacts that are constraints, a regularised law at force contacts."""
 
-from ..core.contact.friction import BrownMcPheeFriction, CoulombFriction, Friction
-from ..core.contact.laws import ContactLaw, ForceLaw
+from ..core.laws import ContactLaw, ForceLaw
+from ..core.laws.friction import BrownMcPheeFriction, CoulombFriction, Friction
 from ..core.model.channels import Parameter
 from .parameters import ScenarioError, ScenarioParameter
 

@@ -2,8 +2,6 @@
 
 import math
 
-from ..core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from ..core.contact.laws import ContactLaw, Hertz, NewtonImpact
 from ..core.description import Model
 from ..core.elements import (
     Attachment,
@@ -15,7 +13,9 @@ from ..core.elements import (
     Revolute2D,
     RigidBody2D,
 )
+from ..core.laws import ContactLaw, Hertz, NewtonImpact
 from ..core.model.markers import Marker2D
+from ..core.shapes.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .laws import law_model_parameters
 from .parameters import ScenarioParameter
 from .registry import scenario

@@ -2,7 +2,7 @@
 
 import math
 
-from ..core.contact.laws import (
+from ..core.laws import (
     CarvalhoMartins,
     ContactLaw,
     Flores,
@@ -19,7 +19,7 @@ from ..core.contact.laws import (
     Tsuji,
     ZhiyingQishao,
 )
-from ..core.contact.laws.hunt_crossley import DissipativeFamily
+from ..core.laws.hunt_crossley import DissipativeFamily
 from ..core.model.channels import Parameter
 from .parameters import ScenarioError, ScenarioParameter
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.compiled_model import CompiledModel, compile_model
 from ..core.errors import ModelError
-from ..core.integrate.simulation import Simulation
+from ..core.run.simulation import Simulation
 from ..core.simulate import check_times
 from ..core.sweeps.problem import KEPT_MODELS, Outcomes, answer, begin_at, group_of, settings_of, settings_text
 from .registry import catalogue, load

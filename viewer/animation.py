@@ -15,7 +15,7 @@ from .sketches import Sketch
 from .timing import EVEN
 
 if TYPE_CHECKING:
-    from ..core.result import Result
+    from ..core.results.result import Result
 
 KINDS = (".html", ".gif", ".mp4")
 HEIGHT = 560

@@ -23,7 +23,7 @@ from .timing import EVEN, MOST_SAMPLES, choose_frames
 from .tracks import Tracks
 
 if TYPE_CHECKING:
-    from ..core.result import Result
+    from ..core.results.result import Result
 
 MOST_EVENTS = 2000
 MOST_NUMBERS = 2_000_000

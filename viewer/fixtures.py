@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ..core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
-from ..core.contact.coordinate_contact import CoordinateContact
-from ..core.contact.disk_on_cable import DiskOnCable2D
-from ..core.contact.disk_on_line import DiskOnLine2D
-from ..core.contact.segment2d import DiskOnSegment2D
 from ..core.elements import AxialRod, Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
 from ..core.model.markers import GROUND, Marker2D
+from ..core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.shapes.coordinate_contact import CoordinateContact
+from ..core.shapes.disk_on_cable import DiskOnCable2D
+from ..core.shapes.disk_on_line import DiskOnLine2D
+from ..core.shapes.segment2d import DiskOnSegment2D
 from .bodies import Stage, has_place
 from .coordinates import coordinate_place
 from .drawing import symbols

@@ -16,7 +16,7 @@ from ..core.model.markers import GROUND, Marker2D, Marker3D
 from .drawing.places import Places
 
 if TYPE_CHECKING:
-    from ..core.result import Result
+    from ..core.results.result import Result
 
 Floats = NDArray[np.float64]
 Table = tuple[Floats, Floats]

@@ -9,7 +9,7 @@ from ..core.elements import MaterialPoint2D
 from .scene import Floats, Track
 
 if TYPE_CHECKING:
-    from ..core.result import Result
+    from ..core.results.result import Result
 
 MOST_NUMBERS = 400_000
 """Values of channels in one page: 2 MB."""

@@ -20,21 +20,24 @@ from ..analysis import flight, flow, linearise
 from ..compiled import types
 from ..compiled.kernels import KERNEL_SIGNATURE
 from ..compiled.signatures import signature_text
-from ..contact import cones, directions, joints, lcp
-from ..contact.friction.base import FRICTION_SIGNATURE, FrictionLaw
-from ..contact.laws.base import LAW_SIGNATURE, ForceLaw
+from ..cones import cones, directions, lcp
 from ..events import instant
-from ..integrate import dense_output, drive, exchange, loop, mend, sample, watch
-from ..integrate import records as run_records
+from ..laws.base import LAW_SIGNATURE, ForceLaw
+from ..laws.friction.base import FRICTION_SIGNATURE, FrictionLaw
 from ..linalg import dense, ordering, record, row_pivoting, small, sparse, symbolic
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, follow, use_analysis
 from ..linalg.solve import _no_solution, _not_analysed, factor, solve
+from ..location import dense_output, watch
+from ..loop import drive, loop, sample
 from ..methods import adams, history, order_selection, park
-from ..methods.records import METHOD_TYPE, STEP_SIGNATURE
 from ..model import marker_channels2d
-from ..stage import accelerations
-from ..system import evaluate, levels, measure, projection, switch
-from ..system.records import EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
+from ..repair import mend
+from ..run import exchange
+from ..stage import accelerations, joints
+from ..state import run_records as run_records
+from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
+from ..state.workspace_records import EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
+from ..tables import evaluate, levels, measure, projection, switch
 from .formed import forms
 
 _WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE

@@ -3,13 +3,6 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from ..contact.angle_stop2d import AngleStop2D
-from ..contact.box2d import Box2D, DiskOnBox2D
-from ..contact.contact2d import Disk2D
-from ..contact.friction import CoulombFriction, LuGreFriction
-from ..contact.laws import KelvinVoigt, NewtonImpact
-from ..contact.rope2d import Rope2D
-from ..contact.scalar_contact2d import ScalarContact2D
 from ..elements import relative_motor2d, scalar_force2d, scalar_joint2d, servo2d
 from ..elements.base import Element, Form
 from ..elements.belt2d import Belt2D
@@ -25,8 +18,15 @@ from ..elements.scalar_joint2d import ScalarJoint2D
 from ..elements.servo2d import Servo2D
 from ..elements.slide_spring2d import SlideSpring2D
 from ..elements.torsion_spring2d import TorsionSpring2D
+from ..laws import KelvinVoigt, NewtonImpact
+from ..laws.friction import CoulombFriction, LuGreFriction
 from ..model.markers import Marker2D
 from ..model.signals import Constant
+from ..shapes.angle_stop2d import AngleStop2D
+from ..shapes.box2d import Box2D, DiskOnBox2D
+from ..shapes.contact2d import Disk2D
+from ..shapes.rope2d import Rope2D
+from ..shapes.scalar_contact2d import ScalarContact2D
 
 A, B = Marker2D(), Marker2D(body="b")
 NOTHING = Constant(value=0.0)

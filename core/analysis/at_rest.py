@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError
-from ..integrate.sample import write_sample
-from ..integrate.simulation import Simulation
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
+from ..loop.sample import write_sample
+from ..run.simulation import Simulation
+from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 Floats = NDArray[np.float64]
 

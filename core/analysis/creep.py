@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, IDLE, MODE, OPEN, RATIO, SLIDE
 from ..errors import ConsistencyError, SimulationError
-from ..integrate.simulation import Simulation
-from ..system.evaluate import evaluate_residuals
-from ..system.levels import force_level
-from ..system.projection import bring_to_rest
+from ..laws import ForceLaw
+from ..run.simulation import Simulation
+from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, IDLE, MODE, OPEN, RATIO, SLIDE
+from ..tables.evaluate import evaluate_residuals
+from ..tables.levels import force_level
+from ..tables.projection import bring_to_rest
 from .at_rest import place, tangent
 
 Floats = NDArray[np.float64]

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled_model import compile_model
-from ..contact.modes import ACTIVE, CLOSED, MODE
 from ..description import Model
-from ..integrate.simulation import Simulation
+from ..run.simulation import Simulation
+from ..state.modes import ACTIVE, CLOSED, MODE
 from .at_rest import channel_values, run_of
 from .creep import Creep
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import compiled_unlocked, internal
-from ..integrate.loop import run
-from ..integrate.records import CHUNK
+from ..loop.loop import run
 from ..methods.history import history_time
+from ..state.run_records import CHUNK
 from .flow import NODES, STAGES, carry
 from .linearise import linearise
 

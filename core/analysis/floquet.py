@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
-from ..integrate.simulation import Simulation
 from ..rounding import NO_STEP
+from ..run.simulation import Simulation
 from ..tolerances import OfScales
 from .variation import Variation
 

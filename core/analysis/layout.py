@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..equations.system import EquationSystem
-from ..integrate.simulation import Simulation
+from ..run.simulation import Simulation
 from .flight import VARYING
 from .linearise import colour_columns, matrix_at, tangent_rate
 

@@ -16,9 +16,9 @@ import numpy as np
 from ..compiled.jit import compiled, internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import ivec, vec
-from ..integrate.dense_output import query
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
-from ..system.records import OK, call_evaluate
+from ..location.dense_output import query
+from ..state.workspace_records import OK, call_evaluate
+from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 
 @internal

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..integrate.simulation import Simulation
-from ..system.projection import bring_to_rest
-from ..system.redundancy import RedundantRow, singular_directions
+from ..run.simulation import Simulation
+from ..tables.projection import bring_to_rest
+from ..tables.redundancy import RedundantRow, singular_directions
 from .at_rest import Matrices, matrices, place, run_of
 
 STUCK = 1e-8

@@ -21,16 +21,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.laws import ImpactLaw
-from ..contact.modes import CLOSED, MODE
 from ..errors import SimulationError
 from ..events import Event
-from ..integrate.dense_output import query
-from ..integrate.simulation import Simulation
+from ..laws import ImpactLaw
+from ..location.dense_output import query
 from ..rounding import CONTINUOUS
+from ..run.simulation import Simulation
 from ..stage.accelerations import solve_accelerations
-from ..system.levels import rate_level
-from ..system.records import OK
+from ..state.modes import CLOSED, MODE
+from ..state.workspace_records import OK
+from ..tables.levels import rate_level
 from .layout import Layout, Layouts, mass_by_time
 from .linearise import all_rows, gap_hessian
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.modes import ACTIVE, MODE
 from ..errors import ModelError
-from ..integrate.simulation import Simulation
+from ..run.simulation import Simulation
+from ..state.modes import ACTIVE, MODE
 from .at_rest import Matrices, channel_values, loads, matrices
 from .eigenmodes import resting
 from .equilibrium import Equilibrium
@@ -186,7 +186,7 @@ class _Directions:
 
     def _put(self, k: int, x: float) -> None:
         """The point at x along direction k."""
-        from ..system.evaluate import evaluate_residuals
+        from ..tables.evaluate import evaluate_residuals
 
         sim, n = self.sim, self.sim.assembly.n
         arrays = sim.workspace.arrays

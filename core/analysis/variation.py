@@ -6,13 +6,13 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.laws import ImpactLaw
 from ..errors import ModelError, SimulationError
-from ..integrate.engine import user_errors
-from ..integrate.records import CHUNK, EVENT, REACHED
-from ..integrate.simulation import Simulation
+from ..laws import ImpactLaw
 from ..linalg import SingularMatrixError
 from ..rounding import NO_STEP
+from ..run.engine import user_errors
+from ..run.simulation import Simulation
+from ..state.run_records import CHUNK, EVENT, REACHED
 from .flight import STEP_LEFT, SUBSTEP, fly
 from .flow import NODES, STAGES, Work, carry, make_work
 from .layout import Layout, Layouts, mass_rates

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
-from ..contact.laws import ForceLaw
-from ..contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
+from ..laws import ForceLaw
+from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
 from .errors import EquationError
 from .kernel import CALLBACK
 

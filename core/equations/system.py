@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..compiled.kernels import kernel_address
-from ..contact.laws import ContactLaw
+from ..laws import ContactLaw
 from ..model.channels import Channel
-from ..system.assembly import AT_REST, Assembly, Batch, ContactInfo
+from ..tables.assembly import AT_REST, Assembly, Batch, ContactInfo
 from .binding import EquationBinding
 from .constraints import ConstraintFunctions
 from .errors import EquationError, NotDifferentiableError

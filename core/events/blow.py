@@ -4,11 +4,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import APPROACH_SPEED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, OPEN
-from ..integrate.records import GAINS, GRAZE, IMPACT
 from ..methods.history import history_time
 from ..rounding import FORCE_ROUNDING
-from ..system.evaluate import evaluate_energy, evaluate_residuals
+from ..state.modes import APPROACH_SPEED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, OPEN
+from ..state.run_records import GAINS, GRAZE, IMPACT
+from ..tables.evaluate import evaluate_energy, evaluate_residuals
 from .reading import unresolved_speed
 from .records import (
     ACCELERATIONS,

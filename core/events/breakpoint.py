@@ -8,14 +8,14 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..integrate.records import COUNTS_SIZE, EVENTS, GOALS_SIZE, JUMPS, PASSED, call_accelerations
 from ..methods.history import recall
 from ..rounding import CONTINUOUS
-from ..system.evaluate import evaluate_energy, evaluate_residuals
-from ..system.levels import rate_level
-from ..system.projection import meet
-from ..system.records import OK, structure_at
-from ..system.switch import take_partition
+from ..state.run_records import COUNTS_SIZE, EVENTS, GOALS_SIZE, JUMPS, PASSED, call_accelerations
+from ..state.workspace_records import OK, structure_at
+from ..tables.evaluate import evaluate_energy, evaluate_residuals
+from ..tables.levels import rate_level
+from ..tables.projection import meet
+from ..tables.switch import take_partition
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report, room_for
 

@@ -10,8 +10,8 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..integrate.records import CLOCK_SIZE, CROWDED, WINDOW_COUNT, WINDOW_START
-from ..system.records import CONTROL_SIZE, RATE_SCALE
+from ..state.run_records import CLOCK_SIZE, CROWDED, WINDOW_COUNT, WINDOW_START
+from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
 
 WINDOW = 64
 """Instants that are looked at together."""

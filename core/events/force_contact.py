@@ -6,8 +6,10 @@ import numpy as np
 
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
-from ..contact.laws import call_law
-from ..contact.modes import (
+from ..laws import call_law
+from ..methods.history import history_time
+from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, LEAST_APPROACH
+from ..state.modes import (
     ACTIVE,
     APPROACH_SPEED,
     BEGUN_IMPULSE,
@@ -19,11 +21,17 @@ from ..contact.modes import (
     OPEN,
     RELEASED,
 )
-from ..integrate.records import CLOCK_SIZE, CLOSE, FORCE_NUMBERS, LOOP_TYPE, OPENS, STEP_SIZE, call_accelerations
-from ..methods.history import history_time
-from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, LEAST_APPROACH
-from ..system.evaluate import evaluate_residuals
-from ..system.records import CONTROL_SIZE, OK, RATE_SCALE
+from ..state.run_records import (
+    CLOCK_SIZE,
+    CLOSE,
+    FORCE_NUMBERS,
+    LOOP_TYPE,
+    OPENS,
+    STEP_SIZE,
+    call_accelerations,
+)
+from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
+from ..tables.evaluate import evaluate_residuals
 from .laws import FORCE
 from .records import COUNT, NO_ACCELERATIONS, SETTLED, call_part, delassus, whole
 from .report import report

@@ -1,11 +1,11 @@
-"""The problems of an instant, as those of `contact/cones.py` and `contact/directions.py`."""
+"""The problems of an instant, as those of `cones/cones.py` and `cones/directions.py`."""
 
 from typing import Any
 
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
-from ..contact.cones import CONES_TYPE, NONE, SOLVED, STICKS, call_cones
-from ..contact.directions import RANK, call_farthest, call_independent
+from ..cones.cones import CONES_TYPE, NONE, SOLVED, STICKS, call_cones
+from ..cones.directions import RANK, call_farthest, call_independent
 from ..linalg.small import call_least_norm
 from .records import (
     AT_REST,

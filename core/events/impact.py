@@ -9,9 +9,9 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..contact.sweeps import one_contact
+from ..cones.sweeps import one_contact
 from ..rounding import UNSOLVED
-from ..system.evaluate import evaluate_residuals
+from ..tables.evaluate import evaluate_residuals
 from .forces import NO_SOLUTION, impulses_among
 from .laws import POISSON, SEQUENTIAL
 from .records import (

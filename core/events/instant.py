@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.records import BlockRecord
-from ..contact.cones import CALLED, CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
-from ..contact.directions import (
+from ..cones.cones import CALLED, CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
+from ..cones.directions import (
     FARTHEST_SIGNATURE,
     INDEPENDENT_SIGNATURE,
     farthest_directions,
@@ -17,11 +17,11 @@ from ..contact.directions import (
     independent_directions,
     independent_size,
 )
-from ..contact.laws import ForceLaw
-from ..contact.modes import MEMORY_SIZE
+from ..laws import ForceLaw
 from ..linalg.small import least_norm_size
-from ..system.assembly import Assembly
-from ..system.records import COUNTERS_SIZE, RATE_SIZE
+from ..state.modes import MEMORY_SIZE
+from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
+from ..tables.assembly import Assembly
 from .force_contact import settle_forces
 from .impact import strike
 from .prepare import use_modes

@@ -1,7 +1,7 @@
 """How the impact of a contact is solved, as a number that compiled code asks for."""
 
-from ..contact.laws import ForceLaw, ImpactLaw, NewtonImpact, PoissonImpact
 from ..errors import ModelError
+from ..laws import ForceLaw, ImpactLaw, NewtonImpact, PoissonImpact
 
 FORCE, MASSLESS, NEWTON, POISSON, SEQUENTIAL = range(5)
 """Not at all, since it is a force, or at a massless end; by Newton's law at once, by Poisson's, or by Newton's one blow

@@ -11,14 +11,14 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import APPROACH_SPEED, CLOSED, LARGEST_APPROACH, MEMORY_SIZE, MODE, OPEN
-from ..contact.progress import GUARD_SIZE, START
-from ..integrate.records import CLOSE, GRAZE, OPENS, call_accelerations
 from ..methods.history import history_time
 from ..rounding import RATE_ROUNDING
-from ..system.records import OK
+from ..state.modes import APPROACH_SPEED, CLOSED, LARGEST_APPROACH, MEMORY_SIZE, MODE, OPEN
+from ..state.run_records import CLOSE, GRAZE, OPENS, call_accelerations
+from ..state.workspace_records import OK
 from .laws import MASSLESS
 from .meeting import meet_constraints
+from .progress import GUARD_SIZE, START
 from .reading import rate_size
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report

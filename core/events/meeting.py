@@ -3,8 +3,8 @@
 from typing import Any
 
 from ..compiled.jit import internal
-from ..system.evaluate import evaluate_residuals
-from ..system.projection import meet
+from ..tables.evaluate import evaluate_residuals
+from ..tables.projection import meet
 
 
 @internal

@@ -1,6 +1,6 @@
 """New partition and new pivots for the structure of the contacts' modes, compiled.
 
-What it does is `system/partition.prepare`; the elimination is that of `linalg/row_pivoting.py`.
+What it does is `tables/partition.prepare`; the elimination is that of `linalg/row_pivoting.py`.
 """
 
 from typing import Any
@@ -13,9 +13,7 @@ from ..linalg import follow, lu_at
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
 from ..linalg.row_pivoting import eliminate
-from ..system.evaluate import evaluate_tangent
-from ..system.partition import GOLDEN, RANK_TOLERANCE, SILVER
-from ..system.records import (
+from ..state.workspace_records import (
     ANALYSES,
     COUNTERS_SIZE,
     FACTOR_AGE,
@@ -27,7 +25,9 @@ from ..system.records import (
     partition_at,
     structure_at,
 )
-from ..system.switch import engage_modes, take_partition
+from ..tables.evaluate import evaluate_tangent
+from ..tables.partition import GOLDEN, RANK_TOLERANCE, SILVER
+from ..tables.switch import engage_modes, take_partition
 from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_PARTITION, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
 
 
@@ -112,7 +112,7 @@ def _same(address: int, wanted: Any) -> bool:
 
 @internal
 def _set_probe(ws: Any) -> None:
-    """See `system/partition._probe`."""
+    """See `tables/partition._probe`."""
     st = structure_at(ws.structure)
     starts, columns = ivec(st.jacobian_start, ws.m_act + 1), ivec(st.jacobian_col, st.n_jacobian)
     slots, values = ivec(st.jacobian_slot, st.n_jacobian), vec(ws.values, ws.n_values)

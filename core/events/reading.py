@@ -6,9 +6,9 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
 from ..rounding import FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, UNRESOLVED
-from ..system.levels import force_level, position_level, rate_level
+from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..tables.levels import force_level, position_level, rate_level
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
 
 BRAKED = 1e-9

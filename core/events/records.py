@@ -10,9 +10,9 @@ import numpy as np
 from ..compiled import types
 from ..compiled.jit import caller, internal, record_view
 from ..compiled.views import ivec, mat, vec
-from ..integrate.records import DRIVE_TYPE
-from ..methods.records import METHOD_TYPE
-from ..system.records import WORKSPACE_TYPE
+from ..state.method_records import METHOD_TYPE
+from ..state.run_records import DRIVE_TYPE
+from ..state.workspace_records import WORKSPACE_TYPE
 
 INSTANT = np.dtype(
     [
@@ -21,7 +21,7 @@ INSTANT = np.dtype(
             "most",                      # touching contacts that there is room for
             # addresses of these functions
             "open_touching", "strike", "begin_rest", "find_forces", "use_modes", "settle_forces",
-            "cones", "solve_cones", "independent", "farthest",  # record of `contact/cones.py`; addresses of functions
+            "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
             "reals", "wholes",           # (REALS,) float64, (WHOLES,) int64

@@ -4,7 +4,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat
-from ..integrate.records import COUNTS_SIZE, EVENT_SIZE, EVENTS
+from ..state.run_records import COUNTS_SIZE, EVENT_SIZE, EVENTS
 
 MOST_EVENTS = 6
 """Of a contact at one instant: a blow, three wedges, closing or opening, sliding or sticking."""

@@ -11,11 +11,11 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import CLOSED, IDLE
-from ..contact.modes import STICKS as STUCK
 from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST, PRESSING
-from ..system.levels import position_level
-from ..system.records import CONTROL_SIZE, ENERGY_SCALE
+from ..state.modes import CLOSED, IDLE
+from ..state.modes import STICKS as STUCK
+from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE
+from ..tables.levels import position_level
 from .forces import NO_SOLUTION, among, farthest_of, independent_of, remove_rates
 from .reading import AT_LIMIT, comes_back, largest_acceleration, rate_size, unresolved_speed
 from .records import (

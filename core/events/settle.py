@@ -8,9 +8,13 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.complementarity import MANY
-from ..contact.complementarity import RANK as FINEST_RANK
-from ..contact.modes import (
+from ..cones.complementarity import MANY
+from ..cones.complementarity import RANK as FINEST_RANK
+from ..location.asleep import look_at_all
+from ..location.watch import remember
+from ..methods.history import history_time, recall, restart
+from ..rounding import GAP_ROUNDING, UNSOLVED
+from ..state.modes import (
     CLOSED,
     GAP_START,
     IMPULSE_JUMP,
@@ -22,11 +26,8 @@ from ..contact.modes import (
     SLIDE,
     SLIDE_START,
 )
-from ..contact.modes import STICKS as STUCK
-from ..contact.progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
-from ..contact.progress import COUNT as GUARDED
-from ..integrate.asleep import look_at_all
-from ..integrate.records import (
+from ..state.modes import STICKS as STUCK
+from ..state.run_records import (
     CLOCK_SIZE,
     CLOSE,
     COUNTS_SIZE,
@@ -45,19 +46,18 @@ from ..integrate.records import (
     call_accelerations,
     call_sample,
 )
-from ..integrate.watch import remember
-from ..methods.history import history_time, recall, restart
-from ..rounding import GAP_ROUNDING, UNSOLVED
-from ..system.evaluate import evaluate_power, evaluate_residuals
-from ..system.levels import position_level
-from ..system.records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, structure_at
-from ..system.switch import take_partition, take_structure
+from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, structure_at
+from ..tables.evaluate import evaluate_power, evaluate_residuals
+from ..tables.levels import position_level
+from ..tables.switch import take_partition, take_structure
 from .blow import impact
 from .breakpoint import pass_breakpoint
 from .crowding import count_instant
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
 from .meeting import meet_constraints
+from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
+from .progress import COUNT as GUARDED
 from .reading import largest_acceleration, rate_size, read_before
 from .records import (
     ACCELERATIONS,
@@ -236,7 +236,7 @@ def _any_constraint(dr: Any, ws: Any) -> bool:
 
 @internal
 def _gets_on(dr: Any, t: float) -> bool:
-    """False if the guard against runs that events keep from going on would speak (`contact/progress.py`)."""
+    """False if the guard against runs that events keep from going on would speak (`events/progress.py`)."""
     goals, counts, guard = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE), vec(dr.guard, GUARD_SIZE)
     if t == goals[HANDLED_AT] and counts[HERE] >= AT_ONCE:
         return False

@@ -9,17 +9,17 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.complementarity import IMMOVABLE
-from ..contact.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
-from ..integrate.records import COUNTS_SIZE, HERE, call_accelerations
+from ..cones.complementarity import IMMOVABLE
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, NO_ACCELERATION, RATE_ROUNDING
-from ..system.evaluate import evaluate_energy, evaluate_tangent
-from ..system.levels import acceleration_level, position_level, rate_level
-from ..system.records import OK
-from ..system.switch import engage_modes
+from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
+from ..state.run_records import COUNTS_SIZE, HERE, call_accelerations
+from ..state.workspace_records import OK
+from ..tables.evaluate import evaluate_energy, evaluate_tangent
+from ..tables.levels import acceleration_level, position_level, rate_level
+from ..tables.switch import engage_modes
 from .laws import FORCE, MASSLESS
 from .records import (
     COUNT,

@@ -4,11 +4,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contact.modes import CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
-from ..integrate.records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
-from ..system.levels import force_level
-from ..system.records import OK, structure_at
+from ..state.modes import CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
+from ..state.workspace_records import OK, structure_at
+from ..tables.levels import force_level
 from .laws import MASSLESS
 from .reading import comes_back
 from .records import (

@@ -11,8 +11,8 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec
-from ..integrate.records import IMPACT
 from ..methods.history import history_time
+from ..state.run_records import IMPACT
 from .forces import NO_SOLUTION, SPEED, impulses_among
 from .records import (
     AT_REST,

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..elements.axial_rod import AxialRod
 from ..errors import ModelError
-from ..result import Result
+from ..results.result import Result
 
 Field = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from ..elements.flexible_body import FlexibleBody, Section
 from ..errors import ModelError
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..results.result import Result
 
 Floats = NDArray[np.float64]
 

@@ -12,11 +12,11 @@ import numpy as np
 from ..compiled.jit import compiled, internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
-from ..system.records import OK
+from ..state.method_records import CHOICE_SIZE, K
+from ..state.workspace_records import OK
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import clear, finish_stage, nodes, predict, weight_rows
-from .records import CHOICE_SIZE, K
 
 NODES, IMPLICIT, EXPLICIT, EXTRAPOLATION, CONSTANTS = range(5)
 # Gauss-Legendre nodes and weights of [-1, 0], exact for degree 9

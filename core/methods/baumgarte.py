@@ -14,8 +14,8 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_power
-from ..system.records import CONTROL_SIZE, OK, STAGE_ALPHA, STAGE_BETA, call_stage
+from ..state.workspace_records import CONTROL_SIZE, OK, STAGE_ALPHA, STAGE_BETA, call_stage
+from ..tables.evaluate import evaluate_power
 from .explicit import explicit_step
 from .history import history_row, history_time
 from .multistep import rows_available

@@ -7,11 +7,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..system.records import OK
+from ..state.method_records import CHOICE_SIZE, K
+from ..state.workspace_records import OK
 from .coefficients import bdf_coefficients, extrapolation_weights
 from .history import history_time
 from .multistep import bdf_stage, nodes, predictor_error, weight_rows
-from .records import CHOICE_SIZE, K
 
 
 @internal

@@ -17,8 +17,7 @@ from ..compiled.views import ivec, vec
 from ..stage.inner import inner_loop
 from ..stage.matrices import refactor
 from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, solve_increment
-from ..system.evaluate import evaluate_residuals
-from ..system.records import (
+from ..state.workspace_records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
     COUPLED_STAGES,
@@ -40,6 +39,7 @@ from ..system.records import (
     RTOL,
     STAGES,
 )
+from ..tables.evaluate import evaluate_residuals
 from .guess import AT_REST, best_guess, guess_stages
 from .multistep import weight_rows
 from .stages import (

@@ -14,11 +14,11 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..stage.solver import weighted_norm
-from ..system.records import OK
+from ..state.method_records import CHOICE_SIZE, K
+from ..state.workspace_records import OK
 from .coefficients import bdf_coefficients, ebdf_coefficients, extrapolation_weights
 from .history import history_row, history_time
 from .multistep import bdf_stage, clear, combine_stars, finish_stage, nodes, predict, weight_rows
-from .records import CHOICE_SIZE, K
 
 NODES, BDF, EXTRAPOLATION, ADVANCED_NODES, ADVANCED, ADVANCED_EXTRAPOLATION, EXTENDED = range(7)
 MODIFIED = 0  # parameter: 1 for MEBDF

@@ -12,9 +12,9 @@ from scipy.integrate import DOP853, RK23, RK45
 
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
-from ..system.evaluate import evaluate_power, evaluate_residuals
-from ..system.records import OK, call_stage
-from ..system.workspace import MOST_STAGES
+from ..state.workspace_records import OK, call_stage
+from ..tables.evaluate import evaluate_power, evaluate_residuals
+from ..tables.workspace import MOST_STAGES
 from .history import history_row, history_time
 from .schemes import EXPLICIT_SCHEMES
 

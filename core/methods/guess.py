@@ -4,7 +4,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..system.records import COUPLED_STAGES
+from ..state.workspace_records import COUPLED_STAGES
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import rows_available, weight_rows

@@ -24,12 +24,12 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_power, evaluate_residuals
-from ..system.records import OK, call_stage
+from ..state.method_records import ESTIMATE
+from ..state.workspace_records import OK, call_stage
+from ..tables.evaluate import evaluate_power, evaluate_residuals
 from .history import history_row, history_time, recall
 from .multistep import rows_available
 from .one_stage import MOST_GROWTH, finish_work, predict_linearly
-from .records import ESTIMATE
 from .velocity_error import absolute_velocity_error
 
 ALPHA, BETA, GAMMA, INDEX = 0, 1, 2, 3

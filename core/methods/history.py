@@ -7,7 +7,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, mat, vec
-from .records import RING_SIZE
+from ..state.method_records import RING_SIZE
 
 
 @inlined

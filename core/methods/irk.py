@@ -17,12 +17,12 @@ from ..compiled.views import ivec, vec
 from ..stage.accelerations import solve_accelerations
 from ..stage.inner import inner_loop
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_power, evaluate_residuals
-from ..system.records import COUNTERS_SIZE, FACTORIZATIONS, LAST_INNER, LAST_OUTER, OK, RATE_SIZE
+from ..state.method_records import ESTIMATE
+from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, LAST_INNER, LAST_OUTER, OK, RATE_SIZE
+from ..tables.evaluate import evaluate_power, evaluate_residuals
 from .coupled import solve_coupled
 from .history import history_row, history_time
 from .multistep import finish_stage, weight_rows
-from .records import ESTIMATE
 from .stages import BA, EMBEDDED, END, GAMMA, LOWER, START, VECTORS, B, load_stage, stage_count, stage_rows
 
 # parameters, besides STAGE_COUNT

@@ -9,10 +9,10 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_power
-from ..system.records import call_stage
+from ..state.method_records import MAX_NODES
+from ..state.workspace_records import call_stage
+from ..tables.evaluate import evaluate_power
 from .history import history_row, history_time
-from .records import MAX_NODES
 
 
 @inlined

@@ -13,13 +13,13 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_power
-from ..system.records import OK, call_stage
+from ..state.method_records import ESTIMATE
+from ..state.workspace_records import OK, call_stage
+from ..tables.evaluate import evaluate_power
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import rows_available
 from .one_stage import MOST_GROWTH
-from .records import ESTIMATE
 from .velocity_error import filtered_velocity_error
 
 ALPHA, BETA, GAMMA = 0, 1, 2

@@ -10,11 +10,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..system.records import OK
+from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
+from ..state.workspace_records import OK
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import COUNT_ROW, difference_norm, rows_available, weight_rows
-from .records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
 
 LEAST_K, MOST_K = 1, 2  # parameters of the formula
 # another k must promise a step larger by this factor: changing costs new coefficients

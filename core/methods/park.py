@@ -10,7 +10,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import vec
-from ..system.records import OK
+from ..state.workspace_records import OK
 from .coefficients import bdf_coefficients, extrapolation_weights
 from .multistep import bdf_stage, nodes, predictor_error, weight_rows
 

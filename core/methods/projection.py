@@ -9,7 +9,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..stage.project import project
-from ..system.records import OK
+from ..state.workspace_records import OK
 from .explicit import explicit_step
 
 

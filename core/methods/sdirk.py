@@ -11,8 +11,8 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_power
-from ..system.records import OK, call_stage
+from ..state.workspace_records import OK, call_stage
+from ..tables.evaluate import evaluate_power
 from .history import history_row, history_time
 
 A = np.array(

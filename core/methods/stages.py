@@ -8,7 +8,7 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import mat, vec
-from ..system.records import COUPLED_STAGES
+from ..state.workspace_records import COUPLED_STAGES
 from .multistep import weight_rows
 
 # rows of `weights`; matrices are stored row by row, COUPLED_STAGES wide

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..system.records import COUPLED_STAGES
+from ..state.workspace_records import COUPLED_STAGES
 
 Floats = NDArray[np.float64]
 

@@ -20,8 +20,8 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..stage.solver import weighted_norm
-from ..system.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
-from ..system.records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
+from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
+from ..tables.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
 from .history import history_row, history_time
 from .multistep import rows_available
 

@@ -3,7 +3,7 @@
 #ifndef TLISMNI_CODES_H
 #define TLISMNI_CODES_H
 
-/* columns of `times` (exchange.py), `goals`, `counts`, `clock` (integrate/records.py), `counters` (system/records.py) */
+/* columns of `times` (exchange.py), `goals`, `counts`, `clock` (state/run_records.py), `counters` (state/workspace_records.py) */
 enum { NOW, TO, LAST_CHANGE, INTERVAL };
 enum { GOAL, LAST_STOP };
 enum { BUDGET, HANDLED, HERE, EVENTS, STATUS };
@@ -11,7 +11,7 @@ enum { STEP_SIZE = 0, TRIAL_STEP = 4 };
 enum { STEPS = 0 };
 enum { EVENT_SIZE = 9, GAINS = 7 };
 
-/* failures of steps (system/records.py) */
+/* failures of steps (state/workspace_records.py) */
 enum { OUTER_DIVERGED = 1, INNER_DIVERGED, SINGULAR, REANALYZE, NOT_FINITE, OUTER_SLOW };
 
 /* what `drive` and `exchange` return */

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SimulationError
-from ..integrate.simulation import Simulation
+from ..run.simulation import Simulation
 from .errors import NativeError
 from .image_file import native_image, own_library
 from .in_process import NativeModel, NativeRun

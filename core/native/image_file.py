@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.library import LIBRARY, Library
-from ..integrate.exchange import possible
+from ..run.exchange import possible
 from .errors import NativeError
 from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
 from .reach import Found, check_words, held_by, holds_reals, like_addresses, reached, without_parts, words_of

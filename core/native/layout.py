@@ -6,8 +6,8 @@ from typing import Any
 from numpy.typing import NDArray
 
 from ..compiled.library import Library
-from ..integrate.inputs import PUNCTUAL
 from ..rounding import SHORTEST
+from ..run.inputs import PUNCTUAL
 
 MAGIC = b"TLISMNI\x01"
 VERSION = 1
@@ -45,7 +45,7 @@ def called_symbols(library: Library) -> list[str]:
     """Symbols of CALLED."""
     found = []
     for name in CALLED:
-        full = f"tlismni.core.integrate.{_MODULES[name]}.{name}"
+        full = f"tlismni.core.run.{_MODULES[name]}.{name}"
         (signature,) = library.signatures(full)
         found.append(library.entries[f"{full} {signature}"])
     return found

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import address_of
-from ..contact.laws import ForceLaw
 from ..description import Model
 from ..events.instant import PART_SIGNATURE, Instant
 from ..events.prepare import use_modes
-from ..integrate.drive import Drive
-from ..system.patterns import MOST_STRUCTURES
-from ..system.switch import APART, ENGAGED, HELD, STUCK, key_of
+from ..laws import ForceLaw
+from ..loop.drive import Drive
+from ..tables.patterns import MOST_STRUCTURES
+from ..tables.switch import APART, ENGAGED, HELD, STUCK, key_of
 from .errors import NativeError
 from .scratch import factorizations_of
 from .wander import Key, know, nearly_full, wander

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from ..contact.modes import ACTIVE, CLOSED, MODE, OPEN, SLIDE, STICKS
 from ..errors import ConsistencyError, SimulationError
-from ..integrate.records import STEP_SIZE
 from ..linalg import SingularMatrixError
 from ..linalg.record import MOST_ANALYSES
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
-from ..system.partition import prepare
-from ..system.partitions import MOST_PARTITIONS
-from ..system.projection import bring_to_rest
+from ..state.modes import ACTIVE, CLOSED, MODE, OPEN, SLIDE, STICKS
+from ..state.run_records import STEP_SIZE
+from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+from ..tables.partition import prepare
+from ..tables.partitions import MOST_PARTITIONS
+from ..tables.projection import bring_to_rest
 from .scratch import factorizations_of
 
 Key = tuple[frozenset[int], frozenset[int], frozenset[int]]

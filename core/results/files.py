@@ -20,7 +20,7 @@ from .tables import columns, descriptions, to_xarray, units
 from .text import name_of
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from .result import Result
 
 FORMAT = "tlismni-result-1"
 HEADER, COLUMNS, STEPS, EVENTS = "tlismni.header", "tlismni.columns", "tlismni.steps", "events"

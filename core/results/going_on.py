@@ -25,7 +25,7 @@ from ..errors import ModelError
 from ..model.attitude import EulerParameters
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from .result import Result
 
 Floats = NDArray[np.float64]
 REMEDY = "go on with simulate(model, t_end, t0=result.t[-1], start_values=result.start_at())"

@@ -13,7 +13,7 @@ from .tables import units
 from .text import name_of
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from .result import Result
 
 RATES = {
     "x": "vx", "y": "vy", "angle": "angular_velocity", "gap": "gap_rate",

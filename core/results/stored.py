@@ -14,10 +14,10 @@ from ..description import Model
 from ..errors import ModelError
 from ..events import Event, Fallback
 from ..model.channels import Channel, Enumeration
-from ..result import Result
-from ..system.redundancy import RedundantRow
+from ..tables.redundancy import RedundantRow
 from ..tolerances import OfScales
 from .files import COLUMNS, EVENTS, FORMAT, HEADER, PARTS, STEPS
+from .result import Result
 
 logger = logging.getLogger(__name__)
 

@@ -9,7 +9,7 @@ from ..extras import require
 from .text import name_of
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from .result import Result
 
 
 def columns(result: "Result", channels: Iterable[str] | None = None) -> dict[str, np.ndarray]:

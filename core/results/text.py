@@ -10,7 +10,7 @@ from ..description import Model
 from .names import owners
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from .result import Result
 
 MOST_OWNERS = 10
 COLUMNS = (

@@ -17,9 +17,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..rounding import ONLY_ROUNDING
-from ..system.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
-from ..system.levels import position_level, rate_level
-from ..system.records import (
+from ..state.workspace_records import (
     CONTROL_SIZE,
     CORRECTION,
     COUNTERS_SIZE,
@@ -43,6 +41,8 @@ from ..system.records import (
     STAGE_BETA,
     VELOCITY_TOLERANCE,
 )
+from ..tables.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
+from ..tables.levels import position_level, rate_level
 from .solver import (
     LEAST_RATE,
     MOST_OUTER,

@@ -8,9 +8,9 @@ from ..compiled.jit import compiled_unlocked, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at
 from ..rounding import ACCELERATIONS_LOST, ACCELERATIONS_SOLVED, COORDINATE_NOISE
-from ..system.evaluate import evaluate_residuals, evaluate_tangent
-from ..system.levels import acceleration_level
-from ..system.records import CONTROL_SIZE, OK, OUTER_SLOW, REANALYZE, STIFFNESS_SCALE
+from ..state.workspace_records import CONTROL_SIZE, OK, OUTER_SLOW, REANALYZE, STIFFNESS_SCALE
+from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+from ..tables.levels import acceleration_level
 from .solver import solve_increment
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..system.records import FACTOR_AGE, OK, RATE_SIZE
+from ..state.workspace_records import FACTOR_AGE, OK, RATE_SIZE
 from .absolute import refactor_absolute, solve_rows
 from .solver import add_increment, begin_stage
 

@@ -15,8 +15,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg import lu_at, solve
-from ..system.evaluate import evaluate_residuals
-from ..system.records import (
+from ..state.workspace_records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
     FACTOR_AGE,
@@ -35,6 +34,7 @@ from ..system.records import (
     OUTER_SLOW,
     RATE_SIZE,
 )
+from ..tables.evaluate import evaluate_residuals
 from .inner import inner_loop
 from .solver import (
     LEAST_RATE,

@@ -8,8 +8,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
-from ..system.evaluate import evaluate_tangent
-from ..system.records import (
+from ..state.workspace_records import (
     CHOICE_CONDITION,
     CONDITION,
     COUNTERS_SIZE,
@@ -28,6 +27,7 @@ from ..system.records import (
     SINGULAR,
     WORST_CONDITION,
 )
+from ..tables.evaluate import evaluate_tangent
 
 # Growth of the condition after which other redundant rows may be the better ones to leave out.
 CHOICE_GROWTH = 3.0

@@ -7,10 +7,17 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..linalg import factor, lu_at
-from ..system.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
-from ..system.levels import position_level, rate_level
-from ..system.projection import correct_least
-from ..system.records import CONTROL_SIZE, INNER_DIVERGED, OK, POSITION_TOLERANCE, REANALYZE, VELOCITY_TOLERANCE
+from ..state.workspace_records import (
+    CONTROL_SIZE,
+    INNER_DIVERGED,
+    OK,
+    POSITION_TOLERANCE,
+    REANALYZE,
+    VELOCITY_TOLERANCE,
+)
+from ..tables.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..tables.levels import position_level, rate_level
+from ..tables.projection import correct_least
 from .accelerations import solve_accelerations
 
 

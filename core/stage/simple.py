@@ -13,8 +13,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..system.evaluate import evaluate_residuals
-from ..system.records import (
+from ..state.workspace_records import (
     ACCELERATION,
     CONTROL_SIZE,
     COUNTERS_SIZE,
@@ -33,6 +32,7 @@ from ..system.records import (
     OUTER_SLOW,
     RATE_SIZE,
 )
+from ..tables.evaluate import evaluate_residuals
 from .inner import inner_loop
 from .matrices import refactor
 from .solver import add_increment, begin_stage, increment_norm, inner_slack, solve_increment

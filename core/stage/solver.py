@@ -17,8 +17,7 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
-from ..system.evaluate import evaluate_constraints, evaluate_residuals
-from ..system.records import (
+from ..state.workspace_records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
     FACTOR_AGE,
@@ -41,6 +40,7 @@ from ..system.records import (
     RTOL,
     STAGES,
 )
+from ..tables.evaluate import evaluate_constraints, evaluate_residuals
 from .inner import inner_loop
 from .matrices import refactor
 

@@ -13,7 +13,7 @@ from ..batch import in_threads, run_into
 from ..compiled_model import CompiledModel, compile_model
 from ..description import Model
 from ..errors import ModelError, TlismniError
-from ..integrate.simulation import Simulation
+from ..run.simulation import Simulation
 from ..runs import Runs
 from ..simulate import check_end, check_times
 from ..tolerances import OfScales

@@ -2,7 +2,7 @@
 
 import numpy as np
 from test_tangents import Point
-from tlismni.core.contact.modes import APPROACH_SPEED, CLOSED, MODE, SLIDE, SLIDE_START
+from tlismni.core.state.modes import APPROACH_SPEED, CLOSED, MODE, SLIDE, SLIDE_START
 
 
 class ContactPoint(Point):

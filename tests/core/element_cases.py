@@ -19,7 +19,7 @@ from tlismni.core import (
     TableSpring2D,
     TorsionSpring2D,
 )
-from tlismni.core.contact.modes import ACTIVE, CLOSED
+from tlismni.core.state.modes import ACTIVE, CLOSED
 
 LEFT, RIGHT = on("a", 0.3, -0.2, 0.4), on("b", -0.4, 0.1, -0.3)
 ENDS = {"a": LEFT, "b": RIGHT}

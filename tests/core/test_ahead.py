@@ -81,8 +81,8 @@ def test_plain_types_have_the_texts_of_numbas() -> None:
 CALLS = """
 import json, sys
 import numpy as np
-from tlismni.core.contact.directions import farthest_directions
-from tlismni.core.contact.laws.viscoelastic import tsuji_formula
+from tlismni.core.cones.directions import farthest_directions
+from tlismni.core.laws.viscoelastic import tsuji_formula
 from tlismni.core.linalg.symbolic import fill_pattern, operation_list
 
 force = tsuji_formula(0.003, -0.7, 1.1, 2e5, 30.0, 1.5, 0.0)
@@ -108,7 +108,7 @@ def test_other_arguments_are_compiled_in_the_process(part: Path) -> None:
     code = """
 import json, sys
 import numpy as np
-from tlismni.core.contact.directions import farthest_directions
+from tlismni.core.cones.directions import farthest_directions
 matrix = np.array([[4.0, 1.0], [1.0, 3.0]])
 kept, work = np.zeros(2, np.int64), np.zeros(64)
 print(json.dumps([farthest_directions(np.asfortranarray(matrix), np.arange(2), kept, work), "numba" in sys.modules]))

@@ -19,7 +19,7 @@ from tlismni.core import (
     Simulation,
     TanhFriction,
 )
-from tlismni.core.integrate.probe import SLEEPS
+from tlismni.core.location.probe import SLEEPS
 
 
 def billiard(law, friction):

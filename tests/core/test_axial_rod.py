@@ -27,8 +27,8 @@ from tlismni.core import (
     simulate,
 )
 from tlismni.core.flexible import rod_fields
-from tlismni.core.system.evaluate import evaluate_residuals, evaluate_tangent
-from tlismni.core.system.workspace import Workspace
+from tlismni.core.tables.evaluate import evaluate_residuals, evaluate_tangent
+from tlismni.core.tables.workspace import Workspace
 
 STEEL = {"length": 2.0, "axial_stiffness": 6.0e3, "mass_per_length": 1.5}
 

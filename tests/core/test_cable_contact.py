@@ -24,8 +24,8 @@ from tlismni.core import (
     curvature,
     simulate,
 )
-from tlismni.core.contact.modes import ACTIVE, CLOSED
 from tlismni.core.elements.cable_shape import weights
+from tlismni.core.state.modes import ACTIVE, CLOSED
 
 SHAPE = ((0.0, 0.0, 1.1, 0.4), (0.9, 0.3, 0.9, 0.2), (2.0, 0.2, 1.0, -0.5))
 FINE = 2e-3

@@ -8,7 +8,7 @@ from helpers import G, circle_pendulum, order, pendulum_angles, point_pendulum, 
 from test_orders import ANGLE, RATE, exact, swing
 from test_state import CASES, started, trajectory
 from tlismni.core import METHODS, ModelError, Simulation, SimulationError, simulate
-from tlismni.core.system.records import CORRECTION
+from tlismni.core.state.workspace_records import CORRECTION
 
 VARIANTS = {
     "baumgarte rk45": ("baumgarte", {}),

@@ -20,7 +20,7 @@ from tlismni.core import (
     Step,
     compile_model,
 )
-from tlismni.core.integrate.blueprint import Blueprint
+from tlismni.core.run.blueprint import Blueprint
 from tlismni.models import load
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of, compiled
-from tlismni.core.contact.cones import (
+from tlismni.core.cones.cones import (
     CONES_SIGNATURE,
     NONE,
     SOLVED,

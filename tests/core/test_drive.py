@@ -20,7 +20,7 @@ from tlismni.core import (
     SimulationError,
 )
 from tlismni.core.events.records import SETTLED, WANT_PARTITION, WANT_STRUCTURE
-from tlismni.core.system.records import FACTOR_AGE
+from tlismni.core.state.workspace_records import FACTOR_AGE
 from tlismni.models import load
 
 SCRATCH = ("found", "last_trial")

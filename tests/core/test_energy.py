@@ -32,7 +32,7 @@ from tlismni.core import (
     Tsuji,
     simulate,
 )
-from tlismni.core.contact.laws import FORCE_LAWS
+from tlismni.core.laws import FORCE_LAWS
 from tlismni.models import load
 
 LAWS = [

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 from strikes import hertz_contact, ratio, rebound, strike
 from tlismni.core import Flores, Gonthier, Hertz, HuntCrossley, KelvinVoigt, LankaraniNikravesh, Tsuji, simulate
-from tlismni.core.contact.laws import LAWS, ForceLaw
+from tlismni.core.laws import LAWS, ForceLaw
 
 quick = settings(deadline=None, max_examples=12, derandomize=True)
 

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 from scipy.optimize import minimize_scalar
-from tlismni.core.contact.friction import (
+from tlismni.core.errors import ModelError
+from tlismni.core.laws.friction import (
     FRICTION_LAWS,
     AmbrosioFriction,
     BrownMcPheeFriction,
@@ -20,7 +21,6 @@ from tlismni.core.contact.friction import (
     ThrelfallFriction,
     friction_address,
 )
-from tlismni.core.errors import ModelError
 
 quick = settings(deadline=None, max_examples=40, derandomize=True)
 SPEED = 0.01

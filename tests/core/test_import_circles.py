@@ -67,6 +67,6 @@ def test_no_circle_of_imports(graph):
 
 def test_it_would_be_found(graph):
     """Imports inside functions count, and those of the real files are seen."""
-    assert "core.system.assembly" in graph["core.description"]
-    assert "core.integrate.simulation" in graph["core.simulate"]
+    assert "core.tables.assembly" in graph["core.description"]
+    assert "core.run.simulation" in graph["core.simulate"]
     assert circle({**graph, "core.errors": {"core.simulate"}}) is not None

@@ -30,8 +30,8 @@ from tlismni.core import (
     TanhFriction,
     simulate,
 )
-from tlismni.core.contact.disk_on_line import make_pieces
-from tlismni.core.contact.modes import ACTIVE, CLOSED, OPEN
+from tlismni.core.shapes.disk_on_line import make_pieces
+from tlismni.core.state.modes import ACTIVE, CLOSED, OPEN
 
 TIGHT = {"rtol": 1e-10, "atol": 1e-12}
 RADIUS, HALF = 0.3, 0.05

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
-from tlismni.core.contact.friction.lugre import LuGreFriction
 from tlismni.core.errors import ModelError
+from tlismni.core.laws.friction.lugre import LuGreFriction
 
 quick = settings(deadline=None, max_examples=40, derandomize=True)
 LAW = LuGreFriction(

@@ -36,7 +36,7 @@ from tlismni.core import (
     SpringDamper2D,
     simulate,
 )
-from tlismni.core.contact.modes import ACTIVE, OPEN
+from tlismni.core.state.modes import ACTIVE, OPEN
 
 TIGHT = {"rtol": 1e-9, "atol": 1e-12}
 MASS, STIFFNESS = 2.0, 1e5

@@ -26,8 +26,8 @@ from tlismni.core import (
     RigidBody2D,
     simulate,
 )
-from tlismni.core.contact.modes import ACTIVE, CLOSED
 from tlismni.core.elements.flexible_body import PointShape
+from tlismni.core.state.modes import ACTIVE, CLOSED
 
 ARC = tuple(
     (2.5 * math.sin(0.4 * s), 2.5 * (1.0 - math.cos(0.4 * s)), math.cos(0.4 * s), math.sin(0.4 * s)) for s in (0, 1, 2)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from tlismni.core import Simulation, simulate
-from tlismni.core.integrate.records import TRIAL_STEP
 from tlismni.core.methods.history import recall
 from tlismni.core.stage.accelerations import solve_accelerations
+from tlismni.core.state.run_records import TRIAL_STEP
 from tlismni.models import load
 
 UNSOLVED = 0.5

@@ -21,9 +21,9 @@ from tlismni.core import (
     force_formula,
     simulate,
 )
-from tlismni.core.contact.friction import FrictionLaw, TanhFriction
-from tlismni.core.contact.laws import LAW_SIGNATURE
-from tlismni.core.contact.laws.hunt_crossley import HuntCrossleyFamily
+from tlismni.core.laws import LAW_SIGNATURE
+from tlismni.core.laws.friction import FrictionLaw, TanhFriction
+from tlismni.core.laws.hunt_crossley import HuntCrossleyFamily
 from tlismni.core.model.base import NonNegative, Positive
 
 quick = settings(deadline=None, max_examples=25, derandomize=True)

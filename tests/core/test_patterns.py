@@ -5,7 +5,7 @@ import pytest
 from test_heap import heap
 from tlismni.core import Simulation
 from tlismni.core.linalg import analysis
-from tlismni.core.system import partitions, patterns, structure, workspace
+from tlismni.core.tables import partitions, patterns, structure, workspace
 from tlismni.models import load
 
 

@@ -24,7 +24,7 @@ from tlismni.core import (
     TanhFriction,
     simulate,
 )
-from tlismni.core.contact.modes import ACTIVE, CLOSED, OPEN
+from tlismni.core.state.modes import ACTIVE, CLOSED, OPEN
 
 TIGHT = {"rtol": 1e-10, "atol": 1e-12}
 LENGTH, RADIUS, HALF = 1.5, 0.3, 0.05

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tlismni.core import Material, ModelError, sphere_on_plane, sphere_on_sphere
-from tlismni.core.contact.stiffness import effective_mass, effective_modulus, effective_radius
+from tlismni.core.laws.stiffness import effective_mass, effective_modulus, effective_radius
 
 quick = settings(deadline=None, max_examples=40, derandomize=True)
 STEEL = Material(youngs_modulus=2.1e11, poisson_ratio=0.3)

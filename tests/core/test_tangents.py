@@ -44,9 +44,9 @@ from tlismni.core import (
     Table,
     Tsuji,
 )
-from tlismni.core.contact.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
-from tlismni.core.system.evaluate import evaluate_residuals, evaluate_tangent
-from tlismni.core.system.workspace import Workspace
+from tlismni.core.state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
+from tlismni.core.tables.evaluate import evaluate_residuals, evaluate_tangent
+from tlismni.core.tables.workspace import Workspace
 
 quick = settings(deadline=None, max_examples=8, derandomize=True)
 H = 1e-2

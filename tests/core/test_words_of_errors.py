@@ -127,7 +127,7 @@ def test_wall_time_is_that_of_the_run_alone(monkeypatch):
     """By a clock that building the simulation puts on by 1000 s, and compiling on the way by 100 s."""
     from numba.core import event
     from tlismni.core.compiled import watch
-    from tlismni.core.integrate.engine import Engine
+    from tlismni.core.run.engine import Engine
 
     now = [0.0]
     monkeypatch.setattr(watch.time, "perf_counter", lambda: now[0])

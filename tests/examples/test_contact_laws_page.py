@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tlismni.core.contact import laws
-from tlismni.core.contact.friction import FRICTION_LAWS
-from tlismni.core.contact.friction.lugre import LuGreFriction
-from tlismni.core.contact.laws import FORCE_LAWS
-from tlismni.core.contact.laws.hunt_crossley import HuntCrossleyFamily
+from tlismni.core import laws
+from tlismni.core.laws import FORCE_LAWS
+from tlismni.core.laws.friction import FRICTION_LAWS
+from tlismni.core.laws.friction.lugre import LuGreFriction
+from tlismni.core.laws.hunt_crossley import HuntCrossleyFamily
 from tlismni.models.laws import LAW_NAMES, contact_law
 
 PAGE = (Path(__file__).parents[2] / "docs" / "contact-laws.md").read_text()

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from tlismni.core import Event
-from tlismni.core.contact.laws import ImpactLaw, NewtonImpact, PoissonImpact
+from tlismni.core.laws import ImpactLaw, NewtonImpact, PoissonImpact
 
 PAGE = (Path(__file__).parents[2] / "docs" / "contact.md").read_text()
 

@@ -7,16 +7,16 @@ import fmpy
 import numpy as np
 import pytest
 from fmu_helpers import ball_model
-from tlismni.core.contact.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.contact.friction import CoulombFriction, TanhFriction
-from tlismni.core.contact.laws import KelvinVoigt, NewtonImpact
 from tlismni.core.description import Model
 from tlismni.core.elements import AppliedForce2D, CoordinateDriver, PointMass2D, RigidBody2D
 from tlismni.core.errors import TlismniError
+from tlismni.core.laws import KelvinVoigt, NewtonImpact
+from tlismni.core.laws.friction import CoulombFriction, TanhFriction
 from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
+from tlismni.core.shapes.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.fmu_wrapper import CallOrderError, FmuValueError, Slave, export_fmu
 from tlismni.models import load
 

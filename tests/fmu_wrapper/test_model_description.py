@@ -9,8 +9,6 @@ from fmpy.validation import validate_fmu
 from fmu_helpers import ball_model
 from lxml import etree
 from tlismni.core import Simulation, simulate
-from tlismni.core.contact.contact2d import Disk2D, DiskOnDisk2D
-from tlismni.core.contact.laws import Hertz, KelvinVoigt, NewtonImpact
 from tlismni.core.description import Model
 from tlismni.core.elements import (
     AppliedForce2D,
@@ -23,10 +21,12 @@ from tlismni.core.elements import (
     RigidBody2D,
     SpringDamper2D,
 )
+from tlismni.core.laws import Hertz, KelvinVoigt, NewtonImpact
 from tlismni.core.model.channels import Input, Parameter
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
+from tlismni.core.shapes.contact2d import Disk2D, DiskOnDisk2D
 from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.dependencies import Dependencies
 from tlismni.fmu_wrapper.nominal import estimates

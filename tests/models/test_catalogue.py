@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from tlismni.core.contact.laws import KelvinVoigt
 from tlismni.core.description import Model
 from tlismni.core.elements import (
     Clamp2D,
@@ -16,8 +15,9 @@ from tlismni.core.elements import (
     Prismatic2D,
     Revolute2D,
 )
-from tlismni.core.system.evaluate import evaluate_residuals
-from tlismni.core.system.workspace import Workspace
+from tlismni.core.laws import KelvinVoigt
+from tlismni.core.tables.evaluate import evaluate_residuals
+from tlismni.core.tables.workspace import Workspace
 from tlismni.models import ScenarioError, catalogue, load, names
 from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio, kelvin_voigt_restitution
 from tlismni.models.parameters import ScenarioParameter

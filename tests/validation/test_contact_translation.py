@@ -8,9 +8,9 @@ import pytest
 from momentum import momentum_drift
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
-from tlismni.core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.contact.disk_on_line import DiskOnLine2D, Line2D
-from tlismni.core.contact.laws import (
+from tlismni.core.description import Model
+from tlismni.core.elements import AxialRod, FloatingBeam2D, PointMass2D, Prismatic2D, RigidBody2D
+from tlismni.core.laws import (
     CarvalhoMartins,
     Flores,
     Hertz,
@@ -19,10 +19,10 @@ from tlismni.core.contact.laws import (
     LankaraniNikravesh,
     NewtonImpact,
 )
-from tlismni.core.contact.segment2d import DiskOnSegment2D, Segment2D
-from tlismni.core.description import Model
-from tlismni.core.elements import AxialRod, FloatingBeam2D, PointMass2D, Prismatic2D, RigidBody2D
 from tlismni.core.model.markers import Marker2D
+from tlismni.core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.shapes.disk_on_line import DiskOnLine2D, Line2D
+from tlismni.core.shapes.segment2d import DiskOnSegment2D, Segment2D
 from tlismni.models.laws import kelvin_voigt_restitution
 from tlismni.validation.errors import ExudynUnavailable, NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available, import_exudyn

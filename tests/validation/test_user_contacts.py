@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from momentum import momentum_drift
 from tlismni.core import Model, simulate
-from tlismni.core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.contact.coordinate_contact import CoordinateContact, CoordinateTerm
-from tlismni.core.contact.friction import (
+from tlismni.core.elements import Cable2D, LinearSystem, MaterialPoint2D, PointMass2D, RigidBody2D
+from tlismni.core.laws import Flores, Hertz, KelvinVoigt, KuwabaraKono, Tsuji
+from tlismni.core.laws.friction import (
     AmbrosioFriction,
     BrownMcPheeFriction,
     LuGreFriction,
@@ -16,9 +16,9 @@ from tlismni.core.contact.friction import (
     TanhFriction,
     ThrelfallFriction,
 )
-from tlismni.core.contact.laws import Flores, Hertz, KelvinVoigt, KuwabaraKono, Tsuji
-from tlismni.core.elements import Cable2D, LinearSystem, MaterialPoint2D, PointMass2D, RigidBody2D
 from tlismni.core.model.markers import Marker2D
+from tlismni.core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from tlismni.validation import ExudynSettings, run_exudyn
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.translation.formulas import friction_force, normal_force

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core import Result
-from ...core.contact.laws import ImpactLaw
+from ...core.laws import ImpactLaw
 from ..exudyn_run import ExudynResult, run_exudyn, settings_for
 from ..metrics import trajectory_difference
 from ..predictability import predictability

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from ...core.contact.laws import ContactLaw, ForceLaw, ImpactLaw
+from ...core.laws import ContactLaw, ForceLaw, ImpactLaw
 from ..third_opinion import Opinion
 from ..translation.formulas import friction_force, normal_force
 from .mechanism import Blow, Course, Law

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ...core.contact.laws import ImpactLaw
+from ...core.laws import ImpactLaw
 from ...models import Scenario
 from ..third_opinion import Opinion, opinion
 from .common import law_of, opinion_on

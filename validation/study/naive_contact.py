@@ -4,8 +4,8 @@ For the study of failures only. The contact opens when its multiplier has become
 """
 
 from ...core import Simulation
-from ...core.contact.modes import CLOSED, MODE, OPEN
 from ...core.events import Event
+from ...core.state.modes import CLOSED, MODE, OPEN
 
 
 class NoVelocityJump(Simulation):

@@ -10,8 +10,8 @@ approximated.
 import math
 from typing import Any
 
-from ...core.contact.laws import CarvalhoMartins, Hertz, HuntCrossley, ImpactLaw, KelvinVoigt
-from ...core.contact.laws.hunt_crossley import HuntCrossleyFamily
+from ...core.laws import CarvalhoMartins, Hertz, HuntCrossley, ImpactLaw, KelvinVoigt
+from ...core.laws.hunt_crossley import HuntCrossleyFamily
 from ..errors import NotTranslatable
 
 _LARGEST_CHI_OF_FIRST_BRANCH = 8.0 / 3.0  # both branches of model 2 give this at e = 1/3

@@ -9,23 +9,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.contact.friction import (
+from ...core.laws import CarvalhoMartins, ForceLaw, Hertz, HuntCrossley, KelvinVoigt, KuwabaraKono, Tsuji
+from ...core.laws.friction import (
     AmbrosioFriction,
     BrownMcPheeFriction,
     StepFriction,
     TanhFriction,
     ThrelfallFriction,
 )
-from ...core.contact.laws import (
-    CarvalhoMartins,
-    ForceLaw,
-    Hertz,
-    HuntCrossley,
-    KelvinVoigt,
-    KuwabaraKono,
-    Tsuji,
-)
-from ...core.contact.laws.hunt_crossley import HuntCrossleyFamily
+from ...core.laws.hunt_crossley import HuntCrossleyFamily
 
 NormalForce = Callable[[float, float, float], float]
 """(penetration m, its rate m/s, approach speed m/s) -> N."""

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.contact.friction import LuGreFriction
+from ...core.laws.friction import LuGreFriction
 from .formulas import StickingCoulomb, friction_force, lugre, normal_force
 from .registry import Build, UserContact
 from .user_gaps import UserGap, user_gap

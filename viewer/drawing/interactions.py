@@ -5,11 +5,6 @@ import re
 from functools import singledispatch
 from typing import Any
 
-from ...core.contact.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
-from ...core.contact.coordinate_contact import CoordinateContact
-from ...core.contact.disk_on_cable import DiskOnCable2D
-from ...core.contact.disk_on_line import DiskOnLine2D
-from ...core.contact.segment2d import DiskOnSegment2D
 from ...core.elements import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -29,6 +24,11 @@ from ...core.elements import (
 )
 from ...core.model.markers import GROUND
 from ...core.model.signals import Constant, InputSignal
+from ...core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ...core.shapes.coordinate_contact import CoordinateContact
+from ...core.shapes.disk_on_cable import DiskOnCable2D
+from ...core.shapes.disk_on_line import DiskOnLine2D
+from ...core.shapes.segment2d import DiskOnSegment2D
 from . import symbols
 from .places import Places
 from .shapes import GROUND as GROUND_COLOUR

@@ -1,0 +1,1 @@
+"""Where within a step something begins or ends: watches, bounds of motion, search, dense output."""

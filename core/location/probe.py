@@ -1,0 +1,158 @@
+"""Looking at one contact at a point of the dense output of a step that is not accepted yet.
+
+The motion is the polynomial of fifth degree in each coordinate through (q, v, a) of the newest row and of the
+workspace's current point. Each contact has a batch of its own here, whose results go to arrays that nobody else reads:
+looking changes nothing.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled.jit import internal
+from ..compiled.kernels import BATCH, RESIDUAL, batch_at, call_kernel
+from ..compiled.views import imat, ivec, mat, vec
+from ..methods.history import history_row, history_time
+from ..shapes.geometry_kinds import EQUATIONS, MAY_SLEEP
+from ..tables.evaluate import evaluate_residuals
+from ..tables.workspace import Workspace
+
+NEAR_SIZE = 3
+KIND, KERNEL, SLEEPS = range(NEAR_SIZE)
+"""Columns of `near`; SLEEPS: 1 for contacts that may fall asleep."""
+BRACKET = 4
+HAPPENS = 3
+"""Columns of `brackets`: the place before an event, one beyond it and the deepest after it, in parts of the step; and
+whether there is one."""
+VIEW = 3
+"""Gap (or sliding distance), rate and acceleration."""
+BATCH_BYTES = BATCH.itemsize
+
+
+def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
+    """The arrays of the loop's record that `look` needs."""
+    assembly, arrays = workspace.assembly, workspace.arrays
+    n_ext, m_ext = len(arrays["q"]), len(arrays["phi"])
+    own = {name: np.zeros(n_ext) for name in ("q", "v", "a", "r")}
+    own |= {name: np.zeros(m_ext) for name in ("lam", "phi", "phid", "phidd")}
+    own["monitor"] = np.zeros(len(arrays["monitor"]))
+    count = max(len(assembly.contacts), 1)
+    own["asleep"] = np.zeros(count, dtype=np.int64)
+    near, probes = np.zeros((count, NEAR_SIZE), dtype=np.int64), np.zeros(count, BATCH)
+    near[:, KIND] = EQUATIONS
+    for number, batch in enumerate(assembly.batches):
+        for k in np.unique(batch.contact[batch.contact >= 0]):
+            elements = np.flatnonzero(batch.contact == k)
+            if probes[k]["count"] or elements[-1] - elements[0] != len(elements) - 1:
+                near[k] = EQUATIONS, 0, 0  # in pieces here and there
+                continue
+            probes[k] = workspace.batch_table(number)
+            probes[k]["count"] = len(elements)
+            for name, table in (("par", batch.par), ("coord", batch.coord), ("row", batch.row), ("extra", batch.extra)):
+                probes[k][name] = table[elements[0]].ctypes.data
+            for name, array in own.items():
+                probes[k][name] = array.ctypes.data
+            kind = assembly.contacts[k].kind
+            near[k] = kind, batch.address, kind in MAY_SLEEP and k not in assembly.massless_contacts
+    return {
+        "near": near, "probes": probes.view(np.int64).reshape(count, -1),
+        **{f"probe_{name}": array for name, array in own.items()},
+        "travel": np.zeros((2, n_ext)), "brackets": np.zeros((count, BRACKET)), "margin": np.zeros(count),
+    }  # fmt: skip
+
+
+@internal
+def probe_of(lc: Any, k: int) -> Any:
+    """The batch of contact k alone."""
+    return batch_at(lc.probes + BATCH_BYTES * k)
+
+
+@internal
+def between(q0: float, v0: float, a0: float, q1: float, v1: float, a1: float, h: float, s: float) -> Any:
+    """(q, v, a) at s h of the polynomial through those at 0 and h."""
+    d, v0, v1, a0, a1 = q1 - q0, h * v0, h * v1, h * h * a0, h * h * a1
+    c3 = 10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1
+    c4 = -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1
+    c5 = 6.0 * d - 3.0 * (v0 + v1) - 0.5 * (a0 - a1)
+    q = q0 + s * (v0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
+    v = v0 + s * (a0 + s * (3.0 * c3 + s * (4.0 * c4 + 5.0 * s * c5)))
+    a = a0 + s * (6.0 * c3 + s * (12.0 * c4 + 20.0 * s * c5))
+    return q, v / h, a / (h * h)
+
+
+@internal
+def _look_at_system(ws: Any, ms: Any, lc: Any, row: int, h: float, s: float, view: Any) -> None:
+    """`look` for a contact that can be evaluated with the whole system only; the workspace is put back."""
+    n, m = ws.n_ext, ws.m_ext
+    kept, levels, t = np.empty((4, n)), np.empty((3, m)), vec(ws.t, 1)
+    monitor = vec(ws.monitor, 2 * max(ws.n_contacts, 1)).copy()
+    start, now = history_row(ws, ms, 0), t[0]
+    q, v, a, r = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.r, n)
+    phi, phid, phidd = vec(ws.phi, m), vec(ws.phid, m), vec(ws.phidd, m)
+    kept[0], kept[1], kept[2], kept[3] = q, v, a, r
+    levels[0], levels[1], levels[2] = phi, phid, phidd
+    for i in range(ws.n):
+        q[i], v[i], a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
+    t[0] = history_time(ms, 0) + s * h
+    evaluate_residuals(ws)
+    view[0], view[1], view[2] = phi[row], phid[row], phidd[row]
+    q[:] = kept[0]
+    v[:] = kept[1]
+    a[:] = kept[2]
+    r[:] = kept[3]
+    phi[:] = levels[0]
+    phid[:] = levels[1]
+    phidd[:] = levels[2]
+    t[0] = now
+    vec(ws.monitor, len(monitor))[:] = monitor
+
+
+@internal
+def look(ws: Any, ms: Any, lc: Any, k: int, row: int, h: float, s: float, view: Any) -> None:
+    """Value, rate and acceleration (3,) of row `row` of contact k at time s h of the step of size h."""
+    kind = imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KIND]
+    if kind == EQUATIONS:
+        _look_at_system(ws, ms, lc, row, h, s, view)
+        return
+    batch, n = probe_of(lc, k), ws.n_ext
+    coord = ivec(batch.coord, batch.count * batch.ncoord)
+    start = history_row(ws, ms, 0)
+    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
+    to_q, to_v, to_a = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n)
+    for i in coord:
+        to_q[i], to_v[i], to_a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
+    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, history_time(ms, 0) + s * h, batch)
+    view[0], view[1], view[2] = (
+        vec(lc.probe_phi, ws.m_ext)[row],
+        vec(lc.probe_phid, ws.m_ext)[row],
+        vec(lc.probe_phidd, ws.m_ext)[row],
+    )
+
+
+@internal
+def state_of_pair(ws: Any, ms: Any, lc: Any, k: int, h: float, s: float, state: Any) -> None:
+    """(x, y, theta), velocities and accelerations of the first body of contact k and of the second (18,), at s h."""
+    batch, n = probe_of(lc, k), ws.n_ext
+    coord, start = ivec(batch.coord, batch.ncoord), history_row(ws, ms, 0)
+    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
+    for j in range(6):
+        i = coord[j]
+        at = j if j < 3 else j + 6
+        state[at], state[at + 3], state[at + 6] = between(
+            start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s
+        )
+
+
+@internal
+def set_travel(ws: Any, ms: Any, lc: Any, h: float) -> None:
+    """Upper bounds of the way that each coordinate goes within the step of size h, and of h times its greatest speed:
+    those of its polynomial's control points."""
+    n, start = ws.n_ext, history_row(ws, ms, 0)
+    q, v, a, travel = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), mat(lc.travel, 2, n)
+    for i in range(ws.n):
+        first, last = 0.2 * h * start[n + i], 0.2 * h * v[i]
+        second, fourth = first + 0.05 * h * h * start[2 * n + i], last - 0.05 * h * h * a[i]
+        middle = q[i] - start[i] - first - second - fourth - last
+        travel[0, i] = abs(first) + abs(second) + abs(middle) + abs(fourth) + abs(last)
+        travel[1, i] = 5.0 * max(abs(first), abs(second), abs(middle), abs(fourth), abs(last))

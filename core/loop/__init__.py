@@ -1,0 +1,1 @@
+"""The time loop, compiled: steps, error control, sampling, `drive`."""

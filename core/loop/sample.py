@@ -1,0 +1,75 @@
+"""A sample: one recorded row of numbers at the current point of the workspace.
+
+Columns: t; q, v, a (n each); lam (m); force, gap, gap rate, mode, impact impulse, impact loss, friction force and
+sliding velocity of each contact; kinetic, potential, strain energy; work accounts; residuals at position, velocity and
+acceleration level.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled
+from ..compiled.views import ivec, mat, vec
+from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE
+from ..tables.evaluate import evaluate_energy, recorded_norm
+
+
+def sample_length(n: int, m: int, contacts: int, work: int) -> int:
+    """Number of columns."""
+    return 1 + 3 * n + m + 8 * contacts + 3 + work + 3
+
+
+@compiled
+def write_sample(ws: Any, out: Any) -> None:
+    """Fill one row; the residuals of the current point must have been evaluated."""
+    n, m, contacts = ws.n, ws.m_ext - 1, ws.n_contacts
+    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
+    out[0] = vec(ws.t, 1)[0]
+    for i in range(n):
+        out[1 + i] = q[i]
+        out[1 + n + i] = v[i]
+        out[1 + 2 * n + i] = a[i]
+    at = 1 + 3 * n
+    lam = vec(ws.lam, ws.m_ext)
+    active = ivec(ws.active, ws.m_act)
+    for i in range(m):
+        out[at + i] = 0.0
+    for i in range(ws.m_act):
+        out[at + active[i]] = lam[active[i]]
+    at += m
+    if contacts:
+        monitor = vec(ws.monitor, 2 * contacts)
+        slide_rows = ivec(ws.contact_slide_rows, contacts)
+        memory = mat(ws.memory, contacts, MEMORY_SIZE)
+        rows = ivec(ws.contact_rows, contacts)
+        phi, phid = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
+        for k in range(contacts):
+            mode = memory[k, MODE]
+            out[at + k] = monitor[k] if mode == ACTIVE or mode == CLOSED else 0.0
+            out[at + contacts + k] = phi[rows[k]]
+            out[at + 2 * contacts + k] = phid[rows[k]]
+            out[at + 3 * contacts + k] = mode
+            out[at + 4 * contacts + k] = memory[k, IMPULSE_JUMP]
+            out[at + 5 * contacts + k] = memory[k, LOSS_JUMP]
+            with_friction = slide_rows[k] >= 0
+            acts = with_friction and (mode == ACTIVE or mode == CLOSED)
+            out[at + 6 * contacts + k] = monitor[contacts + k] if acts else 0.0
+            out[at + 7 * contacts + k] = phid[slide_rows[k]] if with_friction else 0.0
+        at += 8 * contacts
+    evaluate_energy(ws)
+    energy = vec(ws.energy, 3)
+    for i in range(3):
+        out[at + i] = energy[i]
+    at += 3
+    for i in range(ws.n_work):
+        out[at + i] = v[ws.n_ext - ws.n_work + i]
+    at += ws.n_work
+    out[at] = recorded_norm(ws, ws.phi)
+    out[at + 1] = recorded_norm(ws, ws.phid)
+    out[at + 2] = recorded_norm(ws, ws.phidd)
+
+
+def empty_buffer(capacity: int, length: int) -> np.ndarray:
+    """Room for `capacity` samples."""
+    return np.zeros((capacity, length))

@@ -1,0 +1,1 @@
+"""What compiled code hands to Python: redundant rows, singular positions, failed steps."""

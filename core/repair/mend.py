@@ -1,0 +1,40 @@
+"""`repair`, compiled, for systems without redundant rows: a new partition and new pivots at the newest row.
+
+Who drives a run without Python calls it; where something has to be built that is not there yet it says so.
+"""
+
+from typing import Any
+
+from ..compiled.jit import compiled
+from ..compiled.views import vec
+from ..events.records import SETTLED, SINGULAR_MATRIX, WANT_PIVOTS, call_part, instant_at
+from ..linalg import lu_at
+from ..linalg.analyze import call_analyze
+from ..linalg.record import WANT_ANALYSIS
+from ..loop.drive import method_at, workspace_at
+from ..methods.history import recall
+from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV, OK, RATE_SIZE
+from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+
+
+@compiled
+def repair_now(dr: Any) -> int:
+    """What `repair` does: a status of `events/records.py`; with any but SETTLED the run cannot go on."""
+    ws, ms, ev = workspace_at(dr.workspace), method_at(dr.method), instant_at(dr.instant)
+    rate = vec(ws.rate, RATE_SIZE)
+    c_v, condition = rate[FACTOR_CV], rate[CONDITION]
+    recall(ws, ms, 0)
+    evaluate_residuals(ws)
+    status = call_part(ev.use_modes, ev, dr, ws, ms)
+    if status != SETTLED:
+        return status
+    rate[CHOICE_CONDITION] = condition
+    # pivots of the stages' matrix, which may be others than those of the mass matrix alone
+    evaluate_tangent(ws, c_v * c_v, c_v)
+    code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
+    if code != OK and code < WANT_ANALYSIS:
+        evaluate_tangent(ws, 0.0, 0.0)
+        code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
+    if code >= WANT_ANALYSIS:
+        return WANT_PIVOTS
+    return SETTLED if code == OK else SINGULAR_MATRIX

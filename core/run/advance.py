@@ -1,0 +1,444 @@
+"""The Python side of the time loop: what happens at event rate."""
+
+import logging
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import SimulationError
+from ..events import Fallback
+from ..location.locate import find_root
+from ..location.probe import HAPPENS
+from ..location.search import AT_ONCE, MOST_HALVINGS
+from ..location.watch import find_events, friction_margin
+from ..loop.loop import accept, trial_step
+from ..methods.history import recall
+from ..repair.near_singular import STRAINED
+from ..repair.passage import pass_singular
+from ..repair.repair import repair
+from ..repair.singular_position import near_singular
+from ..rounding import GAP_ROUNDING, NO_STEP, PRESSING, SHORTEST
+from ..state.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
+from ..state.run_records import (
+    CHUNK,
+    DUE,
+    EVENT,
+    FAILED,
+    FIXED_STEP,
+    FULL,
+    JAM,
+    NEAR_SINGULAR,
+    REACHED,
+    REPARTITION,
+    SETTLE,
+    STEP_SIZE,
+    STEP_TOO_SMALL,
+    TRIAL_STEP,
+    UNLOCATED,
+    VIOLATED,
+    WANTED,
+)
+from ..state.workspace_records import (
+    FACTOR_AGE,
+    FAILED_NORM,
+    INNER_DIVERGED,
+    LEAST_CONDITION,
+    LOOKED_CONDITION,
+    NOT_FINITE,
+    OK,
+    OUTER_DIVERGED,
+    OUTER_RATE,
+    OUTER_SLOW,
+    REANALYZE,
+    SINGULAR,
+    WORST_CONDITION,
+)
+from ..tables.levels import position_level
+from .failures import failure_of
+from .painleve import refuse_passed_jam, sliding_contacts
+from .step_budget import step_count, steps_left
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+logger = logging.getLogger(__name__)
+
+CHUNK_STEPS = 20_000
+"""Steps between two reports of progress, of systems with up to 100 coordinates; larger ones report more often."""
+_REASONS = {
+    OUTER_DIVERGED: ("outer", "the outer loop diverged"),
+    OUTER_SLOW: ("outer", "the outer loop did not converge"),
+    INNER_DIVERGED: ("inner", "the inner loop on the dependent coordinates did not converge"),
+    SINGULAR: ("outer", "the system matrix became singular"),
+    REANALYZE: ("outer", "the pivots of the system matrix kept degrading"),
+    NOT_FINITE: ("outer", "a value became infinite or NaN"),
+    STEP_TOO_SMALL: ("step size", "the error control asked for a step below what the time can resolve"),
+}
+
+_REPAIRABLE = (REANALYZE, SINGULAR, INNER_DIVERGED, OUTER_SLOW, OUTER_DIVERGED)
+"""Failures that a new partition and new orderings may cure."""
+
+
+def steps_at_once(n: int) -> int:
+    """Steps between two reports of progress, of a system with n coordinates."""
+    return max(1, CHUNK_STEPS * 100 // max(100, n))
+
+
+def advance_to(
+    sim: "Simulation", t: float, stop: float, hold: bool = False, came: tuple[int, int] | None = None
+) -> None:
+    """Step until the newest row is at or beyond `t`; no step goes beyond `stop`. `hold`: until events are pending.
+    `came`: the step count at the beginning, and what `drive_on` has returned a moment ago."""
+    try:
+        _advance_to(sim, t, stop, hold, came)
+    except BaseException:
+        # it may have been on the way back to compiled code, which had let some sleep
+        sim.drive.wake()
+        raise
+
+
+def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tuple[int, int] | None) -> None:
+    first, code = (step_count(sim), None) if came is None else came
+    repaired_at = math.nan
+    chunk = steps_at_once(sim.assembly.n)
+    while True:
+        now = sim.t_internal
+        if code is None:
+            if sim.pending:
+                if now > t or hold:
+                    return
+                sim._handle_pending()
+                continue
+            left = min(chunk, steps_left(sim, first, t))
+            code = sim.drive.go(t, stop, left, hold or not sim.compiled_events)
+            sim.workspace.sync()
+            sim.take_events()
+        returned, code = code, None
+        sim.flush()
+        if returned in (CHUNK, FULL):
+            sim.report_progress(sim.t_internal)
+        elif returned == REACHED:
+            return
+        elif returned == DUE:
+            # only now: until the run goes on from here, samples before this time need the history
+            restart_at(sim, min(b for b in sim.assembly.breakpoints if b > sim.t_internal))
+        elif returned == SETTLE:
+            sim.pending = sim.drive.take_pending()
+        elif returned == WANTED:
+            sim.build_wanted(sim.drive.status)
+        elif returned == FAILED:
+            raise failure_of(sim, sim.drive.status)
+        elif returned == UNLOCATED:
+            _locate_again(sim)
+        elif returned == JAM:
+            refuse_passed_jam(sim, sliding_contacts(sim))
+        elif returned == REPARTITION:
+            repair(sim)
+        elif returned in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":
+            _fall_back(sim, returned)
+        elif returned == NEAR_SINGULAR:
+            _pass_singular(sim)
+        elif returned == VIOLATED:
+            h = float(sim.clock[TRIAL_STEP])
+            if not repair(sim) and not _pass_singular(sim):
+                _violated(sim, h)
+        elif returned in _REPAIRABLE and repaired_at != sim.t_internal:
+            repaired_at = sim.t_internal
+            try:
+                repair(sim)
+            except SimulationError:
+                if not _pass_after_all(sim):
+                    raise
+        elif returned in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
+            if returned == REANALYZE:  # the matrix of the shorter step has other pivots
+                repaired_at = math.nan
+        elif not _pass_after_all(sim):
+            _fail(sim, returned)
+
+
+def _next_break(sim: "Simulation") -> float:
+    return min((b for b in sim.assembly.breakpoints if b > sim.t_internal), default=math.inf)
+
+
+def due_break(sim: "Simulation") -> float | None:
+    """The breakpoint that the newest step ended just before, if it did: no step fits between."""
+    now, ahead = sim.t_internal, _next_break(sim)
+    return ahead if math.nextafter(ahead, -math.inf) - now <= NO_STEP * abs(now) else None
+
+
+def _shrink(sim: "Simulation") -> bool:
+    """A smaller step after a failure of a repaired system; False if it cannot be smaller."""
+    h = 0.25 * sim.clock[TRIAL_STEP]
+    sim.clock[STEP_SIZE] = h
+    return bool(h > SHORTEST * max(abs(sim.t_internal), 1e-6 * sim.scales.time))
+
+
+def _fall_back(sim: "Simulation", code: int) -> None:
+    """Let Newton's outer loop take over from one that has failed, and say so."""
+    t, h, outer = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.outer
+    reason = f"{_REASONS[code][1]} with a step of {h:.3g} s{_limit(sim, h)}"
+    logger.warning("at t = %.9g s outer loop '%s' gave way to 'newton': %s", t, outer, reason)
+    sim.fallbacks.append(Fallback(t, outer, reason))
+    sim.use_outer_loop("newton")
+    recall(sim.workspace.record, sim._method.record, 0)
+
+
+def _limit(sim: "Simulation", h: float) -> str:
+    """The largest step of the simple iteration, as its measured contraction tells."""
+    rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
+    if sim.outer != "simple" or not (math.isfinite(rate) and rate > 0.0):
+        return ""
+    return f" (contraction {rate:.3g}; it goes with h^2, so the limit is about {h / math.sqrt(rate):.3g} s)"
+
+
+def _violated(sim: "Simulation", h: float) -> None:
+    """A row that was taken for redundant does not hold any more, at the end of a step of size h."""
+    trial_step(sim.workspace.record, sim._method.record, sim._loop.record, h)
+    arrays, assembly = sim.workspace.arrays, sim.assembly
+    rows = sim.workspace.structure.redundant
+    worst = int(rows[np.argmax(np.abs(arrays["phi"][rows]))])
+    name, t = assembly.row_names[worst], float(arrays["t"][0])
+    raise SimulationError(
+        f"constraint '{name}' (row {worst - assembly.row_names.index(name)}) repeated others at the start, but at "
+        f"t = {t:.9g} s the motion that those allow violates it by {arrays['phi'][worst]:.3g}: the constraints "
+        "contradict each other from there on. Remove the joint, or make its dimensions (or its driver) fit the others.",
+        t=sim.t_internal,
+        loop="inner",
+    )
+
+
+def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
+    """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
+    rate = sim.workspace.arrays["rate"]
+    worst = float(rate[WORST_CONDITION])
+    if sim.workspace.dropped:
+        repair(sim)
+    code = pass_singular(sim, last_resort)
+    if code == EVENT:
+        try:
+            _locate(sim)
+        finally:
+            sim.long_step = None
+    elif code != OK:
+        # nothing near: go on, and look again when it has become twice as bad
+        rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
+        return False
+    return True
+
+
+def _pass_after_all(sim: "Simulation") -> bool:
+    """Step over a singular position because steps towards it have failed; False if there is none."""
+    rate = sim.workspace.arrays["rate"]
+    near = sim.clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    return bool(near) and _pass_singular(sim, last_resort=True)
+
+
+def _fail(sim: "Simulation", code: int) -> None:
+    loop, reason = _REASONS.get(code, ("outer", f"status {code}"))
+    t, h, settings = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.settings
+    tried = f"fixed step {h:.3g} s" if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"
+    if sim.outer == "simple" and loop == "outer":
+        rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
+        remedy = (
+            f"The simple iteration contracts only if c_q omega^2 < 1 (its factor was {rate:.3g}; c_q = beta h^2 or "
+            f"(h b)^2), omega the highest frequency: the largest step here is about {h / math.sqrt(rate):.3g} s. Use "
+            "outer='newton' or 'jfnk', fallback=True, or a smaller step"
+        )
+    elif (singular := near_singular(sim)) is not None:
+        remedy = (
+            f"At t = {singular:.9g} s the mechanism is in a singular position (constraints depend on one another only "
+            "there, bars in line), which these steps do not get past: use error control (step=None), looser "
+            "tolerances, a method of higher order, or start behind that position"
+        )
+    elif settings.step:
+        remedy = "Use a smaller step, or error-controlled steps (step=None)"
+    elif loop == "inner":
+        remedy = "Start elsewhere, or set a smaller max_step"
+    elif code == STEP_TOO_SMALL:
+        remedy = "Loosen rtol and atol, or look for a force that jumps or grows without bound near this time"
+    else:
+        remedy = "Look for a force that is not finite or not smooth near this time; try a smaller max_step"
+    raise SimulationError(
+        f"method '{settings.method}' stopped at t = {t:.9g} s: {reason} (tried: {tried}). {remedy}.",
+        t=t,
+        loop=loop,
+    )
+
+
+class _NoTrial(Exception):
+    """A step that was tried while an event was located cannot be made: its `args` hold the status."""
+
+
+def _locate(sim: "Simulation") -> None:
+    """End the step at the first event in it, and make that event pending; where a trial fails that needs shorter steps
+    from the newest row, ask for those instead."""
+    try:
+        _locate_first(sim)
+    except _NoTrial as failure:
+        (status,) = failure.args
+        if sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim):
+            _fail(sim, status)
+        recall(sim.workspace.record, sim._method.record, 0)
+        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+
+
+def _locate_again(sim: "Simulation") -> None:
+    """Locate in the newest step what could not be located because a trial failed: with other pivots, or shorter."""
+    recall(sim.workspace.record, sim._method.record, 0)
+    ws, ms, lc, h = sim.workspace.record, sim._method.record, sim._loop.record, float(sim.clock[TRIAL_STEP])
+    if trial_step(ws, ms, lc, h) == OK and find_events(ws, ms, lc, h, False):
+        _locate(sim)
+    elif sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim):
+        _fail(sim, OUTER_SLOW)
+    else:
+        recall(ws, ms, 0)
+        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+
+
+def _locate_first(sim: "Simulation") -> None:
+    ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
+    h = float(sim.clock[TRIAL_STEP])
+    found: dict[int, float] = {}
+    safe: dict[int, float] = {}
+    step, least = h, NO_STEP * abs(sim.t_internal)
+    while find_events(ws, ms, lc, step, True):
+        late = [int(k) for k in np.flatnonzero(sim.brackets[:, HAPPENS]) if k not in found and k not in safe]
+        if not late:
+            break
+        # the shorter step may end where a gap is negative that the longer one has passed
+        ends = {k: (sim.gap(k), *(step * sim.brackets[k, :HAPPENS])) for k in late}
+        for k in late:
+            size, happens = _event_step(sim, k, step, ends[k])
+            # where the motion has none up to next to no time, what was seen is rounding
+            (found if happens else safe)[k] = size if happens or size > least else step
+        if sim.formula.exact and any(size <= least for size in found.values()):
+            # no time lies between: a step to there would be none
+            recall(ws, ms, 0)
+            sim.pending = [k for k in found if found[k] <= least]
+            return
+        first = min(step, *found.values(), *safe.values())
+        if not sim.formula.exact and first <= AT_ONCE * h:
+            recall(ws, ms, 0)
+            sim.pending = [k for k in found if found[k] <= AT_ONCE * h]
+            return
+        step = first
+        _trial(sim, step, h)
+    accept(ws, ms, lc)
+    sim.flush()
+    sim.pending = [k for k in found if found[k] <= step * (1.0 + 1e-12)]
+
+
+def _trial(sim: "Simulation", step: float, full: float) -> None:
+    """Make the step again with another size. Small fractions of it are made by the one-step starter: the
+    multistep coefficients of a grid with a very small last step lose digits."""
+    if sim.long_step is not None:
+        sim.long_step.trial(step)
+        return
+    table = sim._loop.table
+    usual = (int(table["starter"][0]), int(table["rows"][0]))
+    if step < 0.1 * full or usual[1] == 1:
+        table["starter"] = sim.fine_starter
+        table["rows"] = 10**9 if usual[1] > 1 else usual[1]
+    try:
+        for attempt in range(2):
+            # with old matrices the same step would come out a little different each time it is made
+            sim.workspace.arrays["rate"][[FACTOR_AGE, OUTER_RATE]] = -1.0, 1.0
+            status = trial_step(sim.workspace.record, sim._method.record, sim._loop.record, step)
+            if status == OK:
+                return
+            if attempt == 0:
+                repair(sim)
+        raise _NoTrial(status)
+    finally:
+        table["starter"], table["rows"] = usual
+
+
+def _event_step(sim: "Simulation", k: int, h: float, found: tuple[float, ...]) -> tuple[float, bool]:
+    """Step size at which contact k has its event, and True; or False, and up to which size the motion has none.
+
+    found : the gap at the end of the step of size h, and times in it: before a root of the gap's dense output, beyond
+        it, and where that is deepest.
+    """
+    mode = float(sim.memory[k, MODE])
+    end, low_step, high_step, deepest = found
+    arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
+    by_force = mode == CLOSED or (mode != OPEN and end <= 0.0 and high_step == h)
+    force_sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
+    slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
+
+    def margin(step: float) -> float:
+        _trial(sim, step, h)
+        force = force_sign * float(arrays["monitor"][k])
+        return min(force, friction_margin(sim.workspace.record, k)) if slides else force
+
+    if by_force:
+        if high_step < h and margin(high_step) > 0.0:
+            return (high_step if high_step > AT_ONCE * h else h), False
+        for _ in range(MOST_HALVINGS):
+            if low_step == 0.0 or margin(low_step) > 0.0:
+                break
+            low_step, high_step = 0.5 * low_step, low_step
+        return find_root(margin, low_step, high_step, 0.5 * (low_step + high_step), 0.0), True
+    sign = 1.0 if mode == OPEN else -1.0
+
+    def gap(step: float) -> float:
+        _trial(sim, step, h)
+        return sign * float(arrays["phi"][contact.row])
+
+    size = position_level(sim.workspace.record) * float(arrays["row_scale"][contact.row])
+    if high_step < h and gap(high_step) > 0.0:
+        # the motion is behind its dense output: look where that goes deepest
+        low_step = high_step
+        if low_step < deepest < h and gap(deepest) <= 0.0:
+            high_step = deepest
+        elif sign * end <= 0.0:
+            high_step = h
+        else:
+            # what the dense output has shown is its own error; the very start of the step is no place to stop at
+            return (max(low_step, deepest) if low_step > AT_ONCE * h else h), False
+    for _ in range(MOST_HALVINGS):
+        # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
+        if low_step == 0.0 or gap(low_step) > 0.0:
+            break
+        low_step, high_step = 0.5 * low_step, low_step
+    overlap = GAP_ROUNDING * size
+    if mode == OPEN and abs(sim.watch[k, 0]) <= overlap and gap(low_step) <= overlap:
+        return _closing_step(sim, contact.row, h, overlap, float(sim.watch[k, 2])), True
+    guess = 0.5 * (low_step + high_step)
+    opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
+    if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
+        # the gap opens within this step, but the force has become tensile before
+        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0), True
+    return opened, True
+
+
+def _closing_step(sim: "Simulation", row: int, h: float, overlap: float, before: float) -> float:
+    """Step size at which shapes that touch without force begin to close: their gap, zero by rounding, says so late, its
+    acceleration (`before` at the newest row) says it at once, and where that jumps (a corner is passed) just behind."""
+    arrays = sim.workspace.arrays
+
+    def gap(step: float) -> float:
+        _trial(sim, step, h)
+        return float(arrays["phi"][row]) + overlap
+
+    def acceleration(step: float) -> float:
+        _trial(sim, step, h)
+        return float(arrays["phidd"][row]) + none
+
+    closes = gap(h) <= 0.0
+    largest = float(np.max(np.abs(arrays["a"][: sim.assembly.n]) / sim.assembly.coordinate_scale, initial=0.0))
+    none = PRESSING * largest * float(arrays["row_scale"][row])
+    if before > -none and float(arrays["phidd"][row]) < -none:
+        return find_root(acceleration, 0.0, h, 0.5 * h, 0.0)
+    return find_root(gap, 0.0, h, 0.5 * h, 0.0) if closes else h
+
+
+def restart_at(sim: "Simulation", t: float) -> None:
+    """Go on at the breakpoint t, just after the newest row, where a force or the rate of a driver jumps
+    (`events/breakpoint.py`)."""
+    sim.flush()
+    sim.take_events()
+    if sim.workspace.dropped:
+        sim.look_at_redundant_rows()
+    sim.settle(lambda: sim.drive.pass_breakpoint(t))

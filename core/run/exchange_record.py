@@ -1,0 +1,38 @@
+"""The record that `exchange` works with."""
+
+import numpy as np
+
+from ..compiled import types
+from ..compiled.jit import caller
+from ..state.method_records import METHOD_TYPE
+from ..state.workspace_records import WORKSPACE_TYPE
+
+EXCHANGE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "workspace", "method", "loop",                         # addresses of the records
+            "drive",                                               # and of that of `drive`
+            "query", "accelerations",                              # addresses of functions
+            "times",                                               # (TIMES_SIZE,) float64
+            "inputs", "before", "n_inputs",                        # wanted; (n_inputs, INPUT_SIZE): what they were
+            "chunk", "read",
+            "sample", "sample_length", "channels", "n_channels",   # one row, and what it gives
+            "places", "summed", "n_sums", "number", "column", "signs", "n_terms", "flags", "flag_columns", "n_flags",
+            "balance",
+            # of markers: (n_markers, 9), -1: zero; (n_markers, 2), (n_markers,), (n_markers, 9), -1: none
+            "marker_columns", "marker_offsets", "marker_angles", "marker_channels", "n_markers",
+        )
+    ]
+)  # fmt: skip
+
+# columns of `times`
+NOW = 0
+GOAL = 1
+LAST_CHANGE, INTERVAL = 2, 3  # of inputs
+INITIAL_ENERGY = 4  # J
+FIRST_STEP = 5  # steps made, and instants with events, before
+TIMES_SIZE = 6
+
+QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
+call_query = caller(QUERY_SIGNATURE)

@@ -1,0 +1,82 @@
+"""Painleve's paradox: sliding friction that presses bodies together more than the normal force keeps them apart.
+
+The gap's acceleration due to the forces of sliding contacts is (A_NN - A_NT diag(mu s)) F_N, s = +-1 the directions of
+sliding. Where that matrix loses its positive determinant there are no accelerations, or several (Painleve 1895; Genot
+and Brogliato 1999); on the way there the forces grow without bound.
+"""
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import SimulationError
+from ..linalg import SingularMatrixError
+from ..methods.history import recall
+from ..stage.joints import factor_joints, solve_joints
+from ..state.modes import CLOSED, MODE, RATIO, SLIDE
+
+if TYPE_CHECKING:
+    from .engine import Engine
+
+JAMS = 1e-2
+"""Part of the determinant without friction that is left where a run that failed is said to have jammed."""
+
+
+def painleve(name: str, t: float, mu: float) -> str:
+    """What to tell of contact `name`."""
+    return (
+        f"contact '{name}', t = {t:.9g} s: Painleve's paradox. Sliding with mu = {mu:g}, the friction presses the "
+        "bodies together more than the normal force keeps them apart, so that rigid bodies with Coulomb friction have "
+        "no (or no unique) accelerations here: use a smaller coefficient, or a force law with regularised friction "
+        "for this contact"
+    )
+
+
+def sliding_contacts(sim: "Engine") -> list[int]:
+    """Closed contacts whose friction is in proportion to their normal force because they slide."""
+    memory = sim.memory
+    slides = (memory[:, MODE] == CLOSED) & (np.abs(memory[:, SLIDE]) == 1.0) & (memory[:, RATIO] != 0.0)
+    return [int(k) for k in np.flatnonzero(slides)]
+
+
+def refuse_passed_jam(sim: "Engine", sliding: list[int]) -> None:
+    """Raise SimulationError if the step that ended at the workspace's current point went over a place where one of the
+    contacts `sliding` jams: behind it, its force pulls the gap's acceleration down."""
+    workspace, n = sim.workspace, sim.assembly.n
+    singular = factor_joints(workspace.record) != 0
+    if singular:
+        with suppress(SingularMatrixError):
+            workspace.structure.kkt_query.analyze(workspace.arrays["values"])
+            singular = factor_joints(workspace.record) != 0
+    active, rhs = workspace.structure.active, workspace.arrays["rhs"]
+    for k in sliding:
+        contact = sim.assembly.contacts[k]
+        row = n + int(np.searchsorted(active, contact.row))
+        rhs[: n + len(active)] = 0.0
+        rhs[row] = 1.0
+        # multiplier that gives the gap a unit acceleration: -1/(A_NN + RATIO A_NT), the other contacts included
+        if not singular:
+            solve_joints(workspace.record)
+        if singular or not rhs[row] < 0.0:
+            message = painleve(contact.name, sim.t_internal, abs(float(sim.memory[k, RATIO])))
+            raise SimulationError(message, t=sim.t_internal, loop="contact")
+
+
+def jam(sim: "Engine") -> str | None:
+    """Why a run cannot go on from the newest row, if its sliding contacts jam there; else None."""
+    memory, sliding = sim.memory, sliding_contacts(sim)
+    if not sliding or not sim.method_arrays["ring"][1]:
+        return None
+    ratio = memory[sliding, RATIO]
+    recall(sim.workspace.record, sim._method.record, 0)
+    try:
+        a, count = sim.inverse_masses(sliding), len(sliding)
+    except SimulationError:
+        return None
+    of_normals = a[:count, :count]
+    with_friction = of_normals + a[:count, count:] * ratio
+    if np.linalg.det(with_friction) > JAMS * np.linalg.det(of_normals):
+        return None
+    worst = int(np.argmin(np.diag(with_friction) / np.diag(of_normals)))
+    return painleve(sim.assembly.contacts[sliding[worst]].name, sim.t_internal, abs(float(ratio[worst])))

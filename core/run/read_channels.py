@@ -1,0 +1,67 @@
+"""The channels at a time within the newest step, compiled: what `ChannelTable.values` makes of a sample."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import imat, ivec, mat, vec
+from ..loop.sample import write_sample
+from ..methods.history import bridge_rows, history_time
+from ..methods.multistep import rows_available
+from ..model.marker_channels2d import MARKER_SIZE, planar_motion
+from ..repair.near_singular import STRAINED
+from ..state.modes import ACTIVE, CLOSED
+from ..state.workspace_records import LEAST_CONDITION, OK, RATE_SIZE, WORST_CONDITION
+from .exchange_record import GOAL, INITIAL_ENERGY, TIMES_SIZE, call_query
+
+
+@internal
+def near_singular(ws: Any, ms: Any, t: float) -> bool:
+    """`strained` at time t."""
+    rate = vec(ws.rate, RATE_SIZE)
+    strained = rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    inside = rows_available(ms) > 1 and history_time(ms, 1) < t < history_time(ms, 0)
+    return (strained and inside) or bridge_rows(ms) > 0
+
+
+@internal
+def read_at_goal(ex: Any, ws: Any, ms: Any) -> bool:
+    """The channels at the goal; False if they are not to be had, or one is not finite."""
+    t = vec(ex.times, TIMES_SIZE)[GOAL]
+    if near_singular(ws, ms, t) or call_query(ex.query, ws, ms, t) != OK:
+        return False
+    sample, out = vec(ex.sample, ex.sample_length), vec(ex.channels, ex.n_channels)
+    write_sample(ws, sample)
+    places = ivec(ex.places, ex.n_channels)
+    for k in range(ex.n_channels):
+        out[k] = sample[places[k]]
+    summed = ivec(ex.summed, ex.n_sums)
+    for k in range(ex.n_sums):
+        out[summed[k]] = 0.0
+    number, column, signs = ivec(ex.number, ex.n_terms), ivec(ex.column, ex.n_terms), vec(ex.signs, ex.n_terms)
+    for i in range(ex.n_terms):
+        out[summed[number[i]]] += signs[i] * sample[column[i]]
+    out[ex.balance] -= vec(ex.times, TIMES_SIZE)[INITIAL_ENERGY]
+    flags, columns = ivec(ex.flags, ex.n_flags), ivec(ex.flag_columns, ex.n_flags)
+    for k in range(ex.n_flags):
+        mode = sample[columns[k]]
+        out[flags[k]] = 1.0 if mode == CLOSED or mode == ACTIVE else 0.0
+    if ex.n_markers > 0:
+        _read_markers(ex, sample, out)
+    for k in range(ex.n_channels):
+        if not np.isfinite(out[k]):
+            return False
+    return True
+
+
+@internal
+def _read_markers(ex: Any, sample: Any, out: Any) -> None:
+    n = ex.n_markers
+    columns, channels = imat(ex.marker_columns, n, MARKER_SIZE), imat(ex.marker_channels, n, MARKER_SIZE)
+    offsets, angles, found = mat(ex.marker_offsets, n, 2), vec(ex.marker_angles, n), np.empty(MARKER_SIZE)
+    for i in range(n):
+        planar_motion(sample, columns[i], offsets[i, 0], offsets[i, 1], angles[i], found)
+        for k in range(MARKER_SIZE):
+            if channels[i, k] >= 0:
+                out[channels[i, k]] = found[k]

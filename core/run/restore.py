@@ -1,0 +1,135 @@
+"""State of a simulation as a value, and going on from one."""
+
+import hashlib
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ModelError, SimulationError
+from ..events import Event, Fallback
+from ..location.dense_output import query
+from ..methods.history import recall
+from ..stage.accelerations import solve_accelerations
+from ..state.run_records import HANDLED_AT, HERE
+from ..state.workspace_records import FACTOR_AGE, OK
+from .snapshot import Snapshot, snapshot_of, take_snapshot
+from .state import State
+from .state_check import check_state
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+
+def model_hash(sim: "Simulation") -> str:
+    """Hash of the model and the settings: a state fits only these."""
+    text = json.dumps([sim.system.identity(), repr(sim.settings)])
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def get_state(sim: "Simulation") -> State:
+    """Copy everything that decides the future."""
+    if len(sim.stored_events) != len(sim.events):
+        sim.stored_events = tuple(sim.events)
+    return State.of_parts(take_snapshot(sim), sim.model_hash, sim.stored_events)
+
+
+def set_state(sim: "Simulation", state: State) -> None:
+    """Make `sim` what it was when `state` was taken."""
+    if not isinstance(state, State):
+        raise ModelError(f"a State is needed to restore, not {type(state).__name__}; bytes go through State.from_bytes")
+    expected = sim.model_hash
+    if state.model_hash != expected:
+        raise ModelError(
+            f"the state belongs to another model, method or tolerance (hash {state.model_hash[:12]}, this simulation "
+            f"has {expected[:12]}): restore it into a simulation built the same way"
+        )
+    if state.parts is not None:
+        _take(sim, state.parts, state.events)
+        return
+    own = get_state(sim)
+    check_state(sim, state, own)
+    try:
+        _take(sim, snapshot_of(state.arrays, state.facts, sim.workspace.state.dtype, Fallback), state.events)
+    except BaseException as error:  # what is left may be half of each
+        _take(sim, own.parts, own.events)
+        if isinstance(error, ValueError):
+            raise ModelError(f"the solver state does not fit this simulation: {error}") from error
+        raise
+
+
+def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None:
+    workspace = sim.workspace
+    if sim.outer != parts.outer:
+        sim.use_outer_loop(parts.outer)
+    sim.fallbacks = list(parts.fallbacks)
+    if workspace.key != parts.key or workspace.dropped != parts.dropped:
+        workspace.drop(parts.dropped)
+        workspace.engage(*parts.key)
+    structure = workspace.structure
+    # most ways back are short, and patterns are dear: what fits is kept
+    present = structure.present
+    if present is None or not _same(present.dependent, parts.dependent):
+        workspace.set_partition(parts.dependent)
+        present = structure.present
+    workspace.set_probe(parts.probe)
+    if present is None:
+        raise RuntimeError("a structure has a partition once one was chosen")
+    for factorization, factors in zip((structure.kkt, present.lu_d, structure.kkt_query), parts.factors, strict=True):
+        perm_r, perm_c = factorization.analysis()
+        if not (_same(perm_r, factors.perm_r) and _same(perm_c, factors.perm_c)):
+            factorization.analyze_with(factors.perm_r, factors.perm_c)
+        for own, stored in ((factorization.lu_values, factors.values), (factorization.pivots, factors.pivots)):
+            if own.shape != stored.shape:
+                raise ModelError(f"the factors of the solver state are not {len(own)} numbers but {len(stored)}")
+            own[:] = stored
+    workspace.state_bytes[:] = parts.buffer
+    sim.t, sim.pending = parts.t, list(parts.pending)
+    sim.start_open, sim.input_times = parts.start_open, parts.input_times
+    sim.table.initial_energy = parts.initial_energy
+    sim.drive.goals[HANDLED_AT], sim.drive.counts[HERE] = parts.handled
+    if sim.stored_events is not events or len(sim.events) != len(events):  # events are only ever added
+        sim.events, sim.stored_events = list(events), events
+
+
+def _same(a: NDArray[np.int64], b: NDArray[np.int64]) -> bool:
+    return a is b or np.array_equal(a, b)
+
+
+def restart_here(sim: "Simulation") -> None:
+    """Start anew from the present time `sim.t`: what was computed beyond it is dropped (an input has changed)."""
+    ws, ms = sim.workspace.record, sim._method.record
+    if sim.t == sim.t_internal:
+        recall(ws, ms, 0)
+    elif query(ws, ms, sim.t) != OK:
+        raise SimulationError(
+            f"at t = {sim.t:.9g} s no state meets the constraints and the equations of motion with the inputs set: "
+            "they ask for a position out of reach, or make a force that is not finite",
+            t=sim.t,
+            loop="inner",
+        )
+    if sim.t != sim.t_internal:
+        sim.pending = []
+        _drop_records(sim)
+        # the newest row itself, where that is nearer than a step can be: what is due at once is due at this time
+        sim.workspace.arrays["t"][0] = sim.t
+    # the modes are the same and the structure fits them; only pivots that have degraded call for a new one
+    if solve_accelerations(ws) == OK:
+        sim.begin_rates()
+        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+    else:
+        sim.use_modes()
+    sim._new_history()
+    sim.pending += [k for k in sim.unsettled() if k not in sim.pending]
+
+
+def _drop_records(sim: "Simulation") -> None:
+    """Forget what was recorded beyond the present time `sim.t`."""
+    sim.flush()
+    for records in (sim.samples, sim.step_logs):
+        while records and records[-1][-1, 0] > sim.t:
+            kept = records.pop()
+            kept = kept[kept[:, 0] <= sim.t]
+            if len(kept):
+                records.append(kept)

@@ -1,0 +1,139 @@
+"""Snapshot: what decides the future of a run, copied as it lies in memory.
+
+Its bulk is the state's buffer (`tables/state_fields.py`). The rest are the factors of the matrices, whose size changes
+with the structure, and what Python keeps. Index arrays and permutations are never written into, so they are not copied.
+"""
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..state.run_records import HANDLED_AT, HERE
+from ..tables.state_fields import STATE
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+FACTORIZATIONS = ("kkt", "lu_d", "kkt_query")
+_OF_METHOD = ("history", "times", "ring", "parameters", "weights", "error", "choice")
+
+Key = tuple[frozenset[int], frozenset[int], frozenset[int]]
+
+
+class Factors(NamedTuple):
+    """Of one factorisation: place of rows and columns in the pivot sequence, values, pivots of a dense one."""
+
+    perm_r: NDArray[np.int64]
+    perm_c: NDArray[np.int64]
+    values: NDArray[np.float64]
+    pivots: NDArray[np.int64]
+
+
+class Snapshot(NamedTuple):
+    """The parts of a `State`."""
+
+    buffer: NDArray[np.uint8]
+    """The bytes of `Workspace.state`."""
+    layout: np.dtype
+    """Its type."""
+    factors: tuple[Factors, ...]
+    """In the order of FACTORIZATIONS."""
+    dependent: NDArray[np.int64]
+    probe: NDArray[np.float64]
+    key: Key
+    """Contacts closed, engaged and sticking."""
+    dropped: frozenset[int]
+    t: float
+    pending: tuple[int, ...]
+    handled: tuple[float, int]
+    outer: str
+    start_open: bool
+    input_times: tuple[float, float]
+    initial_energy: float
+    fallbacks: tuple[Any, ...]
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """The arrays by name."""
+        names = (*STATE, *(f"method_{name}" for name in _OF_METHOD), "clock", "watch")
+        state = self.buffer.view(self.layout)
+        arrays: dict[str, NDArray[Any]] = {name: state[name][0] for name in names}
+        arrays["dependent"], arrays["probe"] = self.dependent, self.probe
+        for name, factors in zip(FACTORIZATIONS, self.factors, strict=True):
+            arrays |= {f"{name}_{part}": x for part, x in factors._asdict().items()}
+        return arrays
+
+    def facts(self) -> dict[str, Any]:
+        """What is no array, as JSON data."""
+        closed, engaged, sticking = self.key
+        return {
+            "t": self.t,
+            "closed": sorted(closed),
+            "dropped": sorted(self.dropped),
+            "engaged": sorted(engaged),
+            "sticking": sorted(sticking),
+            "pending": list(self.pending),
+            "handled": [repr(self.handled[0]), self.handled[1]],
+            "outer": self.outer,
+            "start_open": self.start_open,
+            "input_times": [repr(x) for x in self.input_times],
+            "initial_energy": repr(self.initial_energy),
+            "fallbacks": [[f.t, f.outer, f.reason] for f in self.fallbacks],
+        }
+
+
+def take_snapshot(sim: "Simulation") -> Snapshot:
+    """Copy everything that decides the future."""
+    workspace, structure, drive = sim.workspace, sim.workspace.structure, sim.drive
+    partition = structure.present
+    if partition is None:
+        raise RuntimeError("a simulation always has a partition once it is built")
+    return Snapshot(
+        workspace.state_bytes.copy(),
+        workspace.state.dtype,
+        tuple([
+            Factors(*lu.analysis(), lu.lu_values.copy(), lu.pivots.copy())
+            for lu in (structure.kkt, partition.lu_d, structure.kkt_query)
+        ]),
+        partition.dependent,
+        structure.probe.copy(),
+        workspace.key,
+        workspace.dropped,
+        sim.t,
+        tuple(sim.pending),
+        (drive.goals.item(HANDLED_AT), drive.counts.item(HERE)),
+        sim.outer,
+        sim.start_open,
+        sim.input_times,
+        sim.table.initial_energy,
+        tuple(sim.fallbacks),
+    )  # fmt: skip
+
+
+def snapshot_of(arrays: dict[str, NDArray[Any]], facts: dict[str, Any], layout: np.dtype, fallback: Any) -> Snapshot:
+    """The parts from arrays and facts that have been read; `fallback` makes one of those.
+
+    Raises
+    ------
+    ValueError : for an array of another shape.
+    """
+    state = np.zeros(1, layout)
+    for name in layout.names or ():
+        state[name][0][...] = arrays[name]
+    return Snapshot(
+        state.view(np.uint8),
+        layout,
+        tuple(Factors(*(arrays[f"{name}_{part}"] for part in Factors._fields)) for name in FACTORIZATIONS),
+        arrays["dependent"],
+        np.ascontiguousarray(arrays["probe"]),
+        (frozenset(facts["closed"]), frozenset(facts["engaged"]), frozenset(facts["sticking"])),
+        frozenset(facts["dropped"]),
+        float(facts["t"]),
+        tuple(int(k) for k in facts["pending"]),
+        (float(facts["handled"][0]), int(facts["handled"][1])),
+        facts["outer"],
+        bool(facts["start_open"]),
+        (float(facts["input_times"][0]), float(facts["input_times"][1])),
+        float(facts["initial_energy"]),
+        tuple(fallback(*entry) for entry in facts["fallbacks"]),
+    )

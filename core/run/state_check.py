@@ -1,0 +1,217 @@
+"""Is a state that came as bytes one that a run could have been in?
+
+Compiled code takes indices from a state (pivots, dependent coordinates, rings, orders, modes) and does not look at them
+again. A checksum says that bytes are as they were written, not who wrote them.
+"""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ModelError
+from ..events import Event
+from ..methods.order_selection import MOST_K
+from ..stage import OUTER_LOOPS
+from ..state.method_records import NEXT_K, K
+from ..state.modes import CLOSED, IDLE, MODE, MODE_NAMES, SLIDE, STICKS
+from ..state.run_records import (
+    A2,
+    B1,
+    B2,
+    EAGER,
+    FIXED_STEP,
+    GROWTH,
+    HELD,
+    HOLD,
+    MAX_STEP,
+    PREVIOUS_NORM,
+    PREVIOUS_RATIO,
+    REJECTED_HERE,
+    STEP_SIZE,
+)
+from .state import State
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+FACTORIZATIONS = ("kkt", "lu_d", "kkt_query")
+_FINITE = ("t", "q", "v", "a", "aux", "lam", "memory", "probe", "method_weights", "method_times", "method_history")
+_NO_NAN = ("inputs", "watch", "clock")
+_SETTINGS = (MAX_STEP, FIXED_STEP, GROWTH, HOLD, EAGER, B1, B2, A2)
+"""Columns of the clock that never change in a run."""
+_NOT_NEGATIVE = (HELD, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE)
+_LARGEST_COUNT = 2**53
+_HUGE = 1e300
+_SLIDES = (STICKS, IDLE, 1.0, -1.0)
+
+
+def check_state(sim: "Simulation", state: State, own: State) -> None:
+    """Refuse what cannot be a state of `sim`, whose own present state is `own`; `sim` stays as it is.
+
+    Raises
+    ------
+    ModelError : says what is wrong with which part.
+    """
+    _check_facts(sim, state)
+    closed, engaged, sticking = (frozenset(state.facts[name]) for name in ("closed", "engaged", "sticking"))
+    structure = sim.workspace.structure_of(closed, engaged, sticking, frozenset(state.facts["dropped"]))
+    _check_arrays(state, own, len(structure.active))
+    arrays = state.arrays
+    _need("dependent", len(set(arrays["dependent"].tolist())) == len(arrays["dependent"]), "names a coordinate twice")
+    _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
+    _check_factorizations(arrays, len(structure.active), len(structure.active) + sim.assembly.n)
+    _need_range("counters", arrays["counters"], 0, _LARGEST_COUNT)
+    _check_memory(sim, state)
+    _check_method(sim, arrays, own.arrays)
+    _check_clock(arrays["clock"], own.arrays["clock"])
+    newest = _newest_time(arrays)
+    t = state.facts["t"]
+    _need("t", t <= newest and (arrays["method_ring"][1] < 2 or t >= _time_before(arrays)), f"{t!r} s is not in a step")
+
+
+def _refuse(part: str, text: str) -> None:
+    raise ModelError(
+        f"the solver state is none that this simulation could have been in: '{part}' {text}; "
+        "give back exactly the bytes of State.to_bytes()"
+    )
+
+
+def _need(part: str, holds: Any, text: str) -> None:
+    if not holds:
+        _refuse(part, text)
+
+
+def _need_range(part: str, array: NDArray[Any], low: float, high: float) -> None:
+    if len(array) and not (array.min() >= low and array.max() <= high):
+        _refuse(part, f"has values from {array.min()} to {array.max()}, where {low} to {high} are possible")
+
+
+def _number(x: Any) -> bool:
+    return isinstance(x, int | float) and not isinstance(x, bool) and -_HUGE <= x <= _HUGE
+
+
+def _text_number(x: Any, infinite: bool = False) -> bool:
+    """Whether `x` is the repr of a number."""
+    try:
+        return isinstance(x, str) and (infinite or math.isfinite(float(x)))
+    except ValueError:
+        return False
+
+
+def _indices(x: Any, count: int) -> bool:
+    whole = isinstance(x, list) and all(isinstance(k, int) and not isinstance(k, bool) for k in x)
+    return whole and len(set(x)) == len(x) and all(0 <= k < count for k in x)
+
+
+def _check_facts(sim: "Simulation", state: State) -> None:
+    facts, contacts, assembly = state.facts, len(sim.assembly.contacts), sim.assembly
+    own = {
+        "t", "closed", "dropped", "engaged", "sticking", "pending", "handled", "outer", "start_open",
+        "input_times", "initial_energy", "fallbacks",
+    }  # fmt: skip
+    _need("facts", set(facts) == own, f"are {sorted(facts)}, needed are {sorted(own)}")
+    for name, count in (
+        ("closed", contacts), ("engaged", contacts), ("sticking", contacts), ("pending", contacts),
+        ("dropped", assembly.m_joints),
+    ):  # fmt: skip
+        _need(name, _indices(facts[name], count), f"is {facts[name]!r}: a list of different numbers below {count}")
+    closed, sticking = set(facts["closed"]), set(facts["sticking"])
+    _need("engaged", closed <= set(facts["engaged"]), "lacks contacts that are closed")
+    slides = {k for k, contact in enumerate(assembly.contacts) if contact.slide_row >= 0}
+    _need("sticking", sticking <= closed & slides, "has contacts that are not closed, or have no friction")
+    _need("t", _number(facts["t"]), f"is {facts['t']!r}, no time")
+    handled, times = facts["handled"], facts["input_times"]
+    counted = isinstance(handled, list) and len(handled) == 2 and _text_number(handled[0], True)
+    _need("handled", counted and _indices(handled[1:], _LARGEST_COUNT), f"is {handled!r}: a time and a count")
+    two = isinstance(times, list) and len(times) == 2 and all(_text_number(x, True) for x in times)
+    _need("input_times", two and not any(math.isnan(float(x)) for x in times), f"is {times!r}: two times")
+    _need("outer", facts["outer"] in tuple(OUTER_LOOPS), f"is {facts['outer']!r}, no outer loop")
+    _need("start_open", isinstance(facts["start_open"], bool), f"is {facts['start_open']!r}: true or false")
+    energy = facts["initial_energy"]
+    _need("initial_energy", _text_number(energy), f"is {energy!r}, no energy")
+    fallbacks = facts["fallbacks"]
+    listed = isinstance(fallbacks, list) and all(
+        isinstance(f, list) and len(f) == 3 and _number(f[0]) and isinstance(f[1], str) and isinstance(f[2], str)
+        for f in fallbacks
+    )
+    _need("fallbacks", listed, f"is {fallbacks!r}: time, outer loop and reason each")
+    names = [contact.name for contact in assembly.contacts]
+    for event in state.events:
+        known = event.contact in names and isinstance(event.kind, str)
+        _need("events", known and all(map(_number, _numbers_of(event))), f"has {event}")
+
+
+def _numbers_of(event: Event) -> list[Any]:
+    return [value for name, value in event.to_dict().items() if name not in ("kind", "contact")]
+
+
+def _check_arrays(state: State, own: State, active: int) -> None:
+    """Names, types and shapes, as far as they do not depend on pivots; numbers that must be some."""
+    arrays, expected = state.arrays, own.arrays
+    _need("arrays", arrays.keys() == expected.keys(), f"are {sorted(arrays)}, needed are {sorted(expected)}")
+    for name, array in arrays.items():
+        x = expected[name]
+        _need(
+            name, array.dtype == x.dtype and array.ndim == x.ndim, f"is of type {array.dtype} and shape {array.shape}"
+        )
+        if not name.startswith(FACTORIZATIONS):
+            shape = (active,) if name in ("dependent", "probe") else x.shape
+            _need(name, array.shape == shape, f"has shape {array.shape}, needed is {shape}")
+    for name in _FINITE:
+        _need(name, np.isfinite(arrays[name]).all(), "has values that are not finite")
+    for name in _NO_NAN:
+        _need(name, not np.isnan(arrays[name]).any(), "has values that are no numbers")
+
+
+def _check_factorizations(arrays: dict[str, NDArray[Any]], active: int, size: int) -> None:
+    for name in FACTORIZATIONS:
+        n = active if name == "lu_d" else size
+        for part in ("perm_r", "perm_c", "pivots"):
+            array = arrays[f"{name}_{part}"]
+            order = len(array) == 0 or np.array_equal(np.sort(array), np.arange(n))
+            _need(f"{name}_{part}", order, f"is no permutation of 0 to {n - 1}")
+
+
+def _check_memory(sim: "Simulation", state: State) -> None:
+    memory = state.arrays["memory"][: len(sim.assembly.contacts)]
+    _need("memory", np.isin(memory[:, MODE], list(MODE_NAMES)).all(), f"has modes {memory[:, MODE].tolist()}")
+    _need("memory", np.isin(memory[:, SLIDE], _SLIDES).all(), f"has ways of sliding {memory[:, SLIDE].tolist()}")
+    closed = set(np.flatnonzero(memory[:, MODE] == CLOSED).tolist())
+    _need("closed", closed == set(state.facts["closed"]), f"is not what the modes say: {sorted(closed)}")
+
+
+def _newest_time(arrays: dict[str, NDArray[Any]]) -> float:
+    return float(arrays["method_times"][arrays["method_ring"][0]])
+
+
+def _time_before(arrays: dict[str, NDArray[Any]]) -> float:
+    return float(arrays["method_times"][arrays["method_ring"][0] - 1])
+
+
+def _check_method(sim: "Simulation", arrays: dict[str, NDArray[Any]], own: dict[str, NDArray[Any]]) -> None:
+    ring, times = arrays["method_ring"], arrays["method_times"]
+    capacity = len(times)
+    _need_range("method_ring", ring[:1], 0, capacity - 1)
+    _need_range("method_ring", ring[1:2], 1, capacity)
+    _need_range("method_ring", ring[2:], 0, capacity)
+    rows = times[(ring[0] - np.arange(ring[1])) % capacity]
+    _need("method_times", (np.diff(rows) <= 0.0).all(), f"does not grow: {rows[::-1].tolist()}")
+    parameters = own["method_parameters"]
+    same = np.array_equal(arrays["method_parameters"], parameters)
+    _need("method_parameters", same, "are not those of the method")
+    formula, choice = sim.formula, arrays["method_choice"]
+    most = float(formula.k) if formula.select is None else float(parameters[MOST_K])
+    for column, least in ((K, most if formula.select is None else 1.0), (NEXT_K, 0.0)):
+        k = float(choice[column])
+        whole = k.is_integer() and least <= k <= most
+        _need("method_choice", whole, f"has {k!r} steps of a formula that takes {least:g} to {most:g}")
+
+
+def _check_clock(clock: NDArray[np.float64], own: NDArray[np.float64]) -> None:
+    columns = list(_SETTINGS)
+    _need("clock", np.array_equal(clock[columns], own[columns]), "has other settings than the simulation")
+    step = float(clock[STEP_SIZE])
+    _need("clock", 0.0 < step < math.inf, f"has a step of {step!r} s")
+    _need("clock", (clock[list(_NOT_NEGATIVE)] >= 0.0).all(), "has counts below zero")

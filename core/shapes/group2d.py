@@ -1,0 +1,109 @@
+"""Contacts between groups of shapes, instead of pairs listed by hand.
+
+Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box or a segment; a box with a
+half-plane and with a box by its corners. Pairs on one body are left out. Pairs that are far from touching cost nothing
+during a run: contacts sleep until their margin is used up (`location/asleep.py`).
+"""
+
+from collections.abc import Iterable, Sequence
+from itertools import combinations, product
+
+from ..errors import ModelError
+from ..laws import ContactLaw
+from ..laws.friction import Friction
+from ..model.markers import GROUND, Marker2D
+from .box2d import Box2D, DiskOnBox2D
+from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .segment2d import DiskOnSegment2D, Segment2D
+
+GroupShape = Disk2D | HalfPlane2D | Box2D | Segment2D
+
+MOST_PAIRS = 200_000
+
+
+def contacts_between(
+    name: str,
+    shapes: Iterable[GroupShape],
+    others: Iterable[GroupShape] | None = None,
+    *,
+    law: ContactLaw,
+    friction: Friction | None = None,
+    except_bodies: Iterable[tuple[str, str]] = (),
+) -> tuple[Contact2D, ...]:
+    """Contacts of all pairs of `shapes` with each other, or of `shapes` with `others`, for a model's `contacts`.
+
+    Parameters
+    ----------
+    name : the contacts are called name_body1_body2, with a number behind where two bodies have several.
+    law, friction : of all of them.
+    except_bodies : pairs of bodies that do not touch, such as those that a joint holds together.
+
+    Raises
+    ------
+    ModelError : for more than MOST_PAIRS pairs, and shapes of which no pair can touch.
+    """
+    first = tuple(shapes)
+    second = None if others is None else tuple(others)
+    count = len(first) * (len(first) - 1) // 2 if second is None else len(first) * len(second)
+    if count > MOST_PAIRS:
+        raise ModelError(f"group '{name}' has {count} pairs of shapes, more than {MOST_PAIRS}: make smaller groups")
+    pairs = combinations(first, 2) if second is None else product(first, second)
+    apart = {frozenset(pair) for pair in except_bodies}
+    named: dict[str, list[tuple[GroupShape, GroupShape]]] = {}
+    for a, b in pairs:
+        bodies = _body(a), _body(b)
+        if bodies[0] == bodies[1] or frozenset(bodies) in apart:
+            continue
+        found = [*_touching(a, b)]
+        named.setdefault(f"{name}_{bodies[0]}_{bodies[1]}", []).extend(found)
+    made = []
+    for label, touching in named.items():
+        for k, (a, b) in enumerate(touching):
+            made.append(_contact(label if len(touching) == 1 else f"{label}_{k + 1}", a, b, law, friction))
+    if not made:
+        raise ModelError(
+            f"group '{name}' has no two shapes that can touch: disks touch all shapes, boxes touch boxes and "
+            "half-planes, and shapes of one body never touch each other"
+        )
+    return tuple(made)
+
+
+def _body(shape: GroupShape) -> str:
+    marker: Marker2D = shape.marker
+    return marker.body
+
+
+def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape]]:
+    """Pairs (what, disk) that say the contact of two shapes."""
+    if isinstance(b, Disk2D):
+        return ((a, b),)
+    if isinstance(a, Disk2D):
+        return ((b, a),)
+    if isinstance(a, Box2D) and isinstance(b, Box2D):
+        return (*((a, corner) for corner in b.corners()), *((b, corner) for corner in a.corners()))
+    if isinstance(a, Box2D):
+        a, b = b, a
+    if isinstance(b, Box2D):
+        if isinstance(a, HalfPlane2D):
+            return tuple((a, corner) for corner in b.corners())
+        raise ModelError(
+            f"a box on '{_body(b)}' and a segment on '{_body(a)}' have no contact: make the segment a thin box"
+        )
+    if _body(a) == _body(b) == GROUND:
+        return ()
+    raise ModelError(
+        f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: give one of "
+        "them disks at its corners"
+    )
+
+
+def _contact(name: str, a: GroupShape, disk: GroupShape, law: ContactLaw, friction: Friction | None) -> Contact2D:
+    if not isinstance(disk, Disk2D):
+        raise TypeError("the second shape of a pair is a disk")
+    if isinstance(a, HalfPlane2D):
+        return DiskOnHalfPlane2D(name=name, plane=a, disk=disk, law=law, friction=friction)
+    if isinstance(a, Disk2D):
+        return DiskOnDisk2D(name=name, a=a, b=disk, law=law, friction=friction)
+    if isinstance(a, Box2D):
+        return DiskOnBox2D(name=name, shape=a, disk=disk, law=law, friction=friction)
+    return DiskOnSegment2D(name=name, segment=a, disk=disk, law=law, friction=friction)

@@ -1,0 +1,162 @@
+"""Contacts from formulas: a gap function, and a sliding distance for friction."""
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, ClassVar
+
+from ..compiled.jit import internal
+from ..compiled.views import imat, mat, vec
+from ..elements.base import Form, Numbering, Row
+from ..elements.formula2d import Arguments, argument_names, caller_of, derivatives, form_ahead, plain_function
+from ..errors import ModelError
+from ..laws.friction import LuGreFriction
+from ..model.markers import Marker2D
+from .bristle2d import act_bristles
+from .contact2d import Contact2D
+from .normal2d import act
+from .sliding2d import act_sliding
+
+KIND, SLIDING_KIND, BRISTLE_KIND = "scalar_contact2d", "sliding_scalar_contact2d", "bristle_scalar_contact2d"
+"""Of its kernels in the library of machine code."""
+PERIOD, FIRST = 0, 16
+"""Columns of the table of parameters: by how much the sliding distance may jump, and the first one of the formulas;
+7 to 15 are those of the laws."""
+
+
+class ScalarContact:
+    """Gap and sliding distance as formulas of markers and numbers; made by `scalar_contact`."""
+
+    def __init__(self, gap: Callable[..., Any], slide: Callable[..., Any] | None) -> None:
+        self.gap = plain_function(gap)
+        self.slide = None if slide is None else plain_function(slide)
+
+    @property
+    def formulas(self) -> tuple[Callable[..., Any], ...]:
+        """Gap, and sliding distance if there is one."""
+        return (self.gap,) if self.slide is None else (self.gap, self.slide)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the arguments of both."""
+        return (*argument_names(self.gap), *(() if self.slide is None else argument_names(self.slide)))
+
+
+def scalar_contact(gap: Callable[..., Any], slide: Callable[..., Any] | None = None) -> ScalarContact:
+    """A contact from formulas, for `ScalarContact2D`.
+
+    Parameters
+    ----------
+    gap : m, of markers and numbers, as in `scalar_constraint`: positive while the shapes are apart; its gradient is
+        the direction of the normal force, so that |gradient| by the points is 1 for a force in N.
+    slide : m, how far the shapes have slid on each other, for friction; its gradient is the direction of the friction
+        force. For wheels it counts their rolling.
+
+    Raises
+    ------
+    ModelError : for what is no function.
+    """
+    return ScalarContact(gap, slide)
+
+
+@internal
+def _period(b: Any, e: int) -> float:
+    return mat(b.par, b.count, b.npar)[e, PERIOD]
+
+
+@cache
+def _kernel(gap: Callable[..., Any], arguments: Arguments) -> Any:
+    from ..compiled.formula_code import formula_internal
+    from ..compiled.jet_functions import gradient_of, hessian_of, value_of
+
+    call = caller_of(gap, arguments, FIRST)
+
+    def scalar_contact2d_kernel(job: int, t: float, b: Any) -> None:
+        par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
+        for e in range(b.count):
+            g = call(q, coord[e], par[e])
+            act(b, job, e, value_of(g), gradient_of(g), hessian_of(g))
+
+    return formula_internal(scalar_contact2d_kernel, (gap,), arguments)
+
+
+@cache
+def _rubbing_kernel(gap: Callable[..., Any], slide: Callable[..., Any], arguments: Arguments, bristles: bool) -> Any:
+    from ..compiled.formula_code import formula_internal
+    from ..compiled.jet_functions import gradient_of, hessian_of, value_of
+
+    call, call_slide = caller_of(gap, arguments, FIRST), caller_of(slide, arguments, FIRST)
+
+    def sliding_scalar_contact2d_kernel(job: int, t: float, b: Any) -> None:
+        par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
+        for e in range(b.count):
+            g, s = call(q, coord[e], par[e]), call_slide(q, coord[e], par[e])
+            act_sliding(
+                b, job, e, value_of(g), gradient_of(g), hessian_of(g), value_of(s), gradient_of(s), hessian_of(s),
+                _period(b, e),
+            )  # fmt: skip
+
+    def bristle_scalar_contact2d_kernel(job: int, t: float, b: Any) -> None:
+        par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
+        for e in range(b.count):
+            g, s = call(q, coord[e], par[e]), call_slide(q, coord[e], par[e])
+            act_bristles(b, job, e, value_of(g), gradient_of(g), hessian_of(g), gradient_of(s), hessian_of(s))
+
+    made = bristle_scalar_contact2d_kernel if bristles else sliding_scalar_contact2d_kernel
+    return formula_internal(made, (gap, slide), arguments)
+
+
+class ScalarContact2D(Contact2D):
+    """Base of contacts whose gap is a formula of their markers, a user's own too.
+
+    A subclass says its markers and numbers as fields, and its `formula`, made by `scalar_contact`. Laws and friction
+    are those of all contacts; friction needs the sliding distance.
+    """
+
+    formula: ClassVar[ScalarContact]
+
+    def slide_period(self) -> float:
+        """By how much the sliding distance may jump where an angle goes round, m; 0: it does not."""
+        return 0.0
+
+    @property
+    def kind(self) -> str | None:
+        """Of its kernel in the library of machine code; None where there is no such kernel."""
+        if self.friction is None:
+            return KIND
+        if self.formula.slide is None:
+            return None
+        return BRISTLE_KIND if isinstance(self.friction, LuGreFriction) else SLIDING_KIND
+
+    def arguments(self) -> Arguments:
+        """What its formulas take."""
+        return Arguments.of(self, self.formula.names)
+
+    def markers(self) -> Sequence[Marker2D]:
+        return self.arguments().marked(self)
+
+    def form(self) -> Form:
+        """Raises ModelError for friction without a sliding distance."""
+        arguments, formula = self.arguments(), self.formula
+        n, bristles = arguments.size, isinstance(self.friction, LuGreFriction)
+        ahead = None if self.kind is None else form_ahead(self.kind, formula.formulas, arguments)
+        if ahead is not None:
+            return ahead
+        derivatives(formula.gap, arguments)
+        if self.friction is None:
+            kernel, rows = _kernel(formula.gap, arguments), 1
+        elif formula.slide is None:
+            raise ModelError(
+                f"contact '{self.name}' has friction, but {type(self).__name__} says no sliding distance: give "
+                "scalar_contact a second formula, or leave friction out"
+            )
+        else:
+            derivatives(formula.slide, arguments)
+            kernel, rows = _rubbing_kernel(formula.gap, formula.slide, arguments, bristles), 2
+        size = n + bristles
+        full = tuple((i, j) for i in range(size) for j in range(size))
+        return Form(kernel, rows, full, tuple((k, j) for k in range(rows) for j in range(n)))
+
+    def row(self, numbering: Numbering) -> Row:
+        arguments, law = self.arguments(), self._law_columns(numbering)
+        columns = (self.slide_period(), *(0.0,) * 6, *law.parameters, *arguments.columns(self))
+        return Row(columns, arguments.coordinates(self, numbering), law.extra)

@@ -1,0 +1,27 @@
+"""The matrix of the joints and of all contacts that are closed, factorised for Python."""
+
+from typing import Any
+
+from ..compiled.jit import compiled
+from ..linalg import factor, lu_at, solve
+from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+
+
+@compiled
+def evaluate_joints(ws: Any) -> None:
+    """[M Phi_q^T; Phi_q 0] of the present structure at the current point."""
+    evaluate_residuals(ws)
+    evaluate_tangent(ws, 0.0, 0.0)
+
+
+@compiled
+def factor_joints(ws: Any) -> int:
+    """The same matrix as `evaluate_joints`, and its factors with the pivots that the structure has."""
+    evaluate_joints(ws)
+    return int(factor(lu_at(ws.kkt_query), ws.values))
+
+
+@compiled
+def solve_joints(ws: Any) -> None:
+    """rhs -> its solution with the factorised matrix."""
+    solve(lu_at(ws.kkt_query), ws.rhs)

@@ -1,0 +1,147 @@
+"""The loop record: clock, sample buffer and what the watch over contacts remembers."""
+
+import numpy as np
+
+from ..compiled import types
+from ..compiled.jit import caller
+from .method_records import METHOD_TYPE
+from .workspace_records import WORKSPACE_TYPE
+
+LOOP = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "step", "starter", "rows",          # addresses of the step functions, rows that `step` needs
+            "fine_starter",                     # address of the one-step function of trial steps
+            "find_events", "accelerations",     # addresses of the watch over contacts and of `solve_accelerations`
+            "select",                           # address of the function that chooses the order; 0: none
+            "clock",                            # (CLOCK_SIZE,) float64
+            "leap",                             # (n,) float64: how far a step may move each coordinate
+            "watch",                            # (n_contacts, WATCH) float64: what `remember` says of the newest row
+            "near", "probes",                   # (n_contacts, NEAR_SIZE) int64, and a BATCH for each contact
+            *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor", "asleep")),
+            "may_sleep",                        # 1: contacts may fall asleep (`asleep.py`)
+            "margin",                           # (n_contacts,) float64: of those that do
+            "travel",                           # (2, n_ext) float64: bounds of the coordinates' ways within a step
+            "brackets",                         # (n_contacts, BRACKET) float64: where in a step events are
+            "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
+            "stride",                           # steps from one recorded sample to the next
+            "cursor",                           # (1,) int64: samples in the buffer
+            "log", "log_capacity",              # per-step records; capacity 0: none are wanted
+            "log_cursor",                       # (1,) int64
+        )
+    ]
+)  # fmt: skip
+
+LOOP_TYPE = types.from_dtype(LOOP)
+FIND_EVENTS_SIGNATURE = types.boolean(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64, types.boolean)
+call_find_events = caller(FIND_EVENTS_SIGNATURE)
+"""call_find_events(address, ws, ms, lc, h, all of them)."""
+
+TRIAL_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64)
+ACCEPT_SIGNATURE = types.void(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE)
+RUN_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.int64)
+SAMPLE_SIGNATURE = types.void(WORKSPACE_TYPE, types.Array(types.float64, 1, "C"))
+call_trial, call_accept, call_run, call_sample = map(
+    caller, (TRIAL_SIGNATURE, ACCEPT_SIGNATURE, RUN_SIGNATURE, SAMPLE_SIGNATURE)
+)
+ACCELERATIONS_SIGNATURE = types.int64(WORKSPACE_TYPE)
+call_accelerations = caller(ACCELERATIONS_SIGNATURE)
+
+WATCH = 5
+"""Columns of `watch`: gap, rate and acceleration of a contact; rate and acceleration of its sliding distance."""
+
+# columns of `clock`
+STEP_SIZE = 0  # proposed next step
+STOP_TIME = 1
+MAX_STEP = 2
+FIXED_STEP = 3  # 0: error controlled
+TRIAL_STEP = 4  # step of the last trial (an event or a failure)
+TARGET_TIME = 5  # `run` returns once it is reached; a step may go beyond it
+BREAK_TIME = 6  # next time at which a force or a driver's rate jumps
+GROWTH = 7  # largest factor by which a step may grow
+HOLD = 8  # equal steps that a multistep formula takes between two growths
+HELD = 9  # equal steps taken since the last change
+EAGER = 10  # 1: `run` returns when an outer loop fails, so that another can take over
+PREVIOUS_NORM = 11  # of one-step formulas: error norm of the last accepted step; 0: there is none
+PREVIOUS_RATIO = 12  # and by how much the step changed after it
+B1, B2, A2 = 13, 14, 15  # coefficients of the step-size controller
+REJECTED_HERE = 16  # trials that failed since the last accepted step
+WINDOW_START, WINDOW_COUNT = 17, 18  # since when instants with events are counted, and how many there were
+CROWDED = 19  # 1: the last of these windows was next to no time (`events/crowding.py`)
+CLOCK_SIZE = 20
+
+# columns of a per-step record
+LOG_COLUMNS = ("t", "h", "error", "k", "rejected", "outer", "inner", "factorizations", "evaluations", "krylov")
+
+# what `run` returns besides the status of a failed step
+REACHED = 100
+EVENT = 101
+FULL = 102
+CHUNK = 103
+STEP_TOO_SMALL = 104
+REPARTITION = 105
+NEAR_SINGULAR = 106
+VIOLATED = 107
+UNLOCATED = 108  # events have been found whose times Python has to locate
+DUE = 109  # a breakpoint is due
+SETTLE = 110  # pending events are for Python to settle
+JAM = 111  # a sliding contact may have jammed
+WANTED = 112  # something has to be built before pending events can be settled
+FAILED = 113  # pending events cannot be settled
+
+DRIVE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "workspace", "method", "loop", "instant",  # addresses of the records
+            "run", "trial", "accept", "write_sample", "accelerations", "settle",  # addresses of functions
+            "goals",                                  # (GOALS_SIZE,) float64: where to go
+            "counts",                                 # (COUNTS_SIZE,) int64
+            "guard",                                  # (GUARD_SIZE,) float64: of `Progress`
+            "breakpoints", "n_breakpoints", "pass_breakpoint",  # the last: address of a function
+            "joint_rows",                             # rows of Phi that are no contacts'
+            "input_account",                          # index in v of the work of driven constraints; -1: there is none
+            # of each contact
+            "law",                                    # (n_contacts,) int64: how an impact is solved
+            "restitution", "rest_ratio", "friction",  # (n_contacts,) float64
+            # of those that act as forces: address of the law, (FORCE_NUMBERS,) its parameters, least approach speed
+            # (m/s; < 0: a part of the model's), 1 if the force may end before the gap opens
+            "force_law", "force_numbers", "least_approach", "ends_early",
+            "impulse_account", "dissipation_account",  # places in v
+            "bristle", "bristle_stiffness",           # place in v, -1: none; N/m
+            "pending",                                # (n_contacts,) int64: 1 where an event has to be handled
+            "found",                                  # (n_contacts, FOUND_SIZE) float64: of the location of events
+            "events", "event_rows",                   # (event_rows, EVENT_SIZE) float64: a buffer that Python empties
+            "last_trial",                             # (1,) float64: size of the step that ends at the current point
+            "nearest",                                # (NEAREST,) float64: the last event searched for (`search.py`)
+        )
+    ]
+)  # fmt: skip
+DRIVE_TYPE = types.from_dtype(DRIVE)
+SETTLE_SIGNATURE = types.int64(DRIVE_TYPE)
+call_settle = caller(SETTLE_SIGNATURE)
+
+# columns of `goals`, s
+GOAL, LAST_STOP, HANDLED_AT = range(3)
+PASSED = 3  # the breakpoint that is due
+GOALS_SIZE = 4
+# columns of `counts`
+BUDGET = 0  # steps and instants with events that `drive` may take
+HANDLED = 1  # instants with events so far
+HERE = 2  # of these at the time HANDLED_AT
+EVENTS = 3  # events in the ring
+STATUS = 4  # of the settling that has ended a run: `events/records.py`
+COUNTS_SIZE = 5
+
+FOUND_SIZE = 7
+FORCE_NUMBERS = 4
+"""Parameters of a force law."""
+# columns of an event
+EVENT_ROWS = 1024
+EVENT_SIZE = 9
+"""Time, kind, contact, and the numbers of `Event` in their order."""
+IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS, JUMPS = range(9)
+EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
+"""Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the
+energy; nor is JUMPS: the rate of a driver, with its row of Phi in place of a contact, has jumped."""

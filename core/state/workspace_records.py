@@ -1,0 +1,127 @@
+"""The workspace record: sizes and addresses of everything that the compiled loop works on."""
+
+import numpy as np
+
+from ..compiled import types
+from ..compiled.jit import caller, record_view
+
+WORKSPACE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            # sizes
+            "n", "n_ext", "m_ext", "m_act", "n_kernels", "n_values", "n_contacts", "n_work", "row_length",
+            # the current point
+            "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
+            "values", "coef", "energy", "monitor", "memory", "inputs",
+            # model
+            "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
+            "contact_slide_rows", "contact_sticking",
+            "asleep",  # (contacts,) int64: 1 where a contact is not evaluated (`location/asleep.py`)
+            # (contacts,) codes of `switch.py`; the present structure, all that are kept, and how many
+            "wanted", "structure", "known", "n_known",
+            "wanted_dependent",  # (m_act,) int64: the partition that compiled code has chosen
+            # structure (changes with the set of engaged contacts)
+            "active", "redundant", "n_redundant", "probe",
+            "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "kkt_query",
+            # gradients of contacts that are no constraints now, by row of Phi; the block of the mass matrix
+            "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "mass_slot", "n_mass",
+            # stage solver
+            "q_star", "v_star", "base_q", "base_v", "base_a", "stage_v", "stage_a", "stage_rows", "rhs",
+            "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
+            # sizes of rows of Phi, of work accounts, and of coordinates for levels: (m_ext,), (n_ext,), (n,)
+            "row_scale", "work_scale", "level_scale",
+            # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
+            "basis", "n_basis",
+            # 1: the constraints are so much cheaper to evaluate than the residuals that it is done without these
+            "part_first",
+            # force that the stages of comparison methods subtract from r: (n_ext,)
+            "offset",
+        )
+    ]
+)  # fmt: skip
+WORKSPACE_TYPE = types.from_dtype(WORKSPACE)
+
+STRUCTURE = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            # what the workspace takes over, under the same names
+            "n_values", "values", "m_act", "active", "n_redundant", "redundant", "probe",
+            "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "n_mass", "mass_slot",
+            "kkt", "kkt_query",
+            "codes",                                  # (contacts,) int64: which it is for (`switch.py`)
+            "slots",                                  # (3 n_kernels,) int64: addresses of the batches' slot tables
+            "n_jacobian", "jacobian_start", "jacobian_col", "jacobian_slot",  # Phi_q by rows, of the active ones
+            "partition", "partitions", "n_partitions",  # the present one (0: none), all that are kept, how many
+        )
+    ]
+)  # fmt: skip
+STRUCTURE_TYPE = types.from_dtype(STRUCTURE)
+
+PARTITION = np.dtype(
+    [(name, np.int64) for name in ("dependent", "n_free", "free_row", "free_col", "free_slot", "lu_d")]
+)
+PARTITION_TYPE = types.from_dtype(PARTITION)
+structure_at, partition_at = record_view(STRUCTURE_TYPE), record_view(PARTITION_TYPE)
+
+# Called by address, so that their code is compiled once and not again inside each caller.
+EVALUATE_SIGNATURE = types.void(WORKSPACE_TYPE, types.int64)
+STAGE_SIGNATURE = types.int64(WORKSPACE_TYPE, types.float64, types.float64, types.float64)
+call_evaluate = caller(EVALUATE_SIGNATURE)
+call_stage = caller(STAGE_SIGNATURE)
+
+COUPLED_STAGES = 3
+"""Rows of `stage_rows`: the most stages that are solved together."""
+
+# columns of `control` (float64)
+NEWTON_TOLERANCE = 0
+POSITION_TOLERANCE = 1
+VELOCITY_TOLERANCE = 2
+ACCELERATION_TOLERANCE = 3
+MAX_OUTER = 4
+MAX_INNER = 5
+ACCELERATION = 6  # of the simple iteration: 0 none, 1 Aitken, m + 1 Anderson of depth m
+RTOL = 7
+ATOL = 8  # of the work accounts, relative to their scales
+STAGE_ALPHA = 9  # parameters of the stage functions of comparison methods
+STAGE_BETA = 10
+OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, for formulas that solve coupled stages themselves
+MOST_CONDITION = 12  # growth of the condition of the constraints beyond which a position counts as nearly singular
+EXACTNESS = 13  # at most 1: how much more exactly than they must the constraints are solved, if rounding allows it
+LINEAR = 14  # 1: the equations are linear, so that one iteration with their own matrices solves them
+RATE_SCALE = 15  # inverse of the model's own time, 1/s
+ENERGY_SCALE = 16  # work of its forces along its lengths, J
+STIFFNESS_SCALE = 17  # square of the rate of its fastest vibration, 1/s^2
+CONTROL_SIZE = 18
+
+# columns of `rate` (float64): what the convergence tests remember; part of the state
+OUTER_RATE = 0
+FACTOR_AGE = 1  # stages since the last factorisation; < 0: there is none
+FACTOR_CV = 2  # c_v of that factorisation, for formulas that solve coupled stages themselves
+LAST_OUTER = 3
+LAST_INNER = 4
+FAILED_NORM = 5
+SENSITIVITY = 6  # |dq_d/dq_i| at the last factorisation, scaled
+FIRST_SENSITIVITY = 7  # the same when the partition was chosen; < 0: not known yet
+CORRECTION = 8  # of the stabilised index-2 form: |h M^-1 Phi_q^T mu| of the last stage, scaled
+CONDITION = 9  # of the constraints at the last factorisation: size of the motion that a unit violation asks for
+LEAST_CONDITION = 10  # the least of them in this structure; 0: none yet
+WORST_CONDITION = 11  # the largest of them in the present step
+CHOICE_CONDITION = 12  # when the redundant rows were last chosen, or the least since; 0: not known yet
+LOOKED_CONDITION = 13  # up to here it has been looked for a singular position in vain
+CONDITIONS = (CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION, LOOKED_CONDITION)
+RATE_SIZE = 14
+
+# columns of `counters` (int64)
+STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)
+COUNTERS_SIZE = 10
+
+# status of stages, steps and of the loop
+OK = 0
+OUTER_DIVERGED = 1
+INNER_DIVERGED = 2
+SINGULAR = 3
+REANALYZE = 4
+NOT_FINITE = 5
+OUTER_SLOW = 6

@@ -1,0 +1,133 @@
+"""Numbers of coordinates, signals and work accounts while a model's tables are built."""
+
+from ..elements.base import BodyElement
+from ..laws import ForceLaw, law_address
+from ..laws.friction import FrictionLaw, friction_address
+from ..model.base import Vector3, in_space
+from ..model.markers import GROUND, Marker, Marker2D
+from ..model.motion import InputMotion
+from ..model.signals import InputSignal, Signal
+from .parts import Parts
+
+AT_REST = 1
+"""Extended vectors end in one place that stays zero, for what does not move, and the work accounts."""
+
+
+class ModelNumbering:
+    """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
+
+    def __init__(self, model: Parts) -> None:
+        self.gravity: Vector3 = in_space(model.gravity)
+        self.length = _length(model)
+        self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
+        self.index: dict[str, tuple[int, ...]] = {}
+        self.starts: dict[str, tuple[float, ...]] = {GROUND: ()}
+        self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
+        self.input_start = {record.name: record.start for record in model.inputs}
+        self.motions: list[InputMotion] = []
+        self.pool: list[float] = []
+        self.work_names: list[str] = []
+        self.work_sizes: dict[str, float] = {}
+        self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
+        self.names = {body.name: body.coordinate_names for body in model.bodies}
+        n_bodies = sum(len(names) for names in self.names.values())
+        self.places: dict[str, dict[str, int]] = {}
+        self.internals: dict[str, tuple[int, ...]] = {}
+        self.internal_names: list[str] = []
+        for element in model.elements():
+            states = element.internal_coordinates()
+            first = n_bodies + len(self.internal_names)
+            self.internals[element.name] = tuple(range(first, first + len(states)))
+            self.internal_names += [f"{element.name}.{name}" for name in states]
+        self.n = n_bodies + len(self.internal_names)
+        self.index[GROUND] = ()
+        start = 0
+        for body in model.bodies:
+            count = len(self.names[body.name])
+            self.index[body.name] = tuple(range(start, start + count))
+            if body.carries is not None:
+                self.starts[body.name] = tuple(body.start_in(self.bodies, self.input_start)[0])
+            start += count
+
+    def coordinates(self, body: str) -> tuple[int, ...]:
+        carried = self._carried(body)
+        return self.index[body] if carried is None else self._frame(body, carried)
+
+    def frame(self, marker: Marker) -> tuple[int, ...]:
+        return self._frame(marker.body, type(marker))
+
+    def own_frame(self, marker: Marker) -> tuple[int, ...]:
+        return tuple(k if k < self.n else -1 for k in self.frame(marker))
+
+    def at_rest(self, marker: Marker) -> tuple[float, ...]:
+        own = len(self.index[marker.body])
+        return (0.0,) * min(own, len(marker.rest)) + marker.rest[own:]
+
+    def _frame(self, body: str, marker: type[Marker]) -> tuple[int, ...]:
+        """The body's coordinates as far as markers need them, and the place at rest for those that it lacks."""
+        most = len(marker.rest)
+        own = self.index[body][:most]
+        return own + (self.n,) * (most - len(own))
+
+    def _carried(self, body: str) -> type[Marker] | None:
+        """The markers that a body carries; elements that ask for the ground by its name are planar ones."""
+        return Marker2D if body == GROUND else self.bodies[body].carries
+
+    def coordinate(self, body: str, name: str) -> int:
+        if body not in self.places:
+            self.places[body] = dict(zip(self.names[body], self.index[body], strict=False))
+        return self.places[body][name]
+
+    def initial(self, body: str) -> tuple[float, ...]:
+        carried = self._carried(body)
+        assert carried is not None  # the model has checked that its markers are on bodies that carry such
+        return self._start(body, carried)
+
+    def start(self, marker: Marker) -> tuple[float, ...]:
+        return self._start(marker.body, type(marker))
+
+    def _start(self, body: str, marker: type[Marker]) -> tuple[float, ...]:
+        own = self.starts[body][: len(marker.rest)]
+        return own + marker.rest[len(own) :]
+
+    def signal(self, signal: Signal) -> int:
+        offset = len(self.pool)
+        self.pool.extend(float(x) for x in signal.pool(self.inputs))
+        return offset
+
+    def motion(self, signal: Signal) -> int:
+        if not isinstance(signal, InputSignal):
+            return self.signal(signal)
+        offset = len(self.pool)
+        found = InputMotion.of(signal, self.inputs, len(self.motions))
+        self.motions.append(found)
+        self.pool.extend(found.pool())
+        return offset
+
+    def internal(self, name: str) -> tuple[int, ...]:
+        return self.internals[name]
+
+    def contact(self, name: str) -> int:
+        return self.contact_numbers[name]
+
+    def law_address(self, law: ForceLaw) -> int:
+        return law_address(law)
+
+    def friction_address(self, law: FrictionLaw) -> int:
+        return friction_address(law)
+
+    def work(self, name: str, size: float | None = None) -> int:
+        if name not in self.work_names:
+            self.work_names.append(name)
+        if size is not None:
+            self.work_sizes[name] = size
+        return self.n + AT_REST + self.work_names.index(name)
+
+
+def _length(model: Parts) -> float:
+    """Size of the mechanism, m: how far its points reach; of one whose points are all at the origin, its longest rod or
+    largest disk. 1 if it says none."""
+    points = [point for body in model.bodies for point in body.extent()]
+    points += [point for e in model.elements() for point in e.reach()]
+    size = max((abs(x) for point in points for x in point), default=0.0)
+    return size or max((x for e in model.elements() for x in e.lengths()), default=0.0) or 1.0

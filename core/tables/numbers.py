@@ -1,0 +1,37 @@
+"""Numbers that a workspace takes from its assembly."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..laws import ForceLaw
+from ..rounding import ANGLES
+from .assembly import Assembly
+
+CHEAP = 0.5
+"""Share of the entries of all elements up to which evaluating those with constraint rows counts as cheap."""
+
+
+def sticking(assembly: Assembly) -> NDArray[np.float64]:
+    """Coefficients of sticking friction of the contacts, (contacts,); 0: none."""
+    return np.array([c.coulomb.sticking_coefficient if c.coulomb else 0.0 for c in assembly.contacts], dtype=np.float64)
+
+
+def level_scale(assembly: Assembly) -> NDArray[np.float64]:
+    """What the coordinates are small or large against, (n,)."""
+    return np.where(assembly.is_angle, assembly.coordinate_scale / ANGLES, assembly.coordinate_scale)
+
+
+def constraints_are_cheap(assembly: Assembly) -> bool:
+    """Whether evaluating the elements with rows of Phi alone is worth while."""
+    sizes = np.array([batch.coord.shape[0] * batch.coord.shape[1] ** 2 for batch in assembly.batches], dtype=float)
+    bound = np.array([batch.row.size > 0 for batch in assembly.batches], dtype=bool)
+    return bool(sizes[bound].sum() < CHEAP * sizes.sum())
+
+
+def release(law: Any) -> int:
+    """0: constraint contact; 1: force, released at zero gap; 2: force, released at zero force."""
+    if not isinstance(law, ForceLaw):
+        return 0
+    return 2 if law.release == "force" else 1

@@ -1,0 +1,280 @@
+"""Redundant constraints: rows of Phi that repeat what others say wherever the mechanism can go.
+
+They are left out of the equations that are solved and checked all the same. At a singular position rows depend on one
+another too, but only there: a small finite motion along the other constraints tells the two apart, since it violates
+such a row at second order and leaves a redundant one at zero.
+
+The multipliers of redundant constraints are not unique (Garcia de Jalon and Bayo 1994, Kinematic and Dynamic Simulation
+of Multibody Systems, 3.4, leave rows out by pivoting as well); those of rows left out are zero.
+"""
+
+import logging
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ConsistencyError
+from ..rounding import CONTRADICTION
+from ..state.workspace_records import FACTOR_AGE, LEAST_CONDITION
+from .evaluate import evaluate_residuals, evaluate_tangent
+from .levels import position_level, rate_level
+from .partition import pivots_of, prepare, redundancy_error
+from .projection import bring_to_rest
+from .workspace import Workspace
+
+logger = logging.getLogger(__name__)
+
+MOVES = 5
+"""Pseudo-random motions that a redundant row must survive."""
+MOVE_SIZES = (2e-2, 2e-3, 2e-4)
+"""Their size relative to the coordinates' scales: the next smaller if the constraints cannot be met there."""
+START_RANK = 1e-6
+"""A row whose remainder after elimination is smaller than this (relative) makes a start singular if it is not
+redundant: rounding in the accelerations is multiplied by its inverse cube."""
+WORSE = 0.5
+"""Rows are chosen anew when the least singular value of those kept is so much smaller than it could be."""
+LARGEST_CHOICE = 4_000_000
+"""Entries of the dense Jacobian up to which rows are chosen anew during a run."""
+
+
+@dataclass(frozen=True)
+class RedundantRow:
+    """A constraint equation that is left out of the equations because others imply it.
+
+    Attributes
+    ----------
+    constraint : name of the joint (of user-written equations: constraint[k]).
+    row : which of its equations, from 0.
+    repeats : names of the constraints that imply it.
+    """
+
+    constraint: str
+    row: int
+    repeats: tuple[str, ...]
+
+
+def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
+    """Leave redundant rows of joints out of the structure, at a start q that need not meet the constraints yet.
+
+    Raises
+    ------
+    ConsistencyError : for rows that contradict others, that constrain nothing, or that depend on others only here.
+    """
+    arrays, n = workspace.arrays, workspace.assembly.n
+    _evaluate(workspace)
+    active = workspace.structure.active
+    if len(active) == 0:
+        return ()
+    phi = arrays["phi"][active]
+    scaled = _Scaled(workspace)
+    violation = float(np.max(np.abs(phi) / scaled.row_size, initial=0.0))
+    # off the constraints, rows that repeat others seem to be independent, by about as much as they are violated
+    doubtful = pivots_of(workspace, min(max(START_RANK, 30.0 * violation), 0.03)).redundant
+    if len(doubtful) == 0:
+        return ()
+    start = arrays["q"][:n].copy()
+    try:
+        workspace.drop(frozenset(int(row) for row in active[doubtful]))
+        prepare(workspace)
+        met = bring_to_rest(workspace, "phi", "q")
+        workspace.drop(frozenset())
+        if not met:
+            return ()
+        _evaluate(workspace)
+        pivots = pivots_of(workspace, START_RANK)
+        if len(pivots.redundant) == 0:
+            return ()
+        rows = active[pivots.redundant]
+        most = CONTRADICTION * position_level(workspace.record)
+        if np.any(np.abs(arrays["phi"][rows]) > most * arrays["row_scale"][rows]):
+            raise redundancy_error(workspace, pivots)
+        singular = _only_here(workspace, pivots.redundant)
+        if singular:
+            raise ConsistencyError(_singular_text(workspace, singular))
+        if any(len(others) == 0 for others in pivots.depends_on):
+            raise redundancy_error(workspace, pivots)
+        workspace.drop(frozenset(int(row) for row in active[pivots.redundant]))
+        choose_rows(workspace)
+        found = describe(workspace)
+    finally:
+        arrays["q"][:n] = start
+        evaluate_residuals(workspace.record)
+    logger.warning(
+        "%s; these rows are left out of the equations but checked. The multipliers of these joints and of those that "
+        "they repeat are not unique: those of the rows left out are reported as 0",
+        "; ".join(f"row {r.row} of '{r.constraint}' repeats what {', '.join(r.repeats)} say" for r in found),
+    )
+    return found
+
+
+def check_rates(workspace: Workspace, redundant: tuple[RedundantRow, ...]) -> None:
+    """Redundant rows must hold at velocity level too. Raises ConsistencyError: names those that do not."""
+    arrays = workspace.arrays
+    most = CONTRADICTION * rate_level(workspace.record)
+    for row, found in zip(workspace.structure.redundant, redundant, strict=True):
+        if not abs(arrays["phid"][row]) <= most * arrays["row_scale"][row]:
+            raise ConsistencyError(
+                f"'{found.constraint}' contradicts {', '.join(found.repeats)} at velocity level (violation "
+                f"{arrays['phid'][row]:.3g}): drivers that hold the same coordinate must move alike"
+            )
+
+
+def describe(workspace: Workspace) -> tuple[RedundantRow, ...]:
+    """The rows left out of the present structure, and what they repeat at the current point."""
+    dropped = np.array(sorted(workspace.dropped), dtype=np.int64)
+    names = workspace.assembly.row_names
+    with _AllRows(workspace) as scaled:
+        rows = workspace.structure.active
+        kept = np.flatnonzero(~np.isin(rows, dropped))
+        factors, *_ = np.linalg.lstsq(scaled.matrix[kept].T, scaled.matrix[np.isin(rows, dropped)].T, rcond=None)
+        found = []
+        for j, row in enumerate(dropped):
+            repeated = {names[rows[k]] for k in kept[np.abs(factors[:, j]) > 1e-7]}
+            # its other rows may take part, but what matters are the other joints
+            repeated = (repeated - {names[row]}) or repeated
+            found.append(RedundantRow(names[row], int(row - names.index(names[row])), tuple(sorted(repeated))))
+        return tuple(found)
+
+
+def choose_rows(workspace: Workspace) -> bool:
+    """Choose anew which rows are left out if those kept are much worse conditioned at the current point than others of
+    the same number would be; True if that has changed."""
+    dropped = workspace.dropped
+    if not dropped or workspace.assembly.m_joints * workspace.assembly.n > LARGEST_CHOICE:
+        return False
+    # importing scipy costs more than most runs: only who needs it pays
+    from scipy.linalg import qr
+
+    with _AllRows(workspace) as scaled:
+        joints = np.flatnonzero(workspace.structure.active < workspace.assembly.m_joints)
+        rows, matrix = workspace.structure.active[joints], scaled.matrix[joints]
+        rank = len(rows) - len(dropped)
+        order = qr(matrix.T, mode="r", pivoting=True)[1][:rank]
+        kept = np.flatnonzero(~np.isin(rows, sorted(dropped)))
+        worse = _least_singular_value(matrix[kept]) < WORSE * _least_singular_value(matrix[order])
+    if worse:
+        least = float(workspace.arrays["rate"][LEAST_CONDITION])
+        workspace.drop(frozenset(int(row) for row in np.delete(rows, order)))
+        # the same constraints, said by other rows: how far they are from a singular position is judged as before
+        workspace.arrays["rate"][LEAST_CONDITION] = least
+        evaluate_residuals(workspace.record)
+        evaluate_tangent(workspace.record, 0.0, 0.0)
+    return worse
+
+
+def least_singular_value(workspace: Workspace) -> float:
+    """Least singular value of Phi_q at the current point, rows and columns scaled, that is zero at singular positions
+    only: not one of those that redundant rows make zero. 1 without constraints."""
+    matrix, rank = _scaled_jacobian(workspace)
+    return float(np.linalg.svd(matrix, compute_uv=False)[rank - 1]) if rank else 1.0
+
+
+def singular_directions(workspace: Workspace) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Singular values of that matrix but those that redundant rows make zero, and the directions (values, n) in which
+    the constraints hold the coordinates by them, as parts of the coordinates' scales."""
+    matrix, rank = _scaled_jacobian(workspace)
+    _, values, directions = np.linalg.svd(matrix, full_matrices=False)
+    return values[:rank], directions[:rank]
+
+
+def _scaled_jacobian(workspace: Workspace) -> tuple[NDArray[np.float64], int]:
+    """The matrix, with redundant rows, and its rank away from singular positions."""
+    left_out = len(workspace.dropped)
+    if left_out:
+        with _AllRows(workspace) as scaled:
+            return scaled.matrix, len(scaled.matrix) - left_out
+    _evaluate(workspace)
+    matrix = _Scaled(workspace).matrix
+    return matrix, len(matrix)
+
+
+def _least_singular_value(matrix: NDArray[np.float64]) -> float:
+    return float(np.linalg.svd(matrix, compute_uv=False)[-1]) if matrix.size else 1.0
+
+
+def _evaluate(workspace: Workspace) -> None:
+    evaluate_residuals(workspace.record)
+    evaluate_tangent(workspace.record, 0.0, 0.0)
+
+
+class _Scaled:
+    """Dense Phi_q of the active rows: columns times the coordinates' scales, rows divided by their largest entry."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        rows, cols, values = workspace.jacobian()
+        matrix = np.zeros((len(workspace.structure.active), workspace.assembly.n))
+        matrix[rows, cols] = values * workspace.assembly.coordinate_scale[cols]
+        size = np.max(np.abs(matrix), axis=1, initial=0.0)
+        self.row_size = np.where(size > 0.0, size, 1.0)
+        self.matrix = matrix / self.row_size[:, None]
+
+
+class _AllRows:
+    """Context in which no row is left out; its value is the scaled Jacobian."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self.workspace, self.dropped = workspace, workspace.dropped
+
+    def __enter__(self) -> _Scaled:
+        # engaging another structure forgets the conditions measured in the present one
+        self.rate = self.workspace.arrays["rate"].copy()
+        self.workspace.drop(frozenset())
+        _evaluate(self.workspace)
+        return _Scaled(self.workspace)
+
+    def __exit__(self, *_: object) -> None:
+        self.workspace.drop(self.dropped)
+        self.rate[FACTOR_AGE] = -1.0
+        self.workspace.arrays["rate"][:] = self.rate
+        _evaluate(self.workspace)
+
+
+def _only_here(workspace: Workspace, redundant: NDArray[np.int64]) -> list[int]:
+    """Those of the redundant rows (positions among the active ones) that small motions along the others violate."""
+    arrays, scale, n = workspace.arrays, workspace.assembly.coordinate_scale, workspace.assembly.n
+    scaled = _Scaled(workspace)
+    active = workspace.structure.active
+    size = scaled.row_size[redundant]
+    kept = np.delete(scaled.matrix, redundant, axis=0)
+    _, values, directions = np.linalg.svd(kept, full_matrices=True)
+    free = directions[int(np.sum(values > START_RANK)) :]
+    if len(free) == 0:
+        return []
+    here = arrays["q"][:n].copy()
+    found: set[int] = set()
+    workspace.drop(frozenset(int(row) for row in active[redundant]))
+    try:
+        prepare(workspace)
+        for k in range(MOVES):
+            weights = np.modf(0.6180339887498949 * (k + 1) * (np.arange(len(free)) + 1.0))[0] - 0.5
+            motion = weights @ free
+            motion /= np.max(np.abs(motion))
+            for length in MOVE_SIZES:
+                arrays["q"][:n] = here + length * scale * motion
+                evaluate_residuals(workspace.record)
+                if bring_to_rest(workspace, "phi", "q"):
+                    violated = np.abs(arrays["phi"][active[redundant]]) / size > max(1e-4 * length**2, 1e-11)
+                    found |= {int(row) for row in redundant[violated]}
+                    break
+    finally:
+        arrays["q"][:n] = here
+        workspace.drop(frozenset())
+        _evaluate(workspace)
+    return sorted(found)
+
+
+def _singular_text(workspace: Workspace, rows: list[int]) -> str:
+    names = workspace.assembly.row_names
+    active = workspace.structure.active
+    scaled = _Scaled(workspace)
+    others = np.delete(np.arange(len(active)), rows)
+    factors, *_ = np.linalg.lstsq(scaled.matrix[others].T, scaled.matrix[rows].T, rcond=None)
+    dependent = {names[active[row]] for row in rows}
+    dependent |= {names[active[k]] for k in others[np.max(np.abs(factors), axis=1, initial=0.0) > 1e-7]}
+    return (
+        f"the start is a singular position: only here, {', '.join(repr(name) for name in sorted(dependent))} depend "
+        "on one another, and the mechanism can go on in more than one way (a linkage with all its bars in line). "
+        "Positions do not say which. Start a little before or behind this position, on the branch that is meant, "
+        "with the velocity that leads through it"
+    )

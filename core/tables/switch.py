@@ -1,0 +1,129 @@
+"""Compiled code takes another structure when contacts close, open, begin to slide or to stick.
+
+A run keeps the structures that it has met (`patterns.py`), as records whose addresses the workspace knows. Which one
+fits the modes of the contacts is found by comparing codes; one that is not there yet Python builds.
+"""
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled.jit import compiled, internal
+from ..compiled.kernels import batch_at
+from ..compiled.views import ivec, mat, vec
+from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
+from ..state.workspace_records import CONDITION, FACTOR_AGE, RATE_SIZE, partition_at, structure_at
+
+APART, ENGAGED, HELD, STUCK = range(4)
+"""A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too."""
+
+
+def codes_of(
+    count: int, closed: Collection[int], engaged: Collection[int], sticking: Collection[int]
+) -> NDArray[np.int64]:
+    """Codes of `count` contacts, (max(count, 1),)."""
+    codes = np.full(max(count, 1), APART, dtype=np.int64)
+    for contacts, code in ((engaged, ENGAGED), (closed, HELD), (sticking, STUCK)):
+        codes[list(contacts)] = code
+    return codes
+
+
+def key_of(codes: NDArray[np.int64]) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
+    """Contacts closed, engaged (closed or acting) and sticking."""
+    closed, engaged, sticking = (
+        frozenset(int(k) for k in np.flatnonzero(codes >= least)) for least in (HELD, ENGAGED, STUCK)
+    )
+    return closed, engaged, sticking
+
+
+@internal
+def want(ws: Any) -> None:
+    """Ask for the structure of the contacts' present modes."""
+    wanted, memory = ivec(ws.wanted, ws.n_contacts), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    slides = ivec(ws.contact_slide_rows, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        mode = memory[k, MODE]
+        wanted[k] = ENGAGED if mode == ACTIVE else APART
+        if mode == CLOSED:
+            wanted[k] = STUCK if slides[k] >= 0 and memory[k, SLIDE] == STICKS else HELD
+
+
+@internal
+def find_wanted(ws: Any) -> int:
+    """Address of the structure that is wanted; 0 if there is none."""
+    known, wanted = ivec(ws.known, ws.n_known), ivec(ws.wanted, ws.n_contacts)
+    for i in range(ws.n_known):
+        codes, same = ivec(structure_at(known[i]).codes, ws.n_contacts), True
+        for k in range(ws.n_contacts):
+            if codes[k] != wanted[k]:
+                same = False
+                break
+        if same:
+            return int(known[i])
+    return 0
+
+
+@internal
+def take_structure(ws: Any, address: int) -> None:
+    """Let the structure at `address` be the present one."""
+    st = structure_at(address)
+    ws.structure = address
+    ws.n_values, ws.values = st.n_values, st.values
+    ws.m_act, ws.active, ws.n_redundant, ws.redundant = st.m_act, st.active, st.n_redundant, st.redundant
+    ws.probe, ws.entry_row, ws.entry_col = st.probe, st.entry_row, st.entry_col
+    ws.gradient_start, ws.gradient_col, ws.gradient_slot = st.gradient_start, st.gradient_col, st.gradient_slot
+    ws.n_mass, ws.mass_slot, ws.kkt, ws.kkt_query = st.n_mass, st.mass_slot, st.kkt, st.kkt_query
+    batches, slots = ivec(ws.batches, ws.n_kernels), ivec(st.slots, 3 * ws.n_kernels)
+    for k in range(ws.n_kernels):
+        batch = batch_at(batches[k])
+        batch.slot_s, batch.slot_j, batch.slot_jt = slots[3 * k], slots[3 * k + 1], slots[3 * k + 2]
+        batch.values, batch.n_values = st.values, st.n_values
+    values = vec(st.values, st.n_values)
+    for i in range(st.n_values):
+        values[i] = 0.0
+    # what is known of the matrices' factors and of the constraints' condition holds no more
+    rate = vec(ws.rate, RATE_SIZE)
+    rate[FACTOR_AGE] = -1.0
+    for i in range(CONDITION, RATE_SIZE):
+        rate[i] = 0.0
+    if st.partition != 0:
+        take_partition(ws, st.partition)
+
+
+@internal
+def take_partition(ws: Any, address: int) -> None:
+    """Let the partition at `address` be that of the present structure."""
+    pt = partition_at(address)
+    structure_at(ws.structure).partition = address
+    ws.dependent, ws.lu_d = pt.dependent, pt.lu_d
+    ws.n_free, ws.free_row, ws.free_col, ws.free_slot = pt.n_free, pt.free_row, pt.free_col, pt.free_slot
+    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+
+
+@internal
+def engage_modes(ws: Any) -> bool:
+    """Take the structure of the contacts' present modes; False, with nothing changed, if it is not known."""
+    want(ws)
+    codes, wanted, same = ivec(structure_at(ws.structure).codes, ws.n_contacts), ivec(ws.wanted, ws.n_contacts), True
+    for k in range(ws.n_contacts):
+        same = same and codes[k] == wanted[k]
+    if same:
+        return True
+    address = find_wanted(ws)
+    if address != 0:
+        take_structure(ws, address)
+    return address != 0
+
+
+@compiled
+def use_structure(ws: Any, address: int) -> None:
+    """`take_structure`, for Python."""
+    take_structure(ws, address)
+
+
+@compiled
+def use_partition(ws: Any, address: int) -> None:
+    """`take_partition`, for Python."""
+    take_partition(ws, address)
