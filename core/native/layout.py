@@ -23,8 +23,8 @@ HEAD = (
 CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now")
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
-    "exchange": "exchange", "tell": "exchange", "read": "exchange", "drive": "drive", "settle_pending": "drive",
-    "repair_now": "mend",
+    "exchange": "run.exchange", "tell": "run.exchange", "read": "run.exchange", "drive": "loop.drive",
+    "settle_pending": "loop.drive", "repair_now": "repair.mend",
 }  # fmt: skip
 
 NUMBERS = (
@@ -45,7 +45,7 @@ def called_symbols(library: Library) -> list[str]:
     """Symbols of CALLED."""
     found = []
     for name in CALLED:
-        full = f"tlismni.core.run.{_MODULES[name]}.{name}"
+        full = f"tlismni.core.{_MODULES[name]}.{name}"
         (signature,) = library.signatures(full)
         found.append(library.entries[f"{full} {signature}"])
     return found

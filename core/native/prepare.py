@@ -16,7 +16,7 @@ from ..description import Model
 from ..events.instant import PART_SIGNATURE, Instant
 from ..events.prepare import use_modes
 from ..laws import ForceLaw
-from ..loop.drive import Drive
+from ..run.drive_record import Drive
 from ..tables.patterns import MOST_STRUCTURES
 from ..tables.switch import APART, ENGAGED, HELD, STUCK, key_of
 from .errors import NativeError

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError
 from ..events import Event
 from ..events.records import SETTLED, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
-from ..loop.drive import Drive
 from ..methods.registry import Formula
 from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
@@ -24,6 +23,7 @@ from ..tables.partition import prepare
 from ..tables.redundancy import RedundantRow, choose_rows, describe
 from ..tables.scales import Scales
 from ..tables.workspace import Workspace
+from .drive_record import Drive
 from .failures import failure_of
 from .settings import Settings
 

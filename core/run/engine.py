@@ -21,7 +21,6 @@ from ..laws import ForceLaw
 from ..linalg import SingularMatrixError
 from ..location.dense_output import query
 from ..location.watch import remember
-from ..loop.drive import Drive
 from ..loop.sample import write_sample
 from ..methods.history import recall, restart
 from ..methods.registry import FINE_STARTER, Formula, get_formula
@@ -48,6 +47,7 @@ from ..tables.workspace import Workspace
 from ..tolerances import DEFAULT_ATOL
 from . import motions
 from .contact_side import ContactSide
+from .drive_record import Drive
 from .failures import failure_of
 from .output import ChannelTable
 from .ready import make_ready

@@ -53,6 +53,23 @@ def graph():
     return {name: set(imports(name, path, known)) - {name} for name, path in known.items()}
 
 
+def folder(name, path):
+    """Where a module stands; files of core itself stand alone."""
+    parts = name.split(".")
+    if parts[0] != "core" or len(parts) == 1:
+        return parts[0]
+    return parts[1] if len(parts) > 2 or path.name == "__init__.py" else name
+
+
+@pytest.fixture(scope="module")
+def folders(graph):
+    where = {name: folder(name, path) for package in PACKAGES for name, path in modules(package)}
+    found = {place: set() for place in where.values()}
+    for name, targets in graph.items():
+        found[where[name]] |= {where[target] for target in targets} - {where[name]}
+    return found
+
+
 def circle(graph):
     try:
         TopologicalSorter(graph).prepare()
@@ -70,3 +87,29 @@ def test_it_would_be_found(graph):
     assert "core.tables.assembly" in graph["core.description"]
     assert "core.run.simulation" in graph["core.simulate"]
     assert circle({**graph, "core.errors": {"core.simulate"}}) is not None
+
+
+def test_arrows_between_folders_point_one_way(folders):
+    assert circle(folders) is None
+    assert "tables" in folders["stage"] and "run" in folders["native"]
+    assert circle({**folders, "linalg": folders["linalg"] | {"run"}}) is not None
+
+
+BELOW_RUN = "compiled model elements laws linalg shapes state tables stage methods cones location events loop equations"
+
+
+@pytest.mark.parametrize("place", BELOW_RUN.split())
+def test_nothing_below_run_takes_a_whole_simulation(place):
+    files = sorted((ROOT / "core" / place).rglob("*.py"))
+    assert files
+    for path in files:
+        names = {
+            node.id for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Name)
+        }
+        texts = {
+            word
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.arg) and isinstance(node.annotation, ast.Constant)
+            for word in str(node.annotation.value).split()
+        }
+        assert not {"Simulation", "Engine", "ContactSide"} & (names | texts), path

@@ -1,6 +1,6 @@
 """Friction laws. A new one is a file with its parameters and formula, and its name in FRICTION_LAWS.
 
-LuGre friction has a state and therefore a signature and kernels of its own: `lugre.py`, `../bristle2d.py`.
+LuGre friction has a state and therefore a signature and kernels of its own: `lugre.py`, `shapes/bristle2d.py`.
 """
 
 from typing import Annotated
