@@ -32,6 +32,15 @@ ONLY_ROUNDING = 8.0 * 2.220446049250313e-16
 CONTINUOUS = 1e-9
 """Of a row's rate: a larger change at a breakpoint is a jump of a driver's rate. What the constraints are met to is a
 thousand times smaller."""
+RANK_TOLERANCE = 1e-9
+"""Of a row: with less left of it after elimination it repeats others."""
+NOT_DEPENDENT = 1e-9
+"""Of a redundant row's norm: a row that contributes less to it is none of those that it repeats."""
+START_RANK = 1e-6
+"""Of a row: with less left of it after elimination a start is singular, if the row is not redundant. Rounding in the
+accelerations is multiplied by its inverse cube."""
+START_MOVED = 1e-12
+"""Of a coordinate: a start that is moved by more to meet the constraints is worth telling."""
 
 # ---- coordinates ----------------------------------------------------------------------------------------------------
 
@@ -39,6 +48,8 @@ COORDINATE_DIFFERENCES = 2e-13
 """Of a coordinate: what differences over several steps make of its rounding."""
 COORDINATE_NOISE = 1e-14
 """Of a coordinate: its rounding after many steps."""
+NO_STIFFNESS = 1e-12
+"""Of a mass: what the difference of a diagonal with and without stiffness leaves of it."""
 
 # ---- accelerations and multipliers ----------------------------------------------------------------------------------
 
@@ -46,6 +57,12 @@ ACCELERATIONS_SOLVED = 1e-14
 """Of the accelerations: refinement of their linear system stops here."""
 ACCELERATIONS_LOST = 1e-8
 """Of the accelerations: where refinement leaves more, the system is singular to rounding."""
+SENSITIVITY_SOLVED = 1e-9
+"""Of the terms: a residual of the linear equations for derivatives that is larger means that they have no solution."""
+FINEST = 1e-13
+"""Of the increments: an outer loop with less left is done. A formula does not ask for less by itself."""
+PIVOT_NOISE = 1e-14
+"""Of a term of its own sum: a pivot that is smaller holds nothing but rounding."""
 
 # ---- contacts -------------------------------------------------------------------------------------------------------
 
@@ -86,6 +103,63 @@ FIRST_PENETRATION = 1e-12
 """Of a gap's size: where the search for a static penetration begins."""
 DEEPEST = 1e12
 """Of a gap's size: a penetration at which every spring that holds anything does."""
+BRAKED = 1e-9
+"""Of the largest acceleration: what slides with no speed and is braked by less begins to slide, it does not stop."""
+REACHES_LIMIT = 1e-9
+"""Of the limit: friction that is nearer to it has reached it."""
+NO_JERK = 1e-9
+"""Of its terms: a rate of a gap's acceleration below this is none."""
+ENERGY_GAIN = 1e-12
+"""Of the kinetic energy: an impact that gains more is one to report."""
+ADDED = 1e-9
+"""Of the largest impulse of a round: what adds less has not been struck again."""
+SAME_PLACE = 1e-12
+"""Of a line's coordinates, a body's size: points that are nearer are one, as cos(2 pi) and cos(0)."""
+SAME_PARAMETER = 1e-16
+"""Of a curve's parameter, which goes from 0 to 1: Newton's method for a foot changes it no more."""
+
+# ---- several contacts -----------------------------------------------------------------------------------------------
+
+IMMOVABLE = 1e-12
+"""Of what it could be: a direction with a smaller inverse effective mass cannot move."""
+DIRECTION_RANK = 1e-10
+"""Of a direction's inverse mass: with less left of it beside the others, it repeats them."""
+STICKING_RANK = 1e-10
+"""Of the largest singular value of the friction of contacts that stick: a smaller one is zero."""
+NORMALS_RANK = 1e-11
+"""Of the largest singular value of the normals: a smaller one is zero, they repeat one another."""
+CONDITIONS_RANK = 1e-13
+"""Of the largest singular value of the active conditions: a smaller one is zero."""
+TOGETHER = 1e-9
+"""Of the largest motion: contacts that move less stay together."""
+NO_FORCE = 1e-12
+"""Of the largest force: a smaller one is none."""
+STICKING_MOVES = 1e-9
+"""Of the motion that friction is to take away: with more left of it, contacts do not all stick."""
+BEYOND_LIMIT, NO_FRICTION = 1e-12, 1e-14
+"""Parts of a limit and of the largest friction by which friction may be beyond its limit."""
+TO_SPARE = 1e-6
+"""Of its limit: what a new distribution of sticking friction must leave to each contact."""
+LCP_PIVOT = 1e-11
+"""Of the column's largest: a smaller entry is rounding, and no pivot."""
+LCP_TIES = (1e-13, 1e-11, 1e-9)
+"""Relative: right-hand sides and ratios that are nearer are equal. Where rounding leads pivoting astray with the first,
+the next is tried."""
+LCP_VIOLATION = 1e-9
+"""Of the conditions, relative: beyond it a result is none."""
+LCP_RANK = 1e-13
+"""Of the largest singular value of the solution's equations: a smaller one is zero."""
+SWEEP_ROUNDING = 1e-14
+"""Of its terms: a determinant or a condition of one contact's problem that is smaller is zero."""
+CONES_CONVERGED = 1e-12
+"""Of the largest motion: what is left of the conditions is rounding."""
+CONES_NEAR = 1e-7
+"""Of the largest motion: the same where a step along the path has failed if more is left."""
+CONES_GOOD = 1e-7
+"""Of the largest motion: with more left at the end, there is no solution. Where contacts repeat each other nearly, a
+motion of this size would take forces beyond all measure to undo."""
+FEWEST_LEAVE = 1e-9
+"""Of the largest motion: forces that stand on no more contacts than it takes may leave this."""
 
 # ---- time -----------------------------------------------------------------------------------------------------------
 
@@ -93,6 +167,40 @@ NO_STEP = 4e-16
 """Of the time: what is left before a stop or a breakpoint is rounding, and no step is made of it."""
 SHORTEST = 1e-13
 """Of the time, or of a millionth of the model's time: steps are not made smaller than this when they fail."""
+RESOLVED_TIME = 2e-16
+"""Of the time within a step: a search for an event ends at an interval of this length."""
+SAME_TRIAL = 1e-15
+"""Of a step: a trial that is nearer to the last one gives nothing new."""
+SAME_INSTANT = 1e-12
+"""Of a step: events nearer than this are at one instant."""
+AS_LONG = 1e-9
+"""Of the longest step: one that is longer by no more is the longest."""
+SAME_INPUT = 1e-14
+"""Relative: an input with derivatives that changes by less goes on as it did. What a caller computes along a straight
+line comes with rounding; inputs without derivatives are compared bit by bit."""
+PUNCTUAL = 1e-9
+"""Of the interval between two changes of inputs: what a caller's grid may be off by."""
+
+# ---- what a model is given ------------------------------------------------------------------------------------------
+
+SYMMETRY = 1e-12
+"""Of the largest entry: by so much entries of a symmetric matrix may differ from their mirror images."""
+DEFINITE = 1e-12
+"""Of the mass matrix, scaled to a unit diagonal: an eigenvalue below this is none of a definite matrix."""
+AGREEMENT = 1e-8
+"""Of the largest entry: derivatives that are given may differ by this from those that are formed by differences."""
+CANCELLED = 1e-12
+"""Of the terms that cancel in the right-hand side of the acceleration level: what rounding leaves."""
+TRIANGLE = 1e-9
+"""Of the largest principal moment of inertia: by so much it may exceed the sum of the others, as a file's digits do."""
+NEARLY_PARALLEL = 1e-9
+"""Sine of an angle: directions with a smaller one between them span no plane."""
+MEETING = 1e-12
+"""Of the mechanism's size: between markers that are nearer there is no direction but rounding."""
+ON_NODE = 1e-9
+"""Of a length: a place that is nearer to a node than this is the node."""
+BEYOND_END = 1e-12
+"""Of a length: a place beyond the end by no more is the end."""
 
 # ---- values that cannot be ------------------------------------------------------------------------------------------
 

@@ -10,14 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .cones import IMMOVABLE, MANY, NONE, STICKS, VECTORS, Cones, solve_cones
-from .directions import RANK, farthest_directions, farthest_size, independent_directions, independent_size
+from ..rounding import DIRECTION_RANK
+from .cones import MANY, NONE, STICKS, VECTORS, Cones, solve_cones
+from .directions import farthest_directions, farthest_size, independent_directions, independent_size
 from .lcp import NoComplementarySolution
 
 __all__ = [
-    "IMMOVABLE",
     "MANY",
-    "RANK",
     "ContactSolution",
     "Delassus",
     "farthest",
@@ -104,7 +103,7 @@ def solve_contacts(
 
 
 def independent(
-    a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.intp], rank: float = RANK
+    a: Delassus, normal: NDArray[np.intp], tangential: NDArray[np.intp], rank: float = DIRECTION_RANK
 ) -> tuple[list[int], list[int]]:
     """Those of the directions that do not repeat earlier ones, normals first: positions in the given lists. `rank`: the
     part of a direction's inverse mass that must be left of it."""

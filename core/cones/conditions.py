@@ -12,9 +12,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import add, call_least_norm, dot, least_norm_size, solve_square
-
-RANK = 1e-13
-"""Singular values below this part of the largest are zero."""
+from ..rounding import CONDITIONS_RANK
 
 NONE, SOLVED, STICKS = range(3)
 """What solvers return: there are no forces; there are; there are, and all friction was found below its limit at once,
@@ -148,7 +146,7 @@ def solve_for(cn: Any, state: Any, ratio: Any, normal: Any, friction: Any, eps: 
         change = wanted
     else:
         _equations(cn, some, stuck, ratio, w_n, w_t, eps, matrix, wanted)
-        call_least_norm(cn.least_norm, matrix, wanted, change, RANK, work + 8 * size * (size + 2))
+        call_least_norm(cn.least_norm, matrix, wanted, change, CONDITIONS_RANK, work + 8 * size * (size + 2))
     for k in range(count):
         normal[some[k]] += change[k, 0]
     for k in range(held):

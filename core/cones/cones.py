@@ -13,6 +13,7 @@ from ..compiled.jit import address_of, caller, compiled
 from ..compiled.records import ArrayRecord
 from ..compiled.views import mat, vec
 from ..linalg.small import LEAST_NORM_SIGNATURE, least_norm
+from ..rounding import IMMOVABLE
 from .conditions import NONE, SOLVED, STICKS
 from .lcp import FIND_SIGNATURE, find_complementary
 from .many import by_limit, many_size
@@ -34,8 +35,6 @@ __all__ = [
     "work_size",
 ]
 
-IMMOVABLE = 1e-12
-"""A direction whose inverse effective mass is below this part of what it could be cannot move."""
 MANY = 8
 """Contacts; the forces of more are found as the limit of those that give way a little (`many.py`)."""
 

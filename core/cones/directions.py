@@ -7,9 +7,7 @@ import numpy as np
 from ..compiled import types
 from ..compiled.jit import caller, compiled
 from ..linalg.small import add, dot
-
-RANK = 1e-10
-"""Part of a direction's inverse mass that must be left of it beside the others."""
+from ..rounding import DIRECTION_RANK
 
 _TABLE, _VECTOR = types.Array(types.float64, 2, "C"), types.Array(types.float64, 1, "C")
 _WHOLES = types.Array(types.int64, 1, "C")
@@ -88,7 +86,7 @@ def farthest_directions(matrix: Any, among: Any, kept: Any, work: Any) -> int:
             if work[i * count + i] > work[k * count + k]:
                 k = i
         pivot = work[k * count + k]
-        if not pivot > RANK * scale[k]:
+        if not pivot > DIRECTION_RANK * scale[k]:
             break
         chosen[k] = 1.0
         row = work[k * count : (k + 1) * count]

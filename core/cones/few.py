@@ -7,15 +7,9 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import add, null_space
+from ..rounding import NO_FORCE, NORMALS_RANK, TOGETHER
 from .conditions import PRESSING, STUCK, move, solve_for, solving_size
 from .sticking import hold_tangents, share, sticking_size
-
-AT_REST = 1e-9
-"""Of the largest motion: contacts that move less than this stay together."""
-NONE = 1e-12
-"""Of the largest force: below it there is none."""
-SAME = 1e-11
-"""Singular values below this part of the largest are zero: normals repeat one another."""
 
 
 def basic_size(n: int) -> int:
@@ -34,10 +28,10 @@ def basic(cn: Any, mu: Any, size: float, normal: Any, friction: Any, work: int) 
     work += 56 * n
     move(cn, normal, friction, 0.0, w_n, w_t)
     for i in range(n):
-        state[i] = PRESSING if abs(w_n[i]) <= AT_REST * size else 0
+        state[i] = PRESSING if abs(w_n[i]) <= TOGETHER * size else 0
         free = mu[i] > 0.0 and direction[i] == 0.0 and state[i] & PRESSING != 0
         ratio[i] = -mu[i] * (np.sign(w_t[i]) if free else direction[i])
-        if free and abs(w_t[i]) <= AT_REST * size:
+        if free and abs(w_t[i]) <= TOGETHER * size:
             ratio[i] = 0.0
             state[i] |= STUCK
             sticks[held] = i
@@ -62,7 +56,7 @@ def basic(cn: Any, mu: Any, size: float, normal: Any, friction: Any, work: int) 
     for i in range(n):
         largest = max(largest, normal[i])
     for i in range(n):
-        if not normal[i] >= base[i] - NONE * largest:
+        if not normal[i] >= base[i] - NO_FORCE * largest:
             return False
         normal[i] = max(normal[i], base[i])
         friction[i] = ratio[i] * normal[i]
@@ -100,7 +94,7 @@ def _reduced(cn: Any, state: Any, ratio: Any, stuck: Any, some: Any, forces: Any
                 block[row, j] = matrix[i, some[j]]
             row += 1
     same = mat(work, count, count)
-    left = null_space(block, same, SAME, work + 8 * count * count)
+    left = null_space(block, same, NORMALS_RANK, work + 8 * count * count)
     _on_few(same, left, forces, ivec(work + 8 * count * count, count))
 
 

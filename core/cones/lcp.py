@@ -14,17 +14,7 @@ from ..compiled import types
 from ..compiled.jit import address_of, caller, compiled, internal
 from ..compiled.views import ivec, mat
 from ..linalg.small import LEAST_NORM_SIGNATURE, add, call_least_norm, dot, least_norm, least_norm_size
-
-PIVOT = 1e-11
-"""An entry of a column below this, relative to the column's largest, is rounding."""
-TIES = (1e-13, 1e-11, 1e-9)
-"""Right-hand sides and ratios nearer than this (relative) are equal; where rounding leads pivoting astray with the
-first, the next is tried."""
-VIOLATION = 1e-9
-"""Of the conditions, relative: beyond it a result is none."""
-RANK = 1e-13
-"""Singular values of the solution's equations below this part of the largest are zero."""
-
+from ..rounding import LCP_PIVOT, LCP_RANK, LCP_TIES, LCP_VIOLATION
 
 FIND_SIGNATURE = types.boolean(
     types.int64, types.Array(types.float64, 2, "C"), *(types.Array(types.float64, 1, "C"),) * 2, types.int64
@@ -73,14 +63,14 @@ def find_complementary(by_norm: int, m: Any, q: Any, z: Any, work: int) -> bool:
         if not np.isfinite(q[i]):
             return False
         size, least = max(size, abs(q[i])), min(least, q[i])
-    if least >= -TIES[0] * size:
+    if least >= -LCP_TIES[0] * size:
         return True
-    for tie in TIES:
+    for tie in LCP_TIES:
         if _lemke(by_norm, m, q, z, size, tie, work):
             least = 0.0
             for i in range(n):
                 least = min(least, dot(m[i], z) + q[i])
-            if least >= -VIOLATION * size:
+            if least >= -LCP_VIOLATION * size:
                 return True
     return False
 
@@ -134,11 +124,11 @@ def _ratio_row(table: Any, entering: int, basis: Any, rows: Any, tie: float) -> 
     for i in range(n):
         largest = max(largest, abs(table[i, entering]))
     for i in range(n):
-        if table[i, entering] > PIVOT * largest:
+        if table[i, entering] > LCP_PIVOT * largest:
             least = min(least, table[i, 2 * n + 1] / table[i, entering])
     for i in range(n):
         x = table[i, entering]
-        if x > PIVOT * largest and table[i, 2 * n + 1] / x <= least + tie * max(1.0, abs(least)):
+        if x > LCP_PIVOT * largest and table[i, 2 * n + 1] / x <= least + tie * max(1.0, abs(least)):
             if basis[i] == 2 * n:
                 return i
             rows[count] = i
@@ -191,7 +181,7 @@ def _refine(by_norm: int, m: Any, q: Any, z: Any, basis: Any, basic: Any, table:
         b[i, 0] = -q[basic[i]]
         for j in range(count):
             block[i, j] = m[basic[i], basic[j]]
-    call_least_norm(by_norm, block, b, x, RANK, work + 16 * count)
+    call_least_norm(by_norm, block, b, x, LCP_RANK, work + 16 * count)
     for i in range(n):
         z[i] = 0.0
     for i in range(count):

@@ -16,8 +16,9 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, ivec, vec
+from ..rounding import CONES_CONVERGED, CONES_GOOD, CONES_NEAR, FEWEST_LEAVE, TOGETHER
 from .conditions import NONE, PRESSING, SOLVED, STICKS, STUCK, does, largest_motion, left, move, solve_for, solving_size
-from .few import AT_REST, basic, basic_size
+from .few import basic, basic_size
 from .sweeps import sweep
 
 FIRST, LAST = 0.1, 1e-8
@@ -28,15 +29,6 @@ ITERATIONS, SWEEPS, MOST_SWEEPS = 60, 8, 1024
 """Of Newton's method; and sweeps where it goes in a circle, each time twice as many, but not more at once."""
 DIRECT = 3
 """Solutions at most of the equations without eps, at the end."""
-CONVERGED = 1e-12
-"""Of the largest motion: what is left of the conditions is rounding."""
-NEAR = 1e-7
-"""Of the largest motion: the same where a step along the path has failed if more is left."""
-GOOD = 1e-7
-"""Of the largest motion: with more left at the end, there is no solution. Where contacts repeat each other nearly, a
-motion of this size would take forces beyond all measure to undo."""
-STANDS = 1e-9
-"""Of the largest motion: forces that stand on no more contacts than it takes may leave this."""
 
 
 def many_size(n: int) -> int:
@@ -55,7 +47,7 @@ def by_limit(cn: Any, mu: Any, work: int) -> int:
     for i in range(n):
         if mu[i] > 0.0 and direction[i] == 0.0 and normal[i] > 0.0:
             some = True
-            if not abs(w_t[i]) <= AT_REST * size:
+            if not abs(w_t[i]) <= TOGETHER * size:
                 return SOLVED
     return STICKS if some else SOLVED
 
@@ -83,11 +75,11 @@ def _solve(cn: Any, mu: Any, size: float, work: int) -> bool:
             break
         _copy(other, other_friction, normal, friction)
         least = now
-    if not least <= GOOD * size:
+    if not least <= CONES_GOOD * size:
         return False
     _copy(normal, friction, other, other_friction)
     if basic(cn, mu, size, other, other_friction, work):
-        if left(cn, mu, other, other_friction, 0.0, work) <= max(least, STANDS * size):
+        if left(cn, mu, other, other_friction, 0.0, work) <= max(least, FEWEST_LEAVE * size):
             _copy(other, other_friction, normal, friction)
     return True
 
@@ -106,7 +98,7 @@ def _follow(cn: Any, mu: Any, size: float, other: Any, other_friction: Any, work
     eps, lower, factor = 0.0, FIRST, LOWER
     while eps == 0.0 or eps > LAST:
         _copy(normal, friction, other, other_friction)
-        if _newton(cn, mu, size, other, other_friction, lower, work) <= NEAR * size:
+        if _newton(cn, mu, size, other, other_friction, lower, work) <= CONES_NEAR * size:
             _copy(other, other_friction, normal, friction)
             eps = lower
         elif eps > 0.0 and factor <= LOWER_AT_LEAST:
@@ -128,7 +120,7 @@ def _newton(cn: Any, mu: Any, size: float, best: Any, best_friction: Any, eps: f
     least = left(cn, mu, best, best_friction, eps, work)
     met, count = 0, SWEEPS
     for _ in range(ITERATIONS):
-        if least <= CONVERGED * size:
+        if least <= CONES_CONVERGED * size:
             break
         does(cn, mu, normal, friction, eps, state, ratio, work + 16 * n)
         if _is_among(seen, met, state):

@@ -11,14 +11,10 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import dot
+from ..rounding import BEYOND_LIMIT, NO_FRICTION, STICKING_MOVES, STICKING_RANK
 from .conditions import NONE, SOLVED, STICKS
 from .lcp import call_find, lcp_size
-from .sticking import RANK, hold_tangents, share, sticking_size
-
-MOVES = 1e-9
-"""Of the motion that friction is to take away: with more left of it, contacts do not all stick."""
-AT_LIMIT, NO_FRICTION = 1e-12, 1e-14
-"""Parts of a limit and of the largest friction by which friction may be beyond its limit."""
+from .sticking import hold_tangents, share, sticking_size
 
 
 def pivoting_size(n: int) -> int:
@@ -110,13 +106,13 @@ def _all_stick(cn: Any, nn: Any, tn: Any, b_n: Any, b_t: Any, mu: Any, free: Any
     for i in range(n):
         # where sticking leaves no motion along the normals, what is left is rounding
         for j in range(n):
-            if abs(m[i, j]) <= RANK * (np.sqrt(a_nn[i, i]) * np.sqrt(a_nn[j, j])):
+            if abs(m[i, j]) <= STICKING_RANK * (np.sqrt(a_nn[i, i]) * np.sqrt(a_nn[j, j])):
                 m[i, j] = 0.0
         q[i], size = b_n[i], abs(b_n[i])
         for k in range(count):
             q[i] -= across[k, i] * b_t[free[k]]
             size += abs(across[k, i]) * abs(b_t[free[k]])
-        if abs(q[i]) <= RANK * size:
+        if abs(q[i]) <= STICKING_RANK * size:
             q[i] = 0.0
     if not _scaled(cn, m, q, normal, work):
         return False
@@ -137,11 +133,11 @@ def _all_stick(cn: Any, nn: Any, tn: Any, b_n: Any, b_t: Any, mu: Any, free: Any
         for j in range(count):
             left += a_tt[free[k], free[j]] * friction[j, 0]
         # (comparisons that are false for NaN)
-        if not abs(left) <= MOVES * max(most, 1e-300):
+        if not abs(left) <= STICKING_MOVES * max(most, 1e-300):
             return False
         largest = max(largest, abs(friction[k, 0]))
     for k in range(count):
-        if not abs(friction[k, 0]) <= limit[k] * (1.0 + AT_LIMIT) + NO_FRICTION * largest:
+        if not abs(friction[k, 0]) <= limit[k] * (1.0 + BEYOND_LIMIT) + NO_FRICTION * largest:
             return False
     for k in range(count):
         tangential[free[k]] = friction[k, 0]

@@ -7,9 +7,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import mat
 from ..linalg.small import add, call_least_norm, least_norm_size
-
-RANK = 1e-10
-"""Singular values of the block of friction that sticks below this part of the largest are zero."""
+from ..rounding import STICKING_RANK
 
 
 def sticking_size(n: int) -> int:
@@ -33,7 +31,7 @@ def hold_tangents(cn: Any, stuck: Any, tn: Any, matrix: Any, across: Any, work: 
             along[i, j] = tt[stuck[i], stuck[j]]
         for j in range(n):
             b[i, j] = nt[j, stuck[i]]
-    call_least_norm(cn.least_norm, along, b, across, RANK, work + 8 * count * (count + n))
+    call_least_norm(cn.least_norm, along, b, across, STICKING_RANK, work + 8 * count * (count + n))
     for i in range(n):
         for k in range(count):
             add(matrix[i], -across[k, i], tn[stuck[k]])
@@ -49,6 +47,6 @@ def share(cn: Any, stuck: Any, limit: Any, wanted: Any, friction: Any, work: int
     for i in range(count):
         for j in range(count):
             matrix[i, j] = tt[stuck[i], stuck[j]] * np.sqrt(limit[j])
-    call_least_norm(cn.least_norm, matrix, wanted, friction, RANK, work + 8 * count * count)
+    call_least_norm(cn.least_norm, matrix, wanted, friction, STICKING_RANK, work + 8 * count * count)
     for i in range(count):
         friction[i, 0] *= np.sqrt(limit[i])

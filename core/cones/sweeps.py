@@ -6,6 +6,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
+from ..rounding import SWEEP_ROUNDING
 
 
 @internal
@@ -25,7 +26,7 @@ def one_contact(a: float, b: float, c: float, w_n: float, w_t: float, mu: float,
     if w_n + a * least + b * friction >= 0.0:
         return least, friction
     determinant = a * c - b * b
-    if determinant > 1e-14 * a * c:
+    if determinant > SWEEP_ROUNDING * a * c:
         normal, friction = (b * w_t - c * w_n) / determinant, (b * w_n - a * w_t) / determinant
         if normal >= least and abs(friction) <= mu * normal:
             return normal, friction
@@ -37,7 +38,7 @@ def one_contact(a: float, b: float, c: float, w_n: float, w_t: float, mu: float,
         pressing = a - mu * side * b
         if pressing > 0.0:
             normal = max(-w_n / pressing, least)
-            if side * (w_t + (b - mu * side * c) * normal) >= -1e-14 * (abs(w_t) + (abs(b) + mu * c) * normal):
+            if side * (w_t + (b - mu * side * c) * normal) >= -SWEEP_ROUNDING * (abs(w_t) + (abs(b) + mu * c) * normal):
                 return normal, -mu * side * normal
         side = -side
     return np.nan, np.nan

@@ -18,6 +18,7 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive
 from ..model.channels import Channel
+from ..rounding import ON_NODE
 from .base import MOST_ELEMENTS, Form, Numbering, Part, Row
 from .coordinate import Coordinate
 from .flexible_body import FlexibleBody, PointShape, Section
@@ -238,7 +239,7 @@ class AxialRod(FlexibleBody):
             )
         x = points / self.length * self.elements
         # a node counts as one, in spite of rounding
-        x = np.where(np.abs(x - np.round(x)) < 1e-9 * self.elements, np.round(x), x)
+        x = np.where(np.abs(x - np.round(x)) < ON_NODE * self.elements, np.round(x), x)
         e = np.minimum(x.astype(np.int64), self.elements - 1)
         return e, x - e
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError
+from ..rounding import ON_NODE
 
 Array = NDArray[np.float64]
 BoundaryConditions = Literal["cantilever", "simply_supported", "free"]
@@ -54,7 +55,7 @@ def make_grid(length: float, elements: int, special: Sequence[float]) -> Grid:
         k = int(np.argmin(np.abs(nodes - s)))
         if abs(nodes[k] - s) <= 0.25 * h and 0 < k < len(nodes) - 1:
             nodes[k] = s
-        elif abs(nodes[k] - s) > 1e-9 * length:
+        elif abs(nodes[k] - s) > ON_NODE * length:
             nodes = np.sort(np.append(nodes, s))
     z, w = np.polynomial.legendre.leggauss(GAUSS_POINTS)
     half = 0.5 * np.diff(nodes)

@@ -15,6 +15,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.attitude import Vector4
+from ..rounding import SYMMETRY
 from .base import Numbering, Row
 from .measure3d import columns_of, coordinates_of, place_of, product
 from .rotation3d import body_axes, four
@@ -23,8 +24,6 @@ from .spring_damper3d import FULL, Pair3D
 Vector6 = tuple[float, float, float, float, float, float]
 Matrix6 = tuple[Vector6, Vector6, Vector6, Vector6, Vector6, Vector6]
 NONE: Vector6 = (0.0,) * 6
-SYMMETRIC = 1e-12
-"""Of the largest entry: by so much entries of a stiffness may differ from their mirror images."""
 
 
 @internal
@@ -140,13 +139,13 @@ class Bushing3D(Pair3D):
         for what, given in (("stiffness", self.stiffness), ("damping", self.damping)):
             matrix = _matrix(given)
             largest = float(np.max(np.abs(matrix)))
-            if np.max(np.abs(matrix - matrix.T)) > SYMMETRIC * largest:
+            if np.max(np.abs(matrix - matrix.T)) > SYMMETRY * largest:
                 raise ValueError(
                     f"the {what} of bushing '{self.name}' is not symmetric: forces from an energy, and damping, have "
                     "symmetric matrices; give K[i][j] = K[j][i]"
                 )
             least = float(np.linalg.eigvalsh(matrix)[0])
-            if least < -SYMMETRIC * largest:
+            if least < -SYMMETRY * largest:
                 raise ValueError(
                     f"the {what} of bushing '{self.name}' has the negative eigenvalue {least:.6g}: it would give "
                     "energy away; all must be zero or more"

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Vector2
+from ..rounding import BEYOND_END, ON_NODE
 from .base import MOST_ELEMENTS, Numbering, Row
 from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
 from .cable_shape import POINTS, gauss_places, weights
@@ -163,11 +164,11 @@ class Cable2D(FlexibleBody):
 
     def find(self, s: float) -> tuple[int, float]:
         """(element, place in [0, 1]) of the point at s m along the undeformed cable. Raises ModelError beyond it."""
-        if not -1e-12 * self.length <= s <= (1.0 + 1e-12) * self.length:
+        if not -BEYOND_END * self.length <= s <= (1.0 + BEYOND_END) * self.length:
             raise ModelError(f"'{self.name}' has no point at s = {s:g} m: it reaches from 0 to {self.length:g} m")
         place = min(max(s / self.length, 0.0), 1.0) * self.elements
         # a node counts as one, in spite of rounding
-        place = round(place) if abs(place - round(place)) < 1e-9 * self.elements else place
+        place = round(place) if abs(place - round(place)) < ON_NODE * self.elements else place
         e = min(int(place), self.elements - 1)
         return e, place - e
 

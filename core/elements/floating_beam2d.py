@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import NonNegative, Positive, Record, Vector2
+from ..rounding import BEYOND_END, ON_NODE
 from .beam_modes import GAUSS_POINTS, Array, BoundaryConditions, Grid, bending, make_grid, stretching
 from .flexible_body import PointShape, Section, along_axis
 from .floating_body2d import FloatingBody2D, Invariants
@@ -72,7 +73,7 @@ class FloatingBeam2D(FloatingBody2D):
 
     @model_validator(mode="after")
     def _check(self) -> "FloatingBeam2D":
-        beyond = [a.position for a in self.attachments if a.position > self.length * (1.0 + 1e-12)]
+        beyond = [a.position for a in self.attachments if a.position > self.length * (1.0 + BEYOND_END)]
         if beyond:
             raise ValueError(f"attachments of '{self.name}' at {beyond} m lie beyond its length {self.length:g} m")
         axial = self.axial_modes or any(a.direction == "axial" for a in self.attachments)
@@ -136,7 +137,7 @@ class FloatingBeam2D(FloatingBody2D):
         )  # fmt: skip
 
     def _refuse_beyond(self, s: float) -> None:
-        if not -1e-9 * self.length <= s <= self.length * (1.0 + 1e-9):
+        if not -ON_NODE * self.length <= s <= self.length * (1.0 + ON_NODE):
             raise ModelError(f"'{self.name}' has no point at s = {s:g} m: it reaches from 0 to {self.length:g} m")
 
 

@@ -14,13 +14,12 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Name, Positive
+from ..rounding import SYMMETRY
 from .base import BodyElement, Form, Numbering, Row
 from .coordinate import UNKNOWN_UNIT, Coordinate
 
 Matrix = tuple[tuple[float, ...], ...]
 Vector = tuple[float, ...]
-SYMMETRY = 1e-12
-"""Difference of opposite entries, relative to the largest, that counts as rounding."""
 PLANAR_UNITS = {"x": "m", "y": "m", "angle": "rad"}
 """Coordinates of these names mean the same everywhere."""
 

@@ -8,9 +8,10 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import Positive, Record, Vector2
+from ..rounding import ON_NODE, SAME_PLACE, SYMMETRY
 from .flexible_body import PointShape
 from .floating_body2d import Array, FloatingBody2D, Invariants
-from .linear_system import SYMMETRY, Matrix, Vector
+from .linear_system import Matrix, Vector
 
 
 class ReducedPoint(Record):
@@ -156,7 +157,7 @@ class ReducedBody2D(FloatingBody2D):
     def material_point(self, point: Vector2) -> PointShape:
         size = max((abs(x) for given in self.points for x in given.point), default=0.0)
         for given in self.points:
-            if np.allclose(given.point, point, rtol=1e-9, atol=1e-12 * size):
+            if np.allclose(given.point, point, rtol=ON_NODE, atol=SAME_PLACE * size):
                 n = len(self.modal_mass)
                 turn = np.vstack([np.zeros(n), _or_zero(given.rotation, (n,))])
                 return self.point_shape(np.array(given.point), np.array(given.shape), turn)

@@ -21,6 +21,7 @@ from ..model.attitude import UPRIGHT, Attitude, EulerParameters, product, rotati
 from ..model.base import Positive, Vector3
 from ..model.derived import Derived
 from ..model.markers import GROUND, Marker, Marker3D
+from ..rounding import TRIANGLE
 from .base import BodyElement, Numbering, Row
 from .coordinate import Coordinate
 from .rotation3d import body_axes, body_rate, cross, dot, four, of_body_torque, plus, three, times
@@ -29,8 +30,6 @@ X = Coordinate("x", "m", "vx", "ax")
 Y = Coordinate("y", "m", "vy", "ay")
 Z = Coordinate("z", "m", "vz", "az")
 EULER = tuple(Coordinate(f"e{k}", "1", f"e{k}_rate", f"e{k}_acceleration", 1.0, turns=True) for k in range(4))
-TRIANGLE = 1e-9
-"""Of the largest principal moment of inertia: by so much it may exceed the sum of the others, as a file's digits do."""
 
 
 @inlined

@@ -9,11 +9,9 @@ from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
 from ..model.base import NonNegative
+from ..rounding import MEETING
 from .base import ForceElement, Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, add_hessian, add_product, along, distance, place
-
-MEETING = 1e-12
-"""Markers nearer than this, relative to the size of the mechanism, have no direction between them but rounding."""
 
 
 @internal

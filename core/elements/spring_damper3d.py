@@ -12,13 +12,12 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
 from ..model.base import NonNegative, Positive
 from ..model.markers import Marker3D
+from ..rounding import MEETING
 from .base import ForceElement, Numbering, Part, Row
 from .measure3d import ANGLE, DISTANCE, PLACE, add_force_tangent, columns_of, coordinates_of, measure, product
 from .spatial_body import angle_between, start_of_marker
 from .turn3d import LOOSE, account_of, turn_part
 
-MEETING = 1e-12
-"""Markers nearer than this, relative to the size of the mechanism, have no direction between them but rounding."""
 FULL = tuple((i, j) for i in range(14) for j in range(14))
 
 

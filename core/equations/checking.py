@@ -4,16 +4,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..rounding import AGREEMENT, CANCELLED, DEFINITE, SYMMETRY
 from .errors import EquationError, NotDifferentiableError
 from .seeding import Array
 
 if TYPE_CHECKING:
     from .functions import EquationFunctions
-
-SYMMETRY_TOLERANCE = 1e-12  # of the largest entry
-DEFINITE_TOLERANCE = 1e-12  # of the mass matrix scaled to a unit diagonal
-AGREEMENT_TOLERANCE = 1e-8  # of the largest entry: given derivatives against those formed
-ROUNDING = 1e-12  # of the terms that cancel in gamma
 
 
 def check_functions(functions: "EquationFunctions", t0: float, q0: Array, v0: Array) -> None:
@@ -47,7 +43,7 @@ def check_mass(mass: Array, jacobian: Array) -> None:
     """Refuse a mass matrix (n, n) that is not symmetric, or not positive on the free motions."""
     size = np.max(np.abs(mass))
     skew = np.abs(mass - mass.T)
-    if np.max(skew) > SYMMETRY_TOLERANCE * size:
+    if np.max(skew) > SYMMETRY * size:
         i, j = np.unravel_index(np.argmax(skew), skew.shape)
         raise EquationError(
             f"mass(t, q) must be symmetric: mass[{i}, {j}] = {mass[i, j]:.17g}, "
@@ -59,7 +55,7 @@ def check_mass(mass: Array, jacobian: Array) -> None:
     scaled = 0.5 * (mass + mass.T) / np.outer(scale, scale)
     eigenvalues = np.linalg.eigvalsh(scaled)
     largest = max(np.max(np.abs(scaled)), 1e-300)
-    if eigenvalues[0] < -DEFINITE_TOLERANCE * len(mass) * largest:
+    if eigenvalues[0] < -DEFINITE * len(mass) * largest:
         raise EquationError(
             f"mass(t, q) must be positive (semi)definite: its smallest eigenvalue, scaled to a unit "
             f"diagonal, is {eigenvalues[0]:.6g}, diagonal {diagonal.tolist()}; check the signs"
@@ -68,7 +64,7 @@ def check_mass(mass: Array, jacobian: Array) -> None:
     if free.shape[1] == 0:
         return
     reduced = np.linalg.eigvalsh(free.T @ scaled @ free)
-    if reduced[0] <= DEFINITE_TOLERANCE * largest:
+    if reduced[0] <= DEFINITE * largest:
         where = "on the motions that the constraints leave free" if len(jacobian) else "(there are no constraints)"
         raise EquationError(
             f"mass(t, q) must be positive definite {where}: its smallest eigenvalue there, scaled to a unit "
@@ -120,7 +116,7 @@ def _check_given(functions: "EquationFunctions", t: float, q: Array, v: Array) -
         _agree("constraint_jacobian", functions.jacobian(t, q), jacobian, 0.0)
     size = float(np.max(np.abs(jacobian), initial=0.0))
     if given.rate_given:
-        _agree("constraint_rate", functions.velocity_offset(t, q), rate, ROUNDING * size)
+        _agree("constraint_rate", functions.velocity_offset(t, q), rate, CANCELLED * size)
     if given.gamma_given:
         # At rest gamma has few terms: compare in motion as well.
         for velocity in (v, v + (1.0 + np.max(np.abs(v))) * np.cos(1.0 + np.arange(len(v)))):
@@ -128,7 +124,7 @@ def _check_given(functions: "EquationFunctions", t: float, q: Array, v: Array) -
                 gamma = formed.gamma(t, q, velocity)
             except NotDifferentiableError:
                 return
-            floor = ROUNDING * size * (1.0 + float(np.max(np.abs(velocity)))) ** 2
+            floor = CANCELLED * size * (1.0 + float(np.max(np.abs(velocity)))) ** 2
             at = f" with v = {velocity.tolist()}"
             _agree("gamma", functions.gamma(t, q, velocity), gamma, floor, at)
 
@@ -139,7 +135,7 @@ def _agree(name: str, given: Array, formed: Array, floor: float, at: str = "") -
         return  # nothing to compare with
     difference = np.abs(given - formed)
     size = max(np.max(np.abs(given), initial=0.0), np.max(np.abs(formed), initial=0.0))
-    if np.max(difference, initial=0.0) <= AGREEMENT_TOLERANCE * size + floor:
+    if np.max(difference, initial=0.0) <= AGREEMENT * size + floor:
         return
     index = np.unravel_index(np.argmax(difference), difference.shape)
     entry = ", ".join(str(int(i)) for i in index)

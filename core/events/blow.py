@@ -5,7 +5,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time
-from ..rounding import FORCE_ROUNDING
+from ..rounding import ENERGY_GAIN, FORCE_ROUNDING
 from ..state.modes import APPROACH_SPEED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, OPEN
 from ..state.run_records import GAINS, GRAZE, IMPACT
 from ..tables.evaluate import evaluate_energy, evaluate_residuals
@@ -51,8 +51,6 @@ from .records import (
 from .report import report
 from .touching import read_rates
 
-GAIN = 1e-12
-"""Of the kinetic energy: an impact that gains more is one to report."""
 _RESULTS = (
     (IMPULSE, FIRST_IMPULSE),
     (FRICTION, FIRST_FRICTION),
@@ -89,7 +87,7 @@ def impact(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     evaluate_energy(ws)
     if dr.input_account >= 0:
         v[dr.input_account] = before[dr.input_account] + energy[0] - kinetic + total + stopped
-    _account(ev, dr, ws, ms, -total if total < -GAIN * max(kinetic, 1e-300) else 0.0)
+    _account(ev, dr, ws, ms, -total if total < -ENERGY_GAIN * max(kinetic, 1e-300) else 0.0)
     return SETTLED
 
 

@@ -5,8 +5,9 @@ from typing import Any
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..cones.cones import CONES_TYPE, NONE, SOLVED, STICKS, call_cones
-from ..cones.directions import RANK, call_farthest, call_independent
+from ..cones.directions import call_farthest, call_independent
 from ..linalg.small import call_least_norm
+from ..rounding import DIRECTION_RANK
 from .records import (
     AT_REST,
     B_N,
@@ -138,7 +139,7 @@ def independent_of(ev: Any, ws: Any, number: int, rank: float) -> int:
     number. `rank` 0: that of forces."""
     count = whole(ev)[COUNT]
     directions, responses = mat(ev.directions, 2 * count, ws.n), mat(ev.responses, 2 * count, ws.n)
-    work, least = vec(ev.work, ev.work_size), rank if rank > 0.0 else RANK
+    work, least = vec(ev.work, ev.work_size), rank if rank > 0.0 else DIRECTION_RANK
     chosen = ivec(ev.chosen, 2 * ev.most)
     return int(call_independent(ev.independent, directions, responses, ivec(ev.some, number), least, chosen, work))
 
@@ -171,7 +172,7 @@ def remove_rates(ev: Any, normal: Any, along: Any) -> None:
         rates[i, 0] = -col(ev, RATE)[p] if p < count else -col(ev, SLIDE_RATE)[p - count]
         for j in range(size):
             matrix[i, j] = a[p, some[j]]
-    call_least_norm(cn.least_norm, matrix, rates, found, RANK, ev.work)
+    call_least_norm(cn.least_norm, matrix, rates, found, DIRECTION_RANK, ev.work)
     for i in range(size):
         if some[i] < count:
             normal[some[i]] = found[i, 0]

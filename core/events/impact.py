@@ -10,7 +10,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..cones.sweeps import one_contact
-from ..rounding import UNSOLVED
+from ..rounding import ADDED, UNSOLVED
 from ..tables.evaluate import evaluate_residuals
 from .forces import NO_SOLUTION, impulses_among
 from .laws import POISSON, SEQUENTIAL
@@ -160,7 +160,7 @@ def _solve_and_push(ev: Any, ws: Any, wanted: Any) -> int:
             continue
         motion = rate[i] + wanted[i]
         off = max(off, -motion)
-        if normal[i] - base[i] > 1e-9 * largest:
+        if normal[i] - base[i] > ADDED * largest:
             off = max(off, abs(motion))
         col(ev, P_N)[i] += normal[i]
         col(ev, P_T)[i] += tangential[i]

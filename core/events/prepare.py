@@ -13,6 +13,7 @@ from ..linalg import follow, lu_at
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
 from ..linalg.row_pivoting import eliminate
+from ..rounding import RANK_TOLERANCE
 from ..state.workspace_records import (
     ANALYSES,
     COUNTERS_SIZE,
@@ -26,7 +27,7 @@ from ..state.workspace_records import (
     structure_at,
 )
 from ..tables.evaluate import evaluate_tangent
-from ..tables.partition import GOLDEN, RANK_TOLERANCE, SILVER
+from ..tables.partition import GOLDEN, SILVER
 from ..tables.switch import engage_modes, take_partition
 from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_PARTITION, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
 

@@ -6,15 +6,10 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..rounding import FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, UNRESOLVED
+from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
 from ..tables.levels import force_level, position_level, rate_level
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
-
-BRAKED = 1e-9
-"""Of the largest acceleration: what slides with no speed and is braked by less begins to slide, it does not stop."""
-AT_LIMIT = 1e-9
-"""Friction within this part of its limit has reached it."""
 
 
 @internal
@@ -85,7 +80,7 @@ def read_before(ev: Any, dr: Any, ws: Any) -> None:
         part = force / strongest
         if slid[i] == STICKS:
             friction = -lam[slide]
-            if abs(friction) >= static[k] * force * (1.0 - AT_LIMIT):
+            if abs(friction) >= static[k] * force * (1.0 - REACHES_LIMIT):
                 slips[i] = -np.sign(friction)
             else:
                 leaves[i] = part <= NEAR_ZERO

@@ -11,13 +11,13 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST, PRESSING
+from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST, PRESSING, REACHES_LIMIT, TO_SPARE
 from ..state.modes import CLOSED, IDLE
 from ..state.modes import STICKS as STUCK
 from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE
 from ..tables.levels import position_level
 from .forces import NO_SOLUTION, among, farthest_of, independent_of, remove_rates
-from .reading import AT_LIMIT, comes_back, largest_acceleration, rate_size, unresolved_speed
+from .reading import comes_back, largest_acceleration, rate_size, unresolved_speed
 from .records import (
     ACCELERATIONS,
     APART,
@@ -83,8 +83,6 @@ from .touching import force_noise, free_accelerations, free_jerks, looks_again, 
 
 NEARLY_SINGULAR = 1e-6
 """Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
-TO_SPARE = 1e-6
-"""Part of its limit that a new distribution of sticking friction must leave to each contact."""
 RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
 """Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and at an instant that
 does not settle. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
@@ -392,13 +390,13 @@ def _held(ev: Any, ws: Any) -> bool:
     for i in range(count):
         ratio = col(ev, OLD_RATIO)[i]
         idle = col(ev, WAS)[i] == CLOSED and col(ev, SLID)[i] == IDLE
-        at_limit = idle and abs(ratio) >= static[i] * (1.0 - AT_LIMIT)
+        at_limit = idle and abs(ratio) >= static[i] * (1.0 - REACHES_LIMIT)
         full[i] = slips[i] if slips[i] != 0.0 else (-np.sign(ratio) if at_limit else 0.0)
     # those at their limit keep it, others take the rest; or all is distributed anew
     for attempt in range(2):
         for i in range(count):
             tried[i] = direction[i] if direction[i] != 0.0 or attempt == 1 else full[i]
-        good = _tries(ev, ws, tried, attempt == 0, AT_LIMIT if attempt == 0 else TO_SPARE)
+        good = _tries(ev, ws, tried, attempt == 0, REACHES_LIMIT if attempt == 0 else TO_SPARE)
         if good:
             for i in range(count):
                 full[i] = 1.0 if attempt == 0 and full[i] != 0.0 else 0.0
@@ -457,7 +455,7 @@ def sticking(ev: Any) -> int:
     fastest = _fastest(ev)
     for i in range(count):
         limit = static[i] * f_n[i]
-        below = abs(f_t[i]) < limit * (1.0 - AT_LIMIT) or limit == 0.0
+        below = abs(f_t[i]) < limit * (1.0 - REACHES_LIMIT) or limit == 0.0
         # blocks that ride on one another need just the limit
         below = below or (not slipping and (whole(ev)[STICKS] != 0 or _stays(ev, i)))
         # where next to nothing presses, rounding must not say that friction is below the limit of next to nothing

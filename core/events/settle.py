@@ -9,11 +9,10 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.complementarity import MANY
-from ..cones.complementarity import RANK as FINEST_RANK
 from ..location.asleep import look_at_all
 from ..location.watch import remember
 from ..methods.history import history_time, recall, restart
-from ..rounding import GAP_ROUNDING, UNSOLVED
+from ..rounding import DIRECTION_RANK, GAP_ROUNDING, UNSOLVED
 from ..state.modes import (
     CLOSED,
     GAP_START,
@@ -302,7 +301,7 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     if status != SETTLED:
         return status
     _account_stops(ev, ws)
-    rank = FINEST_RANK if count <= MANY else RANK_OF_MANY
+    rank = DIRECTION_RANK if count <= MANY else RANK_OF_MANY
     keep(ev, ws, min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK))
     while True:
         status = _take(ev, dr, ws, ms)

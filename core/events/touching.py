@@ -9,11 +9,10 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.complementarity import IMMOVABLE
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
-from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, NO_ACCELERATION, RATE_ROUNDING
+from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
 from ..state.run_records import COUNTS_SIZE, HERE, call_accelerations
 from ..state.workspace_records import OK
@@ -41,9 +40,6 @@ from .records import (
     delassus,
     whole,
 )
-
-NO_JERK = 1e-9
-"""Part of its terms below which the rate of a gap's acceleration is none."""
 
 
 @internal

@@ -1,13 +1,16 @@
 """What goes on along a rod during a run: displacement, velocity, strain, axial force and stress, for wave diagrams."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..elements.axial_rod import AxialRod
 from ..errors import ModelError
-from ..results.result import Result
+
+if TYPE_CHECKING:
+    from ..results.result import Result
 
 Field = NDArray[np.float64]
 
@@ -43,7 +46,7 @@ class RodFields:
         return self.axial_force / area
 
 
-def rod_fields(result: Result, rod: AxialRod, most_times: int | None = None) -> RodFields:
+def rod_fields(result: "Result", rod: AxialRod, most_times: int | None = None) -> RodFields:
     """The fields of `rod` at the recorded times of a run, or at about `most_times` of them.
 
     Raises

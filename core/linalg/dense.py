@@ -9,7 +9,8 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, uvec, vec
-from .record import NO_PIVOT, OK, PIVOT_NOISE
+from ..rounding import PIVOT_NOISE
+from .record import NO_PIVOT, OK
 
 _LARGEST = np.finfo(np.float64).max
 

@@ -14,8 +14,6 @@ WANT_ANALYSIS = 3  # of the pivots in `wanted`, which has not been made yet
 WANT_ROOM = 4  # for the choice of pivots
 WANT_VALUES = 5  # room for the factors
 
-# A pivot that is this much smaller than a term of its own sum holds nothing but rounding.
-PIVOT_NOISE = 1e-14
 # An entry of L may grow by this factor over the largest of its column at analysis, at least over what is 1 once the
 # rows are balanced.
 GROWTH = 1e5

@@ -18,12 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled import types
 from ..compiled.jit import compiled_unlocked, internal, interpreted
+from ..rounding import NOT_DEPENDENT
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
-# A redundant row depends on an earlier one if |coefficient| * its norm exceeds this times the row's own norm.
-NEGLIGIBLE = 1e-9
 # Up to so many entries the elimination is interpreted: a millisecond at most, against a second of compiling.
 FEW_ENTRIES = 60
 
@@ -259,4 +258,4 @@ def _repeated_rows(
         if c[k] != 0.0:
             these = slice(start[k], start[k + 1])
             c[factor_row[these]] -= c[k] * factor[these]
-    return np.flatnonzero(np.abs(c[:row]) * norms[:row] > NEGLIGIBLE * norms[row])
+    return np.flatnonzero(np.abs(c[:row]) * norms[:row] > NOT_DEPENDENT * norms[row])

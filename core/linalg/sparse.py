@@ -16,7 +16,8 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import uvec, vec
-from .record import NO_PIVOT, OK, PIVOT_NOISE, REANALYSE
+from ..rounding import PIVOT_NOISE
+from .record import NO_PIVOT, OK, REANALYSE
 
 _SMALLEST = float(1.0 / np.finfo(np.float64).max)
 _LARGEST = float(np.finfo(np.float64).max)

@@ -13,7 +13,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time
 from ..methods.multistep import rows_available
-from ..rounding import SLIP_EXCESS
+from ..rounding import AS_LONG, SLIP_EXCESS
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, WATCH, call_accelerations
 from ..state.workspace_records import OK
@@ -106,7 +106,7 @@ def forces_may_vanish(ws: Any, ms: Any, lc: Any, h: float) -> bool:
     for k in range(ws.n_contacts):
         if memory[k, MODE] != CLOSED:
             continue
-        if not known or h > longest * (1.0 + 1e-9):
+        if not known or h > longest * (1.0 + AS_LONG):
             return True
         force, left = _starting(ws, k, start)
         force_end, left_end = _margins(ws, k, lam)
@@ -147,7 +147,7 @@ def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
     places[0], place, depth, solutions = 1.0, 0.0, 1, 0
     while depth > 0:
         right, long = values[depth - 1], places[depth - 1] - place
-        doubtful, below = long * h > longest * (1.0 + 1e-9), False
+        doubtful, below = long * h > longest * (1.0 + AS_LONG), False
         for k in range(n):
             least_force = -none / row_scale[rows[k]]
             for j in range(WANT):

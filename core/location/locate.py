@@ -3,6 +3,8 @@ secant iteration down to rounding."""
 
 from collections.abc import Callable
 
+from ..rounding import RESOLVED_TIME
+
 MAX_TRIALS = 60
 JUMP = 1e-6
 """A function that is this large, relative to its largest value, right beside its root jumps there."""
@@ -32,7 +34,7 @@ def find_root(function: Callable[[float], float], low: float, high: float, guess
         else:
             x_high, f_high = x, f
         width = x_high - x_low
-        if width <= 2e-16 * abs(x_high):
+        if width <= RESOLVED_TIME * abs(x_high):
             break
         widths.append(width)
         if last is not None and f != last[1]:

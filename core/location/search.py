@@ -11,7 +11,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time, recall
-from ..rounding import GAP_ROUNDING, NO_STEP, PRESSING
+from ..rounding import GAP_ROUNDING, NO_STEP, PRESSING, RESOLVED_TIME, SAME_INSTANT, SAME_TRIAL
 from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, SLIDE
 from ..state.run_records import (
     CLOCK_SIZE,
@@ -32,8 +32,6 @@ MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON = 40, 60, 6
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
-SAME = 1e-12
-"""Of a step: events nearer than this are at one instant."""
 LATER = 1.001
 """Events that the dense output puts this much later than the first one are searched for only if they turn out to lie
 before it: each search makes the step several times."""
@@ -123,7 +121,7 @@ def _root(
             x_low, f_low = x, f
         else:
             x_high, f_high = x, f
-        width, least = x_high - x_low, max(2e-16 * abs(x_high), resolved)
+        width, least = x_high - x_low, max(RESOLVED_TIME * abs(x_high), resolved)
         if width <= least:
             break
         slow = trials >= 3 and width > 0.5 * third
@@ -147,7 +145,7 @@ def _root(
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low
-    nearest[0], nearest[1], nearest[2] = x_low * (1.0 - SAME), x_high * (1.0 + SAME), x
+    nearest[0], nearest[1], nearest[2] = x_low * (1.0 - SAME_INSTANT), x_high * (1.0 + SAME_INSTANT), x
     return make_trial(dr, ws, ms, lc, x, full), x, True
 
 
@@ -167,7 +165,7 @@ def dense_root(ws: Any, ms: Any, lc: Any, k: int, h: float, sign: float, low: fl
         proposal = x - g / rate if rate != 0.0 else low
         if not low < proposal < high:
             proposal = 0.5 * (low + high)
-        if abs(proposal - x) <= 1e-15 * h:
+        if abs(proposal - x) <= SAME_TRIAL * h:
             break
         x = proposal
     return x
@@ -193,10 +191,10 @@ def _by_rate(
             return OK, x, False
         change = -g / rate
         # of the step, not of the time: the state is as exact as the former
-        if abs(change) <= 4e-16 * x:
+        if abs(change) <= 2.0 * RESOLVED_TIME * x:
             if g < 0.0:
                 # the side past the event would be found again as a crossing: end on the safe one
-                x += change - 4e-16 * x
+                x += change - 2.0 * RESOLVED_TIME * x
             return make_trial(dr, ws, ms, lc, x, full), x, True
         x += change
         if not low < x < high:
@@ -273,7 +271,7 @@ def _event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: An
     start = mat(lc.watch, ws.n_contacts, WATCH)[k]
     comes_from_afar = abs(start[0]) > overlap or sign * start[1] * guess > overlap
     if not pulls and low < guess < high and comes_from_afar:
-        status, found, good = _by_rate(dr, ws, ms, lc, k, sign, low, high, guess, 2e-16 * size, h)
+        status, found, good = _by_rate(dr, ws, ms, lc, k, sign, low, high, guess, RESOLVED_TIME * size, h)
         if status != OK or good:
             return status, found, good
     if high < h:
@@ -306,7 +304,7 @@ def _event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: An
             return status, low, False
         if g <= overlap:
             return _begins_to_close(dr, ws, ms, lc, k, h, overlap)
-    status, opened, happens = _root(dr, ws, ms, lc, k, GAP, sign, 0.0, low, high, 2e-16 * size, h)
+    status, opened, happens = _root(dr, ws, ms, lc, k, GAP, sign, 0.0, low, high, RESOLVED_TIME * size, h)
     if status == OK and happens and pulls and vec(ws.monitor, ws.n_contacts)[k] < 0.0:
         # the gap opens within this step, but the force has become tensile before
         return _root(dr, ws, ms, lc, k, FORCE, 1.0, 0.0, 0.0, opened, 0.0, h)
@@ -383,5 +381,5 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
             return status
     call_accept(dr.accept, ws, ms, lc)
     for k in range(ws.n_contacts):
-        pending[k] = 1 if found[k, STATE] == HAPPENED and found[k, SIZE] <= step * (1.0 + SAME) else 0
+        pending[k] = 1 if found[k, STATE] == HAPPENED and found[k, SIZE] <= step * (1.0 + SAME_INSTANT) else 0
     return OK

@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from ..rounding import NEARLY_PARALLEL
 from .base import Record, Vector3
 
 Vector4 = tuple[float, float, float, float]
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-NEARLY_PARALLEL = 1e-9
-"""Sine of the angle between two directions below which they do not span a plane."""
 
 
 def product(p: Sequence[float], q: Sequence[float]) -> Vector4:

@@ -6,8 +6,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from ..compiled.library import Library
-from ..rounding import SHORTEST
-from ..run.inputs import PUNCTUAL
+from ..rounding import PUNCTUAL, SHORTEST
 
 MAGIC = b"TLISMNI\x01"
 VERSION = 1

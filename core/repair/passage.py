@@ -20,7 +20,7 @@ from ..errors import SimulationError
 from ..location.watch import find_events
 from ..loop.loop import accept, set_weights_at, violates_redundant
 from ..methods.history import recall
-from ..rounding import CONSTRAINT_NOISE
+from ..rounding import CONSTRAINT_NOISE, SAME_INSTANT
 from ..state.run_records import EVENT, HELD, PREVIOUS_NORM, STEP_SIZE, STOP_TIME, TRIAL_STEP
 from ..state.workspace_records import (
     FACTOR_AGE,
@@ -167,7 +167,7 @@ class _Over:
         arrays, n, stop = self.sim.workspace.arrays, len(self.weights[0]), float(self.sim.clock[STOP_TIME])
         w = len(arrays["v"]) - points.work.shape[1]
         arrays["t"][0] = points.times[k]
-        if k == len(points.times) - 1 and abs(points.times[k] - stop) <= 1e-12 * np.ptp(points.times):
+        if k == len(points.times) - 1 and abs(points.times[k] - stop) <= SAME_INSTANT * np.ptp(points.times):
             # the stop time itself, not t + h with its rounding
             arrays["t"][0] = stop
         arrays["q"][:n], arrays["v"][:n], arrays["a"][:n] = points.q[k], points.v[k], points.a[k]

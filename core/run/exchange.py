@@ -26,6 +26,7 @@ from ..location.dense_output import query
 from ..loop.drive import drive_on, loop_at, method_at, workspace_at
 from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
+from ..rounding import PUNCTUAL
 from ..stage.accelerations import solve_accelerations
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
@@ -53,7 +54,6 @@ from .exchange_record import (
     TIMES_SIZE,
     call_query,
 )
-from .inputs import PUNCTUAL
 from .read_channels import read_at_goal
 
 if TYPE_CHECKING:

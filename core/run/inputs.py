@@ -7,17 +7,12 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError
 from ..model.signals import MOST_DERIVATIVES
+from ..rounding import PUNCTUAL, SAME_INPUT
 from . import motions
 from .restore import restart_here
 
 if TYPE_CHECKING:
     from .simulation import Simulation
-
-SAME = 1e-14
-"""Relative difference up to which an input with derivatives goes on as it did: what a caller computes along a straight
-line comes with rounding. Inputs without derivatives are compared bit by bit."""
-PUNCTUAL = 1e-9
-"""Of the interval between two changes of inputs: what a caller's grid may be off by."""
 
 
 def set_inputs(sim: "Simulation", values: Mapping[str, float], derivatives: Mapping[str, Sequence[float]]) -> None:
@@ -94,4 +89,4 @@ def _goes_on(row: Sequence[float], new: tuple[float, ...], t: float) -> bool:
         (curvature,),
     )
     present = (value + x * (rate + 0.5 * x * curvature), rate + x * curvature, curvature)
-    return all(abs(a - b) <= SAME * sum(map(abs, parts)) for a, b, parts in zip(new, present, terms, strict=True))
+    return all(abs(a - b) <= SAME_INPUT * sum(map(abs, parts)) for a, b, parts in zip(new, present, terms, strict=True))

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ..errors import SimulationError
 from ..linalg import SingularMatrixError
 from ..loop.sample import write_sample
+from ..rounding import SENSITIVITY_SOLVED
 from ..stage.joints import evaluate_joints, factor_joints, solve_joints
 from ..tables.evaluate import evaluate_residuals
 
@@ -31,8 +32,6 @@ Vector = NDArray[np.float64]
 LARGE = 2.0**40
 """s relative to what the residual holds without the change: its rounding is 2^-40 of itself beside the change."""
 REFINEMENTS = 2
-ACCURATE = 1e-9
-"""Residual of the solution, relative to its terms, beyond which there is none."""
 
 
 def input_derivatives(sim: "Simulation", direction: Mapping[str, float]) -> Vector:
@@ -111,7 +110,9 @@ def _solve(sim: "Simulation", load: Vector) -> Vector:
         x = x + arrays["rhs"][:size]
     terms = values * x[cols]
     left = np.abs(wanted - np.bincount(rows, terms, size))
-    if not np.all(left <= ACCURATE * (np.max(np.abs(load), initial=0.0) + np.bincount(rows, np.abs(terms), size))):
+    if not np.all(
+        left <= SENSITIVITY_SOLVED * (np.max(np.abs(load), initial=0.0) + np.bincount(rows, np.abs(terms), size))
+    ):
         raise SimulationError(
             f"no derivatives at t = {sim.t:.9g} s: the mechanism is too near a singular position, or a value is not "
             "finite",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..errors import ModelError
 from ..loop.controllers import CONTROLLERS
-from ..rounding import CONSTRAINT_TOLERANCES
+from ..rounding import CONSTRAINT_TOLERANCES, FINEST
 from ..stage import OUTER_LOOPS
 from ..stage.simple import MOST_DEPTH
 from ..state.workspace_records import (
@@ -37,8 +37,6 @@ CONSTRAINT_SHARE = 0.002
 level of the coordinates (`position_level`) enlarge it by ten and more."""
 KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
-FINEST = 1e-13
-"""Relative tolerance of the outer loop that rounding allows; a formula does not ask for less by itself."""
 SINGULAR_NOISE = 2.5e13
 """A hundredth of the inverse of rounding, since the outer loop stops at a hundredth of the tolerance; and a tenth for
 coordinates of ten."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
+from ..rounding import SAME_PARAMETER
 from .curve2d import arm_derivatives, foot_derivatives, length_derivatives
 from .normal2d import act
 
@@ -79,7 +80,7 @@ def _nearest(c: Any, x: float, y: float) -> Any:
         following = t - f / slope if slope < 0.0 else np.inf
         if not low <= following <= high:
             following = 0.5 * (low + high)
-        if abs(following - t) <= 1e-16:
+        if abs(following - t) <= SAME_PARAMETER:
             break
         t = following
     ex = x - c[0, 0] - t * (c[1, 0] + t * (c[2, 0] + t * c[3, 0]))

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
+from ..rounding import SAME_PARAMETER
 
 
 @internal
@@ -148,7 +149,7 @@ def nearest_on_parabola(control: Any, cx: float, cy: float) -> Any:
         following = t + step
         if not low <= following <= high:
             following = 0.5 * (low + high)
-        if abs(following - t) <= 1e-16:
+        if abs(following - t) <= SAME_PARAMETER:
             break
         t = following
     ex, ey = x0 - t * (ax + t * bx), y0 - t * (ay + t * by)

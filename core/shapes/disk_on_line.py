@@ -15,6 +15,7 @@ from ..errors import ModelError
 from ..laws.friction import CoulombFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import GROUND, Marker2D
+from ..rounding import SAME_PLACE
 from .contact2d import Contact2D, Disk2D
 from .line2d import WIDTH, bristle_disk_on_line_kernel, disk_on_line_kernel, sliding_disk_on_line_kernel
 from .segment2d import refuse_point_on_line
@@ -23,8 +24,6 @@ SHARPEST = math.radians(170.0)
 """Largest angle of a vertex: beyond it the line runs back on itself."""
 FEWEST_CLOSED = 4
 """Nodes of a triangle, the first one twice."""
-SAME_PLACE = 1e-12
-"""Distance of two points, relative to the line's coordinates, that is rounding: cos(2 pi) and cos(0)."""
 NO_END = -1
 """Number of a piece at whose ends the line goes on."""
 

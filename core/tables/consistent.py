@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
+from ..rounding import START_MOVED
 from .assembly import Assembly
 from .evaluate import evaluate_residuals
 from .levels import rate_level
@@ -61,7 +62,7 @@ def make_consistent(
                 f"start_tolerance = {tolerance:g} (relative) is allowed. Give consistent values, or raise "
                 "start_tolerance."
             )
-        if n and moved[worst] > 1e-12:
+        if n and moved[worst] > START_MOVED:
             logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, moved[worst])
     check_rates(workspace, redundant)
     if n and workspace.structure.active.size:

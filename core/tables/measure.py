@@ -5,6 +5,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, vec
+from ..rounding import NO_STIFFNESS
 from .evaluate import evaluate_residuals, evaluate_tangent
 
 PROBES = 4
@@ -113,7 +114,7 @@ def measure_motion(ws: Any, scale: Any, v: Any, later: Any, m_joints: int, mass:
     stiffest, heaviest, kinetic = 0.0, 0.0, 0.0
     for i in range(n):
         stiff = abs(stiffness[i] - mass[i])
-        if mass[i] > 0.0 and stiff > 1e-12 * mass[i] and math.isfinite(stiff):
+        if mass[i] > 0.0 and stiff > NO_STIFFNESS * mass[i] and math.isfinite(stiff):
             stiffest = _more(stiffest, stiff / mass[i])
         heaviest = _more(heaviest, mass[i] * (scale[i] * scale[i]))
         # each mass with its own speed: a heavy one need not move as fast as the fastest

@@ -5,14 +5,12 @@ from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
 from ..linalg import RowPivots, SingularMatrixError, pivot_rows
-from ..rounding import CONTRADICTION
+from ..rounding import CONTRADICTION, RANK_TOLERANCE
 from ..state.workspace_records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level
 from .workspace import Workspace
 
-RANK_TOLERANCE = 1e-9
-"""A constraint row whose remainder after elimination is smaller than this (relative) repeats others."""
 GOLDEN, SILVER = 0.6180339887498949, 0.4142135623730950
 """Whose multiples have fractions in no simple order."""
 

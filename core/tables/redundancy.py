@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
-from ..rounding import CONTRADICTION
+from ..rounding import CONTRADICTION, START_RANK
 from ..state.workspace_records import FACTOR_AGE, LEAST_CONDITION
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level, rate_level
@@ -29,9 +29,6 @@ MOVES = 5
 """Pseudo-random motions that a redundant row must survive."""
 MOVE_SIZES = (2e-2, 2e-3, 2e-4)
 """Their size relative to the coordinates' scales: the next smaller if the constraints cannot be met there."""
-START_RANK = 1e-6
-"""A row whose remainder after elimination is smaller than this (relative) makes a start singular if it is not
-redundant: rounding in the accelerations is multiplied by its inverse cube."""
 WORSE = 0.5
 """Rows are chosen anew when the least singular value of those kept is so much smaller than it could be."""
 LARGEST_CHOICE = 4_000_000
