@@ -18,10 +18,7 @@ of a merged row as they stand in it, gives 0.95 of the fill of SuperLU's COLAMD 
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from ..compiled.views import ivec
 
 # From this size on the factors do not fit into the fast caches, and the order in which they are read counts: neighbours
@@ -34,16 +31,10 @@ DENSE_ROW = 10.0
 FEW = 16
 
 
-def ordering_size(n: int, nnz: int) -> int:
+@internal
+def order_room(n: int, nnz: int) -> int:
     """Numbers in the scratch of `choose_order`."""
     return 13 * n + 4 + 4 * nnz
-
-
-def order_columns(n: int, rows: NDArray[np.int64], cols: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Place of each column of a pattern in the pivot sequence, (n,): no place of an entry twice."""
-    order, work = np.zeros(n, dtype=np.int64), np.zeros(ordering_size(n, len(rows)), dtype=np.int64)
-    order_now(n, len(rows), rows.ctypes.data, cols.ctypes.data, order.ctypes.data, work.ctypes.data)
-    return np.argsort(order)
 
 
 @internal
@@ -293,9 +284,3 @@ def _search(root: int, stamp: int, done: int, start: Any, length: Any, other: An
             queue[place] = j
             count += 1
     return count
-
-
-@compiled
-def order_now(n: int, nnz: int, rows: int, cols: int, order: int, work: int) -> None:
-    """`choose_order`, for Python."""
-    choose_order(n, nnz, rows, cols, order, work)

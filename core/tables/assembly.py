@@ -155,6 +155,11 @@ class Assembly:
         """Length of extended vectors."""
         return self.n + AT_REST + len(self.work_names)
 
+    def count_active(self, closed: frozenset[int], sticking: frozenset[int], dropped: frozenset[int]) -> int:
+        """Number of rows of Phi that are constraints with these contacts and without the rows `dropped`."""
+        out = dropped | {row for row, contacts in self.replaced_rows.items() if contacts & closed}
+        return self.m_joints - len(out) + len(closed) + len(sticking)
+
     def work_index(self, name: str) -> int:
         """Index of a work account in extended vectors."""
         return self.n + AT_REST + self.work_names.index(name)
