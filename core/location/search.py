@@ -1,7 +1,9 @@
 """Locating events inside a step: it is made again with other sizes until it ends at the first of them.
 
 The dense output says between which places in the step a root lies (`watch.py`, `certain.py`); here the motion itself
-decides. `locate.find_root` says how roots are searched.
+decides. A root is searched by secant steps down to rounding, with a safeguard as in ITP: bisection where three trials
+do not halve the bracket. The search ends on the safe side of a root, so that what follows does not find the same
+crossing again, but behind a jump of the function, since what it asks for is seen only there.
 """
 
 from typing import Any
@@ -24,11 +26,12 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
 from ..tables.levels import position_level
-from .locate import JUMP, MAX_TRIALS
 from .probe import BRACKET, HAPPENS, VIEW, look
 from .watch import friction_margin
 
-MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON = 40, 60, 6
+MAX_TRIALS, MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON = 60, 40, 60, 6
+JUMP = 1e-6
+"""A function that is this large, relative to its largest value, right beside its root jumps there."""
 AT_ONCE = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
@@ -93,7 +96,7 @@ def _root(
     low: float, high: float, floor: float, full: float,
 ) -> Any:  # fmt: skip
     """(status, size, whether it happens) of the step that ends at the root of what is positive at `low` and negative at
-    `high`; that step is the current point. As `locate.find_root`. Not: up to that size there is none, and another
+    `high`; that step is the current point. Not: up to that size there is none, and another
     contact has its event before it."""
     x_low, x_high, f_low, f_high, largest = low, high, np.nan, np.nan, 0.0
     # what ends one force often ends others

@@ -192,3 +192,9 @@ def open_now(dr: Any) -> int:
     """`open_touching` at the current point, for Python."""
     ev = instant_at(dr.instant)
     return call_part(ev.open_touching, ev, dr, workspace_at(dr.workspace), method_at(dr.method))
+
+
+@compiled
+def locate_now(dr: Any) -> int:
+    """`locate`, for Python."""
+    return locate(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))

@@ -60,13 +60,13 @@ TURN = 0.2
 """Largest change of the velocities against their extrapolation, relative to the largest, on the same branch."""
 
 
-def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
+def pass_singular(sim: "Simulation", last_resort: bool = False) -> "tuple[int, LongStep | None]":
     """One accepted long step from the newest row over a singular position near by, or away from one behind.
 
     Returns OK; REANALYZE if there is no such position within reach, if the step had better begin nearer to it, or if no
     step could be made (nothing is accepted then); EVENT if a contact has an event at once: nothing is accepted,
-    TRIAL_STEP is the size of a step that it lies in, and `sim.long_step` makes such steps. `last_resort`: ordinary
-    steps do not lead any nearer.
+    TRIAL_STEP is the size of a step that it lies in, which the current point ends, and the second value makes such
+    steps. `last_resort`: ordinary steps do not lead any nearer.
 
     Raises
     ------
@@ -76,10 +76,10 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
     remaining = float(sim.clock[STOP_TIME]) - sim.t_internal
     found = find_singular(sim, natural)
     if found is None:
-        return REANALYZE
+        return REANALYZE, None
     near, steepness = found
     set_weights_at(sim.workspace.record, sim._method.record)
-    over = _Over(sim, near, steepness)
+    over = LongStep(sim, near, steepness)
     may_come_nearer = near > 2.0 * natural and not last_resort
     best: _Result | None = None
     for h, stages in _plans(near, natural, remaining):
@@ -93,11 +93,11 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> int:
         if best.error <= 1.0 or (may_come_nearer and result.truncation):
             break
     if best is None or (may_come_nearer and (_too_long(best) or _leaps(sim, best))):
-        return REANALYZE
+        return REANALYZE, None
     if best.points is None or best.error * sim.settings.rtol > LARGEST_TOLERANCE:
         if last_resort:
             _refuse_branching(sim, best, sim.t_internal + near)
-        return REANALYZE
+        return REANALYZE, None
     if best.error > 1.0:
         logger.warning(
             "the singular position at t = %.9g s was passed with an estimated error of %.3g times the tolerances "
@@ -138,7 +138,7 @@ class _Result:
     truncation: bool
 
 
-class _Over:
+class LongStep:
     """Steps over a singular position from the newest row."""
 
     def __init__(self, sim: "Simulation", near: float, steepness: float) -> None:
@@ -176,8 +176,8 @@ class _Over:
         arrays["aux"][:] = arrays["a"]
         evaluate_residuals(self.sim.workspace.record)
 
-    def trial(self, h: float) -> None:
-        """A step of size h, not accepted yet; its end becomes the current point.
+    def trial(self, h: float) -> int:
+        """A step of size h, not accepted yet; its end becomes the current point. Returns OK.
 
         Raises
         ------
@@ -192,6 +192,7 @@ class _Over:
                 loop="event",
             )
         self.place(points, len(points.times) - 1)
+        return OK
 
     def make(self, h: float, stages: tuple[int, ...]) -> _Result:
         """A step of size h, with more stages until it stands still."""
@@ -284,7 +285,7 @@ def _refuse_branching(sim: "Simulation", result: _Result, singular: float) -> No
     )
 
 
-def _accept(sim: "Simulation", over: _Over, points: Points, natural: float) -> int:
+def _accept(sim: "Simulation", over: LongStep, points: Points, natural: float) -> tuple[int, LongStep | None]:
     """The points become rows of the history, up to the first event of a contact; OK, or EVENT if that comes at once."""
     ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
     ring, rate = sim.method_arrays["ring"], sim.workspace.arrays["rate"]
@@ -297,8 +298,8 @@ def _accept(sim: "Simulation", over: _Over, points: Points, natural: float) -> i
         violated = violates_redundant(ws, 1.0)
         if violated or find_events(ws, ms, lc, gap, False):
             if count == 1:
-                sim.clock[TRIAL_STEP], sim.long_step = gap, over
-                return REANALYZE if violated else EVENT
+                sim.clock[TRIAL_STEP] = gap
+                return (REANALYZE, None) if violated else (EVENT, over)
             break
         accept(ws, ms, lc)
         count += 1
@@ -307,4 +308,4 @@ def _accept(sim: "Simulation", over: _Over, points: Points, natural: float) -> i
     # after all of it the position lies as far behind as it lay ahead: ordinary steps lead away from here
     whole = 2.0 * sim.workspace.arrays["control"][MOST_CONDITION] * rate[LEAST_CONDITION]
     rate[LOOKED_CONDITION] = whole if count == last else 0.0
-    return OK
+    return OK, None

@@ -8,22 +8,16 @@ import numpy as np
 
 from ..errors import SimulationError
 from ..events import Fallback
-from ..location.locate import find_root
-from ..location.probe import HAPPENS
-from ..location.search import AT_ONCE, MOST_HALVINGS
-from ..location.watch import find_events, friction_margin
-from ..loop.loop import accept, trial_step
+from ..loop.loop import trial_step
 from ..methods.history import recall
 from ..repair.near_singular import STRAINED
 from ..repair.passage import pass_singular
 from ..repair.repair import repair
 from ..repair.singular_position import near_singular
-from ..rounding import GAP_ROUNDING, NO_STEP, PRESSING, SHORTEST
-from ..state.modes import ACTIVE, CLOSED, IDLE, MODE, OPEN, SLIDE
+from ..rounding import NO_STEP, SHORTEST
 from ..state.run_records import (
     CHUNK,
     DUE,
-    EVENT,
     FAILED,
     FIXED_STEP,
     FULL,
@@ -40,7 +34,6 @@ from ..state.run_records import (
     WANTED,
 )
 from ..state.workspace_records import (
-    FACTOR_AGE,
     FAILED_NORM,
     INNER_DIVERGED,
     LEAST_CONDITION,
@@ -48,14 +41,13 @@ from ..state.workspace_records import (
     NOT_FINITE,
     OK,
     OUTER_DIVERGED,
-    OUTER_RATE,
     OUTER_SLOW,
     REANALYZE,
     SINGULAR,
     WORST_CONDITION,
 )
-from ..tables.levels import position_level
 from .failures import failure_of
+from .locating import locate_again, locate_in_long_step
 from .painleve import refuse_passed_jam, sliding_contacts
 from .step_budget import step_count, steps_left
 
@@ -130,7 +122,8 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
         elif returned == FAILED:
             raise failure_of(sim, sim.drive.status)
         elif returned == UNLOCATED:
-            _locate_again(sim)
+            if not locate_again(sim) and (sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim)):
+                _fail(sim, OUTER_SLOW)
         elif returned == JAM:
             refuse_passed_jam(sim, sliding_contacts(sim))
         elif returned == REPARTITION:
@@ -214,12 +207,9 @@ def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
     worst = float(rate[WORST_CONDITION])
     if sim.workspace.dropped:
         repair(sim)
-    code = pass_singular(sim, last_resort)
-    if code == EVENT:
-        try:
-            _locate(sim)
-        finally:
-            sim.long_step = None
+    code, over = pass_singular(sim, last_resort)
+    if over is not None:
+        locate_in_long_step(sim, over)
     elif code != OK:
         # nothing near: go on, and look again when it has become twice as bad
         rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
@@ -264,174 +254,6 @@ def _fail(sim: "Simulation", code: int) -> None:
         t=t,
         loop=loop,
     )
-
-
-class _NoTrial(Exception):
-    """A step that was tried while an event was located cannot be made: its `args` hold the status."""
-
-
-def _locate(sim: "Simulation") -> None:
-    """End the step at the first event in it, and make that event pending; where a trial fails that needs shorter steps
-    from the newest row, ask for those instead."""
-    try:
-        _locate_first(sim)
-    except _NoTrial as failure:
-        (status,) = failure.args
-        if sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim):
-            _fail(sim, status)
-        recall(sim.workspace.record, sim._method.record, 0)
-        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
-
-
-def _locate_again(sim: "Simulation") -> None:
-    """Locate in the newest step what could not be located because a trial failed: with other pivots, or shorter."""
-    recall(sim.workspace.record, sim._method.record, 0)
-    ws, ms, lc, h = sim.workspace.record, sim._method.record, sim._loop.record, float(sim.clock[TRIAL_STEP])
-    if trial_step(ws, ms, lc, h) == OK and find_events(ws, ms, lc, h, False):
-        _locate(sim)
-    elif sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim):
-        _fail(sim, OUTER_SLOW)
-    else:
-        recall(ws, ms, 0)
-        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
-
-
-def _locate_first(sim: "Simulation") -> None:
-    ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
-    h = float(sim.clock[TRIAL_STEP])
-    found: dict[int, float] = {}
-    safe: dict[int, float] = {}
-    step, least = h, NO_STEP * abs(sim.t_internal)
-    while find_events(ws, ms, lc, step, True):
-        late = [int(k) for k in np.flatnonzero(sim.brackets[:, HAPPENS]) if k not in found and k not in safe]
-        if not late:
-            break
-        # the shorter step may end where a gap is negative that the longer one has passed
-        ends = {k: (sim.gap(k), *(step * sim.brackets[k, :HAPPENS])) for k in late}
-        for k in late:
-            size, happens = _event_step(sim, k, step, ends[k])
-            # where the motion has none up to next to no time, what was seen is rounding
-            (found if happens else safe)[k] = size if happens or size > least else step
-        if sim.formula.exact and any(size <= least for size in found.values()):
-            # no time lies between: a step to there would be none
-            recall(ws, ms, 0)
-            sim.pending = [k for k in found if found[k] <= least]
-            return
-        first = min(step, *found.values(), *safe.values())
-        if not sim.formula.exact and first <= AT_ONCE * h:
-            recall(ws, ms, 0)
-            sim.pending = [k for k in found if found[k] <= AT_ONCE * h]
-            return
-        step = first
-        _trial(sim, step, h)
-    accept(ws, ms, lc)
-    sim.flush()
-    sim.pending = [k for k in found if found[k] <= step * (1.0 + 1e-12)]
-
-
-def _trial(sim: "Simulation", step: float, full: float) -> None:
-    """Make the step again with another size. Small fractions of it are made by the one-step starter: the
-    multistep coefficients of a grid with a very small last step lose digits."""
-    if sim.long_step is not None:
-        sim.long_step.trial(step)
-        return
-    table = sim._loop.table
-    usual = (int(table["starter"][0]), int(table["rows"][0]))
-    if step < 0.1 * full or usual[1] == 1:
-        table["starter"] = sim.fine_starter
-        table["rows"] = 10**9 if usual[1] > 1 else usual[1]
-    try:
-        for attempt in range(2):
-            # with old matrices the same step would come out a little different each time it is made
-            sim.workspace.arrays["rate"][[FACTOR_AGE, OUTER_RATE]] = -1.0, 1.0
-            status = trial_step(sim.workspace.record, sim._method.record, sim._loop.record, step)
-            if status == OK:
-                return
-            if attempt == 0:
-                repair(sim)
-        raise _NoTrial(status)
-    finally:
-        table["starter"], table["rows"] = usual
-
-
-def _event_step(sim: "Simulation", k: int, h: float, found: tuple[float, ...]) -> tuple[float, bool]:
-    """Step size at which contact k has its event, and True; or False, and up to which size the motion has none.
-
-    found : the gap at the end of the step of size h, and times in it: before a root of the gap's dense output, beyond
-        it, and where that is deepest.
-    """
-    mode = float(sim.memory[k, MODE])
-    end, low_step, high_step, deepest = found
-    arrays, contact = sim.workspace.arrays, sim.assembly.contacts[k]
-    by_force = mode == CLOSED or (mode != OPEN and end <= 0.0 and high_step == h)
-    force_sign = 1.0 if mode in (CLOSED, ACTIVE) else -1.0
-    slides = mode == CLOSED and contact.coulomb is not None and sim.memory[k, SLIDE] != IDLE
-
-    def margin(step: float) -> float:
-        _trial(sim, step, h)
-        force = force_sign * float(arrays["monitor"][k])
-        return min(force, friction_margin(sim.workspace.record, k)) if slides else force
-
-    if by_force:
-        if high_step < h and margin(high_step) > 0.0:
-            return (high_step if high_step > AT_ONCE * h else h), False
-        for _ in range(MOST_HALVINGS):
-            if low_step == 0.0 or margin(low_step) > 0.0:
-                break
-            low_step, high_step = 0.5 * low_step, low_step
-        return find_root(margin, low_step, high_step, 0.5 * (low_step + high_step), 0.0), True
-    sign = 1.0 if mode == OPEN else -1.0
-
-    def gap(step: float) -> float:
-        _trial(sim, step, h)
-        return sign * float(arrays["phi"][contact.row])
-
-    size = position_level(sim.workspace.record) * float(arrays["row_scale"][contact.row])
-    if high_step < h and gap(high_step) > 0.0:
-        # the motion is behind its dense output: look where that goes deepest
-        low_step = high_step
-        if low_step < deepest < h and gap(deepest) <= 0.0:
-            high_step = deepest
-        elif sign * end <= 0.0:
-            high_step = h
-        else:
-            # what the dense output has shown is its own error; the very start of the step is no place to stop at
-            return (max(low_step, deepest) if low_step > AT_ONCE * h else h), False
-    for _ in range(MOST_HALVINGS):
-        # the motion is ahead of its interpolant: go back to where the gap is still on the safe side
-        if low_step == 0.0 or gap(low_step) > 0.0:
-            break
-        low_step, high_step = 0.5 * low_step, low_step
-    overlap = GAP_ROUNDING * size
-    if mode == OPEN and abs(sim.watch[k, 0]) <= overlap and gap(low_step) <= overlap:
-        return _closing_step(sim, contact.row, h, overlap, float(sim.watch[k, 2])), True
-    guess = 0.5 * (low_step + high_step)
-    opened = find_root(gap, low_step, high_step, guess, 2e-16 * size)
-    if mode == ACTIVE and arrays["contact_release"][k] == 2 and arrays["monitor"][k] < 0.0:
-        # the gap opens within this step, but the force has become tensile before
-        return find_root(margin, 0.0, opened, 0.5 * opened, 0.0), True
-    return opened, True
-
-
-def _closing_step(sim: "Simulation", row: int, h: float, overlap: float, before: float) -> float:
-    """Step size at which shapes that touch without force begin to close: their gap, zero by rounding, says so late, its
-    acceleration (`before` at the newest row) says it at once, and where that jumps (a corner is passed) just behind."""
-    arrays = sim.workspace.arrays
-
-    def gap(step: float) -> float:
-        _trial(sim, step, h)
-        return float(arrays["phi"][row]) + overlap
-
-    def acceleration(step: float) -> float:
-        _trial(sim, step, h)
-        return float(arrays["phidd"][row]) + none
-
-    closes = gap(h) <= 0.0
-    largest = float(np.max(np.abs(arrays["a"][: sim.assembly.n]) / sim.assembly.coordinate_scale, initial=0.0))
-    none = PRESSING * largest * float(arrays["row_scale"][row])
-    if before > -none and float(arrays["phidd"][row]) < -none:
-        return find_root(acceleration, 0.0, h, 0.5 * h, 0.0)
-    return find_root(gap, 0.0, h, 0.5 * h, 0.0) if closes else h
 
 
 def restart_at(sim: "Simulation", t: float) -> None:

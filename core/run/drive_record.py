@@ -22,6 +22,7 @@ from ..loop.drive import (
     aim_now,
     begin_forces,
     drive,
+    locate_now,
     open_now,
     pass_breakpoint,
     settle_pending,
@@ -195,6 +196,17 @@ class Drive:
         """Set the clock of the loop for the way to `t` (s); no step goes beyond `stop`."""
         self.goals[GOAL], self.goals[LAST_STOP] = t, stop
         aim_now(self._record.record)
+
+    def locate(self, trial: int | None = None) -> int:
+        """End the step at the first event in it, as `location/search.locate` says. `trial`: address of what makes the
+        step again with another size, in place of the formula's own."""
+        own = int(self._record.table["trial"][0])
+        if trial is not None:
+            self._record.set_size("trial", trial)
+        try:
+            return int(locate_now(self._record.record))
+        finally:
+            self._record.set_size("trial", own)
 
     def wake(self) -> None:
         """Let no contact sleep any more (`asleep.py`)."""

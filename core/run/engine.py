@@ -116,7 +116,6 @@ class Engine(ContactSide):
         self.events: list[Event] = []
         self.progress: Callable[[float], None] | None = None
         self.pending: list[int] = []
-        self.long_step: Any = None
         self.t = float(t0)
         self.redundant: tuple[RedundantRow, ...] = ()
         self.input_times = (float(t0), math.inf)

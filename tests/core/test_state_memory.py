@@ -88,3 +88,25 @@ def test_a_state_stays_as_it_is_while_its_run_goes_on():
     assert sim.state() == later
     sim.advance(0.2)
     assert state.to_bytes() == data
+
+
+@pytest.mark.parametrize("method", ["ebdf", "irk"])
+@pytest.mark.parametrize("name", ["bouncing_ball", "woodpecker", "stick_slip", "slider_crank_stop", "chain"])
+def test_ways_that_meet_in_a_state_have_the_same_bytes_from_there_on(name, method):
+    """Straight on, back and again, in a run that was further, in a run that has not begun: one state, one future."""
+    model = load(name).model
+    straight = Simulation(model, method)
+    straight.advance(0.2)
+    middle = straight.state()
+    straight.advance(0.4)
+    end = straight.state().to_bytes()
+    straight.restore(middle)
+    elsewhere, fresh = Simulation(model, method), Simulation(model, method)
+    elsewhere.advance(0.5)
+    for sim in (straight, elsewhere, fresh):
+        sim.restore(middle)
+        assert sim.state().to_bytes() == middle.to_bytes()
+        sim.advance(0.4)
+        assert sim.state().to_bytes() == end
+    fresh.advance(0.45)
+    assert fresh.state().to_bytes() != end

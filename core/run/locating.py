@@ -1,0 +1,57 @@
+"""Locating an event where that takes Python: with other pivots, or within a step over a singular position."""
+
+from typing import TYPE_CHECKING
+
+from ..compiled.from_python import FromPython
+from ..location.watch import find_events
+from ..loop.loop import trial_step
+from ..methods.history import recall
+from ..repair.repair import repair
+from ..state.run_records import TRIAL_STEP
+from ..state.workspace_records import FACTOR_AGE, OK
+
+if TYPE_CHECKING:
+    from ..repair.passage import LongStep
+    from .simulation import Simulation
+
+ATTEMPTS = 3
+"""Each with the pivots of the newest row; a trial that fails with all of them needs shorter steps."""
+
+
+def locate_again(sim: "Simulation") -> bool:
+    """Locate, in the step from the newest row, the event that could not be located because a trial failed.
+
+    False: it takes a shorter step; the newest row is the current point then.
+    """
+    ws, ms, lc, h = sim.workspace.record, sim._method.record, sim._loop.record, float(sim.clock[TRIAL_STEP])
+    for _ in range(ATTEMPTS):
+        repair(sim)
+        if trial_step(ws, ms, lc, h) != OK or not find_events(ws, ms, lc, h, False):
+            break
+        if sim.drive.locate() == OK:
+            _take(sim)
+            return True
+    recall(ws, ms, 0)
+    sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+    return False
+
+
+def locate_in_long_step(sim: "Simulation", over: "LongStep") -> None:
+    """Locate the first event in the step of size TRIAL_STEP that `over` has made, by shorter ones of its kind.
+
+    Raises
+    ------
+    SimulationError : if no such step ends at the event.
+    """
+    trial = FromPython(over.trial)
+    status = sim.drive.locate(trial.address)
+    if trial.error is not None:
+        raise trial.error
+    if status != OK:
+        raise RuntimeError(f"a step over a singular position ended with status {status}")
+    _take(sim)
+
+
+def _take(sim: "Simulation") -> None:
+    sim.flush()
+    sim.pending = sim.drive.take_pending()
