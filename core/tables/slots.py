@@ -15,7 +15,7 @@ from ..compiled.image import Take, twin
 from ..compiled.records import Record
 from ..linalg import LU, Matrix
 from ..linalg.memory import Scratch
-from ..linalg.record import IN_INDEX, INDEX, SCRATCH, VALUES
+from ..linalg.record import DENSE, IN_INDEX, INDEX, SCRATCH, VALUES
 from ..state.workspace_records import NEEDS, OF_D, OF_KKT, PARTITION, REALS, STRUCTURE, WORDS
 
 Array = NDArray[Any]
@@ -24,6 +24,11 @@ MOST_STRUCTURES = 8
 SLACK = 1.5
 """How much more is given than is asked for."""
 _LUS = ("kkt", "kkt_query", "lu_d")
+_STAYS = (
+    "partition", "kkt", "kkt_query", "lu_d", "words_room", "reals_room", "words", "reals",
+    "functions", "scratch", "needs", "program_limit", "index", "index_room", "values", "room",
+)  # fmt: skip
+"""Fields of the records that are the place's own."""
 
 
 class Slot:
@@ -64,16 +69,22 @@ class Slot:
         self.words, self.reals = np.zeros(words, dtype=np.int64), np.zeros(reals)
         for name, x in (("words", self.words), ("reals", self.reals)):
             self.structure[name], self.structure[f"{name}_room"] = _begin(x), len(x)
-        self.structure["built"] = 0
+        # addresses of what is gone must not stay
+        for table in self.tables():
+            for field in table.dtype.names or ():
+                if field not in _STAYS:
+                    table[field] = 0
+        self.structure["values"] = self.partition["words"] = self.partition["reals"] = 0
 
     def give_matrix(self, k: int, index: int, values: int) -> None:
         """Memory for its k-th factorisation, which goes on as it was."""
         table, old = self.lus[k], int(self.lus[k]["index"][0])
+        in_use = bool(table["ready"][0]) or (int(table["kind"][0]) == DENSE and int(table["n"][0]) > 0)
         new_index, new_values = np.zeros(index, dtype=np.uint32), np.zeros(values)
         new_index[: len(self.index[k])], new_values[: len(self.values[k])] = self.index[k], self.values[k]
         self.index[k], self.values[k] = new_index, new_values
         for name in IN_INDEX:
-            table[name] += _begin(new_index) - old
+            table[name] = int(table[name][0]) + _begin(new_index) - old if in_use else 0
         table["index"], table["index_room"] = _begin(new_index), index
         table["values"], table["room"] = _begin(new_values), values
 

@@ -53,6 +53,8 @@ _STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["ser
 _CONDITIONS = [*CONDITIONS]
 _OTHERS = ("signals", "units", "left_out")
 """Arrays that the record of the workspace does not have."""
+FEW_CONTACTS = 8
+"""Contacts up to which there is room from the start for the structure of all of them."""
 MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
 
@@ -146,6 +148,10 @@ class Workspace:
             },
         )  # fmt: skip
         self.structure: Structure
+        if 0 < contacts <= FEW_CONTACTS:
+            # the largest structure first: from then on there is room for all
+            slides = frozenset(k for k, contact in enumerate(a.contacts) if contact.slide_row >= 0)
+            self.engage(frozenset(range(contacts)), frozenset(), slides)
         self.engage(frozenset(), frozenset())
         if assembly.bind is not None:
             assembly.bind(self)
