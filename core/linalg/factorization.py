@@ -34,14 +34,15 @@ class Matrix:
     table : (1,) LU, the record.
     view : gives the words at an address: view(address, count, dtype).
     grow : gives what `needs` of the record says.
+    like : another of the same pattern, which this one has followed if its own columns have no order yet.
 
     Attributes
     ----------
     record : the LU record for `factor` and `solve`.
     """
 
-    def __init__(self, table: NDArray, view: View, grow: Grow) -> None:
-        self._table, self._view, self._grow = table, view, grow
+    def __init__(self, table: NDArray, view: View, grow: Grow, like: "Matrix | None" = None) -> None:
+        self._table, self._view, self._grow, self._like = table, view, grow, like
         self.record = Record(table)
         """What to hand to a compiled function."""
 
@@ -96,7 +97,8 @@ class Matrix:
         first analysis."""
         if self.dense or not self.record["ready"]:
             return _NO_PIVOTS, _NO_PIVOTS
-        return self._at("perm_r", self.n).copy(), np.argsort(self._at("order", self.n))
+        ordered = self if self.record["ordered"] or self._like is None else self._like
+        return self._at("perm_r", self.n).copy(), np.argsort(ordered._at("order", self.n))
 
     def analyze(self, values: Floats) -> None:
         """Choose pivots that fit the source array `values`, and factor with them.

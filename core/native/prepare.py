@@ -20,6 +20,8 @@ from .errors import NativeError
 
 POINTS = 32
 """Times at which the rehearsal stops."""
+PLACES = 3
+"""For structures: the present one, the one to come back to, and one to build."""
 ROOMS = 2
 """How much more room there is than was needed."""
 
@@ -101,6 +103,7 @@ def _make_room(sim: Any) -> None:
     workspace.give_room()
     # the place of the present structure stayed as it was: it gets its room once another is in use
     workspace.build_again()
+    workspace.keep_slots(PLACES)
     slots.needs[:] = kept
     workspace.give_room()
 

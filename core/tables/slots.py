@@ -131,6 +131,13 @@ class Slots:
         """The place whose structure has its record at `address`."""
         return next(slot for slot in self.all if slot.address == address)
 
+    def keep(self, count: int, present: int) -> None:
+        """Give up all places but so many, of which one is at the address `present`."""
+        self.all.sort(key=lambda slot: slot.address != present)
+        del self.all[count:]
+        self.addresses[:] = 0
+        self.addresses[: len(self.all)] = [slot.address for slot in self.all]
+
     def ask(self, times: float) -> None:
         """Need so many times what there is, in the largest of the places."""
         for slot in self.all:
@@ -232,7 +239,8 @@ class Structure:
         self.values, self.probe = (
             self.view(r[x], count, np.float64) for x, count in (("values", self.n_values), ("probe", self.m_act))
         )
-        self.kkt, self.kkt_query = (Matrix(slot.lus[k], self.view, grow) for k in (0, 1))
+        self.kkt = Matrix(slot.lus[0], self.view, grow)
+        self.kkt_query = Matrix(slot.lus[1], self.view, grow, self.kkt)
         self._latest: Partition | None = None
 
     def _whole(self, name: str, count: int) -> NDArray[np.int64]:

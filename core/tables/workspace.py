@@ -288,6 +288,11 @@ class Workspace:
         self.structure.slot.structure["built"] = 0
         self.engage_wanted()
 
+    def keep_slots(self, count: int) -> None:
+        """Have so few places for structures from now on, of which one is that of the present structure."""
+        self.slots.keep(count, self.record.word(_STRUCTURE))
+        self._building.set_size("n_slots", len(self.slots.all))
+
     def _see_structure(self) -> None:
         """Name the arrays of the structure that the record has now."""
         slot = self.slots.at(self.record.word(_STRUCTURE))
