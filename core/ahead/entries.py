@@ -95,9 +95,10 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
 def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     """Functions that Python calls, with the types of their arguments."""
     yield drive.drive, (_DR, _FLAG)
+    yield drive.locate_now, (_DR, _FLAG)
     for function in (
         drive.aim_now, drive.wake_now, drive.settle_pending, drive.pass_breakpoint, drive.begin_forces,
-        drive.unsettled_now, drive.open_now, drive.locate_now, mend.repair_now,
+        drive.unsettled_now, drive.open_now, mend.repair_now,
     ):  # fmt: skip
         yield function, (_DR,)
     for function in (exchange.exchange, exchange.tell, exchange.read):

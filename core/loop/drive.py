@@ -16,7 +16,7 @@ from ..events.settle import begin_pending_forces, go_on_behind, settle
 from ..events.unsettled import find_unsettled
 from ..location.asleep import wake_all
 from ..location.search import locate
-from ..methods.history import history_time
+from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
 from ..state.method_records import METHOD_TYPE
 from ..state.run_records import (
@@ -41,12 +41,15 @@ from ..state.run_records import (
     STATUS,
     STOP_TIME,
     TARGET_TIME,
+    TRIAL_STEP,
     UNLOCATED,
     WANTED,
+    call_find_events,
     call_run,
     call_settle,
+    call_trial,
 )
-from ..state.workspace_records import COUNTERS_SIZE, OK, STEPS, WORKSPACE_TYPE
+from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, STEPS, WORKSPACE_TYPE
 from .sliding import any_slides, may_have_jammed
 
 MANY = 6
@@ -195,6 +198,19 @@ def open_now(dr: Any) -> int:
 
 
 @compiled
-def locate_now(dr: Any) -> int:
-    """`locate`, for Python."""
-    return locate(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
+def locate_now(dr: Any, again: bool) -> int:
+    """`locate`, after `drive` has returned. `again`: the step of size TRIAL_STEP is made again first; UNLOCATED: it has
+    no event any more. With any other code than OK nothing is accepted, and the newest row is the current point."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    status, h = OK, vec(lc.clock, CLOCK_SIZE)[TRIAL_STEP]
+    if again:
+        recall(ws, ms, 0)
+        status = call_trial(dr.trial, ws, ms, lc, h)
+        if status == OK and not call_find_events(lc.find_events, ws, ms, lc, h, False):
+            status = UNLOCATED
+    if status == OK:
+        status = locate(dr, ws, ms, lc)
+    if status != OK:
+        recall(ws, ms, 0)
+        vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    return status

@@ -28,7 +28,7 @@ typedef struct {
 } Places;
 
 /* The functions that the C code calls: the first ones of the image's list. */
-enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, CALLED };
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, CALLED };
 
 typedef void (*Function)(void);
 

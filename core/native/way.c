@@ -18,10 +18,11 @@ static int64_t call(tlismni_run *run, int which, int64_t place) {
     return status == 0 ? result : RAISED;
 }
 
-static int64_t drive(tlismni_run *run, bool hold) {
+/* The same of a function of the record of `drive` and a flag. */
+static int64_t call_drive(tlismni_run *run, int which, bool flag) {
     int64_t result = 0;
     void *raised = NULL;
-    int32_t status = ((OfDrive)run->model->functions[DRIVE])(&result, &raised, run->own + run->model->places.drive, hold);
+    int32_t status = ((OfDrive)run->model->functions[which])(&result, &raised, run->own + run->model->places.drive, flag);
     return status == 0 ? result : RAISED;
 }
 
@@ -72,6 +73,21 @@ static tlismni_status repair(tlismni_run *run) {
     return status == SETTLED ? TLISMNI_OK : (tlismni_status)(status < RAISED ? SETTLING + status : status);
 }
 
+/* Locate in the last step the event that could not be located because a trial failed (`locating.py`). */
+static tlismni_status locate_again(tlismni_run *run) {
+    for (int attempt = 0; attempt < 3; attempt++) {
+        tlismni_status status = repair(run);
+        if (status != TLISMNI_OK) {
+            return status;
+        }
+        int64_t code = call_drive(run, LOCATE, true);
+        if (code == TLISMNI_OK || code == RAISED) {
+            return (tlismni_status)code;
+        }
+    }
+    return !run->model->numbers.fixed_step && shrink(run) ? TLISMNI_OK : UNLOCATED;
+}
+
 /* What has to be done after `drive` has returned `code`; DONE at the end of the way. */
 static tlismni_status after(tlismni_run *run, int64_t code, bool hold, double *repaired) {
     double computed = tlismni_computed(run);
@@ -96,6 +112,8 @@ static tlismni_status after(tlismni_run *run, int64_t code, bool hold, double *r
         return (tlismni_status)(SETTLING + WHOLES(run, counts)[STATUS]);
     case REPARTITION:
         return repair(run);
+    case UNLOCATED:
+        return locate_again(run);
     case REANALYZE:
     case SINGULAR:
     case INNER_DIVERGED:
@@ -134,7 +152,7 @@ static tlismni_status go_on(tlismni_run *run, int64_t code, bool hold, int64_t f
             return TOO_MANY_STEPS;
         }
         counts[BUDGET] = left < run->model->numbers.chunk ? left : run->model->numbers.chunk;
-        code = drive(run, hold);
+        code = call_drive(run, DRIVE, hold);
     }
 }
 

@@ -58,8 +58,8 @@ const char *tlismni_why(tlismni_status status) {
     case VIOLATED:
         return "the mechanism comes to a singular position, which only Python steps over as yet" WITH_PYTHON;
     case UNLOCATED:
-        return "the time of a contact event could not be located in the quick way, and other ways are Python's as "
-               "yet" WITH_PYTHON;
+        return "the time of a contact event could not be located, with new pivots and shorter steps either: use smaller "
+               "steps, or move the contact a little";
     case DUE:
         return "a force or a driver jumps at a given time, where only Python starts anew as yet" WITH_PYTHON;
     case JAM:

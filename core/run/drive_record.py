@@ -198,13 +198,14 @@ class Drive:
         aim_now(self._record.record)
 
     def locate(self, trial: int | None = None) -> int:
-        """End the step at the first event in it, as `location/search.locate` says. `trial`: address of what makes the
-        step again with another size, in place of the formula's own."""
+        """End the step at the first event in it, as `location/search.locate` says, and leave that pending. `trial`:
+        address of what has made the step and makes it again with other sizes; left out: the formula, which makes it
+        again at once."""
         own = int(self._record.table["trial"][0])
         if trial is not None:
             self._record.set_size("trial", trial)
         try:
-            return int(locate_now(self._record.record))
+            return int(locate_now(self._record.record, trial is None))
         finally:
             self._record.set_size("trial", own)
 

@@ -3,12 +3,8 @@
 from typing import TYPE_CHECKING
 
 from ..compiled.from_python import FromPython
-from ..location.watch import find_events
-from ..loop.loop import trial_step
-from ..methods.history import recall
 from ..repair.repair import repair
-from ..state.run_records import TRIAL_STEP
-from ..state.workspace_records import FACTOR_AGE, OK
+from ..state.workspace_records import OK
 
 if TYPE_CHECKING:
     from ..repair.passage import LongStep
@@ -23,16 +19,11 @@ def locate_again(sim: "Simulation") -> bool:
 
     False: it takes a shorter step; the newest row is the current point then.
     """
-    ws, ms, lc, h = sim.workspace.record, sim._method.record, sim._loop.record, float(sim.clock[TRIAL_STEP])
     for _ in range(ATTEMPTS):
         repair(sim)
-        if trial_step(ws, ms, lc, h) != OK or not find_events(ws, ms, lc, h, False):
-            break
         if sim.drive.locate() == OK:
             _take(sim)
             return True
-    recall(ws, ms, 0)
-    sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
     return False
 
 
