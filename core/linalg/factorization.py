@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..compiled.records import Record
+from ..compiled.records import words_of as words_of_record
 from .analyze import analyze, follow, lay_out_now, use_pivots, words_of
 from .check_pattern import LARGEST_INDEX, check_pattern
 from .errors import SingularMatrixError
@@ -23,6 +24,7 @@ Grow = Callable[[], None]
 # is faster, but at these sizes by a tenth of a microsecond only, and small models save the seconds in which numba
 # compiles the symbolic analysis on a first run.
 DENSE_LIMIT = 8
+_PLACES = words_of_record(LU)
 _NO_PIVOTS = np.empty(0, np.int64)
 
 
@@ -43,21 +45,29 @@ class Matrix:
 
     def __init__(self, table: NDArray, view: View, grow: Grow, like: "Matrix | None" = None) -> None:
         self._table, self._view, self._grow, self._like = table, view, grow, like
+        self._seen: dict[str, tuple[int, int, NDArray]] = {}
         self.record = Record(table)
         """What to hand to a compiled function."""
 
     def _at(self, field: str, count: int, dtype: type = np.int64) -> NDArray:
-        return self._view(self.record[field], count, dtype)
+        address = self._word(field)
+        seen = self._seen.get(field)
+        if seen is None or seen[0] != address or seen[1] != count:
+            seen = self._seen[field] = address, count, self._view(address, count, dtype)
+        return seen[2]
+
+    def _word(self, field: str) -> int:
+        return self.record.word(_PLACES[field])
 
     @property
     def n(self) -> int:
         """Size of the matrix."""
-        return self.record["n"]
+        return self._word("n")
 
     @property
     def dense(self) -> bool:
         """Whether it is factored densely."""
-        return self.record["kind"] == DENSE
+        return self._word("kind") == DENSE
 
     @property
     def kind(self) -> str:
@@ -74,8 +84,8 @@ class Matrix:
         """The numeric factors and the limits on the growth of L as one array, to be copied out and back."""
         if self.dense:
             return self._at("values", self.n * (self.n + 1), np.float64)
-        ready = self.record["ready"]
-        return self._at("values", self.record["nl"] + self.record["nu"] + 2 * self.n if ready else 0, np.float64)
+        size = self._word("nl") + self._word("nu") + 2 * self.n if self._word("ready") else 0
+        return self._at("values", size, np.float64)
 
     @property
     def pivots(self) -> Ints:
@@ -95,9 +105,9 @@ class Matrix:
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense, or before the
         first analysis."""
-        if self.dense or not self.record["ready"]:
+        if self.dense or not self._word("ready"):
             return _NO_PIVOTS, _NO_PIVOTS
-        ordered = self if self.record["ordered"] or self._like is None else self._like
+        ordered = self if self._word("ordered") or self._like is None else self._like
         return self._at("perm_r", self.n).copy(), np.argsort(ordered._at("order", self.n))
 
     def analyze(self, values: Floats) -> None:

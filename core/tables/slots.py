@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.image import Take, twin
-from ..compiled.records import Record
+from ..compiled.records import Record, words_of
 from ..linalg import LU, Matrix
 from ..linalg.memory import Scratch
 from ..linalg.record import DENSE, IN_INDEX, INDEX, SCRATCH, VALUES
@@ -29,6 +29,7 @@ _STAYS = (
     "functions", "scratch", "needs", "program_limit", "index", "index_room", "values", "room",
 )  # fmt: skip
 """Fields of the records that are the place's own."""
+_READY, _SERIAL = words_of(PARTITION)["ready"], words_of(PARTITION)["serial"]
 
 
 class Slot:
@@ -241,6 +242,7 @@ class Structure:
         )
         self.kkt = Matrix(slot.lus[0], self.view, grow)
         self.kkt_query = Matrix(slot.lus[1], self.view, grow, self.kkt)
+        self._partition = slot.partition.view(np.int64)
         self._latest: Partition | None = None
 
     def _whole(self, name: str, count: int) -> NDArray[np.int64]:
@@ -264,10 +266,10 @@ class Structure:
     @property
     def present(self) -> Partition | None:
         """The present partition."""
-        table = self.slot.partition
-        if not table["ready"][0]:
+        words = self._partition
+        if not words.item(_READY):
             return None
-        if self._latest is None or self._latest.serial != table["serial"][0]:
+        if self._latest is None or self._latest.serial != words.item(_SERIAL):
             self._latest = Partition(self)
         return self._latest
 
