@@ -129,6 +129,7 @@ class Workspace:
         arrays["left_out"] = np.zeros(m_ext, dtype=np.int64)
         self._building = self._make_building(arrays)
         self._dropped_before: dict[frozenset[int], int] = {frozenset(): 0}
+        self._views: dict[int, Structure] = {}
         self.dropped: frozenset[int] = frozenset()
         self.arrays = arrays
         self._batches = [self._batch(k) for k in range(len(a.batches))]
@@ -184,7 +185,7 @@ class Workspace:
         new._building = self._building.moved(take)
         new.arrays = {**new._record.arrays, **{name: take(self.arrays[name]) for name in _OTHERS}}
         new.slots = self.slots.moved(take, self.structure.slot.address)
-        new._dropped_before = dict(self._dropped_before)
+        new._dropped_before, new._views = dict(self._dropped_before), {}
         new._see_structure()
         return new
 
@@ -296,7 +297,10 @@ class Workspace:
     def _see_structure(self) -> None:
         """Name the arrays of the structure that the record has now."""
         slot = self.slots.at(self.record.word(_STRUCTURE))
-        structure = self.structure = Structure(slot, self.give_room, self._shapes)
+        seen = self._views.get(slot.address)
+        if seen is None or seen.serial != slot.record.word(_SERIAL):
+            seen = self._views[slot.address] = Structure(slot, self.give_room, self._shapes)
+        structure = self.structure = seen
         codes = structure.view(structure.record["codes"], len(self.assembly.contacts), np.int64)
         self.key = key_of(codes)
         named = {name: getattr(structure, name) for name in _OF_STRUCTURE}
