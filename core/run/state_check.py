@@ -44,7 +44,7 @@ _SETTINGS = (MAX_STEP, FIXED_STEP, GROWTH, HOLD, EAGER, B1, B2, A2)
 _NOT_NEGATIVE = (HELD, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE)
 _LARGEST_COUNT = 2**53
 _HUGE = 1e300
-_SLIDES = (STICKS, IDLE, ALONG, 1.0, -1.0)
+_SLIDES = (STICKS, IDLE, 1.0, -1.0)
 
 
 def check_state(sim: "Simulation", state: State, own: State) -> None:
@@ -181,7 +181,9 @@ def _check_factorizations(arrays: dict[str, NDArray[Any]], sizes: dict[str, int]
 def _check_memory(sim: "Simulation", state: State) -> None:
     memory = state.arrays["memory"][: len(sim.assembly.contacts)]
     _need("memory", np.isin(memory[:, MODE], list(MODE_NAMES)).all(), f"has modes {memory[:, MODE].tolist()}")
-    _need("memory", np.isin(memory[:, SLIDE], _SLIDES).all(), f"has ways of sliding {memory[:, SLIDE].tolist()}")
+    in_space = np.array([contact.tangents == 2 for contact in sim.assembly.contacts], dtype=bool)
+    known = np.isin(memory[:, SLIDE], _SLIDES) | (in_space & (memory[:, SLIDE] == ALONG))
+    _need("memory", bool(known.all()), f"has ways of sliding {memory[:, SLIDE].tolist()}")
     closed = set(np.flatnonzero(memory[:, MODE] == CLOSED).tolist())
     _need("closed", closed == set(state.facts["closed"]), f"is not what the modes say: {sorted(closed)}")
 

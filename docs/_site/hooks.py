@@ -14,7 +14,7 @@ PACKAGES = ("core", "models", "viewer", "fmu_wrapper", "validation", "cli")
 LANGUAGES = {".toml": "toml", ".c": "c", ".py": "python"}
 
 
-def on_config(config: Any) -> Any:
+def _as_package() -> None:
     """The folders as the package that they are installed as, for mkdocstrings, which reads files."""
     home = ROOT / "build" / "docs" / "tlismni"
     home.mkdir(parents=True, exist_ok=True)
@@ -27,7 +27,9 @@ def on_config(config: Any) -> Any:
                 import shutil
 
                 shutil.copytree(ROOT / name, home / name)
-    return config
+
+
+_as_package()  # now: when hooks are called, mkdocstrings has looked which folders there are
 
 
 def on_files(files: Files, config: Any) -> Files:

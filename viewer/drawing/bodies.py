@@ -58,7 +58,12 @@ def draw_body(drawing: Drawing, places: Places, body: BodyElement) -> Label:
         return _flexible(drawing, places, body)
     if isinstance(body, SpatialFrame):
         line, centre = places.star(body), places.frame(body.name)[0]
-        drawing.shapes += [Path(line, INK, width=LINK + 0.9), Path(line, STEEL, width=LINK)]
+        balls = [sphere for sphere in places.spheres() if sphere.marker.body == body.name]
+        drawing.shapes += [Circle(places.at(ball.marker), ball.radius, INK, STEEL, 0.5) for ball in balls]
+        if len(line) > 1:
+            drawing.shapes += [Path(line, INK, width=LINK + 0.9), Path(line, STEEL, width=LINK)]
+        elif not balls:
+            drawing.shapes.append(Circle(centre, 2.0 * u, INK, STEEL, 0.5))
         symbols.centre_of_mass(drawing, centre)
         return Label((centre[0] + 2.5 * u, centre[1] + 3.5 * u), body.name)
     return Label(places.frame(body.name)[0], body.name)

@@ -7,6 +7,7 @@ from ...core.description import Model
 from ...core.elements import BodyElement, FlexibleBody, Gear2D, PlanarFrame, PointMass2D, SpatialFrame
 from ...core.elements.spatial_body import start_of_marker
 from ...core.model.markers import Marker, Marker2D, Marker3D
+from ...core.shapes.contact3d import Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .shapes import Point, bounds, turned
 from .view import View, star
 
@@ -60,6 +61,16 @@ class Places:
         ends = [Marker3D(body=body.name, point=(x, y, z)) for x, y, z in star(self.model, body).tolist()]
         return [self.at(marker) for marker in ends]
 
+    def spheres(self) -> list[Sphere3D]:
+        """The balls that bodies in space have for their contacts, each once."""
+        found: list[Sphere3D] = []
+        for contact in self.model.contacts:
+            if isinstance(contact, SphereOnHalfSpace3D):
+                found.append(contact.sphere)
+            elif isinstance(contact, SphereOnSphere3D):
+                found += [contact.a, contact.b]
+        return [ball for k, ball in enumerate(found) if ball.radius > 0.0 and ball not in found[:k]]
+
     def axis(self, body: FlexibleBody) -> list[Point]:
         """Where the points start that a flexible body is drawn by."""
         return [self._point(body, point) for point in body.drawn_points()]
@@ -88,7 +99,8 @@ class Places:
         for element in (*self.model.joints, *self.model.forces, *self.model.contacts):
             for marker in element.markers():
                 yield self.at(marker)
-        circles = [(disk.marker, disk.radius) for contact in self.model.contacts for disk in contact.disks()]
+        circles: list[tuple[Marker, float]] = [(ball.marker, ball.radius) for ball in self.spheres()]
+        circles += [(disk.marker, disk.radius) for contact in self.model.contacts for disk in contact.disks()]
         for joint in self.model.joints:
             if isinstance(joint, Gear2D):
                 circles += [(joint.a, joint.radius_a), (joint.b, joint.radius_b)]
