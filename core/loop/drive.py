@@ -45,6 +45,7 @@ from ..state.run_records import (
     UNLOCATED,
     WANTED,
     call_find_events,
+    call_locate,
     call_run,
     call_settle,
     call_trial,
@@ -130,7 +131,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
             continue
         if code != EVENT:
             return code
-        if locate(dr, ws, ms, lc) != OK:
+        if call_locate(dr.locate, dr, False) != OK:
             return UNLOCATED
 
 

@@ -18,7 +18,7 @@ from ..linalg.row_pivoting import FEW_ENTRIES, make_elimination_ready
 from ..linalg.solve import factor, functions_of, solve
 from ..location.dense_output import interpolate, query
 from ..location.watch import find_events, friction_margin, remember
-from ..loop.drive import aim_now, drive, locate_now, settle_pending
+from ..loop.drive import aim_now, drive, settle_pending
 from ..loop.loop import accept, set_weights_at, trial_step, violates_redundant
 from ..loop.sample import write_sample
 from ..methods.history import recall, restart
@@ -91,7 +91,6 @@ def _compile_called() -> None:
 def _compile_for_contacts(sparse: bool, many_entries: bool) -> None:
     friction_margin.compile((_WORKSPACE, _WHOLE))
     settle_pending.compile((DRIVE_TYPE,))
-    locate_now.compile((DRIVE_TYPE, types.boolean))
     # its record holds the addresses of all that it calls
     Cones(1)
     solve_cones.compile((CONES_TYPE,))

@@ -95,7 +95,7 @@ DRIVE = np.dtype(
         (name, np.int64)
         for name in (
             "workspace", "method", "loop", "instant",  # addresses of the records
-            "run", "trial", "accept", "write_sample", "accelerations", "settle",  # addresses of functions
+            "run", "trial", "accept", "write_sample", "accelerations", "settle", "locate",  # addresses of functions
             "goals",                                  # (GOALS_SIZE,) float64: where to go
             "counts",                                 # (COUNTS_SIZE,) int64
             "guard",                                  # (GUARD_SIZE,) float64: of `Progress`
@@ -121,6 +121,8 @@ DRIVE = np.dtype(
 DRIVE_TYPE = types.from_dtype(DRIVE)
 SETTLE_SIGNATURE = types.int64(DRIVE_TYPE)
 call_settle = caller(SETTLE_SIGNATURE)
+LOCATE_SIGNATURE = types.int64(DRIVE_TYPE, types.boolean)
+call_locate = caller(LOCATE_SIGNATURE)
 
 # columns of `goals`, s
 GOAL, LAST_STOP, HANDLED_AT = range(3)
