@@ -1,13 +1,12 @@
-"""Flexible bodies: rods as one GenericODE2 object, cables as ANCF elements, and their material points."""
+"""Flexible bodies without ANCF elements: rods as one GenericODE2 object."""
 
 import numpy as np
 from scipy.sparse import diags_array
 
-from ...core.elements import AxialRod, Cable2D, FloatingBeam2D, MaterialPoint2D, ReducedBody2D
-from ...core.model.base import in_space
+from ...core.elements import AxialRod, FloatingBeam2D, ReducedBody2D
 from ..errors import NotTranslatable
 from .bodies import node_columns
-from .registry import BodyItems, Build, Column, no_equal, translates
+from .registry import BodyItems, Build, no_equal, translates
 
 no_equal(
     "a Cable2D of the same section: exudyn has the ANCF element, and FFRF bodies only from three-dimensional "
@@ -54,72 +53,3 @@ def axial_rod(record: AxialRod, build: Build) -> None:
     build.bodies[record.name] = BodyItems(node, item, False, reference=tuple(q0))
     build.flexible = True
     node_columns(record, build, (node,), q0)
-
-
-@translates(Cable2D)
-def cable(record: Cable2D, build: Build) -> None:
-    """NodePoint2DSlope1 and ObjectANCFCable2D; the reference is the shape at the start."""
-    places, length = record.start_shape(), record.length / record.elements
-    _, v0 = record.initial_state()
-    nodes = tuple(
-        build.add(
-            "NodePoint2DSlope1", referenceCoordinates=place.tolist(), initialCoordinates=[0.0] * 4,
-            initialVelocities=list(v0[4 * k : 4 * k + 4]),
-        )
-        for k, place in enumerate(places)
-    )  # fmt: skip
-    elements = []
-    for k in range(record.elements):
-        element = build.add(
-            "ObjectANCFCable2D",
-            length=length,
-            massPerLength=record.mass_per_length,
-            bendingStiffness=record.bending_stiffness,
-            axialStiffness=record.axial_stiffness,
-            bendingDamping=record.bending_damping,
-            axialDamping=record.axial_damping,
-            referenceAxialStrain=record.reference_strain,
-            referenceCurvature=record.reference_curvature,
-            strainIsRelativeToReference=float(record.relaxed == "start"),
-            useReducedOrderIntegration=int(record.integration == "reduced"),
-            nodeNumbers=list(nodes[k : k + 2]),
-        )
-        if any(build.model.gravity):
-            marker = build.add("MarkerBodyMass", bodyNumber=element)
-            build.add("LoadMassProportional", markerNumber=marker, loadVector=[*in_space(build.model.gravity)])
-        elements.append(element)
-    reference = tuple(float(x) for x in places.ravel())
-    build.bodies[record.name] = BodyItems(
-        nodes[0], elements[0], False, nodes, tuple(elements), coordinates_each=4, reference=reference
-    )
-    build.flexible = True
-    node_columns(record, build, nodes, reference)
-
-
-@translates(MaterialPoint2D)
-def material_point(record: MaterialPoint2D, build: Build) -> None:
-    """A place in a cable element, for markers and sensors: exudyn needs no body there."""
-    carrier = next(b for b in build.model.bodies if b.name == record.body)
-    if not isinstance(carrier, Cable2D):
-        raise NotTranslatable(
-            f"'{record.name}' is a point of '{record.body}', a {type(carrier).__name__}, whose points exudyn has no "
-            "markers for: take a coordinate of one of its nodes (CoordinateContact, CoordinateDriver, CoordinateLoad)"
-        )
-    e, xi = carrier.find(record.point[0])
-    items = build.bodies[record.body]
-    local = (xi * carrier.length / carrier.elements, record.point[1])
-    element = items.elements[e]
-    build.bodies[record.name] = BodyItems(items.nodes[e], element, True, items.nodes[e : e + 2], (element,), 4, local)
-    if not build.sensors:
-        return
-    for output, names in (
-        ("Position", ("x", "y")),
-        ("Velocity", ("vx", "vy")),
-        ("Acceleration", ("ax", "ay")),
-        ("Rotation", ("angle",)),
-        ("AngularVelocity", ("", "", "angular_velocity")),
-    ):
-        sensor = build.body_sensor(element, local, output)
-        for k, name in enumerate(names):
-            if name:
-                build.columns.append(Column(f"{record.name}.{name}", sensor, k))
