@@ -205,6 +205,9 @@ PUNCTUAL = 1e-9
 
 # ---- what a model is given ------------------------------------------------------------------------------------------
 
+AT_ORIGIN = 1e-9
+"""Of the longest part: points that are no farther from the origin say nothing of the mechanism's size. A body on a
+circle about the origin is not at 0 but for the rounding of a cosine."""
 SYMMETRY = 1e-12
 """Of the largest entry: by so much entries of a symmetric matrix may differ from their mirror images."""
 DEFINITE = 1e-12

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..core.elements import (
     Belt2D,
+    PIDController2D,
     Rack2D,
     RelativeMotor2D,
     Servo2D,
@@ -29,7 +30,7 @@ TURNS, SPIRAL = 2.5, 0.035
 
 
 @place.register
-def _(element: Servo2D | RelativeMotor2D, stage: Stage) -> None:
+def _(element: Servo2D | PIDController2D | RelativeMotor2D, stage: Stage) -> None:
     """A cylinder between its ends; a ring about the joint that it turns."""
     if element.measure == "distance":
         stretched(stage, element.name, "damper", element.a, element.b)

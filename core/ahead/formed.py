@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from ..elements import relative_motor2d, scalar_force2d, scalar_joint2d, servo2d
+from ..elements import pid_controller2d, relative_motor2d, scalar_force2d, scalar_joint2d, servo2d
 from ..elements.base import Element, Form
 from ..elements.belt2d import Belt2D
 from ..elements.distance2d import Distance2D
@@ -11,6 +11,7 @@ from ..elements.formula2d import form_name
 from ..elements.gear2d import Gear2D
 from ..elements.joint_friction2d import RevoluteFriction2D, SlideFriction2D
 from ..elements.measures2d import MEASURES
+from ..elements.pid_controller2d import PIDController2D
 from ..elements.rack2d import Rack2D
 from ..elements.relative_motor2d import RelativeMotor2D
 from ..elements.scalar_force2d import ScalarForce2D
@@ -45,6 +46,8 @@ def _elements() -> Iterator[Element]:
     for measure in ("angle", "slide", "distance"):
         yield RelativeMotor2D(name=measure, **ends, motion=NOTHING, measure=measure)
         yield Servo2D(name=measure, **ends, target=NOTHING, gain=1.0, measure=measure)
+        for sensed in ("angle", "slide", "distance"):
+            yield PIDController2D(name=measure, **ends, target=NOTHING, gain=1.0, measure=measure, sensed=sensed)
     hard, soft = NewtonImpact(restitution=0.0), KelvinVoigt(stiffness=1.0, damping=0.0)
     yield Rope2D(name="rope", **ends, length=1.0, law=hard)
     yield AngleStop2D(name="stop", **ends, limit=1.0, law=hard)
@@ -63,6 +66,8 @@ def _key(element: Any) -> tuple[str, tuple[Callable[..., Any], ...]]:
         return scalar_force2d.KIND, element.formula.formulas
     if isinstance(element, RelativeMotor2D):
         return relative_motor2d.KIND, (MEASURES[element.measure],)
+    if isinstance(element, PIDController2D):
+        return pid_controller2d.KIND, element.formulas()
     if isinstance(element, Servo2D):
         return servo2d.KIND, (MEASURES[element.measure],)
     if isinstance(element, ScalarContact2D) and element.kind is not None:

@@ -49,6 +49,7 @@ from .linear_system import LinearSystem
 from .material_point2d import MaterialPoint2D
 from .material_point3d import MaterialPoint3D
 from .moving_frame2d import MovingFrame2D
+from .pid_controller2d import PIDController2D
 from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
 from .rack2d import Rack2D
@@ -124,6 +125,7 @@ FORCES = (
     SlideFriction2D,
     Bushing2D,
     Servo2D,
+    PIDController2D,
     AppliedForce2D,
     AppliedTorque2D,
     CoordinateLoad,
@@ -185,6 +187,7 @@ __all__ = [
     "MaterialPoint2D",
     "MaterialPoint3D",
     "MovingFrame2D",
+    "PIDController2D",
     "Planar3D",
     "PlanarBody",
     "PlanarFrame",

@@ -135,7 +135,7 @@ def add_product(
         x, y = by_rate * hessian[k] * v[coord[i]], by_rate * hessian[k] * v[coord[j]]
         if i == j:
             x += by_value * gradient[j]
-        for p in range(len(gradient)):
+        for p in range(len(left)):
             values[slot[p, j]] += left[p] * x
             if i != j:
                 values[slot[p, i]] += left[p] * y

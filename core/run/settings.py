@@ -129,10 +129,10 @@ def set_control(
     of the model's time, 1/s."""
     control, n = arrays["control"], assembly.n
     # a tolerance as large as what it is for would let all pass
-    size_q, size_v = assembly.coordinate_scale, SPEEDS * assembly.coordinate_scale * rate
     internal = assembly.is_internal
-    # the state is the velocity of such a coordinate, and a deflection: a length
-    size_v = np.where(internal, assembly.length, size_v)
+    # the state is the velocity of such a coordinate, and a length
+    size_q = np.where(internal, assembly.length / rate, assembly.coordinate_scale)
+    size_v = np.where(internal, assembly.length, SPEEDS * assembly.coordinate_scale * rate)
     fixed = settings.step is not None
     if fixed:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1

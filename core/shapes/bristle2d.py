@@ -11,29 +11,11 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..elements.geometry2d import along, levels
+from ..elements.geometry2d import add_product, along, levels
 from ..laws.friction.lugre import lugre_formula
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
 from .normal2d import act, evaluate_law
 from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
-
-
-@internal
-def _add_row(
-    values: Any, slot: Any, gradient: Any, hessian: Any, v: Any, coord: Any, by_value: float, by_rate: float
-) -> None:
-    """values[slot[j]] += (by_value G + by_rate H v)_j."""
-    i, j = 0, 0
-    for k in range(len(hessian)):
-        values[slot[j]] += by_rate * hessian[k] * v[coord[i]]
-        if i == j:
-            values[slot[j]] += by_value * gradient[j]
-        else:
-            values[slot[i]] += by_rate * hessian[k] * v[coord[j]]
-        j += 1
-        if j == len(gradient):
-            i += 1
-            j = i
 
 
 @internal
@@ -77,9 +59,10 @@ def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: An
         for i in range(len(gradient)):
             values[slot[i, w]] -= c_v * f_z * gradient[i]
         values[slot[w, w]] -= c_v * zd_z
-        _add_row(values, slot[w], gradient, hessian, v, coord, -c_v * zd_v, -c_q * zd_v)
+        own, one = slot[w : w + 1], (1.0,)
+        add_product(values, own, one, gradient, hessian, v, coord, -c_v * zd_v, -c_q * zd_v)
         by_gap, by_gap_rate = zd_n * (c_q * normal_d + c_v * normal_dd), zd_n * c_q * normal_dd
-        _add_row(values, slot[w], g_gradient, g_hessian, v, coord, by_gap, by_gap_rate)
+        add_product(values, own, one, g_gradient, g_hessian, v, coord, by_gap, by_gap_rate)
     return force, f_v, zd_v
 
 

@@ -74,7 +74,7 @@ def _diagonals(ws: Any, c_q: float, out: Any) -> None:
 @compiled
 def measure_motion(ws: Any, scale: Any, v: Any, later: Any, m_joints: int, mass: Any, found: Any) -> None:
     """Rates, works, masses and stiffness (MEASURED,) at the current point, now and `later` (s), at rest and with the
-    velocities v (n,); `mass` (n,) is overwritten."""
+    velocities v (n,); coordinates with `scale` 0 tell nothing. `mass` (n,) is overwritten."""
     n, clock, reach = ws.n, vec(ws.t, 1), vec(ws.level_scale, ws.n)
     q_now, v_now, r = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.r, ws.n_ext)
     phid, phidd, sizes = vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext), vec(ws.row_scale, ws.m_ext)
@@ -97,7 +97,7 @@ def measure_motion(ws: Any, scale: Any, v: Any, later: Any, m_joints: int, mass:
                 evaluate_residuals(ws)
             push, way, bend, slip = 0.0, 0.0, 0.0, 0.0
             for i in range(n):
-                if mass[i] > 0.0:
+                if mass[i] > 0.0 and scale[i] > 0.0:
                     push = _more(push, abs(r[i]) / (mass[i] * reach[i]))
                     way = _more(way, abs(r[i]) * scale[i])
             for row in range(m_joints):
@@ -114,7 +114,7 @@ def measure_motion(ws: Any, scale: Any, v: Any, later: Any, m_joints: int, mass:
     stiffest, heaviest, kinetic = 0.0, 0.0, 0.0
     for i in range(n):
         stiff = abs(stiffness[i] - mass[i])
-        if mass[i] > 0.0 and stiff > NO_STIFFNESS * mass[i] and math.isfinite(stiff):
+        if mass[i] > 0.0 and scale[i] > 0.0 and stiff > NO_STIFFNESS * mass[i] and math.isfinite(stiff):
             stiffest = _more(stiffest, stiff / mass[i])
         heaviest = _more(heaviest, mass[i] * (scale[i] * scale[i]))
         # each mass with its own speed: a heavy one need not move as fast as the fastest

@@ -7,6 +7,7 @@ from ..model.base import Vector3, in_space
 from ..model.markers import GROUND, Marker, Marker2D
 from ..model.motion import InputMotion
 from ..model.signals import InputSignal, Signal
+from ..rounding import AT_ORIGIN
 from .parts import Parts
 
 AT_REST = 1
@@ -130,4 +131,5 @@ def _length(model: Parts) -> float:
     points = [point for body in model.bodies for point in body.extent()]
     points += [point for e in model.elements() for point in e.reach()]
     size = max((abs(x) for point in points for x in point), default=0.0)
-    return size or max((x for e in model.elements() for x in e.lengths()), default=0.0) or 1.0
+    longest = max((x for e in model.elements() for x in e.lengths()), default=0.0)
+    return (size if size > AT_ORIGIN * longest else longest) or 1.0

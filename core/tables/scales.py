@@ -96,7 +96,8 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float, float]:
     assembly, found = workspace.assembly, np.zeros(MEASURED)
     later = np.array([0.0, *_later_times(workspace, float(workspace.arrays["t"][0]))])
     mass = np.zeros(assembly.n)
-    scale, v0 = assembly.coordinate_scale, assembly.v0
+    # the rate of an internal state is no acceleration, its unit mass no mass
+    scale, v0 = np.where(assembly.is_internal, 0.0, assembly.coordinate_scale), assembly.v0
     measure_motion(workspace.record, scale, v0, later, assembly.m_joints, mass, found)
     square, work, heaviest, stiffest = found.tolist()
     # all at rest without loads: what vibrates gives the time

@@ -8,6 +8,7 @@ from tlismni.core import (
     KelvinVoigt,
     KnifeEdge2D,
     NewtonImpact,
+    PIDController2D,
     Rack2D,
     RelationTerm,
     RelativeMotor2D,
@@ -71,6 +72,23 @@ CASES = {
     },
     "servo that saturates": {
         "forces": [Servo2D(name="f", **ENDS, target=SINE, measure="distance", gain=2.0, rate_gain=0.7, largest=0.5)]
+    },
+    **{
+        f"controller of {driven} by {sensed}": {
+            "forces": [
+                PIDController2D(
+                    name="f", **ENDS, target=SINE, measure=driven, sensor_a=RIGHT, sensor_b=on("p"), sensed=sensed,
+                    gain=2.0, integral_gain=0.9, rate_gain=0.7, largest=largest,
+                )
+            ]
+        }
+        for driven, sensed, largest in (
+            ("angle", "slide", None), ("slide", "angle", 6.0), ("distance", "distance", 6.0),
+            ("slide", "distance", None),
+        )
+    },
+    "controller of what it drives": {
+        "forces": [PIDController2D(name="f", **ENDS, target=SINE, gain=-2.0, integral_gain=-0.9, measure="slide")]
     },
     "rate servo": {"forces": [Servo2D(name="f", **ENDS, target=SINE, rate_gain=0.7, of_rate=True)]},
     "taut rope": {"contacts": [Rope2D(name="c", **ENDS, length=1.2, law=HARD)], "mode": CLOSED},

@@ -13,13 +13,18 @@ from tlismni.core import (
     Distance2D,
     Flores,
     HalfPlane2D,
+    HalfSpace3D,
     Marker2D,
+    Marker3D,
     Model,
     NewtonImpact,
     PointMass2D,
     Revolute2D,
     RigidBody2D,
+    RigidBody3D,
     Simulation,
+    Sphere3D,
+    SphereOnHalfSpace3D,
     SpringDamper2D,
     simulate,
 )
@@ -232,3 +237,22 @@ def test_partition_and_steps_do_not_depend_on_the_unit_of_length(scale):
     # one atol for lengths and angles cannot be scaled for both: that for the one and that for the other bracket the run
     loose, tight = (steps(scale, 1e-6 * f) for f in (max(scale, 1.0), min(scale, 1.0)))
     assert loose <= steps(1.0, 1e-6) <= tight
+
+
+@pytest.mark.parametrize("kind", ["plane", "space"])
+def test_rounding_of_a_place_is_no_size_of_the_model(kind):
+    """A ball that lies at the origin but for the rounding of a cosine is as large as it is."""
+    x = math.cos(0.5 * math.pi)
+    law = NewtonImpact(restitution=0.5)
+    if kind == "plane":
+        body = RigidBody2D(name="ball", mass=1.0, inertia=1.0, position=(x, 0.0))
+        disk = Disk2D(marker=Marker2D(body="ball"), radius=0.2)
+        touch = DiskOnHalfPlane2D(name="c", disk=disk, plane=HalfPlane2D(marker=Marker2D(point=(0.0, -x))), law=law)
+    else:
+        body = RigidBody3D(name="ball", mass=1.0, inertia=(1.0, 1.0, 1.0), position=(x, 0.0, 0.0))
+        ball = Sphere3D(marker=Marker3D(body="ball"), radius=0.2)
+        touch = SphereOnHalfSpace3D(
+            name="c", sphere=ball, plane=HalfSpace3D(marker=Marker3D(point=(0, 0, -x))), law=law
+        )
+    model = Model(gravity=(0.0, 0.0), bodies=[body], contacts=[touch])
+    assert model.assemble().length == 0.2

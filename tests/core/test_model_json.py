@@ -74,6 +74,7 @@ from tlismni.core import (
     MovingFrame2D,
     NewtonImpact,
     Parameter,
+    PIDController2D,
     Planar3D,
     PointMass2D,
     PointMass3D,
@@ -366,6 +367,10 @@ ELEMENTS["forces"] += [
     st.builds(
         Servo2D, **ENDS, target=signal, measure=MEASURES, gain=positive, rate_gain=positive, of_rate=st.just(False)
     ),
+    st.builds(
+        PIDController2D, **ENDS, target=signal, measure=MEASURES, gain=positive, integral_gain=positive,
+        rate_gain=number, sensor_a=marker, sensor_b=marker, sensed=MEASURES, largest=positive,
+    ),
 ]  # fmt: skip
 ELEMENTS["contacts"] += [
     st.builds(Rope2D, **ENDS, law=law, length=positive),
@@ -471,7 +476,8 @@ def test_the_list_of_elements_above_is_complete():
         "DiskOnDisk2D", "DiskOnSegment2D", "DiskOnLine2D", "CoordinateContact", "Cable2D", "MaterialPoint2D",
         "Clamp2D", "Gear2D", "AxialRod", "MovingFrame2D", "MarkerOutput2D", "ReducedBody2D", "FloatingBeam2D",
         "DiskOnCable2D", "Rack2D", "Belt2D", "RelativeMotor2D", "CoordinateRelation", "TorsionSpring2D",
-        "SlideSpring2D", "TableSpring2D", "RevoluteFriction2D", "SlideFriction2D", "Servo2D", "Rope2D", "AngleStop2D",
+        "SlideSpring2D", "TableSpring2D", "RevoluteFriction2D", "SlideFriction2D", "Servo2D", "PIDController2D",
+        "Rope2D", "AngleStop2D",
         "DiskOnBox2D", "KnifeEdge2D", *SPATIAL,
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
