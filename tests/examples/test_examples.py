@@ -256,6 +256,17 @@ def test_gears_with_play_strike_by_one_flank_and_then_by_the_other() -> None:
     assert {event.contact for event in f["result"].events if event.kind == "impact"} == {"front", "back"}
 
 
+def test_the_pole_is_struck_as_the_law_says_and_the_cart_brings_it_back() -> None:
+    f, e = figures("cart_pole"), example("cart_pole")
+    (blow,) = f["result"].events
+    assert blow.kind == "impact" and blow.separation_speed == pytest.approx(0.6 * blow.approach_speed, rel=1e-8)
+    # what moves cart and pole along the rail is no more than both controllers give
+    assert 10.0 < np.abs(f["force"]).max() <= 25.0 + 5.0 + 1e-6
+    assert np.degrees(np.abs(f["lean"]).max()) > 3.0
+    assert np.degrees(np.abs(f["lean"][-1])) < 0.1 and abs(f["result"]["cart.x"][-1]) < 0.3
+    assert f["balance"] < 1e-6 * e.G
+
+
 @pytest.mark.parametrize(
     "name", ["cam_follower", "cylinder_linkage", "disks_in_a_box", "flexible_slider_crank", "gear_backlash",
              "joint_limits", "pulled_block", "slack_rope"],
