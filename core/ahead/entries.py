@@ -21,6 +21,16 @@ from ..compiled import types
 from ..compiled.kernels import KERNEL_SIGNATURE
 from ..compiled.signatures import signature_text
 from ..cones import cones, directions, lcp
+from ..elements import (
+    distance3d,
+    dot1_3d,
+    dot2_3d,
+    joint_coordinates3d,
+    joint_load3d,
+    point3d,
+    rolling3d,
+    twist3d,
+)
 from ..events import instant
 from ..laws.base import LAW_SIGNATURE, ForceLaw
 from ..laws.friction.base import FRICTION_SIGNATURE, FrictionLaw
@@ -30,7 +40,7 @@ from ..linalg.solve import _no_solution, _not_analysed, factor, solve
 from ..location import dense_output, watch
 from ..loop import drive, loop, sample
 from ..methods import adams, history, order_selection, park
-from ..model import marker_channels2d
+from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..repair import mend
 from ..run import exchange
 from ..stage import accelerations, joints
@@ -76,7 +86,14 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     yield accelerations.solve_accelerations, run_records.ACCELERATIONS_SIGNATURE
     yield watch.find_events, run_records.FIND_EVENTS_SIGNATURE
     yield dense_output.query, exchange.QUERY_SIGNATURE
-    for part in instant.PARTS:
+    for kernel in (
+        marker_channels2d.marker_channels2d, marker_channels3d.marker_channels3d, angular_velocity.angular_velocity,
+        joint_coordinates3d.joint_angle, joint_coordinates3d.joint_position, joint_load3d.joint_load,
+        point3d.point_load, distance3d.separation_load, dot1_3d.dot1_load, dot2_3d.dot2_load, twist3d.twist_load,
+        rolling3d.rolling_load,
+    ):  # fmt: skip
+        yield kernel, derived.DERIVE_SIGNATURE
+    for part in (*instant.PARTS, *instant.IN_SPACE.values()):
         yield part, instant.PART_SIGNATURE
     for _, function, signature in instant._OTHERS:
         yield function, signature
@@ -103,7 +120,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     for function in (exchange.exchange, exchange.tell, exchange.read):
         yield function, (types.from_dtype(exchange.EXCHANGE),)
     yield dense_output.interpolate, (_WS, _MS, _REAL)
-    yield marker_channels2d.all_markers, (_MATRIX, types.Array(_WHOLE, 2, "C"), _MATRIX, _REALS, _BLOCKS)
+    yield derived.derive_rows, (_MATRIX, types.Array(_WHOLE, 2, "C"), _WHOLES, _REALS, _MATRIX)
     yield history.recall, (_WS, _MS, _WHOLE)
     yield history.restart, (_WS, _MS)
     yield watch.remember, (_WS, _LC)

@@ -10,9 +10,9 @@ from ..compiled.jit import inlined, internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.markers import GROUND, Marker3D
+from ..model.rotation3d import add_bend, constant, dot, four, onto, plus, times, turned, turning
 from ..model.signals import INPUT_SIZE, Constant, Signal, evaluate_signal
 from .base import BodyElement, ForceElement, Numbering, Row
-from .rotation3d import add_bend, constant, dot, four, onto, plus, times, turned, turning
 from .spatial_body import PointMass3D
 
 NOTHING = Constant(value=0.0)

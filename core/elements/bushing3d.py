@@ -15,10 +15,10 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.attitude import Vector4
+from ..model.rotation3d import body_axes, four
 from ..rounding import SYMMETRY
 from .base import Numbering, Row
 from .measure3d import columns_of, coordinates_of, place_of, product
-from .rotation3d import body_axes, four
 from .spring_damper3d import FULL, Pair3D
 
 Vector6 = tuple[float, float, float, float, float, float]

@@ -13,9 +13,9 @@ from ..compiled.views import imat, mat, vec
 from ..model.base import Name, NonNegative
 from ..model.channels import Channel
 from ..model.markers import Marker3D
+from ..model.rotation3d import add_bend, columns_at, constant, dot, onto, turns
 from .base import BodyElement, JointElement, Numbering, Row
 from .material_point3d import cable_named
-from .rotation3d import add_bend, columns_at, constant, dot, onto, turns
 
 SIZE, NODES = 19, 7
 """Coordinates: seven of the marker's body, then the twelve of the cable's element."""

@@ -16,9 +16,9 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..model.rotation3d import dot, plus, times
 from .cable_kernel import MASS_MATRIX, WEIGHT
 from .cable_shape import FIRST, SECOND, SHARE
-from .rotation3d import dot, plus, times
 
 NODAL = 12
 """Coordinates of an element: x, y, z, slope_x, slope_y, slope_z of its two nodes."""

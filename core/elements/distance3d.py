@@ -4,17 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..model.frame3d import FRAME, point_of, vector_of
 from ..model.markers import Marker3D
 from ..model.motion import evaluate_motion
+from ..model.rotation3d import add_bend, columns_at, constant, dot, less, onto, plus, three, turns
 from ..model.signals import INPUT_SIZE, Signal
 from .base import Form, Numbering
-from .primitive3d import SIZE, Floats, Motion3D, Primitive, account
-from .rotation3d import add_bend, columns_at, constant, dot, less, onto, plus, three, turns
+from .primitive3d import SIZE, Primitive, account
 
 
 @internal
@@ -72,11 +71,19 @@ def distance3d_kernel(job: int, t: float, b: Any) -> None:
                 values[slot_jt[i]] += slope
 
 
+@internal
+def separation_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    a, b = point_of(row, places, 0, vector_of(numbers, 0)), point_of(row, places, FRAME, vector_of(numbers, 3))
+    for k in range(3):
+        out[k] -= row[places[2 * FRAME]] * (b[k] - a[k])
+
+
 @dataclass(frozen=True)
 class Separation(Primitive):
     """The points of both markers are `length` apart; 1 row."""
 
     length: Signal
+    load: ClassVar[Any] = separation_load
     form: ClassVar[Form] = Form(
         distance3d_kernel,
         1,
@@ -92,7 +99,3 @@ class Separation(Primitive):
 
     def extra(self, numbering: Numbering) -> Sequence[int]:
         return (numbering.motion(self.length), account(numbering, self.length))
-
-    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
-        force = -multipliers * (motion.point_b - motion.point_a)
-        return force, np.zeros_like(force)

@@ -4,15 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..model.frame3d import FRAME, in_space, vector_of
 from ..model.markers import Marker3D
+from ..model.rotation3d import add_bend, columns_at, constant, cross, dot, onto, turns
 from .base import Form
-from .primitive3d import AXIS, PA, PB, RB, SIZE, Axis, Floats, Motion3D, Primitive, block
-from .rotation3d import add_bend, columns_at, constant, dot, onto, turns
+from .primitive3d import AXIS, PA, PB, RB, SIZE, Axis, Primitive, block
 
 
 @internal
@@ -59,6 +58,14 @@ ROTATIONS = (*block(PA, 4, PA, 4), *block(PB, 4, PB, 4), *block(PA, 4, PB, 4))
 BY_ROTATION = tuple((0, j) for j in (*range(PA, RB), *range(PB, SIZE)))
 
 
+@internal
+def dot1_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    a, b = in_space(row, places, 0, vector_of(numbers, 0)), in_space(row, places, FRAME, vector_of(numbers, 3))
+    torque = cross(a, b)
+    for k in range(3):
+        out[3 + k] += row[places[2 * FRAME]] * torque[k]
+
+
 @dataclass(frozen=True)
 class Dot1(Primitive):
     """An axis of marker a and one of marker b keep the cosine `value`; 1 row."""
@@ -66,11 +73,8 @@ class Dot1(Primitive):
     axis_a: Axis
     axis_b: Axis
     value: float = 0.0
+    load: ClassVar[Any] = dot1_load
     form: ClassVar[Form] = Form(dot1_3d_kernel, 1, ROTATIONS, BY_ROTATION)
 
     def parameters(self, a: Marker3D, b: Marker3D) -> Sequence[float]:
         return (*a.axes()[:, AXIS[self.axis_a]], *b.axes()[:, AXIS[self.axis_b]], self.value)
-
-    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
-        a, b = motion.axes_a[:, :, AXIS[self.axis_a]], motion.axes_b[:, :, AXIS[self.axis_b]]
-        return np.zeros_like(a), multipliers * np.cross(a, b)

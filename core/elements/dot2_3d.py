@@ -7,17 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..model.frame3d import FRAME, in_space, vector_of
 from ..model.markers import Marker3D
 from ..model.motion import evaluate_motion
+from ..model.rotation3d import add_bend, columns_at, constant, dot, less, onto, plus, three, turns
 from ..model.signals import INPUT_SIZE, Constant, Signal
 from .base import Form, Numbering
-from .primitive3d import AXIS, PA, PB, RA, RB, SIZE, Axis, Floats, Motion3D, Primitive, account, block
-from .rotation3d import add_bend, columns_at, constant, dot, less, onto, plus, three, turns
+from .primitive3d import AXIS, PA, PB, RA, RB, SIZE, Axis, Primitive, account, block
 
 
 @internal
@@ -92,12 +91,20 @@ def dot2_3d_kernel(job: int, t: float, b: Any) -> None:
 AT_POINT = Constant(value=0.0)
 
 
+@internal
+def dot2_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    axis = in_space(row, places, 0, vector_of(numbers, 0))
+    for k in range(3):
+        out[k] -= row[places[2 * FRAME]] * axis[k]
+
+
 @dataclass(frozen=True)
 class Dot2(Primitive):
     """The point of marker b is `distance` along an axis of marker a from its point; 1 row."""
 
     axis: Axis
     distance: Signal = AT_POINT
+    load: ClassVar[Any] = dot2_load
     form: ClassVar[Form] = Form(
         dot2_3d_kernel,
         1,
@@ -116,7 +123,3 @@ class Dot2(Primitive):
 
     def extra(self, numbering: Numbering) -> Sequence[int]:
         return (numbering.motion(self.distance), account(numbering, self.distance))
-
-    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
-        force = -multipliers * motion.axes_a[:, :, AXIS[self.axis]]
-        return force, np.zeros_like(force)

@@ -6,14 +6,15 @@ from typing import ClassVar
 import numpy as np
 
 from ..model.derived import Derived
-from ..model.marker_channels3d import Frame3D
+from ..model.frame3d import Frame3D
 from ..model.markers import GROUND, Marker3D
 from ..model.signals import Constant, Signal
 from .base import BodyElement, JointElement, Numbering, Part
+from .joint_coordinates3d import JointAngle, JointPosition
 from .joint_load3d import JointLoad
 from .primitive3d import AXIS, Axis, Primitive
 from .spatial_body import angle_between, start_of_marker
-from .turn3d import JointAngle, JointPosition, turn_part
+from .turn3d import turn_part
 
 NO_MIRROR = 0.5
 """Cosine of the angle between axes that must point the same way, below which a joint starts mirrored or askew."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..model.markers import Marker3D
+from ..model.rotation3d import bend, constant, dot, four, less, onto, plus, three, times, turned, turning
 from .base import Numbering
-from .rotation3d import bend, constant, dot, four, less, onto, plus, three, times, turned, turning
 
 COLUMNS = 26
 """Parameters of a pair of markers."""

@@ -3,15 +3,14 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..model.frame3d import FRAME
 from ..model.markers import Marker3D
+from ..model.rotation3d import add_bend, columns_at, constant, onto, turns
 from .base import Form
-from .primitive3d import PA, PB, RA, RB, SIZE, Floats, Motion3D, Primitive, block
-from .rotation3d import add_bend, columns_at, constant, onto, turns
+from .primitive3d import PA, PB, RA, RB, SIZE, Primitive, block
 
 
 @internal
@@ -53,9 +52,16 @@ def point3d_kernel(job: int, t: float, b: Any) -> None:
                         values[slot_jt[at + 3 + j]] += sign * columns[j][i]
 
 
+@internal
+def point_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    for k in range(3):
+        out[k] += row[places[2 * FRAME + k]]
+
+
 class Point(Primitive):
     """The points of both markers are one; 3 rows."""
 
+    load: ClassVar[Any] = point_load
     form: ClassVar[Form] = Form(
         point3d_kernel,
         3,
@@ -65,6 +71,3 @@ class Point(Primitive):
 
     def parameters(self, a: Marker3D, b: Marker3D) -> Sequence[float]:
         return (*a.point, *b.point)
-
-    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
-        return multipliers, np.zeros_like(multipliers)

@@ -4,11 +4,7 @@ The coordinates of a primitive are the fourteen of its markers' bodies: R_a, p_a
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import ClassVar, Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any, ClassVar, Literal
 
 from ..model.markers import Marker3D
 from ..model.signals import Constant, Signal
@@ -20,7 +16,6 @@ SIZE = 14
 
 Axis = Literal["x", "y", "z"]
 AXIS: dict[Axis, int] = {"x": 0, "y": 1, "z": 2}
-Floats = NDArray[np.float64]
 
 
 def block(i: int, rows: int, j: int, columns: int) -> list[tuple[int, int]]:
@@ -34,20 +29,14 @@ def account(numbering: Numbering, signal: Signal) -> int:
     return numbering.frame(Marker3D())[0] if isinstance(signal, Constant) else numbering.work("input")
 
 
-@dataclass(frozen=True)
-class Motion3D:
-    """Where both markers are, over N samples: of each its point (N, 3) and its axes (N, 3, 3) as columns."""
-
-    point_a: Floats
-    axes_a: Floats
-    point_b: Floats
-    axes_b: Floats
-
-
 class Primitive:
     """Base of the primitives."""
 
     form: ClassVar[Form]
+    load: ClassVar[Any]
+    """numba function of DERIVE_SIGNATURE: adds the force on body b at the point of its marker (N) and the torque (N m),
+    in the directions of space, to `out` (6,). Its places are those of both frames, `model/frame3d.FRAME` each, and of
+    the multipliers of its rows; its numbers are its `parameters`."""
 
     def parameters(self, a: Marker3D, b: Marker3D) -> Sequence[float]:
         """Those of its kernel behind both bodies' `rest`."""
@@ -66,8 +55,3 @@ class Primitive:
         rest = (numbering.at_rest(a)[3], numbering.at_rest(b)[3])
         coordinates = (*numbering.frame(a), *numbering.frame(b))
         return Part(self.form, (Row((*rest, *self.parameters(a, b)), coordinates, self.extra(numbering)),))
-
-    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
-        """Force on body b, at the point of its marker, and torque (N, 3 each), N and N m in the directions of space,
-        from the multipliers of its rows (N, rows)."""
-        raise NotImplementedError

@@ -9,6 +9,7 @@ The point that touches is at the centre + R u - r n, u = -w/|w|, w = n - sigma a
 the wheel along t_1, t_2, n.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -18,11 +19,25 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..model.frame3d import FRAME, in_space, vector_of
 from ..model.markers import Marker3D
+from ..model.rotation3d import (
+    add_bend,
+    columns_at,
+    constant,
+    cross,
+    dot,
+    four,
+    less,
+    onto,
+    plus,
+    space_rate,
+    three,
+    times,
+    turns,
+)
 from .base import Form
-from .primitive3d import PA, PB, RA, RB, SIZE, Floats, Motion3D, Primitive
-from .rotation3d import add_bend, columns_at, constant, cross, dot, four, less, onto, plus, three, times, turns
-from .turn3d import space_rate
+from .primitive3d import PA, PB, RA, RB, SIZE, Primitive
 
 
 @inlined
@@ -253,6 +268,24 @@ def _add_turning(values: Any, slot: Any, first: int, factor: float, y: Any) -> N
     values[slot[first + 3, first + 2]] += factor * y[0]
 
 
+@internal
+def rolling_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    n, x = in_space(row, places, 0, vector_of(numbers, 0)), in_space(row, places, 0, vector_of(numbers, 3))
+    y, axis = in_space(row, places, 0, vector_of(numbers, 6)), in_space(row, places, FRAME, vector_of(numbers, 15))
+    radius, rim_radius = numbers[18], numbers[19]
+    # from the centre to the point that touches
+    arm = times(-rim_radius, n)
+    if radius != 0.0:
+        w = less(n, times(dot(n, axis), axis))
+        arm = less(arm, times(radius / math.sqrt(dot(w, w)), w))
+    by_n, by_x, by_y = row[places[2 * FRAME]], row[places[2 * FRAME + 1]], row[places[2 * FRAME + 2]]
+    force = plus(times(by_n, n), plus(times(by_x, x), times(by_y, y)))
+    torque = cross(arm, force)
+    for k in range(3):
+        out[k] += force[k]
+        out[3 + k] += torque[k]
+
+
 @dataclass(frozen=True)
 class Rolling(Primitive):
     """A wheel whose centre is the point of marker b and whose axis is its z axis rolls on the xy plane of marker a, on
@@ -262,6 +295,7 @@ class Rolling(Primitive):
     """Of the circle about which the rim is rounded, m; 0: a sphere."""
     rim_radius: float
     """Of the rounding, m; 0: a sharp rim."""
+    load: ClassVar[Any] = rolling_load
     form: ClassVar[Form] = Form(
         rolling3d_kernel,
         3,
@@ -274,15 +308,3 @@ class Rolling(Primitive):
         axes = a.axes()
         plane = (*axes[:, 2], *axes[:, 0], *axes[:, 1], *a.point)
         return (*plane, *b.point, *b.axes()[:, 2], self.radius, self.rim_radius)
-
-    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
-        x, y, n = (motion.axes_a[:, :, k] for k in range(3))
-        force = multipliers[:, :1] * n + multipliers[:, 1:2] * x + multipliers[:, 2:] * y
-        return force, np.cross(self.arm(n, motion.axes_b[:, :, 2]), force)
-
-    def arm(self, n: Floats, axis: Floats) -> Floats:
-        """From the centre to the point that touches, (N, 3)."""
-        if self.radius == 0.0:
-            return -self.rim_radius * n
-        w = n - np.sum(n * axis, axis=1)[:, None] * axis
-        return -self.radius * w / np.linalg.norm(w, axis=1)[:, None] - self.rim_radius * n

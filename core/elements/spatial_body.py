@@ -21,10 +21,10 @@ from ..model.attitude import UPRIGHT, Attitude, EulerParameters, product, rotati
 from ..model.base import Positive, Vector3
 from ..model.derived import Derived
 from ..model.markers import GROUND, Marker, Marker3D
+from ..model.rotation3d import body_axes, body_rate, cross, dot, four, of_body_torque, plus, three, times
 from ..rounding import TRIANGLE
 from .base import BodyElement, Numbering, Row
 from .coordinate import Coordinate
-from .rotation3d import body_axes, body_rate, cross, dot, four, of_body_torque, plus, three, times
 
 X = Coordinate("x", "m", "vx", "ax")
 Y = Coordinate("y", "m", "vy", "ay")

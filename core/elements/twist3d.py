@@ -13,13 +13,14 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..model.frame3d import FRAME, in_space, vector_of
 from ..model.markers import Marker3D
 from ..model.motion import evaluate_motion
+from ..model.rotation3d import add_bend, columns_at, constant, cross, dot, onto, turns
 from ..model.signals import INPUT_SIZE, Constant, Signal
 from .base import Form, Numbering
 from .dot1_3d import BY_ROTATION, ROTATIONS
-from .primitive3d import AXIS, Axis, Floats, Motion3D, Primitive, account
-from .rotation3d import add_bend, columns_at, constant, dot, onto, turns
+from .primitive3d import AXIS, Axis, Primitive, account
 
 
 @internal
@@ -84,6 +85,19 @@ def twist3d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 1]] += power
 
 
+@internal
+def twist_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    a1, a2 = in_space(row, places, 0, vector_of(numbers, 0)), in_space(row, places, 0, vector_of(numbers, 3))
+    b1, b2 = in_space(row, places, FRAME, vector_of(numbers, 6)), in_space(row, places, FRAME, vector_of(numbers, 9))
+    s = c = 1.0
+    if numbers[12] != 0.0:
+        # where the angle is f, the axes themselves say its sine and cosine
+        s, c = dot(a2, b2), dot(a1, b1)
+    first, second = cross(a1, b1), cross(a2, b2)
+    for k in range(3):
+        out[3 + k] += row[places[2 * FRAME]] * (s * first[k] - c * second[k])
+
+
 @dataclass(frozen=True)
 class Twist(Primitive):
     """sin f (a_1 . b_1) = cos f (a_2 . b_2) of axes of markers a and b; without f, a_1 . b_1 = a_2 . b_2; 1 row."""
@@ -93,6 +107,7 @@ class Twist(Primitive):
     second: tuple[Axis, Axis]
     angle: Signal | None = None
     """f, rad."""
+    load: ClassVar[Any] = twist_load
     form: ClassVar[Form] = Form(twist3d_kernel, 1, ROTATIONS, BY_ROTATION)
 
     def signals(self) -> Sequence[Signal]:
@@ -107,14 +122,3 @@ class Twist(Primitive):
     def extra(self, numbering: Numbering) -> Sequence[int]:
         angle = self.angle or Constant(value=0.0)
         return (numbering.motion(angle), account(numbering, angle))
-
-    def load(self, motion: Motion3D, multipliers: Floats) -> tuple[Floats, Floats]:
-        (a1, b1), (a2, b2) = (
-            (motion.axes_a[:, :, AXIS[a]], motion.axes_b[:, :, AXIS[b]]) for a, b in (self.first, self.second)
-        )
-        s = c = np.ones((len(a1), 1))
-        if self.angle is not None:
-            # where the angle is f, the axes themselves say its sine and cosine
-            s, c = np.sum(a2 * b2, axis=1, keepdims=True), np.sum(a1 * b1, axis=1, keepdims=True)
-        torque = multipliers * (s * np.cross(a1, b1) - c * np.cross(a2, b2))
-        return np.zeros_like(torque), torque

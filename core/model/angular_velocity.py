@@ -6,18 +6,30 @@ w = 2 E p' and w' = 2 E p'' in space, with E = [-e, e0 I + e~]; in the body 2 G 
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..compiled.jit import internal
 from .channels import Channel
-from .derived import NOT_KNOWN, Columns
+from .derived import NOT_KNOWN, Derived, Places
+from .frame3d import four_of
+from .rotation3d import body_rate, space_rate
 
 
-class AngularVelocity:
+@internal
+def angular_velocity(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    p, pd, pdd = (
+        four_of(row, places, 0, 1.0), four_of(row, places, 4, 0.0), four_of(row, places, 8, 0.0)
+    )  # fmt: skip
+    of_space, growth, of_body = space_rate(p, pd), space_rate(p, pdd), body_rate(p, pd)
+    for i in range(3):
+        out[i], out[3 + i], out[6 + i] = 2.0 * of_space[i], 2.0 * growth[i], 2.0 * of_body[i]
+
+
+class AngularVelocity(Derived):
     """Angular velocity in space and in the body's axes (rad/s), angular acceleration in space (rad/s^2)."""
 
+    kernel = angular_velocity
+
     def __init__(self, name: str, index: Sequence[int]) -> None:
-        self._index = list(index)
+        self._index = tuple(index)
         self.channels = tuple(
             Channel(f"{name}.{what}_{axis}", unit, f"{text} of {name}, along {axis}{where}")
             for what, unit, text, where in (
@@ -29,13 +41,5 @@ class AngularVelocity:
         )
         self.rate_of = (3, 4, 5, *(NOT_KNOWN,) * 6)
 
-    def __call__(self, columns: Columns) -> NDArray[np.float64]:
-        """All channels (N, 9)."""
-        p, pd, pdd = (level[:, self._index].T for level in (columns.q, columns.v, columns.a))
-        return np.stack([*_doubled(p, pd, 1.0), *_doubled(p, pdd, 1.0), *_doubled(p, pd, -1.0)], axis=1)
-
-
-def _doubled(p: Any, x: Any, sign: float) -> list[Any]:
-    """2 E x (sign 1) or 2 G x (sign -1)."""
-    crossed = (p[2] * x[3] - p[3] * x[2], p[3] * x[1] - p[1] * x[3], p[1] * x[2] - p[2] * x[1])
-    return [2.0 * (p[0] * x[i + 1] - p[i + 1] * x[0] + sign * crossed[i]) for i in range(3)]
+    def places(self, at: Places) -> list[int]:
+        return [place for first in (at.q, at.v, at.a) for place in at.of(first, self._index)]

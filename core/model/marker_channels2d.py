@@ -4,16 +4,17 @@ With u the marker's place in the frame, p = A(theta) u and w = theta': x = R + p
 x'' = R'' + w' k x p - w^2 p.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from .channels import Channel
-from .derived import NOT_KNOWN, Columns
+from .derived import NOT_KNOWN, Derived, Places
+from .frame3d import three_of, vector_of
 from .markers import Marker2D
 
 _CHANNELS = (
@@ -26,28 +27,27 @@ _CHANNELS = (
 MARKER_SIZE = 9
 
 
+PLACES = 2 * MARKER_SIZE
+"""Of a marker: where its nine arguments stand, then which channels they are (-1: none)."""
+NUMBERS = 3
+"""Of a marker: its place in the frame and its angle there."""
+
+
 @internal
-def planar_motion(sample: Any, columns: Any, u: float, v: float, angle: float, out: Any) -> None:
-    """All nine (9,) of a marker at (u, v) of its frame, from one sample; `columns` (9,): -1 is zero."""
-    for k in range(MARKER_SIZE):
-        out[k] = sample[columns[k]] if columns[k] >= 0 else 0.0
-    c, s, w, growth = np.cos(out[2]), np.sin(out[2]), out[5], out[8]
-    px, py = c * u - s * v, s * u + c * v
-    out[0] += px
-    out[1] += py
-    out[2] += angle
-    out[3] -= w * py
-    out[4] += w * px
-    out[6] = out[6] - growth * py - w * w * px
-    out[7] = out[7] + growth * px - w * w * py
-
-
-@compiled
-def all_markers(samples: Any, columns: Any, offsets: Any, angles: Any, out: Any) -> None:
-    """All nine of each marker (N, markers, 9)."""
-    for i in range(len(samples)):
-        for k in range(len(angles)):
-            planar_motion(samples[i], columns[k], offsets[k, 0], offsets[k, 1], angles[k], out[i, k])
+def marker_channels2d(row: Any, places: Any, numbers: Any, out: Any) -> None:
+    for e in range(len(numbers) // NUMBERS):
+        first, (u, v, angle) = PLACES * e, vector_of(numbers, NUMBERS * e)
+        (x, y, theta), (vx, vy, w) = three_of(row, places, first), three_of(row, places, first + 3)
+        ax, ay, growth = three_of(row, places, first + 6)
+        c, s = math.cos(theta), math.sin(theta)
+        px, py = c * u - s * v, s * u + c * v
+        found = (
+            x + px, y + py, theta + angle, vx - w * py, vy + w * px, w,
+            ax - growth * py - w * w * px, ay + growth * px - w * w * py, growth,
+        )  # fmt: skip
+        for k in range(MARKER_SIZE):
+            if places[first + MARKER_SIZE + k] >= 0:
+                out[places[first + MARKER_SIZE + k]] = found[k]
 
 
 @dataclass(frozen=True)
@@ -59,48 +59,33 @@ class MarkerPlace2D:
     coordinates: Sequence[int]
 
 
-class MarkerChannels2D:
+class MarkerChannels2D(Derived):
     """The channels of several markers."""
 
-    def __init__(self, places: Sequence[MarkerPlace2D]) -> None:
-        kept = [k % 3 < 2 or p.coordinates[2] >= 0 for p in places for k in range(MARKER_SIZE)]
-        self._kept = np.array(kept, dtype=bool)
+    kernel = marker_channels2d
+
+    def __init__(self, markers: Sequence[MarkerPlace2D]) -> None:
+        self._markers = markers
+        # a point mass has no angle
+        kept = [k % 3 < 2 or p.coordinates[2] >= 0 for p in markers for k in range(MARKER_SIZE)]
         self.channels = tuple(
             Channel(f"{place.name}.{name}", unit, f"{text} of marker {place.name}")
-            for place in places
+            for place in markers
             for k, (name, unit, text) in enumerate(_CHANNELS)
             if k % 3 < 2 or place.coordinates[2] >= 0
         )
-        # the rate of a channel is three places behind it, among those that are kept too
         number = np.cumsum(kept) - 1
+        self._channel = np.where(kept, number, -1).tolist()
+        # the rate of a channel is three places behind it, among those that are kept too
         self.rate_of = tuple(int(number[k + 3]) if k % 9 < 6 else NOT_KNOWN for k in range(len(kept)) if kept[k])
-        self._index = np.array([p.coordinates for p in places], dtype=np.int64).reshape(-1, 3)
-        self._offset = np.array([p.marker.point for p in places], dtype=np.float64).reshape(-1, 2)
-        self._angle = np.array([p.marker.angle for p in places], dtype=np.float64)
 
-    def __call__(self, columns: Columns) -> NDArray[np.float64]:
-        """All channels (N, channels)."""
-        found = np.zeros((len(columns), len(self._angle), MARKER_SIZE))
-        if len(self._angle):
-            n = columns.q.shape[1]
-            rows = np.concatenate([columns.q, columns.v, columns.a], axis=1)
-            all_markers(rows, self._columns((0, n, 2 * n)), self._offset, self._angle, found)
-        return found.reshape(len(columns), -1)[:, self._kept]
+    def places(self, at: Places) -> list[int]:
+        found: list[int] = []
+        for k, marker in enumerate(self._markers):
+            for first in (at.q, at.v, at.a):
+                found += at.of(first, marker.coordinates)
+            found += self._channel[MARKER_SIZE * k : MARKER_SIZE * (k + 1)]
+        return found
 
-    def _columns(self, starts: tuple[int, int, int]) -> NDArray[np.int64]:
-        """Of x, y, angle, their rates and second rates (markers, 9), where q, v and a begin at `starts`; -1: zero."""
-        return np.concatenate([np.where(self._index >= 0, start + self._index, -1) for start in starts], axis=1)
-
-    def index_arrays(self, starts: tuple[int, int, int], first: int) -> dict[str, NDArray[Any]]:
-        """What compiled code needs to fill in these channels, the first of which is channel number `first`; q, v and a
-        begin in columns `starts` of a sample."""
-        channel = np.where(self._kept, first + np.cumsum(self._kept) - 1, -1).astype(np.int64)
-        return {
-            "marker_columns": self._columns(starts), "marker_offsets": self._offset, "marker_angles": self._angle,
-            "marker_channels": channel,
-        }  # fmt: skip
-
-    @property
-    def count(self) -> int:
-        """How many markers."""
-        return len(self._angle)
+    def numbers(self) -> list[float]:
+        return [x for place in self._markers for x in (*place.marker.point, place.marker.angle)]

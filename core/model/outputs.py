@@ -7,8 +7,9 @@ from pydantic import Field
 
 from .base import Name, Record
 from .derived import Derived
+from .frame3d import Frame3D
 from .marker_channels2d import MarkerChannels2D, MarkerPlace2D
-from .marker_channels3d import Frame3D, MarkerChannels3D
+from .marker_channels3d import MarkerChannels3D
 from .markers import Marker, Marker2D, Marker3D
 
 Frame = Callable[[Marker], Sequence[int]]

@@ -67,9 +67,6 @@ def native_image(sim: Any, most_steps: int) -> bytes:
             "the motion of a driver is an input, and what a run does when that jumps is Python's as yet: let an input "
             "be a force, or use the FMU that runs with Python"
         )
-    if (derived := sim.table.python_derives) is not None:
-        name = derived.channels[0].name
-        raise NativeError(f"channels that follow from coordinates ({name}, ...) are computed by Python as yet")
     times = sim.crossing.times
     times[:5] = sim.t, sim.t, *sim.input_times, sim.table.initial_energy
     sim.crossing.wanted[:] = sim.workspace.arrays["inputs"][: len(sim.crossing.wanted), 0]

@@ -20,8 +20,9 @@ EXCHANGE = np.dtype(
             "sample", "sample_length", "channels", "n_channels",   # one row, and what it gives
             "places", "summed", "n_sums", "number", "column", "signs", "n_terms", "flags", "flag_columns", "n_flags",
             "balance",
-            # of markers: (n_markers, 9), -1: zero; (n_markers, 2), (n_markers,), (n_markers, 9), -1: none
-            "marker_columns", "marker_offsets", "marker_angles", "marker_channels", "n_markers",
+            # of derived channels (`model/derived.py`), which follow one another from `first_derived` on
+            "derived", "n_derived", "derived_places", "n_derived_places", "derived_numbers", "n_derived_numbers",
+            "first_derived",
         )
     ]
 )  # fmt: skip

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from ..compiled.image import twin
 from ..model.channels import Channel, Enumeration
-from ..model.derived import NOT_KNOWN, Columns, Derived
-from ..model.marker_channels2d import MarkerChannels2D
+from ..model.derived import NOT_KNOWN, Derived, DerivedTable, Places
 from ..model.units import conjugate, per_second, times_second
 from ..state.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..tables.assembly import Assembly, ContactInfo
@@ -49,10 +48,8 @@ class InContact:
 
 @dataclass(frozen=True)
 class OneOf:
-    """A derived channel: which of a group it is, its number among all derived ones, and that of its rate."""
+    """A derived channel: its number among all derived ones, and that of its rate."""
 
-    group: int
-    place: int
     number: int
     rate: int
 
@@ -66,13 +63,12 @@ class ChannelTable:
         self._formulas: list[tuple[Channel, int | Sum | InContact | OneOf]] = []
         for channel, at in system.coordinate_channels(assembly, layout):
             self._formulas.append((channel, at))
-        self._derived: tuple[Derived, ...] = assembly.derived
+        self._derived = self._tables_of(assembly.derived)
         number = 0
-        for k, group in enumerate(self._derived):
+        for group in assembly.derived:
             first = number
-            for place, (channel, rate) in enumerate(zip(group.channels, group.rate_of, strict=True)):
-                rate = NOT_KNOWN if rate == NOT_KNOWN else first + rate
-                self._formulas.append((channel, OneOf(k, place, number, rate)))
+            for channel, rate in zip(group.channels, group.rate_of, strict=True):
+                self._formulas.append((channel, OneOf(number, NOT_KNOWN if rate == NOT_KNOWN else first + rate)))
                 number += 1
         for row, channel in assembly.multiplier_channels.items():
             self._formulas.append((channel, layout.multipliers.start + row))
@@ -95,13 +91,13 @@ class ChannelTable:
     def moved(self, assembly: Assembly) -> "ChannelTable":
         """The table of another run, of an assembly that differs in its numbers only."""
         new = twin(self)
-        new._derived = assembly.derived
+        new._derived = self._tables_of(assembly.derived)
         return new
 
-    def _columns(self, samples: NDArray[np.float64]) -> Columns:
+    def _tables_of(self, groups: Sequence[Derived]) -> DerivedTable:
         layout = self.layout
-        q, v, a, multipliers = (samples[:, part] for part in (layout.q, layout.v, layout.a, layout.multipliers))
-        return Columns(q, v, a, multipliers, lambda name: samples[:, layout.work[name]])
+        starts = (part.start for part in (layout.q, layout.v, layout.a, layout.multipliers))
+        return DerivedTable(groups, Places(*starts, layout.work.__getitem__))
 
     def _prepare_values(self) -> None:
         """The formulas as index arrays, for one sample at a time."""
@@ -123,38 +119,23 @@ class ChannelTable:
         self._terms = _pairs([(number[k], column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
 
-    @property
-    def _planar_markers(self) -> MarkerChannels2D | None:
-        """The derived channels that compiled code reads."""
-        return next((group for group in self._derived if isinstance(group, MarkerChannels2D)), None)
-
-    @property
-    def n_markers(self) -> int:
-        """Planar markers whose channels compiled code reads."""
-        markers = self._planar_markers
-        return 0 if markers is None else markers.count
-
-    @property
-    def python_derives(self) -> Derived | None:
-        """Derived channels that only Python reads; None if there are none."""
-        markers = self._planar_markers
-        return next((group for group in self._derived if group is not markers and group.channels), None)
-
     def index_arrays(self) -> dict[str, NDArray[np.int64] | NDArray[np.float64]]:
-        """The formulas of all channels but those that only Python derives, by the names that `exchange` has."""
+        """The formulas of all channels, by the names that `exchange` has."""
         (number, column), (flags, flag_columns) = self._terms, self._flags
         found = {
             "places": self._places, "summed": self._summed, "number": number, "column": column, "flags": flags,
             "flag_columns": flag_columns,
         }  # fmt: skip
-        layout, markers, first = self.layout, self._planar_markers or MarkerChannels2D(()), 0
-        for k, (_, formula) in enumerate(self._formulas):
-            if isinstance(formula, OneOf) and formula.place == 0 and self._derived[formula.group] is markers:
-                first = k
+        derived = self._derived
         return {
             **{name: x.astype(np.int64) for name, x in found.items()}, "signs": self._signs.astype(np.float64),
-            **markers.index_arrays((layout.q.start, layout.v.start, layout.a.start), first),
+            "derived": derived.heads, "derived_places": derived.places, "derived_numbers": derived.numbers,
         }  # fmt: skip
+
+    @property
+    def first_derived(self) -> int:
+        """Number of the first derived channel; the others follow it."""
+        return int(self._derived_at[0]) if len(self._derived_at) else 0
 
     def _add_contact(self, k: int, contact: ContactInfo) -> None:
         layout, name, (gap, slide) = self.layout, contact.name, contact.units
@@ -231,7 +212,7 @@ class ChannelTable:
         if isinstance(formula, int):
             return samples[:, formula]
         if isinstance(formula, OneOf):
-            return self._derived[formula.group](self._columns(samples))[:, formula.place]
+            return self._derived(samples)[:, formula.number]
         found = formula(samples)
         return found - self.initial_energy if k == self.balance else found
 
@@ -251,9 +232,8 @@ class ChannelTable:
 
     def put_derived(self, sample: NDArray[np.float64], values: NDArray[np.float64]) -> None:
         """Put the derived channels among those of one sample."""
-        if self._derived:
-            columns = self._columns(sample[None, :])
-            values[self._derived_at] = np.concatenate([group(columns)[0] for group in self._derived])
+        if self._derived.size:
+            values[self._derived_at] = self._derived(sample[None, :])[0]
 
     def rates(self, sample: NDArray[np.float64], rates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Rates of all channels (channels,) from those of the columns of a sample; NaN: not known."""
@@ -263,7 +243,7 @@ class ChannelTable:
                 found[k] = rates[formula]
             elif isinstance(formula, Sum):
                 found[k] = formula(rates[None, :])[0]
-        if self._derived:
+        if self._derived.size:
             values = np.full(len(self._formulas), np.nan)
             self.put_derived(sample, values)
             values = values[self._derived_at]

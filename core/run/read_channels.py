@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.views import imat, ivec, mat, vec
+from ..compiled.views import imat, ivec, vec
 from ..loop.sample import write_sample
 from ..methods.history import bridge_rows, history_time
 from ..methods.multistep import rows_available
-from ..model.marker_channels2d import MARKER_SIZE, planar_motion
+from ..model.derived import HEAD_SIZE, derive_row
 from ..repair.near_singular import STRAINED
 from ..state.modes import ACTIVE, CLOSED
 from ..state.workspace_records import LEAST_CONDITION, OK, RATE_SIZE, WORST_CONDITION
@@ -47,21 +47,11 @@ def read_at_goal(ex: Any, ws: Any, ms: Any) -> bool:
     for k in range(ex.n_flags):
         mode = sample[columns[k]]
         out[flags[k]] = 1.0 if mode == CLOSED or mode == ACTIVE else 0.0
-    if ex.n_markers > 0:
-        _read_markers(ex, sample, out)
+    if ex.n_derived > 0:
+        heads = imat(ex.derived, ex.n_derived, HEAD_SIZE)
+        places, numbers = ivec(ex.derived_places, ex.n_derived_places), vec(ex.derived_numbers, ex.n_derived_numbers)
+        derive_row(sample, heads, places, numbers, out[ex.first_derived :])
     for k in range(ex.n_channels):
         if not np.isfinite(out[k]):
             return False
     return True
-
-
-@internal
-def _read_markers(ex: Any, sample: Any, out: Any) -> None:
-    n = ex.n_markers
-    columns, channels = imat(ex.marker_columns, n, MARKER_SIZE), imat(ex.marker_channels, n, MARKER_SIZE)
-    offsets, angles, found = mat(ex.marker_offsets, n, 2), vec(ex.marker_angles, n), np.empty(MARKER_SIZE)
-    for i in range(n):
-        planar_motion(sample, columns[i], offsets[i, 0], offsets[i, 1], angles[i], found)
-        for k in range(MARKER_SIZE):
-            if channels[i, k] >= 0:
-                out[channels[i, k]] = found[k]

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..elements.measure3d import AXES_A, PLACE
-from ..elements.rotation3d import columns_at, constant, cross, dot, less, plus, times
+from ..model.rotation3d import columns_at, constant, cross, dot, less, plus, times
 from .tangent3d import NORMAL, SIZE, column, put
 
 T1, T2 = 19, 22

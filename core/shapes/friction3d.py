@@ -13,8 +13,8 @@ from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import product
-from ..elements.rotation3d import dot, less, plus, times
 from ..laws.friction import call_friction
+from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
 from .normal2d import act, asleep, evaluate_law
 from .normal3d import KIND, PACKED, RADIUS_A, RADIUS_B, SIZE, gap_of, pair_of

@@ -18,7 +18,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..elements.rotation3d import dot, less, plus, times
+from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS, WAY
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
 from .normal2d import act, asleep

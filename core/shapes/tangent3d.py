@@ -14,7 +14,7 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
 from ..elements.measure3d import AXES_A, DISTANCE, POINT_A, POINT_B, offset
-from ..elements.rotation3d import (
+from ..model.rotation3d import (
     along,
     bend,
     constant,

@@ -16,48 +16,6 @@ typedef struct {
     char token[64];
 } VariablesHead;
 
-char *files_copy(const char *text) {
-    size_t size = strlen(text) + 1;
-    char *copy = malloc(size);
-    return copy ? memcpy(copy, text, size) : NULL;
-}
-
-static int hex_digit(char c) {
-    if (c >= '0' && c <= '9') {
-        return c - '0';
-    }
-    c |= 0x20;
-    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
-char *files_folder(const char *location) {
-    char *path = location ? files_copy(location) : NULL;
-    if (!path || strncmp(location, "file:", 5) != 0) {
-        return path;
-    }
-    const char *from = location + 5;
-    if (from[0] == '/' && from[1] == '/') {
-        from += 2;
-        from += strcspn(from, "/"); /* the host, empty or localhost */
-    }
-#ifdef _WIN32
-    if (from[0] == '/' && from[1] && from[2] == ':') {
-        from++;
-    }
-#endif
-    char *to = path;
-    for (; *from; from++) {
-        int high = *from == '%' ? hex_digit(from[1]) : -1, low = high >= 0 ? hex_digit(from[2]) : -1;
-        *to++ = low >= 0 ? (char)(16 * high + low) : *from;
-        from += low >= 0 ? 2 : 0;
-    }
-    while (to > path + 1 && to[-1] == '/') {
-        to--;
-    }
-    *to = '\0';
-    return path;
-}
-
 void *files_read(const char *path, size_t *size) {
     FILE *file = open_file(path);
     long length = file && fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;

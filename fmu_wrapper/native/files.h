@@ -4,11 +4,6 @@
 
 #include "slave.h"
 
-char *files_copy(const char *text);
-
-/* The folder that a URI or a path names; NULL for NULL. */
-char *files_folder(const char *location);
-
 /* The bytes of a file, to be freed; NULL if it cannot be read. */
 void *files_read(const char *path, size_t *size);
 

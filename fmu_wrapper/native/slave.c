@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../shim/location.h"
 #include "files.h"
 
 #define MAGIC 0x71150002u
@@ -25,7 +26,7 @@ static void at_start(Slave *self) {
 /* Image and variables from the resources. */
 static bool load(Slave *self, const char *function, const char *token, const char *location) {
     char path[PATH], why[512];
-    char *folder = files_folder(location);
+    char *folder = location ? location_path(location) : NULL;
     if (!folder) {
         slave_error(self, function, "the resource location is NULL: the URI of the FMU's resources folder is needed");
         return false;
@@ -66,7 +67,7 @@ Slave *slave_new(const Slave *given, const char *function, const char *name, con
     self->run = NULL;
     self->file = NULL;
     self->stored = NULL;
-    self->name = files_copy(name && *name ? name : "instance");
+    self->name = text_copy(name && *name ? name : "instance");
     at_start(self);
     if (self->name && load(self, function, token ? token : "", resources)) {
         self->run = tlismni_start(self->model);

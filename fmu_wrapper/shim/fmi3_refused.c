@@ -1,18 +1,7 @@
-/* The functions of FMI 3.0 that this FMU has not, as its model description says: types of variables that it does not
- * use, clocks, structural parameters, model exchange, scheduled execution. Each is there, since importers look up all of
- * them, and answers Error with a line in the log; `refuse` (fmi3_calls.py) knows why. */
+/* The functions of FMI 3.0 that this FMU has not, as its model description says. Each answers Error with a line in the
+ * log; `refuse` (fmi3_calls.py) knows why. */
 
 #include "forward.h"
-
-/* nothing is done with what they are given */
-#if defined __GNUC__ || defined __clang__
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
-
-typedef uint32_t fmi3ValueReference;
-typedef int fmi3Status;
-typedef int fmi3IntervalQualifier;
-typedef int fmi3DependencyKind;
 
 #define REFUSED(name, ...)                               \
     EXPORT fmi3Status name(Instance *c, __VA_ARGS__) {   \
@@ -22,60 +11,5 @@ typedef int fmi3DependencyKind;
     EXPORT fmi3Status name(Instance *c) {                \
         FORWARD(c, "refuse", "(s)", #name);              \
     }
-#define REFERENCES const fmi3ValueReference vr[], size_t n
 
-/* types */
-
-REFUSED(fmi3GetFloat32, REFERENCES, float value[], size_t values)
-REFUSED(fmi3SetFloat32, REFERENCES, const float value[], size_t values)
-REFUSED(fmi3GetInt8, REFERENCES, int8_t value[], size_t values)
-REFUSED(fmi3SetInt8, REFERENCES, const int8_t value[], size_t values)
-REFUSED(fmi3GetUInt8, REFERENCES, uint8_t value[], size_t values)
-REFUSED(fmi3SetUInt8, REFERENCES, const uint8_t value[], size_t values)
-REFUSED(fmi3GetInt16, REFERENCES, int16_t value[], size_t values)
-REFUSED(fmi3SetInt16, REFERENCES, const int16_t value[], size_t values)
-REFUSED(fmi3GetUInt16, REFERENCES, uint16_t value[], size_t values)
-REFUSED(fmi3SetUInt16, REFERENCES, const uint16_t value[], size_t values)
-REFUSED(fmi3GetUInt32, REFERENCES, uint32_t value[], size_t values)
-REFUSED(fmi3SetUInt32, REFERENCES, const uint32_t value[], size_t values)
-REFUSED(fmi3GetUInt64, REFERENCES, uint64_t value[], size_t values)
-REFUSED(fmi3SetUInt64, REFERENCES, const uint64_t value[], size_t values)
-REFUSED(fmi3GetBinary, REFERENCES, size_t sizes[], const uint8_t *value[], size_t values)
-REFUSED(fmi3SetBinary, REFERENCES, const size_t sizes[], const uint8_t *const value[], size_t values)
-
-/* clocks */
-
-REFUSED(fmi3GetClock, REFERENCES, bool value[])
-REFUSED(fmi3SetClock, REFERENCES, const bool value[])
-REFUSED(fmi3GetIntervalDecimal, REFERENCES, double interval[], fmi3IntervalQualifier qualifier[])
-REFUSED(fmi3GetIntervalFraction, REFERENCES, uint64_t counter[], uint64_t resolution[],
-        fmi3IntervalQualifier qualifier[])
-REFUSED(fmi3GetShiftDecimal, REFERENCES, double shift[])
-REFUSED(fmi3GetShiftFraction, REFERENCES, uint64_t counter[], uint64_t resolution[])
-REFUSED(fmi3SetIntervalDecimal, REFERENCES, const double interval[])
-REFUSED(fmi3SetIntervalFraction, REFERENCES, const uint64_t counter[], const uint64_t resolution[])
-REFUSED(fmi3SetShiftDecimal, REFERENCES, const double shift[])
-REFUSED(fmi3SetShiftFraction, REFERENCES, const uint64_t counter[], const uint64_t resolution[])
-REFUSED(fmi3ActivateModelPartition, fmi3ValueReference clock, double time)
-
-/* structure */
-
-REFUSED_PLAIN(fmi3EnterConfigurationMode)
-REFUSED_PLAIN(fmi3ExitConfigurationMode)
-REFUSED(fmi3GetNumberOfVariableDependencies, fmi3ValueReference vr, size_t *count)
-REFUSED(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t element[], fmi3ValueReference independent[],
-        size_t independent_element[], fmi3DependencyKind kind[], size_t count)
-
-/* model exchange */
-
-REFUSED_PLAIN(fmi3EvaluateDiscreteStates)
-REFUSED_PLAIN(fmi3EnterContinuousTimeMode)
-REFUSED(fmi3CompletedIntegratorStep, bool no_set_state, bool *enter_event_mode, bool *terminate)
-REFUSED(fmi3SetTime, double time)
-REFUSED(fmi3SetContinuousStates, const double state[], size_t n)
-REFUSED(fmi3GetContinuousStateDerivatives, double derivative[], size_t n)
-REFUSED(fmi3GetEventIndicators, double indicator[], size_t n)
-REFUSED(fmi3GetContinuousStates, double state[], size_t n)
-REFUSED(fmi3GetNominalsOfContinuousStates, double nominal[], size_t n)
-REFUSED(fmi3GetNumberOfEventIndicators, size_t *count)
-REFUSED(fmi3GetNumberOfContinuousStates, size_t *count)
+#include "fmi3_refused.h"

@@ -1,4 +1,5 @@
 #include "instance.h"
+#include "location.h"
 #include "resources.h"
 
 #include <stdlib.h>
@@ -145,7 +146,7 @@ Instance *instance_new(const Instance *model, const Asked *asked, const char *fu
     self->shared = NULL;
     self->gets.count = self->sets.count = 0;
     self->name = text_copy(name && *name ? name : "instance");
-    char *resources = resource_location ? resources_path(resource_location) : NULL;
+    char *resources = resource_location ? location_path(resource_location) : NULL;
     bool made = false;
     if (!resources) {
         instance_report(self, "%s: the resource location is NULL: the URI of the FMU's resources folder is needed",

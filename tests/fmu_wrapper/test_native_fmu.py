@@ -29,7 +29,10 @@ WAYS = [(False, False), (False, True), (True, False), (True, True)]
 
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
-@pytest.mark.parametrize("name", ["bouncing_ball", "chain", "slider_crank_stop", "stick_slip", "impact_oscillator"])
+@pytest.mark.parametrize(
+    "name",
+    ["bouncing_ball", "chain", "slider_crank_stop", "stick_slip", "impact_oscillator", "spatial_slider_crank_stop"],
+)
 def test_the_same_bits_as_with_python(name, version, tmp_path):
     pair = scenario_pair(name, tmp_path, version)
     assert validate_fmu(str(pair.sides[0][0])) == []

@@ -32,12 +32,12 @@ from ...core.elements import (
     TorsionSpring3D,
     Universal3D,
 )
-from ...core.elements.turn3d import JointAngle, JointPosition
+from ...core.elements.joint_coordinates3d import JointAngle, JointPosition
 from ...core.model.angular_velocity import AngularVelocity
 from ...core.model.base import in_space
 from ...core.model.derived import Columns
 from ...core.model.derived import Derived as Group
-from ...core.model.marker_channels3d import Frame3D
+from ...core.model.frame3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
 from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from ..errors import NotTranslatable
@@ -132,13 +132,14 @@ def _derive_coordinates(record: Joint3D, build: Build) -> None:
         first += size
     a, b = frames
     if record.turns:
+        group = JointAngle(record.name, a, b, 0.0)
 
-        def angle(q: np.ndarray) -> np.ndarray:
-            of_a, x = a.axes(q), b.axes(q)[:, :, 0]
-            along, across = (np.sum(of_a[:, :, k] * x, axis=1) for k in range(2))
-            return np.unwrap(np.arctan2(across, along))
+        def turned(q: np.ndarray) -> np.ndarray:
+            still, nothing = np.zeros_like(q), np.zeros((len(q), 0))
+            within_a_turn = group(Columns(q, still, still, nothing, lambda _: np.zeros(len(q))))
+            return np.unwrap(within_a_turn[:, 0])
 
-        _derive(build, JointAngle(record.name, a, b, 0.0), bodies, angle)
+        _derive(build, group, bodies, turned)
     if record.slides:
         _derive(build, JointPosition(record.name, a, b), bodies)
 

@@ -131,6 +131,16 @@ def body_rate(p: Any, rate: Any) -> Any:
 
 
 @inlined
+def space_rate(p: Any, rate: Any) -> Any:
+    """E(p) p', half the angular velocity in space."""
+    return (
+        p[0] * rate[1] - p[1] * rate[0] + p[2] * rate[3] - p[3] * rate[2],
+        p[0] * rate[2] - p[2] * rate[0] + p[3] * rate[1] - p[1] * rate[3],
+        p[0] * rate[3] - p[3] * rate[0] + p[1] * rate[2] - p[2] * rate[1],
+    )
+
+
+@inlined
 def of_body_torque(p: Any, n: Any) -> Any:
     """G(p)^T n: half the forces on the Euler parameters by a torque n in the body."""
     return (
