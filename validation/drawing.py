@@ -8,8 +8,8 @@ import numpy as np
 from ..core import Result
 from ..core.description import Model
 from ..core.elements import AxialRod, Cable2D, FlexibleBody, LinearSystem, MaterialPoint2D, SpatialFrame
-from ..core.model.marker_channels3d import Frame3D
-from ..core.model.markers import GROUND, Marker2D, Marker3D
+from ..core.model.marker_channels3d import points_in_space
+from ..core.model.markers import GROUND, Marker2D
 from ..core.shapes.contact2d import DiskOnHalfPlane2D
 from ..viewer.drawing.view import View, star
 from .rod_drawing import rod_lines
@@ -73,11 +73,8 @@ def _body(body: Any, model: Model, result: Result, keep: np.ndarray) -> list[tup
     if isinstance(body, FlexibleBody):
         return _points_of(body, model, result, keep)
     if isinstance(body, SpatialFrame):
-        names = body.coordinate_names
-        q = np.stack([track(name) for name in names], axis=1)
-        index = [k if k < len(names) else -1 for k in range(7)]
-        line = [Frame3D.of(Marker3D(point=(x, y, z)), index).point(q) for x, y, z in star(model, body).tolist()]
-        return [("body", View(model)(np.stack(line, axis=1)))]
+        q = np.stack([track(name) for name in body.coordinate_names], axis=1)
+        return [("body", View(model)(points_in_space(q, star(model, body).tolist())))]
     local = [(0.0, 0.0), *_markers_on(body.name, model)]
     if len(local) == 1 or "angle" not in body.coordinate_names:
         return [("mass", _place(Marker2D(body=body.name), result, keep)[:, None, :])]

@@ -11,7 +11,7 @@ from ..core.description import Model
 from ..core.elements import BodyElement, FlexibleBody, PlanarFrame, SpatialFrame
 from ..core.elements.flexible_body import Section
 from ..core.flexible.section_loads import places
-from ..core.model.marker_channels3d import Frame3D
+from ..core.model.marker_channels3d import points_in_space
 from ..core.model.markers import GROUND, Marker2D, Marker3D
 from .drawing.places import Places
 
@@ -112,10 +112,7 @@ class Motion:
 
     def in_space(self, body: SpatialFrame, points: Floats) -> Floats:
         """Points (n, 3) of a body in space on paper (F, n, 2)."""
-        q = self._tables[body.name][0]
-        index = [k if k < q.shape[1] else -1 for k in range(7)]
-        places = [Frame3D.of(Marker3D(point=(x, y, z)), index).point(q) for x, y, z in points.tolist()]
-        return self.places.view(np.stack(places, axis=1))
+        return self.places.view(points_in_space(self._tables[body.name][0], points.tolist()))
 
     def seen(self, marker: Marker3D) -> Floats:
         """Places of a marker in space on paper (F, 2)."""

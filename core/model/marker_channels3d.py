@@ -7,11 +7,14 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import inlined, internal
 from .attitude import AXES
 from .channels import Channel
-from .derived import NOT_KNOWN, Derived, Places
+from .derived import NOT_KNOWN, Columns, Derived, Floats, Places
 from .frame3d import ARM, FRAME, Frame3D, four_of, three_of, vector_of
+from .markers import Marker3D
 from .rotation3d import along, plus, turned, turning
 
 MOTION = (
@@ -125,3 +128,13 @@ def _attitude_channels(name: str, attitude: str) -> list[Channel]:
         Channel(f"{name}.angle_{k + 1}", "rad", f"turn {k + 1} of marker {name}, about {axis}")
         for k, axis in enumerate(attitude)
     ]
+
+
+def points_in_space(coordinates: Floats, points: Sequence[Sequence[float]]) -> Floats:
+    """Points (n, 3) of a body that has these coordinates (N, 3 or 7): where they are in space (N, n, 3)."""
+    index = [k if k < coordinates.shape[1] else -1 for k in range(FRAME)]
+    frames = [Frame3D.of(Marker3D(point=(x, y, z)), index) for x, y, z in points]
+    still, nothing = np.zeros_like(coordinates), np.zeros((len(coordinates), 0))
+    group = MarkerChannels3D([(f"p{k}", frame, "none") for k, frame in enumerate(frames)])
+    found = group(Columns(coordinates, still, still, nothing, lambda _: np.zeros(len(coordinates))))
+    return found.reshape(len(coordinates), len(frames), len(MOTION))[:, :, :3]

@@ -96,8 +96,8 @@ class ChannelTable:
 
     def _tables_of(self, groups: Sequence[Derived]) -> DerivedTable:
         layout = self.layout
-        starts = (part.start for part in (layout.q, layout.v, layout.a, layout.multipliers))
-        return DerivedTable(groups, Places(*starts, layout.work.__getitem__))
+        q, v, a, multipliers = (part.start for part in (layout.q, layout.v, layout.a, layout.multipliers))
+        return DerivedTable(groups, Places(q, v, a, multipliers, layout.work.__getitem__))
 
     def _prepare_values(self) -> None:
         """The formulas as index arrays, for one sample at a time."""

@@ -1,5 +1,6 @@
 """Cables as ANCF elements, in the plane and in space, and their points as places in these elements."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -95,7 +96,7 @@ def _point(
     record: MaterialPoint2D | MaterialPoint3D,
     build: Build,
     place: tuple[float, float],
-    outputs: dict[str, tuple[str, ...]],
+    outputs: Mapping[str, tuple[str, ...]],
     oriented: bool,
 ) -> None:
     """The point at `place` (m, along the cable and beside it), and its sensors: names of channels by exudyn's outputs,
