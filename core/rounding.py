@@ -68,6 +68,8 @@ PIVOT_NOISE = 1e-14
 
 GAP_ROUNDING = 3e-13
 """Of a gap's size: shapes nearer than this touch; three times what the constraints are met to."""
+GAP_MOVES = 1e-2
+"""Of GAP_ROUNDING: a gap of shapes that touch which changes by less within a step does not change."""
 UNRESOLVED = 1e-12
 """Of a gap's size: bounces lower than this are not told from rest."""
 START_OVERLAP = 1e-9

@@ -143,7 +143,8 @@ def _root(
             proposal = x + (0.5 * least if f > 0.0 else -0.5 * least)
         last_x, last_f = x, f
         x = proposal
-    if f_low > JUMP * largest and not np.isnan(f_high):
+    # a gap below zero by rounding that nothing closes would pass the same limit again
+    if (f_low > JUMP * largest or what == OVERLAP) and not np.isnan(f_high):
         x = x_high
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one

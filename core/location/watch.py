@@ -4,7 +4,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
+from ..rounding import FORCE_ROUNDING, GAP_MOVES, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
 from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE
 from ..state.run_records import WATCH
 from ..tables.held import held_friction, is_held
@@ -68,8 +68,9 @@ def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
         # constraints has let overlap before they opened may come apart
         if rate < -RATE_ROUNDING * rate_level(ws) * size:
             return True
-        overlap = GAP_ROUNDING * position_level(ws) * size
-        return g < -overlap and mat(lc.watch, ws.n_contacts, WATCH)[k, 0] >= -overlap
+        overlap, before = GAP_ROUNDING * position_level(ws) * size, mat(lc.watch, ws.n_contacts, WATCH)[k, 0]
+        # a gap that others hold near this limit stays where it is, and the limit moves with the coordinates
+        return g < -overlap <= before and before - g > GAP_MOVES * overlap
     if mode == CLOSED:
         no_force = none / size
         if force < -no_force:
@@ -110,7 +111,7 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
     overlap = GAP_ROUNDING * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
     if sign * start[0] < -overlap:
         return ended
-    slack = overlap if sign * start[0] <= overlap else 0.0
+    slack = (1.0 + GAP_MOVES) * overlap if sign * start[0] <= overlap else 0.0
     if slack > 0.0 and ms.exact == 0 and not ended:
         # forces of methods that do not meet the constraints at all levels are not those that the next row begins with:
         # what has opened by them may first press a little
