@@ -41,8 +41,7 @@ def dropped_box(
 ) -> Scenario:  # fmt: skip
     """Body `box`, contacts `floor_ground_box_1` to `_8` of its corners with the floor at z = 0.
 
-    Without friction it comes to lie flat. With friction and law newton the last small blows of its corners may end in
-    an error (the contact chatters): take a force law.
+    Whatever the tilt and the friction, it comes to lie on a face.
     """
     contact = contact_law(
         law, restitution=restitution, stiffness=stiffness, exponent=exponent, damping=damping,

@@ -12,7 +12,6 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.directions import call_independent
-from ..cones.friction_cones import FOUND, solve_friction_cones
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ANALYSIS
@@ -28,7 +27,7 @@ from ..rounding import (
     STICKS_STILL,
     UNSOLVED,
 )
-from ..state.modes import ALONG, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
+from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
@@ -36,9 +35,12 @@ from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.switch import engage_modes
 from .forces import cones_at
 from .laws import POISSON
+from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
+from .rates_in_space import masses, push_in_space, read_in_space, read_rates_in_space, solve_cones_in_space
 from .reading import largest_acceleration, rate_size, unresolved_speed
 from .records import (
     ACCELERATIONS,
+    APART,
     APPROACH,
     AT_REST,
     AXIS_NOW,
@@ -58,18 +60,26 @@ from .records import (
     FRICTION,
     IMPULSE,
     JAMS,
+    KEPT_DIRECTION,
+    KEPT_FULL,
+    KEPT_TAKES,
     KINETIC,
     KNOWN,
     LEAVES,
     LEFT,
     LOSS,
     LOW,
+    MOMENT,
+    MU,
     NEW_RATIO,
     NEW_SLIDE,
     NO_FORCES,
     NO_FREE_ACCELERATIONS,
     NO_IMPACT,
     NONE,
+    OTHER_N,
+    OTHER_T,
+    OTHER_WN,
     P_N,
     P_S,
     P_T,
@@ -116,88 +126,16 @@ from .touching import find_gradient, force_noise, refuse_immovable
 
 BEGINS = 2.0
 """In DIRECTION: sliding begins here."""
+HOLDS = 1e-6
+"""Of the largest free acceleration: how fast a gap may close that is left to other contacts to hold."""
+_FOUND = (
+    (F_N, OTHER_N), (F_T, OTHER_T), (F_S, OTHER_WN), (DIRECTION, KEPT_DIRECTION), (COS_WAY, KEPT_FULL),
+    (SIN_WAY, KEPT_TAKES), (KNOWN, APART),
+)  # fmt: skip
+RANK_OF_HELD = 1e-8
+"""Of its inverse mass: a tangent of which no more is left beside others is held by these."""
 MOST_ROUNDS = 2000
 """Of impacts at one instant."""
-
-
-@internal
-def masses(ev: Any, count: int) -> Any:
-    """Inverse effective masses (3 count, 3 count): normals, first and second tangents, 1/kg."""
-    return mat(ev.space_a, 3 * count, 3 * count)
-
-
-# ---- rates and pushes -----------------------------------------------------------------------------------------------
-
-
-@internal
-def _read(ev: Any, ws: Any, level: Any, of_gap: Any, of_slide: Any, of_sway: Any) -> None:
-    contacts = ivec(ev.contacts, ev.most)
-    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    static = vec(ws.contact_sticking, ws.n_contacts)
-    for i in range(whole(ev)[COUNT]):
-        k = contacts[i]
-        rubs = slides[k] >= 0 and static[k] > 0.0
-        of_gap[i] = level[rows[k]]
-        of_slide[i] = level[slides[k]] if rubs else 0.0
-        of_sway[i] = level[slides[k] + 1] if rubs else 0.0
-
-
-@internal
-def _read_rates(ev: Any, ws: Any) -> None:
-    _read(ev, ws, vec(ws.phid, ws.m_ext), col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
-
-
-@internal
-def _push(ev: Any, ws: Any, p: Any) -> None:
-    """Add the velocities that impulses p (3 count,) cause; rates follow."""
-    count, v = whole(ev)[COUNT], vec(ws.v, ws.n_ext)
-    responses, a = mat(ev.responses, 3 * count, ws.n), masses(ev, count)
-    for i in range(3 * count):
-        if p[i] == 0.0:
-            continue
-        for j in range(ws.n):
-            v[j] += p[i] * responses[i, j]
-        for j in range(count):
-            col(ev, RATE)[j] += p[i] * a[j, i]
-            col(ev, SLIDE_RATE)[j] += p[i] * a[count + j, i]
-            col(ev, SWAY_RATE)[j] += p[i] * a[2 * count + j, i]
-
-
-@internal
-def _solve(ev: Any, count: int, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
-    """Forces p (3 count,) of the contacts `part` from the motion b (3 count,); the others get none."""
-    a, n, some = masses(ev, count), 0, ivec(ev.some, 3 * ev.most)
-    for i in range(count):
-        if part[i] != 0.0:
-            some[n] = i
-            n += 1
-    # room: matrix, motion, coefficients, forces, directions
-    own = mat(ev.space_room, 3 * n, 3 * n)
-    room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
-    own_b, own_p, own_mu = room[: 3 * n], room[3 * n : 6 * n], room[6 * n : 7 * n]
-    own_base, own_known = room[7 * n : 8 * n], room[8 * n : 9 * n]
-    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 2, n)
-    for i in range(n):
-        p_i = some[i]
-        own_mu[i], own_base[i], own_known[i] = mu[p_i], base[p_i], known[p_i]
-        way[0, i], way[1, i] = col(ev, COS_WAY)[p_i], col(ev, SIN_WAY)[p_i]
-        for block in range(3):
-            own_b[block * n + i] = b[block * count + p_i]
-            for j in range(n):
-                for other in range(3):
-                    own[block * n + i, other * n + j] = a[block * count + p_i, other * count + some[j]]
-    status = solve_friction_cones(
-        cones_at(ev.cones).least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p,
-        ev.space_room + 8 * (9 * n * n + 11 * n),
-    )  # fmt: skip
-    for i in range(3 * count):
-        p[i] = 0.0
-    if status != FOUND:
-        return False
-    for i in range(n):
-        for block in range(3):
-            p[block * count + some[i]] = own_p[block * n + i]
-    return True
 
 
 # ---- open -----------------------------------------------------------------------------------------------------------
@@ -211,6 +149,8 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     for i in range(count):
         k = contacts[i]
         memory[k, MODE], memory[k, SLIDE], memory[k, RATIO] = OPEN, STUCK, 0.0
+        # directions and rates are to speak of the same tangents
+        memory[k, AXIS] = 0.0
     if not engage_modes(ws):
         return WANT_STRUCTURE
     # the rows of those that slid or stuck now tell both velocities
@@ -235,7 +175,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     if code != OK:
         return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_JOINTS
     _respond(ev, ws, count)
-    _read_rates(ev, ws)
+    read_rates_in_space(ev, ws)
     # (`shapes/gripping3d.py`: what an open contact says of its tangents)
     monitor = vec(ws.monitor, 2 * ws.n_contacts)
     for i in range(count):
@@ -288,7 +228,7 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     active, joint_rates = ivec(ws.active, ws.m_act), vec(ev.joint_rates, ws.m_act)
     before_n, before_t, before_s = col(ev, RATE_BEFORE), col(ev, SLIDE_BEFORE), col(ev, SWAY_BEFORE)
     loss, p_n, p_t, p_s = col(ev, LOSS), col(ev, P_N), col(ev, P_T), col(ev, P_S)
-    _read_rates(ev, ws)
+    read_rates_in_space(ev, ws)
     for i in range(ws.m_act):
         joint_rates[i] = phid[active[i]]
     largest, left = 0.0, math.inf
@@ -318,7 +258,7 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             col(ev, IMPULSE)[i] += p_n[i]
             col(ev, FRICTION)[i] += math.sqrt(p_t[i] * p_t[i] + p_s[i] * p_s[i])
     evaluate_residuals(ws)
-    _read_rates(ev, ws)
+    read_rates_in_space(ev, ws)
     for i in range(ws.m_act):
         real(ev)[RESIDUAL] = max(real(ev)[RESIDUAL], abs(phid[active[i]] - joint_rates[i]))
     copy(col(ev, SEPARATION), rate, count)
@@ -351,9 +291,9 @@ def _blow(ev: Any, dr: Any, ws: Any) -> int:
             if abs(b[count + i]) <= rounding[i] and abs(b[2 * count + i]) <= rounding[i]:
                 b[count + i] = b[2 * count + i] = 0.0
             col(ev, KNOWN)[i] = 0.0
-        if not _solve(ev, count, part, b, col(ev, KINETIC), base, col(ev, KNOWN), p):
+        if not solve_cones_in_space(ev, count, part, b, col(ev, KINETIC), base, col(ev, KNOWN), p):
             return NO_IMPACT
-        _push(ev, ws, p)
+        push_in_space(ev, ws, p)
         for i in range(count):
             p_n[i] += p[i]
             p_t[i] += p[count + i]
@@ -383,7 +323,7 @@ def _look(ev: Any, ws: Any) -> None:
 def begin_rest_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """As `begin_rest`."""
     count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
-    _read_rates(ev, ws)
+    read_rates_in_space(ev, ws)
     _look(ev, ws)
     slow = whole(ev)[STRUCK] == 0
     for i in range(count):
@@ -400,7 +340,7 @@ def _free(ev: Any, dr: Any, ws: Any, accelerations: float) -> int:
     count, n, scale = whole(ev)[COUNT], ws.n, vec(ws.scale, ws.n)
     if call_accelerations(dr.accelerations, ws) != OK:
         return NO_FREE_ACCELERATIONS
-    _read(ev, ws, vec(ws.phidd, ws.m_ext), col(ev, B_N), col(ev, B_T), col(ev, B_S))
+    read_in_space(ev, ws, vec(ws.phidd, ws.m_ext), col(ev, B_N), col(ev, B_T), col(ev, B_S))
     whole(ev)[READY] = 1
     none = NO_ACCELERATION * max(largest_acceleration(ws), accelerations, 1e-300)
     real(ev)[NONE] = none
@@ -429,24 +369,46 @@ def _free(ev: Any, dr: Any, ws: Any, accelerations: float) -> int:
 @internal
 def find_forces_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """As `find_forces`: in `F_N`, `F_T` and `F_S`, with the motion `W_N`, `W_T`, `W_S`; DIRECTION is 1 where the
-    contact slides, 2 where it begins to."""
-    count, takes = whole(ev)[COUNT], col(ev, TAKES)
+    contact slides, 2 where it begins to. Where that has led to the same instant again and again, or to no forces, what
+    would be a moment later decides."""
     if whole(ev)[READY] == 0:
         status = _free(ev, dr, ws, 0.0)
         if status != SETTLED:
             return status
+    if ms.exact != 0 and decide_by_moment(ev, dr, ws, ms, col(ev, AT_REST), moment_asked(ev, dr, ws)):
+        return SETTLED
+    part, real(ev)[MOMENT] = col(ev, PART), 0.0
+    for i in range(whole(ev)[COUNT]):
+        part[i] = 1.0 if col(ev, AT_REST)[i] != 0.0 and col(ev, LEAVES)[i] == 0.0 else 0.0
+    status = _find_forces(ev, part, True)
+    if status == SETTLED:
+        note_loaded(ev, ws)
+        status = _refuse_jam(ev)
+    if status == SETTLED and ms.exact != 0:
+        stop_in_space(ev, dr, ws)
+    wedged = (status == NO_FORCES or status == JAMS) and whole(ev)[COUNT] > 1 and ms.exact != 0
+    if wedged and decide_by_moment(ev, dr, ws, ms, col(ev, AT_REST), moment_of_wedge(ev, ws)):
+        return SETTLED
+    return status
+
+
+@internal
+def _find_forces(ev: Any, part: Any, more: bool) -> int:
+    """Forces of the contacts `part`; `more`: of others at rest too, which these press together again."""
+    count, takes = whole(ev)[COUNT], col(ev, TAKES)
     direction, b, p, a = col(ev, DIRECTION), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count), masses(ev, count)
-    fastest, slips = 0.0, col(ev, SLIPS)
+    fastest, any_slips = 0.0, False
     for i in range(count):
-        takes[i] = 1.0 if col(ev, AT_REST)[i] != 0.0 and col(ev, LEAVES)[i] == 0.0 else 0.0
+        takes[i] = part[i]
+        any_slips = any_slips or col(ev, SLIPS)[i] != 0.0
         b[i], b[count + i], b[2 * count + i] = col(ev, B_N)[i], col(ev, B_T)[i], col(ev, B_S)[i]
         fastest = max(fastest, abs(b[i]), abs(b[count + i]), abs(b[2 * count + i]))
         direction[i], col(ev, BASE)[i] = col(ev, KNOWN)[i], 0.0
-    mu = col(ev, FLAG)
+    mu = col(ev, MU)
     for _ in range(2 * count + 2):
         for i in range(count):
             mu[i] = col(ev, KINETIC)[i] if direction[i] != 0.0 else col(ev, STATIC)[i]
-        if not _solve(ev, count, takes, b, mu, col(ev, BASE), direction, p):
+        if not solve_cones_in_space(ev, count, takes, b, mu, col(ev, BASE), direction, p):
             _name_jammed(ev)
             return NO_FORCES
         again = False
@@ -462,18 +424,19 @@ def find_forces_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
                 # at its limit, and it moves: it begins to slide, against its friction
                 force, limit = math.sqrt(p[count + i] ** 2 + p[2 * count + i] ** 2), mu[i] * p[i]
                 moves = math.sqrt(w_t * w_t + w_s * w_s) > STICKS_STILL * fastest
-                now = slips[i] != 0.0
+                # contacts that hold each other reach it together
+                now = any_slips
                 least = limit * (1.0 - (REACHES_LIMIT_NOW if now else REACHES_LIMIT))
                 if force >= least and (moves or now):
                     direction[i] = BEGINS
                     col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -p[count + i] / force, -p[2 * count + i] / force
-                    again = again or slips[i] != 0.0 or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
-            elif takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0 and w_n < -1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
-                takes[i], again = 1.0, True
+                    again = again or now or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
+            elif more and takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0:
+                if w_n < -1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
+                    takes[i], again = 1.0, True
         if not again:
             break
-    note_loaded(ev, ws)
-    return _refuse_jam(ev)
+    return SETTLED
 
 
 @internal
@@ -545,14 +508,109 @@ def _carry(ev: Any, ws: Any, kept: int, k: int, rank: float) -> int:
 
 
 @internal
-def keep_in_space(ev: Any, ws: Any, rank: float) -> None:
+def _part(ev: Any, count: int, row: int, which: int) -> Any:
+    """(direction, factor) of the two that make row `row`: a normal, or the first or second tangent of a contact, in its
+    own frame."""
+    i = row % count
+    c, s = col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i]
+    if row < count:
+        return (row, 1.0) if which == 0 else (row, 0.0)
+    if row < 2 * count:
+        return (count + i, c) if which == 0 else (2 * count + i, s)
+    return (count + i, -s) if which == 0 else (2 * count + i, c)
+
+
+@internal
+def _between(ev: Any, count: int, one: int, other: int) -> float:
+    """Inverse mass between two rows."""
+    a, total = masses(ev, count), 0.0
+    for j in range(2):
+        p, of_p = _part(ev, count, one, j)
+        for k in range(2):
+            q, of_q = _part(ev, count, other, k)
+            total += of_p * of_q * a[p, q]
+    return total
+
+
+@internal
+def _hold(ev: Any, total: int, i: int, rank: float) -> int:
+    """Along which tangents contact i is held by itself beside the first `total` rows in `some`: both, one, or none, to
+    NEW_SLIDE with the way and the share; the rows go to `some`, and their number is returned. One is that which the
+    others hold least."""
+    count, some = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most)
+    f_n, f_t, f_s = col(ev, F_N)[i], col(ev, F_T)[i], col(ev, F_S)[i]
+    cos_way, sin_way, c, s = col(ev, COS_WAY), col(ev, SIN_WAY), col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i]
+    cos_way[i], sin_way[i] = 1.0, 0.0
+    matrix, rows = mat(ev.space_room, total, total), (count + i, 2 * count + i)
+    right = mat(ev.space_room + 8 * total * total, total, 2)
+    found = mat(ev.space_room + 8 * total * (total + 2), total, 2)
+    for k in range(total):
+        for j in range(2):
+            right[k, j] = _between(ev, count, some[k], rows[j])
+        for j in range(total):
+            matrix[k, j] = _between(ev, count, some[k], some[j])
+    most = 3 * ev.most
+    work = ev.space_room + 8 * (most * most + 4 * most)
+    call_least_norm(cones_at(ev.cones).least_norm, matrix, right, found, RANK_OF_HELD, work)
+    # what is left of both, and its principal directions
+    left_11, left_12 = _between(ev, count, rows[0], rows[0]), _between(ev, count, rows[0], rows[1])
+    left_22 = _between(ev, count, rows[1], rows[1])
+    least = max(rank, RANK_OF_HELD) * (left_11 + left_22)
+    for k in range(total):
+        first, second = _between(ev, count, some[k], rows[0]), _between(ev, count, some[k], rows[1])
+        left_11 -= first * found[k, 0]
+        left_12 -= first * found[k, 1]
+        left_22 -= second * found[k, 1]
+    half, radius = 0.5 * (left_11 + left_22), math.hypot(0.5 * (left_11 - left_22), left_12)
+    if half - radius > least:
+        col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = STUCK, 0.0
+        some[total], some[total + 1] = rows
+        return 2
+    if half + radius > least:
+        angle = 0.5 * math.atan2(2.0 * left_12, left_11 - left_22)
+        cos_way[i], sin_way[i] = math.cos(angle), math.sin(angle)
+        col(ev, NEW_SLIDE)[i] = ALONG
+        col(ev, NEW_RATIO)[i] = (cos_way[i] * f_s - sin_way[i] * f_t) / f_n if f_n > 0.0 else 0.0
+        some[total] = rows[0]
+        return 1
+    cos_way[i], sin_way[i] = c, s
+    return 0
+
+
+@internal
+def _swap(ev: Any, back: bool) -> None:
+    """Keep what has been found, or put it `back`."""
+    for one, other in _FOUND:
+        copy(col(ev, one if back else other), col(ev, other if back else one), whole(ev)[COUNT])
+
+
+@internal
+def _hand_over(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
+    """What the contacts in `FLAG` do without those that are left to them, if they can: others' friction is no longer
+    there, so that sliding may begin another way."""
+    kept, moment = col(ev, FLAG), real(ev)[MOMENT]
+    _swap(ev, False)
+    good = moment > 0.0 and decide_by_moment(ev, dr, ws, ms, kept, moment)
+    if moment == 0.0:
+        good = _find_forces(ev, kept, False) == SETTLED
+    fastest = 0.0
+    for i in range(whole(ev)[COUNT]):
+        fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]), abs(col(ev, B_S)[i]))
+    for i in range(whole(ev)[COUNT]):
+        pressed = col(ev, CLOSES)[i] != 0.0 and kept[i] == 0.0 and col(ev, W_N)[i] < -HOLDS * fastest
+        good = good and not pressed and (kept[i] == 0.0 or col(ev, F_N)[i] > 0.0)
+    if not good:
+        _swap(ev, True)
+
+
+@internal
+def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """As `keep`: normals first, those that carry most before others; then tangents of those that stick. Where both of a
     contact are left to others, or one, it carries its share of friction along with its normal force."""
     count, some, flag = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), col(ev, FLAG)
     f_n, f_t, f_s, order = col(ev, F_N), col(ev, F_T), col(ev, F_S), ivec(ev.order, 2 * ev.most)
-    real(ev)[RANK] = rank
+    rank, normals = real(ev)[RANK], 0
     clear(flag, count)
-    normals, stuck = 0, 0
     for i in range(count):
         if col(ev, CLOSES)[i] != 0.0:
             at = normals
@@ -567,30 +625,20 @@ def keep_in_space(ev: Any, ws: Any, rank: float) -> None:
     for j in range(kept):
         order[j] = some[j]
         flag[some[j]] = 1.0
+    if kept < normals:
+        _hand_over(ev, dr, ws, ms)
     normals = total = kept
     for j in range(normals):
         i = order[j]
         rubs = col(ev, STATIC)[i] > 0.0
-        way, size = 1.0, math.sqrt(f_t[i] ** 2 + f_s[i] ** 2)
+        size = math.sqrt(f_t[i] ** 2 + f_s[i] ** 2)
         if col(ev, DIRECTION)[i] != 0.0 and rubs:
             col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = 1.0, -col(ev, KINETIC)[i]
             continue
         # until it is known whether its tangents are told from others: a share
         col(ev, NEW_SLIDE)[i] = IDLE
         col(ev, NEW_RATIO)[i] = size / f_n[i] if f_n[i] > 0.0 and rubs else 0.0
-        col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (f_t[i] / size, f_s[i] / size) if size > 0.0 else (way, 0.0)
-        if not rubs:
-            continue
-        held = 0
-        for block in range(2):
-            some[total + held] = (block + 1) * count + i
-            if _independent(ev, ws, total + held + 1, rank) == total + held + 1:
-                held += 1
-                stuck = block
-        if held == 2:
-            col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = STUCK, 0.0
-            col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = 1.0, 0.0
-        elif held == 1:
-            col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = ALONG, 0.0
-            col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (1.0, 0.0) if stuck == 0 else (0.0, 1.0)
-        total += held
+        col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (f_t[i] / size, f_s[i] / size) if size > 0.0 else (1.0, 0.0)
+        if rubs:
+            total += _hold(ev, total, i, rank)
+    return SETTLED

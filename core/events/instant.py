@@ -25,13 +25,13 @@ from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
 from ..tables.assembly import Assembly
 from .force_contact import settle_forces
 from .impact import strike
-from .in_space import begin_rest_in_space, find_forces_in_space, open_in_space, strike_in_space
+from .in_space import begin_rest_in_space, find_forces_in_space, keep_in_space, open_in_space, strike_in_space
 from .prepare import use_modes
 from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, WHO, WHOLES
-from .resting import begin_rest, find_forces
+from .resting import begin_rest, find_forces, keep
 from .touching import open_touching
 
-PARTS = (open_touching, strike, begin_rest, find_forces, use_modes, settle_forces)
+PARTS = (open_touching, strike, begin_rest, find_forces, keep, use_modes, settle_forces)
 _OTHERS = (
     ("solve_cones", solve_cones, CONES_SIGNATURE),
     ("independent", independent_directions, INDEPENDENT_SIGNATURE),
@@ -43,7 +43,7 @@ FEW = 8
 
 IN_SPACE = {
     "open_touching": open_in_space, "strike": strike_in_space, "begin_rest": begin_rest_in_space,
-    "find_forces": find_forces_in_space,
+    "find_forces": find_forces_in_space, "keep": keep_in_space,
 }  # fmt: skip
 """What takes the place of parts where contacts have two tangents."""
 

@@ -20,7 +20,7 @@ INSTANT = np.dtype(
         for name in (
             "most",                      # touching contacts that there is room for
             # addresses of these functions
-            "open_touching", "strike", "begin_rest", "find_forces", "use_modes", "settle_forces",
+            "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces",
             "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
@@ -86,7 +86,8 @@ COLUMNS = 79
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)
-REALS = 6
+MOMENT = 6  # that has decided, s; 0: forces have
+REALS = 7
 # entries of `wholes`
 COUNT = 0  # contacts that touch
 STRUCK = 1

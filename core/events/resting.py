@@ -562,15 +562,15 @@ def _close_idle(ev: Any, dr: Any, ws: Any, closes: Any) -> None:
 
 
 @internal
-def keep(ev: Any, ws: Any, rank: float) -> None:
-    """Of the contacts in `CLOSES` those that do not repeat each other, to `rank`, with what each does along its tangent
+def keep(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Of the contacts in `CLOSES` those that do not repeat each other, to `RANK`, with what each does along its tangent
     (SLIDE and RATIO): `FLAG`, `NEW_SLIDE`, `NEW_RATIO`. Contacts that repeat each other nearly need large forces
     against each other to move as constraints say: where an instant does not settle, more and more of them count as
     one."""
     count, closes, f_n, flag = whole(ev)[COUNT], col(ev, CLOSES), col(ev, F_N), col(ev, FLAG)
     some, order, chosen = ivec(ev.some, 2 * ev.most), ivec(ev.order, 2 * ev.most), ivec(ev.chosen, 2 * ev.most)
     slide, ratio, kinetic, direction = col(ev, NEW_SLIDE), col(ev, NEW_RATIO), col(ev, KINETIC), col(ev, DIRECTION)
-    real(ev)[RANK] = rank
+    rank = real(ev)[RANK]
     clear(flag, count)
     stuck, normals, kept = sticking(ev), 0, 0
     for i in range(count):
@@ -582,7 +582,7 @@ def keep(ev: Any, ws: Any, rank: float) -> None:
             some[at] = i
             normals += 1
     if normals == 0:
-        return
+        return SETTLED
     for j in range(stuck):
         if closes[order[j]] != 0.0:
             at = normals + kept
@@ -603,11 +603,12 @@ def keep(ev: Any, ws: Any, rank: float) -> None:
         if chosen[j] >= normals:
             i = some[chosen[j]] - count
             slide[i], ratio[i] = STUCK, 0.0
+    return SETTLED
 
 
 @internal
 def keep_others(ev: Any, ws: Any) -> bool:
-    """`keep`, with those first along whose tangents it has been left to others to hold; False if there are none.
+    """Say that `keep` is to begin with those along whose tangents others were left to hold; False if there are none.
 
     A disk that presses against two others balances their friction by itself: if one is to carry a constant share of its
     normal force, that share is the one with which the disk is in balance under any normal force, and nothing says how
@@ -621,8 +622,6 @@ def keep_others(ev: Any, ws: Any) -> bool:
         i = order[j]
         if col(ev, FLAG)[i] != 0.0 and col(ev, NEW_SLIDE)[i] == IDLE and first[i] == 0.0:
             first[i], some = latest + 1.0, True
-    if some:
-        keep(ev, ws, real(ev)[RANK])
     return some
 
 

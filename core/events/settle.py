@@ -56,7 +56,7 @@ from ..tables.switch import take_partition, take_structure
 from .blow import impact
 from .breakpoint import pass_breakpoint
 from .crowding import count_instant
-from .in_space import BEGINS, keep_in_space
+from .in_space import BEGINS
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
 from .meeting import meet_constraints
@@ -107,7 +107,7 @@ from .records import (
     whole,
 )
 from .report import MOST_EVENTS, report, room_for
-from .resting import LOOSEST_RANK, RANK_OF_MANY, choose, keep, keep_others, pulls
+from .resting import LOOSEST_RANK, RANK_OF_MANY, choose, keep_others, pulls
 from .touching import find_touching, looks_again, read_rates, read_values
 from .unsettled import find_pending, find_unsettled
 from .wedging import MOST_WEDGES, wedge
@@ -312,28 +312,23 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         return status
     _account_stops(ev, ws)
     rank = DIRECTION_RANK if count <= MANY else RANK_OF_MANY
-    _keep_some(ev, ws, min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK))
+    real(ev)[RANK] = min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK)
+    call_part(ev.keep, ev, dr, ws, ms)
     while True:
         status = _take(ev, dr, ws, ms)
         repeats = status == REPEATED_ROWS or status == SINGULAR_MATRIX or status == NO_ACCELERATIONS
         others = ws.tangents == 1 and (repeats or (status == SETTLED and pulls(ev, ws)))
         if others and keep_others(ev, ws):
+            call_part(ev.keep, ev, dr, ws, ms)
             continue
         # contacts that each can be told from any other repeat each other together
         if not repeats or real(ev)[RANK] >= LOOSEST_RANK or not _any(ev, FLAG):
             break
-        _keep_some(ev, ws, min(100.0 * real(ev)[RANK], LOOSEST_RANK))
+        real(ev)[RANK] = min(100.0 * real(ev)[RANK], LOOSEST_RANK)
+        call_part(ev.keep, ev, dr, ws, ms)
     if status == SETTLED:
         _report(ev, dr, ws, ms)
     return status
-
-
-@internal
-def _keep_some(ev: Any, ws: Any, rank: float) -> None:
-    if ws.tangents == 2:
-        keep_in_space(ev, ws, rank)
-    else:
-        keep(ev, ws, rank)
 
 
 @internal

@@ -5,7 +5,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
-from ..state.modes import CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE
+from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..state.workspace_records import OK, structure_at
 from ..tables.held import held_friction, is_held
@@ -80,14 +80,14 @@ def _returns_at_once(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int
     """YES if contact k, closed, pulls by no more than lets its gap open by what could not be told from zero before it
     closes again. The next step then goes beyond that. NO, or what is wanted to know it."""
     memory, clock = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], vec(lc.clock, CLOCK_SIZE)
-    mode, slide, ratio = memory[MODE], memory[SLIDE], memory[RATIO]
+    mode, slide, ratio, axis = memory[MODE], memory[SLIDE], memory[RATIO], memory[AXIS]
     ivec(ev.contacts, ev.most)[0], whole(ev)[COUNT] = k, 1
     motion, jerks = col(ev, B_N), col(ev, SPARE)
     status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status == SETTLED:
         status = free_accelerations(ev, dr, ws, motion, col(ev, B_T), 0.0)
         free_jerks(ev, ws, jerks)
-    memory[MODE], memory[SLIDE], memory[RATIO] = mode, slide, ratio
+    memory[MODE], memory[SLIDE], memory[RATIO], memory[AXIS] = mode, slide, ratio, axis
     if status == WANT_STRUCTURE or status == WANT_PIVOTS:
         return status
     back = call_part(ev.use_modes, ev, dr, ws, ms)

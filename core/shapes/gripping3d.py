@@ -1,10 +1,11 @@
 """Coulomb friction of contacts in space that are constraints.
 
 A closed contact that sticks has, beside the gap, two rows at velocity level: the sliding velocity along both tangents
-is zero. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|. Where |u_T| comes to zero a direction has to go
-on through it, for steps end beyond the event before they end at it: with x and y along the tangents, x along the
-direction of sliding at the last event, the angle of friction is atan(x y/(x^2 + STILL^2)), which for x > 0 is that of
-u_T.
+is zero; one that others hold along the second tangent has the first one's row, and carries along the second a share of
+its normal force. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|. Where |u_T| comes to zero a direction
+has to go on through it, for steps end beyond the event before they end at it: with x and y along the tangents, x along
+the direction of sliding at the last event, the angle of friction is atan(x y/(x^2 + STILL^2)), which for x > 0 is that
+of u_T.
 
 What the rows of a contact that does not stick tell: of an open one x and y; of one that slides x - TURNED |u_T|, whose
 zero is the end of sliding, or a turn of its direction by much, and |u_T|.
@@ -87,6 +88,9 @@ def grip(b: Any, job: int, e: int, work: Any) -> None:
         pull = times(-lam[row[1]], t1)
         if both:
             pull = less(pull, times(lam[row[2]], t2))
+        else:
+            share = times(-memory[RATIO], t2)
+            pull = plus(pull, times(lam[row[0]], share))
     if job == RESIDUAL:
         a = vec(b.a, b.n_extended)
         u_rate = plus(product_with(work, W, a, coord), product_with(work, U, v, coord))
@@ -120,6 +124,9 @@ def grip(b: Any, job: int, e: int, work: Any) -> None:
                     values[slot_j[2 * SIZE + j]] += along_2
                     values[slot_jt[2 * SIZE + j]] += along_2
                     change = less(change, times(c_q * lam[row[2]], by_t2))
+                else:
+                    values[slot_jt[j]] -= dot(of_v, share)
+                    change = plus(change, times(c_q * load, by_t2))
             else:
                 values[slot_jt[j]] -= dot(of_v, share)
                 of_q = column(work, U, j)

@@ -10,7 +10,7 @@ MODE_NAMES: dict[float, str] = {OPEN: "open", CLOSED: "closed", ACTIVE: "active"
 # how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
 STICKS = 0.0  # its sliding distance is a constraint
 IDLE = 2.0  # it cannot slide because others hold it, and carries a share of its normal force (RATIO)
-ALONG = 3.0  # in space: its sliding is zero along the first tangent, others hold it along the second
+ALONG = 3.0  # in space: its sliding is zero along the first tangent; along the second it is IDLE
 
 # columns of the memory
 MODE = 0

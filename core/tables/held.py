@@ -5,7 +5,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat
-from ..state.modes import ALONG, MEMORY_SIZE, SLIDE, STICKS
+from ..state.modes import ALONG, MEMORY_SIZE, RATIO, SLIDE, STICKS
 
 
 @internal
@@ -19,6 +19,9 @@ def is_held(ws: Any, k: int) -> bool:
 def held_friction(ws: Any, k: int, lam: Any) -> float:
     """Size of the friction of contact k, which sticks, N, from multipliers `lam` (m_ext,)."""
     row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    if ws.tangents == 2 and mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == STICKS:
-        return math.sqrt(lam[row] * lam[row] + lam[row + 1] * lam[row + 1])
+    if ws.tangents == 2:
+        memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+        share = memory[RATIO] * lam[ivec(ws.contact_rows, ws.n_contacts)[k]]
+        across = lam[row + 1] if memory[SLIDE] == STICKS else share
+        return math.sqrt(lam[row] * lam[row] + across * across)
     return abs(lam[row])

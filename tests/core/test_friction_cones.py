@@ -95,3 +95,34 @@ def test_a_polygon_would_err_in_direction():
     angle = math.radians(20.0)
     p, _ = solve(np.diag([1.0, 3.5, 3.5]), np.array([-1.0, 5.0 * math.cos(angle), 5.0 * math.sin(angle)]), [0.3])
     assert math.atan2(p[2], p[1]) == pytest.approx(angle - math.pi, abs=1e-14)
+
+
+@pytest.mark.parametrize("seed", range(300))
+def test_corners_that_are_nearly_at_rest(seed):
+    """Weight of a moment and speeds from far less than it to far more: sticking, sliding, and what is between."""
+    random = np.random.default_rng(seed)
+    g, size = box(), 10.0 ** random.uniform(-12, 1)
+    v = random.normal(size=6) * [1, 1, 0, 0, 0, 5] * size
+    if seed % 2:
+        v[2:5] = random.normal(size=3) * [1, 5, 5] * size * 10.0 ** random.uniform(-4, 0)
+    v[2] -= 9.81 * 10.0 ** random.uniform(-6, 0)
+    largest, friction = np.abs(g @ v).max(), np.full(4, random.uniform(0.05, 1.2))
+    p, w = solve(g @ INVERSE @ g.T, g @ v / largest, friction)
+    assert off(p, w, friction) < 1e-8
+
+
+def test_a_sliding_contact_near_jamming_is_found():
+    """Its pole, where friction lifts as much as the normal force, lies between two of the angles that are tried."""
+    found = 0
+    for seed in range(400):
+        random = np.random.default_rng(seed)
+        jacobian = random.normal(size=(3, 4))
+        a, v = jacobian @ jacobian.T, random.normal(size=4)
+        b = jacobian @ v
+        if b[0] >= 0.0:
+            continue
+        mu = np.array([random.uniform(0.5, 1.5) * a[0, 0] / np.hypot(a[0, 1], a[0, 2])])
+        p, w = solve(a, b, mu)
+        assert off(p, w, mu) < 1e-8 * max(1.0, p[0]) ** 2
+        found += 1
+    assert found > 100
