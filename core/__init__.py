@@ -136,13 +136,14 @@ from .run.state import State
 from .runs import Runs
 from .shapes.angle_stop2d import AngleStop2D
 from .shapes.box2d import Box2D, DiskOnBox2D
-from .shapes.box3d import Box3D
 from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
+from .shapes.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D
 from .shapes.disk_on_cable import DiskOnCable2D
 from .shapes.disk_on_line import DiskOnLine2D, Line2D
 from .shapes.group2d import ContactGroup2D, contacts_between
+from .shapes.group3d import ContactGroup3D
 from .shapes.rope2d import Rope2D
 from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
 from .shapes.segment2d import DiskOnSegment2D, Segment2D
@@ -177,6 +178,7 @@ __all__ = [
     "Cable2D",
     "Cable3D",
     "CableClamp3D",
+    "Capsule3D",
     "CarvalhoMartins",
     "Channel",
     "Clamp2D",
@@ -185,6 +187,8 @@ __all__ = [
     "Constant",
     "ConstantVelocity3D",
     "ContactGroup2D",
+    "ContactGroup3D",
+    "ConvexPolyhedron3D",
     "CoordinateContact",
     "CoordinateDriver",
     "CoordinateLoad",

@@ -22,7 +22,7 @@ from .model.own_types import find_classes, import_paths, own_classes
 from .model.places import inside
 from .model.signals import InputSignal
 from .shapes import Contact
-from .shapes.group2d import ContactGroup2D, with_groups
+from .shapes.groups import ContactGroup, with_groups
 
 
 def _with_imports(schema: dict[str, Any]) -> None:
@@ -62,7 +62,7 @@ class Model(Record):
     """What acts on them."""
     contacts: tuple[Contact, ...] = ()
     """Where they may touch."""
-    groups: tuple[ContactGroup2D, ...] = ()
+    groups: tuple[ContactGroup, ...] = ()
     """Shapes of which each may touch each other; their contacts are made of them."""
     inputs: tuple[Input, ...] = ()
     """Numbers that come from outside during a run."""

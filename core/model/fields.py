@@ -78,7 +78,7 @@ def _written(value: Any) -> str:
 def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
     """A type in a few words."""
     plain = isinstance(annotation, type) and not get_args(annotation)
-    text = re.sub(r"[A-Za-z_]+\.", "", annotation.__name__ if plain else str(annotation))
+    text = re.sub(r"[A-Za-z_]\w*\.", "", annotation.__name__ if plain else str(annotation))
     words = {"float": "number", "int": "whole number", "bool": "true or false", "str": "text"}
     if not plain:
         inner = re.findall(r"\b(float|int|bool|str|Literal)\b", text)
@@ -89,7 +89,7 @@ def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
             return "one of " + ", ".join(re.findall(r"'([^']+)'", text))
         what = " or ".join(dict.fromkeys(records[:3] or [words[w] for w in inner]))
         if "tuple[" in text:
-            return f"list of {what}s" if what else "list"
+            return f"list of {what}{'' if records else 's'}" if what else "list"
         return what
     bounds = [f"> {m.gt:g}" for m in metadata if getattr(m, "gt", None) is not None]
     bounds += [f">= {m.ge:g}" for m in metadata if getattr(m, "ge", None) is not None]
@@ -111,6 +111,9 @@ _PLAIN = {
     "True",
     "False",
     "OpenUnion",
+    "Gt",
+    "Ge",
+    "Le",
 }
 
 

@@ -6,9 +6,9 @@ its corners. Pairs on one body are left out. Pairs that are far from touching co
 during a run: contacts sleep until their margin is used up (`location/asleep.py`).
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import combinations, product
-from typing import Any
+from typing import Literal
 
 from ..errors import ModelError
 from ..laws import ContactLaw
@@ -16,13 +16,13 @@ from ..laws.friction import Friction
 from ..model.base import Name, Record
 from ..model.markers import GROUND
 from .box2d import Box2D, DiskOnBox2D
-from .box3d import Box3D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
+from .cornered3d import Cornered3D
 from .segment2d import DiskOnSegment2D, Segment2D
 
 PlanarShape = Disk2D | HalfPlane2D | Box2D | Segment2D
-SpatialShape = Sphere3D | HalfSpace3D | Box3D
+SpatialShape = Sphere3D | HalfSpace3D | Cornered3D
 GroupShape = PlanarShape | SpatialShape
 
 MOST_PAIRS = 200_000
@@ -82,6 +82,7 @@ class ContactGroup2D(Record):
     name_body1_body2. They sleep while they are far apart. Law and friction are changed here, for all of them.
     """
 
+    type: Literal["ContactGroup2D"] = "ContactGroup2D"
     name: Name
     """Names of its contacts begin with it."""
     disks: tuple[Disk2D, ...] = ()
@@ -107,34 +108,13 @@ class ContactGroup2D(Record):
         )
 
 
-def with_groups(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The data of a model with the contacts of its `groups` among its `contacts`, made anew where they are there.
-
-    Raises
-    ------
-    ModelError : for a group that is none.
-    """
-    given = data.get("groups")
-    if not given or not isinstance(given, list | tuple):
-        return data
-    groups = [g if isinstance(g, ContactGroup2D) else ContactGroup2D(**g) for g in given]
-    made = [contact for group in groups for contact in group.contacts()]
-    names = {contact.name for contact in made}
-    others = [c for c in data.get("contacts", ()) if _name(c) not in names]
-    return {**data, "groups": groups, "contacts": [*others, *made]}
-
-
-def _name(contact: Any) -> Any:
-    return contact.get("name") if isinstance(contact, Mapping) else getattr(contact, "name", None)
-
-
 def _body(shape: GroupShape) -> str:
     return str(shape.marker.body)
 
 
 def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape]]:
     """Pairs (what, disk or sphere) that say the contact of two shapes."""
-    if isinstance(a, Sphere3D | HalfSpace3D | Box3D) or isinstance(b, Sphere3D | HalfSpace3D | Box3D):
+    if isinstance(a, SpatialShape) or isinstance(b, SpatialShape):
         return _touching_in_space(a, b)
     if isinstance(b, Disk2D):
         return ((a, b),)
@@ -166,13 +146,13 @@ def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShap
         a, b = b, a
     if isinstance(a, HalfSpace3D) and isinstance(b, Sphere3D):
         return ((a, b),)
-    if isinstance(a, HalfSpace3D) and isinstance(b, Box3D):
+    if isinstance(a, HalfSpace3D) and isinstance(b, Cornered3D):
         return tuple((a, corner) for corner in b.corners())
     if _body(a) == _body(b) == GROUND:
         return ()
     raise ModelError(
         f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: in space a "
-        "sphere touches spheres and half-spaces, a box touches half-spaces; give the box spheres at its corners"
+        "sphere touches spheres and half-spaces, what has corners touches half-spaces; give it spheres in their place"
     )
 
 

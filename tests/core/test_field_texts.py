@@ -14,8 +14,9 @@ UNITS_DEPEND = {
     "CoordinateContact": {"offset"}, "CoordinateRelation": {"offset"}, "CoordinateTerm": {"factor"}, "Input": {"start"},
     "EulerParameters": {"values"}, "FloatingBeam2D": {"amplitudes", "amplitude_rates", "damping_ratio"},
     "Gear3D": {"radius_a", "radius_b"}, "Parameter": {"value", "minimum", "maximum"}, "Polynomial": {"coefficients"},
-    "Ramp": {"before", "after"}, "RelationTerm": {"factor"}, "PIDController2D": {"gain", "integral_gain", "rate_gain"},
-    "Servo2D": {"gain", "rate_gain"},
+    "Ramp": {"before", "after"}, "RelationTerm": {"factor"},
+    "PIDController2D": {"gain", "integral_gain", "rate_gain", "largest"},
+    "Servo2D": {"gain", "rate_gain", "largest"},
     "Sine": {"amplitude", "offset"}, "Step": {"before", "after"}, "Table": {"values"},
 }  # fmt: skip
 MATRICES = {"LinearSystem", "ReducedBody2D", "ReducedPoint"}

@@ -479,6 +479,8 @@ def test_the_list_of_elements_above_is_complete():
         "SlideSpring2D", "TableSpring2D", "RevoluteFriction2D", "SlideFriction2D", "Servo2D", "PIDController2D",
         "Rope2D", "AngleStop2D",
         "DiskOnBox2D", "KnifeEdge2D", *SPATIAL,
+        # (`test_contact_groups.py`, `test_cornered_shapes.py`)
+        "ContactGroup2D", "ContactGroup3D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

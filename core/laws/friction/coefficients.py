@@ -17,7 +17,7 @@ class StaticAndKinetic(Record):
     coefficient: FrictionCoefficient
     """mu while slipping, dimensionless."""
     static_coefficient: FrictionCoefficient | None = None
-    """mu_s >= mu while sticking; none: mu."""
+    """mu_s >= mu while sticking, dimensionless; none: mu."""
 
     @field_validator("static_coefficient")
     @classmethod

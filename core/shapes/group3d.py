@@ -1,0 +1,48 @@
+"""Groups of shapes in space of which each may touch each other."""
+
+from typing import Literal
+
+from ..laws import ContactLaw
+from ..laws.friction import Friction
+from ..model.base import Name, Record
+from .contact2d import Contact2D
+from .contact3d import Contact3D, HalfSpace3D, Sphere3D
+from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D
+from .group2d import GroupShape, contacts_between
+
+
+class ContactGroup3D(Record):
+    """Shapes in space of which each may touch each other: one record for all their contacts.
+
+    A model makes the contacts of all pairs that can touch, as `contacts_between` does, and calls them
+    name_body1_body2. They sleep while they are far apart. Law and friction are changed here, for all of them.
+    """
+
+    type: Literal["ContactGroup3D"] = "ContactGroup3D"
+    name: Name
+    """Names of its contacts begin with it."""
+    spheres: tuple[Sphere3D, ...] = ()
+    """They touch spheres and half-spaces."""
+    boxes: tuple[Box3D, ...] = ()
+    """They touch half-spaces, by their corners."""
+    polyhedra: tuple[ConvexPolyhedron3D, ...] = ()
+    """They touch half-spaces, by their corners."""
+    capsules: tuple[Capsule3D, ...] = ()
+    """They touch half-spaces, by their ends."""
+    half_spaces: tuple[HalfSpace3D, ...] = ()
+    """They touch all shapes but half-spaces."""
+    law: ContactLaw
+    """What happens when a gap closes."""
+    friction: Friction | None = None
+    """What resists sliding; left out: nothing."""
+    except_bodies: tuple[tuple[str, str], ...] = ()
+    """Pairs of bodies that do not touch, such as those that a joint holds together."""
+
+    def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
+        """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact: shapes with
+        corners and spheres, or other shapes with corners."""
+        cornered: tuple[GroupShape, ...] = (*self.boxes, *self.polyhedra, *self.capsules)
+        return contacts_between(
+            self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,
+            except_bodies=self.except_bodies,
+        )  # fmt: skip
