@@ -26,7 +26,7 @@ from .extras import require
 from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
-from .native_export import native_binaries, native_resources, native_table
+from .native_export import NativeRun, native_binaries, variables_file
 from .nominal import with_nominals
 from .own_code import OwnCode
 from .platforms import PLATFORMS, choose, this_platform
@@ -132,8 +132,11 @@ def export_fmu(
     variables = with_nominals(slave.variables, slave.model, slave.settings, simulation)
     channels = [v.name for v in variables.block("channel")]
     variables = with_outputs(variables, [outputs] if isinstance(outputs, str) else outputs)
+    run = None
     if native:
-        variables = native_table(without_secrets(variables) if protect else variables)
+        variables = without_secrets(variables) if protect else variables
+        run = NativeRun.of(slave.model, slave.settings, variables, slave.origin)
+        variables = run.table(variables)
     slave = Slave(slave.model, variables=variables, origin=slave.origin, **solver_data)
     identifier, code = c_identifier(slave.model.name), OwnCode.of(slave.model)
     content = slave.identity + (code.digest if code.types else "")
@@ -148,10 +151,12 @@ def export_fmu(
     )  # fmt: skip
     description, folder = VERSIONS[fmi_version]
     described = description(slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables))
-    if native:
+    if run is not None:
+        _say_what_is_fixed(run, slave.model.name)
         files = {
             "modelDescription.xml": described,
-            **native_resources(slave.model, slave.settings, slave.variables, token, channels),
+            "resources/model.image": run.image,
+            "resources/variables.bin": variables_file(slave.variables, token, slave.settings.rtol, channels),
             **native_binaries(folder(), identifier, fmi_version, platforms),
         }
         return write_archive(path, files)
@@ -184,6 +189,14 @@ def export_fmu(
             sys.prefix,
         )
     return write_archive(path, files)
+
+
+def _say_what_is_fixed(run: NativeRun, name: str) -> None:
+    reasons: dict[str, list[str]] = {}
+    for parameter, why in run.fixed.items():
+        reasons.setdefault(why, []).append(parameter)
+    for why, parameters in reasons.items():
+        logging.getLogger(__name__).info("'%s', parameters fixed in the FMU: %s: %s", name, ", ".join(parameters), why)
 
 
 def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> dict[str, bytes]:

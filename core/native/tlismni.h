@@ -32,7 +32,7 @@ typedef int tlismni_status;
 enum { TLISMNI_OK = 0 };
 
 /* Names of an image, and how many there are. */
-typedef enum { TLISMNI_INPUT, TLISMNI_CHANNEL, TLISMNI_CONTACT } tlismni_kind;
+typedef enum { TLISMNI_INPUT, TLISMNI_CHANNEL, TLISMNI_CONTACT, TLISMNI_PARAMETER } tlismni_kind;
 
 /* A contact event. */
 typedef struct {
@@ -73,6 +73,14 @@ TLISMNI_API tlismni_run *tlismni_start_in(const tlismni_model *model, void *memo
 
 /* Back to the point at which the image was made, in the same memory. */
 TLISMNI_API void tlismni_restart(tlismni_run *run);
+
+/* A parameter's value: that of the image, unless another one is set. Between the start of a run (or its restart) and the
+ * first call that goes on or looks, a parameter takes any value from `least` to `largest`: the run is then that of the
+ * model with this value. It keeps it until it is restarted; a state has it too. */
+TLISMNI_API double tlismni_parameter(const tlismni_run *run, size_t number);
+TLISMNI_API tlismni_status tlismni_set_parameter(tlismni_run *run, size_t number, double value);
+TLISMNI_API tlismni_status tlismni_parameter_range(const tlismni_model *model, size_t number, double *least,
+                                                   double *largest);
 
 /* Present time, s; and the time up to which the run is computed already. */
 TLISMNI_API double tlismni_time(const tlismni_run *run);

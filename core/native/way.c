@@ -170,6 +170,7 @@ static tlismni_status begin(tlismni_run *run, double t) {
             return WRONG_INPUT;
         }
     }
+    run->beside.begun = 1;
     WHOLES(run, counts)[EVENTS] = 0;
     times[NOW] = run->beside.now;
     times[TO] = t;

@@ -65,14 +65,22 @@ Slave *slave_new(const Slave *given, const char *function, const char *name, con
     self->heard = logging_on ? (1u << LOG_CATEGORIES) - 1 : 0;
     self->model = NULL;
     self->run = NULL;
+    self->parameters = NULL;
     self->file = NULL;
     self->stored = NULL;
     self->name = text_copy(name && *name ? name : "instance");
     at_start(self);
     if (self->name && load(self, function, token ? token : "", resources)) {
+        size_t numbers = tlismni_count(self->model, TLISMNI_PARAMETER) + tlismni_count(self->model, TLISMNI_INPUT);
         self->run = tlismni_start(self->model);
+        self->parameters = malloc((numbers + 1) * sizeof *self->parameters);
+        if (!self->run || !self->parameters) {
+            slave_error(self, function, "there is no memory left for an instance");
+        }
     }
-    if (!self->run) {
+    if (self->run && self->parameters) {
+        slave_take_parameters(self);
+    } else {
         slave_free(self);
         return NULL;
     }
@@ -86,6 +94,7 @@ void slave_free(Slave *self) {
     slave_forget_states(self);
     tlismni_end(self->run);
     tlismni_close(self->model);
+    free(self->parameters);
     free(self->file);
     free(self->name);
     self->magic = 0;
@@ -149,6 +158,7 @@ int slave_reset(Slave *self) {
         return STATUS_ERROR;
     }
     tlismni_restart(self->run);
+    slave_take_parameters(self);
     at_start(self); /* stored states stay */
     return STATUS_OK;
 }

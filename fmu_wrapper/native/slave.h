@@ -26,7 +26,7 @@ enum { LOG_EVENTS, LOG_WARNING, LOG_DISCARD, LOG_ERROR, LOG_COMPILATION, LOG_TRA
 
 /* What a variable's values are, and where they come from (`variable_file.py`). */
 typedef enum { REAL, INTEGER, BOOLEAN } Kind;
-typedef enum { TIME, CONSTANT, INPUT, CHANNEL, EVENT_COUNT } Source;
+typedef enum { TIME, CONSTANT, INPUT, PARAMETER, CHANNEL, EVENT_COUNT } Source;
 typedef struct {
     int32_t kind, source, enumeration, number;
     double start, least, largest;
@@ -58,6 +58,7 @@ struct Slave {
     bool asked;  /* outputs have been asked for since the last step */
     tlismni_model *model;
     tlismni_run *run;
+    double *parameters; /* values, behind them room for the inputs */
     void *file; /* the variables' */
     const Variable *variables;
     size_t count;
@@ -94,6 +95,8 @@ int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size
 int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerations, const uint32_t vr[], size_t n,
                      int64_t value[]);
 int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]);
+/* The parameters as the run has them, after it has been restarted or restored. */
+void slave_take_parameters(Slave *self);
 /* None but reals can be set: says so. */
 int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n);
 

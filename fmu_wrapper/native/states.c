@@ -85,6 +85,7 @@ int slave_set_state(Slave *self, const char *function, void *state) {
     self->stop = s->stop;
     self->fresh = false;
     tlismni_restore(self->run, s->saved);
+    slave_take_parameters(self);
     return STATUS_OK;
 }
 

@@ -3,6 +3,7 @@
 #include "slave.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char *const KIND_NAMES[] = {"real", "integer", "boolean"};
 #define READABLE (~IN(INSTANTIATED))
@@ -50,6 +51,8 @@ static double value_of(const Slave *self, const Variable *v) {
         return tlismni_time(self->run);
     case INPUT:
         return tlismni_inputs(self->run)[v->number];
+    case PARAMETER:
+        return self->parameters[v->number];
     case CHANNEL:
         return tlismni_channels(self->run)[v->number];
     case EVENT_COUNT:
@@ -96,9 +99,53 @@ int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerati
 }
 
 static int refuse(const Slave *self, const char *function, uint32_t reference) {
-    return slave_error(self, function, "value reference %lu cannot be set: an FMU that needs no Python takes inputs, and "
-                       "its parameters are those that it was exported with; export it with others, or with Python",
+    return slave_error(self, function, "value reference %lu cannot be set: it is neither an input nor a parameter that an "
+                       "FMU without Python can change; export it with another value, or with Python",
                        (unsigned long)reference);
+}
+
+/* Whether a value may be set now; false with a line in the log. */
+static bool may_set(const Slave *self, const char *function, const Variable *v, uint32_t reference, double value) {
+    if (v->source != INPUT && v->source != PARAMETER) {
+        refuse(self, function, reference);
+        return false;
+    }
+    if (v->source == PARAMETER && self->phase != INSTANTIATED && self->phase != INITIALIZATION) {
+        slave_error(self, function, "value reference %lu is a parameter, which is fixed after initialization: reset, then "
+                    "set it before", (unsigned long)reference);
+        return false;
+    }
+    if (!isfinite(value) || value < v->least || value > v->largest) {
+        const char *name = tlismni_name(self->model, v->source == INPUT ? TLISMNI_INPUT : TLISMNI_PARAMETER,
+                                        (size_t)v->number);
+        slave_error(self, function, "'%s' was set to %g, which is not finite or outside its range [%g, %g]: check what "
+                    "feeds it", name ? name : "?", value, v->least, v->largest);
+        return false;
+    }
+    return true;
+}
+
+void slave_take_parameters(Slave *self) {
+    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER);
+    for (size_t k = 0; k < count; k++) {
+        self->parameters[k] = tlismni_parameter(self->run, k);
+    }
+}
+
+/* The run from its start with the parameters as they are now, and the inputs as they were. */
+static int start_anew(Slave *self, const char *function) {
+    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER), inputs = tlismni_count(self->model, TLISMNI_INPUT);
+    double *kept = self->parameters + count;
+    memcpy(kept, tlismni_inputs(self->run), inputs * sizeof *kept);
+    tlismni_restart(self->run);
+    memcpy(tlismni_inputs(self->run), kept, inputs * sizeof *kept);
+    for (size_t k = 0; k < count; k++) {
+        int status = tlismni_set_parameter(self->run, k, self->parameters[k]);
+        if (status) {
+            return slave_run_error(self, function, status);
+        }
+    }
+    return STATUS_OK;
 }
 
 int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]) {
@@ -108,24 +155,19 @@ int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size
     }
     for (size_t k = 0; k < n; k++) { /* all of them or none */
         const Variable *v = find(self, function, vr[k], REAL);
-        if (!v) {
+        if (!v || !may_set(self, function, v, vr[k], value[k])) {
             return STATUS_ERROR;
-        }
-        if (v->source != INPUT) {
-            return refuse(self, function, vr[k]);
-        }
-        if (!isfinite(value[k]) || value[k] < v->least || value[k] > v->largest) {
-            const char *name = tlismni_name(self->model, TLISMNI_INPUT, (size_t)v->number);
-            return slave_error(self, function, "'%s' was set to %g, which is not finite or outside its range [%g, %g]: check "
-                               "what feeds it", name ? name : "?", value[k], v->least, v->largest);
         }
     }
     double *inputs = tlismni_inputs(self->run);
+    bool changed = false;
     for (size_t k = 0; k < n; k++) {
-        inputs[self->variables[vr[k] - 1].number] = value[k];
+        const Variable *v = &self->variables[vr[k] - 1];
+        changed = changed || v->source == PARAMETER;
+        (v->source == INPUT ? inputs : self->parameters)[v->number] = value[k];
     }
     self->fresh = self->fresh && !n;
-    return STATUS_OK;
+    return changed ? start_anew(self, function) : STATUS_OK;
 }
 
 int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n) {
