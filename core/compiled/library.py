@@ -61,7 +61,7 @@ class Library:
         manifest = json.loads(self._text("tlismni_manifest"))
         self.entries: dict[str, str] = manifest["entries"]
         self.forms: dict[str, dict[str, Any]] = manifest["forms"]
-        self.libm: dict[str, str] = manifest["libm"]
+        self.libm: dict[str, str] = manifest.get("libm", {})
         self._signatures: dict[str, list[str]] = {}
         for entry in self.entries:
             name, signature = entry.rsplit(" ", 1)
