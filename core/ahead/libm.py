@@ -36,6 +36,9 @@ _KEPT_ATTRIBUTES = re.compile(r'\s"(?!no-builtins)[\w-]+"(="[^"]*")?|\suwtable')
 
 # macOS asks for sine and cosine at once in this way
 _STRET = """
+declare double @sin(double)
+declare double @cos(double)
+
 define { double, double } @__sincos_stret(double %x) {
   %s = call double @sin(double %x)
   %c = call double @cos(double %x)
@@ -88,10 +91,12 @@ def libm_texts() -> list[str]:
 
 def plain(text: str) -> str:
     """A text without what is of one machine."""
-    lines = [line for line in text.splitlines() if not line.startswith(("target ", "source_filename"))]
+    lines = [x for x in text.splitlines() if not x.startswith(("target ", "source_filename", "@pow10"))]
     text = "\n".join(_KEPT_ATTRIBUTES.sub("", x) if x.startswith("attributes ") else x for x in lines)
     for name, machine in _OF_MACHINE.items():
-        text = text.replace(f"@{name}(", f"@{machine}(")
+        text = re.sub(rf"^declare .*@{name}\(.*\n", "", text, flags=re.MULTILINE).replace(f"@{name}(", f"@{machine}(")
+        if f"@{machine}(" in text and not re.search(rf"^declare .*@{machine}\(", text, flags=re.MULTILINE):
+            text += f"\ndeclare double @{machine}(double)"
     return text
 
 

@@ -40,7 +40,7 @@ typedef struct {
 } Word;
 
 /* The functions that the C code calls: the first ones of the image's list. */
-enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, CALLED };
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, ALONG, IN_TIME, CALLED };
 
 typedef void (*Function)(void);
 

@@ -27,6 +27,9 @@ _SIGNATURES = {
     "tlismni_happen": (ctypes.c_int, _POINTER, _POINTER),
     "tlismni_parameter": (ctypes.c_double, _POINTER, _SIZE),
     "tlismni_set_parameter": (ctypes.c_int, _POINTER, _SIZE, ctypes.c_double),
+    "tlismni_next_point": (ctypes.c_int, _POINTER, ctypes.c_double, _POINTER),
+    "tlismni_derivatives": (ctypes.c_int, _POINTER, _POINTER, _POINTER, _POINTER),
+    "tlismni_rates": (ctypes.c_int, _POINTER, _POINTER, _POINTER),
     "tlismni_look": (ctypes.c_int, _POINTER),
     "tlismni_event_count": (ctypes.c_int64, _POINTER),
     "tlismni_steps": (ctypes.c_int64, _POINTER),
@@ -143,6 +146,26 @@ class NativeRun:
         """The channels at the present time. Raises SimulationError."""
         self._check(self._library.tlismni_look(self.address))
         return self._channels.copy()
+
+    def next_point(self, t: float) -> float:
+        """Where the newest step ends, s, at most `t`. Raises SimulationError."""
+        point = ctypes.c_double()
+        self._check(self._library.tlismni_next_point(self.address, t, ctypes.byref(point)))
+        return point.value
+
+    def derivatives(self, direction: Sequence[float]) -> NDArray[np.float64]:
+        """Of all channels along a direction of the inputs. Raises SimulationError."""
+        given, found = np.array(direction, dtype=np.float64), np.zeros(len(self._channels))
+        room = ctypes.create_string_buffer(self._library.tlismni_state_size(self.model.address))
+        self._check(self._library.tlismni_derivatives(self.address, given.ctypes.data, found.ctypes.data, room))
+        return found
+
+    def rates(self) -> NDArray[np.float64]:
+        """Time derivatives of all channels, NaN where they are not known. Raises SimulationError."""
+        found = np.zeros(len(self._channels))
+        room = ctypes.create_string_buffer(self._library.tlismni_state_size(self.model.address))
+        self._check(self._library.tlismni_rates(self.address, found.ctypes.data, room))
+        return found
 
     def save(self) -> bytes:
         """The state, for this run."""

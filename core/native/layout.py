@@ -20,11 +20,12 @@ HEAD = (
 )  # fmt: skip
 """Sizes and counts, 8 bytes each."""
 
-CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "locate_now")
+CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "locate_now", "along_inputs", "in_time")
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
     "exchange": "run.exchange", "tell": "run.exchange", "read": "run.exchange", "drive": "loop.drive",
     "settle_pending": "loop.drive", "repair_now": "repair.mend", "locate_now": "loop.drive",
+    "along_inputs": "run.slopes", "in_time": "run.slopes",
 }  # fmt: skip
 
 NUMBERS = (

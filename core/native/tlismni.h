@@ -105,6 +105,16 @@ TLISMNI_API bool tlismni_event_due(const tlismni_run *run);
 /* Let the inputs count now, and have the channels at the present time. */
 TLISMNI_API tlismni_status tlismni_look(tlismni_run *run);
 
+/* Where the solver's newest step ends, but at most `t`: a step is made if none goes beyond the present time, which stays.
+ * Whoever wants to look, or to set inputs, at each of the solver's steps goes from one such point to the next. */
+TLISMNI_API tlismni_status tlismni_next_point(tlismni_run *run, double t, double *point);
+
+/* Derivatives of all channels at the present time: along a direction of the inputs, with coordinates, velocities and
+ * contact modes held (of accelerations and forces, that is); and in time, NaN where that is not known. `room` is memory of
+ * `tlismni_state_size` bytes; the run stays as it is. */
+TLISMNI_API tlismni_status tlismni_derivatives(tlismni_run *run, const double *direction, double *found, void *room);
+TLISMNI_API tlismni_status tlismni_rates(tlismni_run *run, double *found, void *room);
+
 /* Events of the last call that went on: copies at most `room`, gives how many there were. A thousand or so are kept; of
  * more in one call the first are lost, though counted. */
 TLISMNI_API size_t tlismni_events(tlismni_run *run, tlismni_event *events, size_t room);

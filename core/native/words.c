@@ -99,6 +99,9 @@ const char *tlismni_why(tlismni_status status) {
                "with a value nearer to it";
     case HAS_BEGUN:
         return "parameters are set before a run goes on, or is looked at: restart it, then set them";
+    case NO_DERIVATIVES:
+        return "there are no derivatives here: the mechanism is near a singular position, its matrix takes pivots that the "
+               "image was not prepared for, or a value is not finite";
     default:
         return "unknown status";
     }

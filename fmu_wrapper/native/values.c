@@ -7,10 +7,9 @@
 
 static const char *const KIND_NAMES[] = {"real", "integer", "boolean"};
 #define READABLE (~IN(INSTANTIATED))
-#define SETTABLE (IN(INSTANTIATED) | IN(INITIALIZATION) | IN(STEP_MODE) | IN(EVENT_DUE) | IN(EVENT_MODE))
+#define SETTABLE (IN(INSTANTIATED) | IN(INITIALIZATION) | IN(STEP_MODE) | IN(INTERMEDIATE) | IN(EVENT_DUE) | IN(EVENT_MODE))
 
-/* The variable behind a value reference; NULL with a line in the log. */
-static const Variable *find(const Slave *self, const char *function, uint32_t reference, Kind kind) {
+const Variable *slave_variable(const Slave *self, const char *function, uint32_t reference, Kind kind) {
     if (reference < 1 || reference > self->count) {
         slave_error(self, function, "value reference %lu is unknown: this FMU has 1 to %zu, which stand in "
                     "modelDescription.xml", (unsigned long)reference, self->count);
@@ -25,8 +24,7 @@ static const Variable *find(const Slave *self, const char *function, uint32_t re
     return v;
 }
 
-/* Have the channels at the present time with the present inputs. */
-static int look(Slave *self, const char *function) {
+int slave_look(Slave *self, const char *function) {
     self->asked = true;
     if (self->fresh) {
         return STATUS_OK;
@@ -68,8 +66,8 @@ int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) {
-        const Variable *v = find(self, function, vr[k], REAL);
-        if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
+        const Variable *v = slave_variable(self, function, vr[k], REAL);
+        if (!v || (v->source >= CHANNEL && slave_look(self, function) != STATUS_OK)) {
             return STATUS_ERROR;
         }
         value[k] = value_of(self, v);
@@ -84,12 +82,12 @@ int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerati
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) {
-        const Variable *v = find(self, function, vr[k], kind);
+        const Variable *v = slave_variable(self, function, vr[k], kind);
         if (v && enumerations >= 0 && v->enumeration != enumerations) {
             return slave_error(self, function, "value reference %lu is %s: use the functions for %s", (unsigned long)vr[k],
                                enumerations ? "an Int32, no enumeration" : "an enumeration", enumerations ? "Int32" : "Int64");
         }
-        if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
+        if (!v || (v->source >= CHANNEL && slave_look(self, function) != STATUS_OK)) {
             return STATUS_ERROR;
         }
         double number = value_of(self, v);
@@ -104,6 +102,15 @@ static int refuse(const Slave *self, const char *function, uint32_t reference) {
                        (unsigned long)reference);
 }
 
+static bool among(const uint32_t references[], size_t count, uint32_t one) {
+    for (size_t k = 0; k < count; k++) {
+        if (references[k] == one) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Whether a value may be set now; false with a line in the log. */
 static bool may_set(const Slave *self, const char *function, const Variable *v, uint32_t reference, double value) {
     if (v->source != INPUT && v->source != PARAMETER) {
@@ -113,6 +120,11 @@ static bool may_set(const Slave *self, const char *function, const Variable *v, 
     if (v->source == PARAMETER && self->phase != INSTANTIATED && self->phase != INITIALIZATION) {
         slave_error(self, function, "value reference %lu is a parameter, which is fixed after initialization: reset, then "
                     "set it before", (unsigned long)reference);
+        return false;
+    }
+    if (self->phase == INTERMEDIATE && !among(self->intermediate, self->intermediates, reference)) {
+        slave_error(self, function, "in an intermediate update only the required intermediate variables can be set, not value "
+                    "reference %lu: name it when the instance is made", (unsigned long)reference);
         return false;
     }
     if (!isfinite(value) || value < v->least || value > v->largest) {
@@ -154,7 +166,7 @@ int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) { /* all of them or none */
-        const Variable *v = find(self, function, vr[k], REAL);
+        const Variable *v = slave_variable(self, function, vr[k], REAL);
         if (!v || !may_set(self, function, v, vr[k], value[k])) {
             return STATUS_ERROR;
         }
