@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from .drawing.shapes import STEEL, Circle, Path
 from .packing import plain
+from .space.gltf import to_glb
 from .space.meshes import Mesh
 
 FORMAT = "tlismni-scene-1"
@@ -187,8 +188,6 @@ class Scene:
         """The scene as JSON data (`tlismni-scene-1`); solids stand in it as glTF (.glb, as base64 text)."""
         data: dict[str, Any] = plain(replace(self, solids=[]))
         if self.dimension == SPACE:
-            from .space.gltf import to_glb
-
             data["solids"] = base64.b64encode(to_glb(self, bands=False)).decode("ascii")
         for part, record in zip(data["parts"], self.parts, strict=True):
             for shape, given in zip(part["shapes"], record.shapes, strict=True):

@@ -227,7 +227,8 @@ def test_the_gap_is_the_distance_from_the_outline(sides: int) -> None:
     for p in rng.normal(size=(300, 2)):
         part = np.clip(np.sum((p - a) * (b - a), axis=1) / np.sum((b - a) ** 2, axis=1), 0.0, 1.0)
         away = np.linalg.norm(p - a - part[:, None] * (b - a), axis=1).min()
-        inside = np.all(np.cross(b - a, p - a) > 0.0)
+        side, to = b - a, p - a
+        inside = np.all(side[:, 0] * to[:, 1] - side[:, 1] * to[:, 0] > 0.0)
         gap = polygon_gap(frame(0, 0, 0), frame(*p, 0.0), float(sides), 0.0, *numbers(list(polygon.vertices)))
         assert gap == pytest.approx(-away if inside else away, abs=1e-12)
 

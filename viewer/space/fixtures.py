@@ -35,13 +35,13 @@ from ...core.shapes.contact3d import HalfSpace3D, SphereOnHalfSpace3D
 from ...core.shapes.stop3d import Rope3D
 from ..scene import Floats
 from . import meshes
-from .stage import BASE, JOINT, WIRE, Stage3D
+from .colours import BASE, FLOOR, JOINT, WIRE
+from .stage import Stage3D
 
 PIN, KNUCKLE, BAR, BLOCK = 0.018, 0.022, 0.009, 0.03
 """Radii of hinges, balls and guides, and half the edge of blocks, in parts of the scene's size."""
 MARGIN = 0.12
 """By which planes and guides go beyond what moves on them."""
-FLOOR = "#dfe6ee"
 FIELDS = 12
 """Of a plane, along its longer edge, about."""
 

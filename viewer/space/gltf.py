@@ -8,28 +8,30 @@ there and must grow, so of the two frames of an impact the later one stays.
 import json
 import struct
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..scene import Floats, Scene
+from ...core.model.attitude import parameters_of_matrix
 from . import meshes
+from .colours import CABLE, JOINT, WIRE
 from .meshes import Mesh
-from .stage import JOINT, WIRE
-from .turning import matrices, nearest, towards
+from .turning import Floats, matrices, nearest, towards
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 FLOAT, BYTE, INDEX = 5126, 5121, 5125
 VERTICES, INDICES = 34962, 34963
 LINKS = {"rod": 0.010, "rope": 0.005}
 """Radii of links, in parts of the scene's size."""
 COIL, DASHPOT = 0.024, (0.022, 0.008)
-CABLE_COLOUR = "#1f7a5c"
 
 
 class Writer:
     """Nodes, meshes and numbers of a file that is being set up."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: "Scene") -> None:
         self.scene = scene
         self.data = bytearray()
         self.file: dict[str, Any] = {
@@ -147,7 +149,7 @@ class Writer:
         return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
-def to_glb(scene: Scene, bands: bool = True) -> bytes:
+def to_glb(scene: "Scene", bands: bool = True) -> bytes:
     """The file as bytes; `bands`: with cables (a player that draws them itself needs none)."""
     out = Writer(scene)
     numbers = []
@@ -186,7 +188,7 @@ def stretched(out: Writer, name: str, a: Floats, b: Floats, kind: str, radius: f
         )  # fmt: skip
 
     if kind in LINKS or kind == "band":
-        colour = CABLE_COLOUR if kind == "band" else JOINT
+        colour = CABLE if kind == "band" else JOINT
         part(meshes.cylinder(), radius or LINKS[kind], colour)
     if "spring" in kind:
         part(meshes.coil(), COIL, WIRE)
@@ -197,21 +199,19 @@ def stretched(out: Writer, name: str, a: Floats, b: Floats, kind: str, radius: f
         part(meshes.cylinder(), outer, WIRE, 0.3, 0.6, aside)
 
 
-def write_glb(scene: Scene, path: Path) -> None:
+def write_glb(scene: "Scene", path: Path) -> None:
     """Write a scene in space as a file."""
     path.write_bytes(to_glb(scene))
 
 
-def _places(scene: Scene, frame: int, point: tuple[float, ...]) -> Floats:
+def _places(scene: "Scene", frame: int, point: tuple[float, ...]) -> Floats:
     motion = scene.frames[frame].motion
     found = motion[:, :3] + matrices(motion[:, 3:]) @ np.array(point)
     return np.broadcast_to(found, (len(scene.t), 3)).copy()
 
 
-def _upright(scene: Scene) -> tuple[float, float, float, float]:
+def _upright(scene: "Scene") -> tuple[float, float, float, float]:
     """Euler parameters of the turn that brings the scene's axes `eye` to x, y and z."""
-    from ...core.model.attitude import parameters_of_matrix
-
     return parameters_of_matrix(np.array(scene.eye))
 
 

@@ -10,8 +10,6 @@ from ..scene import Anchor, Arrow, Floats, Frame, Link, Scene, Solid
 from .meshes import Mesh
 from .turning import STILL, matrices, nearest, towards
 
-JOINT, BASE, WIRE = "#47566b", "#8a929e", "#6d4aa3"
-"""Colours of joints, of what stands on the ground, of springs."""
 Vector = tuple[float, float, float]
 
 

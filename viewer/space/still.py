@@ -10,9 +10,9 @@ from ..drawing.shapes import Drawing, Path
 from ..scene import Floats, Scene, Solid
 from . import meshes
 from .build import paper
-from .gltf import CABLE_COLOUR, COIL, DASHPOT, LINKS
+from .colours import CABLE, JOINT, WIRE
+from .gltf import COIL, DASHPOT, LINKS
 from .meshes import Mesh
-from .stage import JOINT, WIRE
 from .turning import matrices, towards
 
 LIGHT = np.array([0.35, 0.85, 0.55])
@@ -35,7 +35,7 @@ def still_in_space(scene: Scene, frame: int) -> Drawing:
         for k in range(band.points.shape[1] - 1):
             a, b = band.points[frame, k], band.points[frame, k + 1]
             r = 0.005 * band.width * scene.size
-            faces += list(_stretched(scene, meshes.cylinder(), a, b, (r, r), CABLE_COLOUR, 0.5))
+            faces += list(_stretched(scene, meshes.cylinder(), a, b, (r, r), CABLE, 0.5))
     for _, corners, colour, _ in sorted(faces, key=lambda face: -face[0]):
         points = [(float(x), float(y)) for x, y in corners]
         drawing.shapes.append(Path(points, None, colour, closed=True))
