@@ -107,7 +107,7 @@ CASES = {
     "disk in a ring": {
         "contacts": [
             DiskInRing2D(
-                name="c", shape=Ring2D(marker=LEFT, radius=2.0), disk=Disk2D(marker=RIGHT, radius=0.5), law=SOFT
+                name="c", shape=Ring2D(marker=LEFT, radius=0.9), disk=Disk2D(marker=RIGHT, radius=0.5), law=SOFT
             )
         ],
         "mode": ACTIVE,
@@ -116,7 +116,7 @@ CASES = {
         "contacts": [
             DiskOnPolygon2D(
                 name="c", shape=Polygon2D(marker=LEFT, vertices=((0.5, -0.4), (0.3, 0.6), (-0.5, 0.1))),
-                disk=Disk2D(marker=RIGHT, radius=0.5), law=SOFT,
+                disk=Disk2D(marker=RIGHT, radius=3.0), law=SOFT,
             )
         ],
         "mode": ACTIVE,
