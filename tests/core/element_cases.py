@@ -7,12 +7,10 @@ from tlismni.core import (
     CoordinateRelation,
     Disk2D,
     DiskInRing2D,
-    DiskOnPolygon2D,
     KelvinVoigt,
     KnifeEdge2D,
     NewtonImpact,
     PIDController2D,
-    Polygon2D,
     Rack2D,
     RelationTerm,
     RelativeLoad2D,
@@ -108,15 +106,6 @@ CASES = {
         "contacts": [
             DiskInRing2D(
                 name="c", shape=Ring2D(marker=LEFT, radius=0.9), disk=Disk2D(marker=RIGHT, radius=0.5), law=SOFT
-            )
-        ],
-        "mode": ACTIVE,
-    },
-    "disk on a polygon": {
-        "contacts": [
-            DiskOnPolygon2D(
-                name="c", shape=Polygon2D(marker=LEFT, vertices=((0.5, -0.4), (0.3, 0.6), (-0.5, 0.1))),
-                disk=Disk2D(marker=RIGHT, radius=3.0), law=SOFT,
             )
         ],
         "mode": ACTIVE,
