@@ -137,9 +137,9 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
     if isinstance(b, ANGULAR):
         if isinstance(a, HalfPlane2D):
             return tuple((a, corner) for corner in b.corners())
+        remedy = "make the segment a thin box" if isinstance(a, Segment2D) else "put disks at its corners"
         raise ModelError(
-            f"a {type(b).__name__} on '{_body(b)}' and a {type(a).__name__} on '{_body(a)}' have no contact: make a "
-            "segment a thin box, put disks at the corners of what is in a ring"
+            f"a {type(b).__name__} on '{_body(b)}' and a {type(a).__name__} on '{_body(a)}' have no contact: {remedy}"
         )
     if _body(a) == _body(b) == GROUND:
         return ()
