@@ -8,7 +8,7 @@ OUT := out/demo
 # what an installation depends on: the FMU shim is compiled by it
 SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/shim/*)
 
-.PHONY: demo test lint docs bench dist clean help
+.PHONY: demo test lint docs bench three dist clean help
 .DEFAULT_GOAL := help
 
 help:
@@ -18,6 +18,7 @@ help:
 	@echo "make docs   the docs as a site, in build/site"
 	@echo "make bench  speed and work-precision against exudyn (minutes)"
 	@echo "make dist   wheels with machine code for all platforms, and the sources' archive, in dist (tens of minutes)"
+	@echo "make three  viewer/page/three.js anew, from viewer/three; needs node and npm"
 	@echo "make clean  remove .venv, build products and caches"
 
 demo: $(VENV)/.installed-all
@@ -56,6 +57,9 @@ dist: $(VENV)/.installed-dev
 	done
 	$(BIN)/python -c 'from setuptools.build_meta import build_sdist; build_sdist("dist")'
 	@ls -l dist
+
+three:
+	cd viewer/three && npm install --no-audit --no-fund && npm run build && rm -rf node_modules package-lock.json
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
