@@ -178,7 +178,7 @@ def export_fmu(
         "modelDescription.xml": described,
         "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
         **_pictures(slave, fmi_version),
-        f"resources/{MODEL_FILE}": slave.model.tojson_bytes().encode(),
+        f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": json_bytes(settings),
         f"resources/{PYTHON_FILE}": json_bytes(python_record(digest)),
         "resources/libpython.txt": library_record().encode(),

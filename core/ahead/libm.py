@@ -20,8 +20,10 @@ FUNCTIONS = (
 )  # fmt: skip
 """What compiled code may call; those of two arguments are TWO, `ldexp` has a number and a whole one."""
 TWO = ("atan2", "pow", "hypot", "fmod", "nextafter")
-BESIDE = ("sincos", "modf", "scalbn", "__sincos_stret")
+BESIDE = ("sincos", "modf", "scalbn", "sqrt", "__sincos_stret")
 """What else a code generator makes of them."""
+SEEN = (*FUNCTIONS, "sincos")
+"""Those that code compiled elsewhere can call."""
 _HELPERS = (
     "__sin", "__cos", "__tan", "__rem_pio2", "__rem_pio2_large", "__expo2", "exp_data", "log_data", "log2_data",
     "pow_data", "__math_oflow", "__math_uflow", "__math_xflow", "__math_divzero", "__math_invalid",
@@ -34,8 +36,15 @@ _FLAGS = ("-std=c99", "-O2", "-g0", "-ffreestanding", "-fno-builtin", "-ffp-cont
 _OF_MACHINE = {"fabs": "llvm.fabs.f64", "sqrt": "llvm.sqrt.f64", "floor": "llvm.floor.f64"}
 _KEPT_ATTRIBUTES = re.compile(r'\s"(?!no-builtins)[\w-]+"(="[^"]*")?|\suwtable')
 
-# macOS asks for sine and cosine at once in this way
-_STRET = """
+# macOS asks for sine and cosine at once in this way; square roots are an instruction
+_OF_OURS = """
+declare double @llvm.sqrt.f64(double)
+
+define double @sqrt(double %x) {
+  %y = call double @llvm.sqrt.f64(double %x)
+  ret double %y
+}
+
 declare double @sin(double)
 declare double @cos(double)
 
@@ -69,7 +78,7 @@ def libm_texts() -> list[str]:
     musl = _musl()
     if musl is None:
         return []
-    sources = [musl / "src" / "math" / f"{name}.c" for name in (*FUNCTIONS, *BESIDE[:-1], *_HELPERS)]
+    sources = [musl / "src" / "math" / f"{name}.c" for name in (*FUNCTIONS, *BESIDE[:3], *_HELPERS)]
     missing = [source.name for source in sources if not source.is_file()]
     if missing:
         raise LibmError(
@@ -86,7 +95,7 @@ def libm_texts() -> list[str]:
             if done.returncode != 0:
                 raise LibmError(f"'{source}' does not compile: {done.stderr.strip()}")
             texts.append(plain(out.read_text()))
-    return [*texts, _STRET, _seen()]
+    return [*texts, _OF_OURS, _seen()]
 
 
 def plain(text: str) -> str:
@@ -112,4 +121,11 @@ def _seen() -> str:
             "  ret double %z",
             "}",
         ]
+    lines += [
+        "declare void @sincos(double, ptr, ptr)",
+        f"define void @{PREFIX}sincos(double %x, ptr %s, ptr %c) {{",
+        "  call void @sincos(double %x, ptr %s, ptr %c)",
+        "  ret void",
+        "}",
+    ]
     return "\n".join(lines)

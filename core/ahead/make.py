@@ -11,7 +11,7 @@ from typing import Any
 from ..compiled.library import USUAL_PLACE, core_digest
 from ..errors import TlismniError
 from .entries import entries, forms
-from .libm import FUNCTIONS, PREFIX, libm_texts
+from .libm import FUNCTIONS, PREFIX, SEEN, libm_texts
 from .module import DIGEST, MANIFEST, TARGETS, Target, link, manifest_text, optimised, undefined
 from .record import compile_for, recording, texts_of
 from .shared import link_shared
@@ -90,7 +90,7 @@ def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",
     if not libm:
         logger.warning("without ziglang the library takes the system's libm: its bits are those of this system")
     whole, symbols, keys = whole_module(only, libm)
-    functions = {name: PREFIX + name for name in FUNCTIONS} if libm else {}
+    functions = {name: PREFIX + name for name in SEEN} if libm else {}
     constants = {DIGEST: core_digest(), MANIFEST: manifest_text(keys, form_tables(), functions)}
     logger.info("%d functions taken from numba in %.0f s", len(keys), time.perf_counter() - began)
     made = []

@@ -40,7 +40,9 @@ def use_libm(addresses: Mapping[str, int]) -> None:
 
 def _bind() -> None:
     import llvmlite.binding as llvm
+    from numba.core.externals import c_math_functions
 
+    c_math_functions.install(None)  # numba's own choice, which would else come later and replace ours
     for name, address in _LIBM.items():
         llvm.add_symbol(name, address)
     _LIBM.clear()

@@ -10,7 +10,7 @@ from ..description import Model
 from ..errors import SimulationError
 from ..run.simulation import Simulation
 from .errors import NativeError
-from .image_file import native_image, own_library
+from .image_file import native_image, own_library, refuse_motions
 from .in_process import NativeModel, NativeRun
 from .parameters import Parameter, Setting, apart, parameter_of, settings_of, startable
 from .prepare import points, rehearse, start_inputs
@@ -45,6 +45,8 @@ def image_and_parameters(
     library = own_library()
     full = {"max_steps": MOST_STEPS, **settings}
     sim = Simulation(model, **full)
+    if isinstance(model, Model):
+        refuse_motions(sim)
     most = sim.settings.max_steps or MOST_STEPS
     wanted = _wanted(model, parameters)
     good, fixed = {}, {}

@@ -32,6 +32,8 @@ _INVERSE: tuple[Callable[[Floats, Floats], Floats], ...] = (
     lambda u, w: w, lambda u, w: w / u, lambda u, w: u / w, lambda u, w: w * u, lambda u, w: w - u, lambda u, w: w + u,
 )  # fmt: skip
 """What the constant of each is about."""
+SUMS, SUM = 4, 4
+"""The first unary operation that is a sum already, and the first binary one: two sums are hard to tell from one."""
 NEIGHBOURS = 2
 """Numbers on either side of a quotient that the constant may be."""
 ENOUGH = 4
@@ -63,7 +65,7 @@ def form_of(p: Floats, w: Floats) -> Form | None:
                 continue
             if u.tobytes() == wanted:
                 return Form(8 * i, 0.0)
-            for k in range(1, len(BINARY)):
+            for k in range(1, len(BINARY) if i < SUMS else SUM):
                 for constant in _constants(k, u, w):
                     if BINARY[k](u, constant).tobytes() == wanted:
                         return Form(8 * i + k, constant)

@@ -29,6 +29,15 @@ def own_library() -> Library:
     return LIBRARY
 
 
+def refuse_motions(sim: Any) -> None:
+    """Raise NativeError for a run whose steps are not made in one crossing."""
+    if not possible(sim) or sim.crossing is None:
+        raise NativeError(
+            "the motion of a driver is an input, and what a run does when that jumps is Python's as yet: let an input "
+            "be a force, or use the FMU that runs with Python"
+        )
+
+
 class _Segment:
     """Arrays one after the other."""
 
@@ -64,11 +73,7 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
     NativeError : if the model needs Python when it runs; it says for what.
     """
     library = own_library()
-    if not possible(sim) or sim.crossing is None:
-        raise NativeError(
-            "the motion of a driver is an input, and what a run does when that jumps is Python's as yet: let an input "
-            "be a force, or use the FMU that runs with Python"
-        )
+    refuse_motions(sim)
     times = sim.crossing.times
     times[:5] = sim.t, sim.t, *sim.input_times, sim.table.initial_energy
     sim.crossing.wanted[:] = sim.workspace.arrays["inputs"][: len(sim.crossing.wanted), 0]

@@ -24,7 +24,7 @@ from .scratch import scratch_of
 PARTS = (1.0, 1.0 + 2.0**-10, 0.9, 1.137, 0.7311, 1.5, 0.5, 2.0, 0.2, 5.0, 0.1, 10.0, 0.01, 100.0)
 """Of the present value: other values that are tried, near ones first; and ABOUT of one that is 0."""
 ABOUT = (0.0, 1e-3, 0.1, 0.37, 1.0, 3.0)
-MORE = 30
+MORE = 60
 INSIDE = (0.25, 0.5, 0.618, 0.75, 0.875)
 """Parts of the way between two limits that are tried too."""
 

@@ -82,8 +82,8 @@ static int advance_with_updates(Slave *self, double target, StepEnd *end) {
         self->phase = INTERMEDIATE;
         self->fresh = false;
         bool ends = self->update(self, end->time, self->early_return, &wanted);
-        if (self->phase != INTERMEDIATE) { /* the host has done what it may not */
-            return TLISMNI_OK;
+        if (self->phase != INTERMEDIATE) { /* there are no outputs with the inputs that the host has set */
+            return tlismni_look(self->run);
         }
         self->phase = STEP_MODE;
         if (ends) {
