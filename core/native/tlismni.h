@@ -4,8 +4,8 @@
  * *run* is a copy of its working memory: as many as wanted, each used by one thread at a time, all sharing the model.
  * Units are SI. What is said here of bits: a run gives the same bits as the same run in Python, on the same libm.
  *
- * Nothing here writes to files or screens. `tlismni_open` and `tlismni_start` allocate, `tlismni_start_in` does not; what
- * steps take from `malloc` they give back before they return (docs/embedding.md says which do). */
+ * Nothing here writes to files or screens. `tlismni_open` and `tlismni_start` allocate, `tlismni_start_in` does not; steps
+ * take small pieces from a stack of the thread, and give them back before they return (docs/embedding.md). */
 #ifndef TLISMNI_H
 #define TLISMNI_H
 
