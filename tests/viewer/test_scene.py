@@ -163,6 +163,14 @@ def test_every_scenario_can_be_shown_at_its_start(name: str) -> None:
     assert data["parts"] or data["bands"] or data["gauges"] or data["solids"]
 
 
+def test_what_stands_still_is_not_plotted_unless_asked_for() -> None:
+    result = run("slider_crank_stop")
+    assert animate(result).scene.plots[0] == "slider.x" and "slider.y" not in animate(result).scene.plots
+    assert "slider.y" in animate(result, channels=["slider.y"]).scene.plots
+    resting = simulate(Model(gravity=(0.0, 0.0), bodies=[PointMass2D(name="ball", mass=1.0)]), 1.0)
+    assert animate(resting).scene.plots[:2] == ["ball.x", "ball.y"]
+
+
 def test_arrays_come_back_from_the_data() -> None:
     scene = animate(run("pendulum_stop")).scene
     data = json.loads(json.dumps(scene.to_data(), allow_nan=False))
