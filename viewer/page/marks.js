@@ -136,7 +136,7 @@ function drawBlows(g, arrow, time) {
     g.lineWidth = 3 * strength + 0.5;
     g.stroke();
     // of blows that follow one another only the last one says its size, and what is left of bouncing does not
-    if (event === near[near.length - 1] && event.impulse > 1e-3 * hardest) drawText(g, shown(event.impulse, "N.s"), x + 12, y + 14, ARROWS.contact);
+    if (event === near[near.length - 1] && event.impulse > 1e-3 * hardest) drawText(g, shown(event.impulse, event.impulse_unit), x + 12, y + 14, ARROWS.contact);
   }
 }
 
