@@ -79,7 +79,9 @@ def finite_elements(
     if kind is None:
         raise ModelError(f"a mesh of hexahedra or tetrahedra is needed, not a {type(mesh).__name__}")
     basis = skfem.Basis(mesh, kind[order - 1]())
-    values = np.stack([np.broadcast_to(field[0].value, basis.dx.shape) for field in basis.basis], axis=1)  # (e, i, q)
+    values = np.stack(
+        [np.broadcast_to(np.asarray(field[0]), basis.dx.shape) for field in basis.basis], axis=1
+    )  # (e, i, q)
     slopes = np.stack([field[0].grad for field in basis.basis]).transpose(2, 0, 1, 3)  # (e, i, direction, q)
     elements, each = slopes.shape[:2]
     of_node = density * (values * basis.dx[:, None, :]) @ values.transpose(0, 2, 1)

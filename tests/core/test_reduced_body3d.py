@@ -113,7 +113,7 @@ def test_damping_and_weight_are_in_the_balance():
                             joints=[pivot]), 1.0, **TIGHT)  # fmt: skip
     lost = total(result)[0] - total(result)[-1]
     assert lost > 1e-3
-    np.testing.assert_allclose(result["energy.dissipated"][-1], lost, rtol=1e-7)
+    np.testing.assert_allclose(result["energy.dissipation"][-1], lost, rtol=1e-7)
 
 
 def test_with_modes_held_it_is_a_rigid_body_with_its_centre_of_mass_off_the_frame():
