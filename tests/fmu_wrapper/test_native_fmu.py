@@ -151,29 +151,27 @@ def test_derivatives_are_those_of_the_fmu_with_python(version, tmp_path):
     pair = scenario_pair("slider_crank_stop", tmp_path, version)
     sides = pair.instances()
     names = ("crank.ax", "crank.angular_acceleration", "stop.normal_force", "slider.x")
+    weights = (1.0, 0.5, -2.0, 0.0)
     for side in sides:
         side.begin(torque=1.5)
     for _ in range(6):
         found = []
         for side in sides:
             side.step(0.07)
-            unknown, known = [side.by_name[n].valueReference for n in names], [side.by_name["torque"].valueReference]
+            fmu, known = side.fmu, [side.by_name["torque"].valueReference]
+            unknown = [side.by_name[name].valueReference for name in names]
+            along = fmu.getDirectionalDerivative(unknown, known, [0.3])
             if side.three:
-                found.append((side.fmu.getDirectionalDerivative(unknown, known, [0.3]),
-                              side.fmu.getAdjointDerivative(unknown, known, [1.0, 0.5, -2.0, 0.0], nSensitivity=1)))  # fmt: skip
-                assert found[-1][1][0] == pytest.approx(
-                    sum(w * x / 0.3 for w, x in zip((1.0, 0.5, -2.0, 0.0), found[-1][0], strict=True)), rel=1e-9
-                )
-                found[-1] = found[-1][0]
-                rates = side.fmu.getOutputDerivatives([unknown[3]], [1])
+                (adjoint,) = fmu.getAdjointDerivative(unknown, known, list(weights), nSensitivity=1)
+                assert adjoint == pytest.approx(np.dot(weights, along) / 0.3, rel=1e-9)
+                rates = fmu.getOutputDerivatives(unknown[3:], [1])
                 with pytest.raises(FMICallException):  # of accelerations there are none
-                    side.fmu.getOutputDerivatives([unknown[0]], [1])
+                    fmu.getOutputDerivatives(unknown[:1], [1])
             else:
-                found.append(side.fmu.getDirectionalDerivative(unknown, known, [0.3]))
-                rates = side.fmu.getRealOutputDerivatives([unknown[3]], [1])
-            found[-1] = (list(found[-1]), list(rates))
+                rates = fmu.getRealOutputDerivatives(unknown[3:], [1])
+            found.append((list(along), list(rates)))
             with pytest.raises(FMICallException):
-                side.fmu.getDirectionalDerivative(known, unknown[:1], [1.0])
+                fmu.getDirectionalDerivative(known, unknown[:1], [1.0])
         assert found[0] == found[1] and found[0][0][1] != 0.0 and found[0][0][3] == 0.0
         assert sides[0].read() == sides[1].read()
 
