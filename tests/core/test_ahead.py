@@ -213,10 +213,10 @@ from tlismni.core import simulate
 from tlismni.core.methods.registry import METHODS
 from tlismni.models import load, names
 
-found = {}
-for name in names():
+found, many = {}, ("pendulum_stop", "slider_crank_stop", "chain")
+for name in sys.argv[1:] or names():
     scenario = load(name)
-    for method in METHODS if name in ("pendulum_stop", "slider_crank_stop", "chain") else (scenario.method,):
+    for method in METHODS if name in many and not sys.argv[1:] else (scenario.method,):
         options = scenario.options if method == scenario.method else {}
         end = min(scenario.t_end, 0.5)
         try:
@@ -246,6 +246,21 @@ def test_scenarios_give_the_same_bits_and_need_no_numba(whole: Path) -> None:
     assert {name for name in ahead if ahead[name] != here[name]} == set()
     assert len(ahead) > 40
     assert not loaded
+
+
+FEW = ("bouncing_ball", "pendulum_stop", "slider_crank_stop", "stick_slip", "cable_ground", "heavy_top", "dropped_box")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+def test_the_library_that_is_here_gives_the_bits_of_the_process() -> None:
+    """Of some scenarios, each time that the library is there: of all of them above."""
+    assert LIBRARY is not None
+    path = str(LIBRARY.path)
+    ahead, loaded = answer(run(SCENARIOS, path, *FEW))
+    here, compiled = answer(run(SCENARIOS, "none", *FEW, TLISMNI_LIBM=path))
+    assert ahead == here and len(ahead) == len(FEW) and (loaded, compiled) == (False, True)
+    assert not [text for text in ahead.values() if "Error" in text]
 
 
 @pytest.mark.skipif(LIBRARY is None or not shutil.which("nm"), reason="needs a library of machine code, and nm")
