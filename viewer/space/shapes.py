@@ -79,7 +79,10 @@ def _touching(stage: Stage3D, body: str) -> bool:
 def _grouped(model: Model) -> Iterator[Sphere3D | Cornered3D]:
     for group in model.groups:
         if isinstance(group, ContactGroup3D):
-            yield from (*group.spheres, *group.boxes, *group.polyhedra, *group.capsules)
+            yield from group.spheres
+            yield from group.boxes
+            yield from group.polyhedra
+            yield from group.capsules
 
 
 def single_balls(model: Model) -> list[Sphere3D]:
