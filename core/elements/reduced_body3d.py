@@ -114,7 +114,8 @@ class ReducedBody3D(SpatialFrame):
         places = {place.name: place.model_dump(exclude={"name"}, exclude_none=True) for place in self.interfaces}
         fields = {name: getattr(self, name) for name in IN_FILE if getattr(self, name) is not None}
         parts = {f"interfaces.{name}.{part}": x for name, place in places.items() for part, x in place.items()}
-        np.savez(path, **{name: np.array(x) for name, x in {**fields, **parts}.items()})
+        arrays: dict[str, Any] = {name: np.array(x) for name, x in {**fields, **parts}.items()}
+        np.savez(path, **arrays)
 
     @model_validator(mode="after")
     def _check(self) -> "ReducedBody3D":
@@ -136,8 +137,8 @@ class ReducedBody3D(SpatialFrame):
         self._check_symmetry("stiffness", np.array(self.stiffness))
         self._check_symmetry("modal_second_moment", both.transpose(0, 2, 1, 3).reshape(3 * n, 3 * n))
         full = self.mass_matrix()
-        size = np.sqrt(np.maximum(np.diag(full), 1e-300))
-        least = float(np.linalg.eigvalsh(full / np.outer(size, size))[0])
+        scale = np.sqrt(np.maximum(np.diag(full), 1e-300))
+        least = float(np.linalg.eigvalsh(full / np.outer(scale, scale))[0])
         if least <= SYMMETRY:
             raise ValueError(f"the mass matrix of frame and modes of '{self.name}', scaled to a unit diagonal, has the "
                              f"eigenvalue {least:.3g}: it must be positive definite; do the modes hold a rigid motion, "

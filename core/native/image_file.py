@@ -192,7 +192,8 @@ def _file(
 def _parameter_parts(parameters: Sequence[Parameter], own: _Segment) -> tuple[list[bytes], list[bytes]]:
     """What `parameters.c` reads: of each parameter its words' first number and count, value and limits; of each word
     its place, form and constant."""
-    heads, words = [], []
+    heads: list[bytes] = []
+    words: list[bytes] = []
     for p in parameters:
         heads.append(struct.pack("<2q3d", len(words), len(p.words), p.value, p.least, p.largest))
         for array, offset, form in p.words:

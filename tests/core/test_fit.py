@@ -47,23 +47,24 @@ def test_times_of_impacts_tell_the_restitution_of_a_ball():
 
 
 @pytest.mark.slow
-def test_intervals_hold_what_they_say():
-    """100 seeded trials with noise of 1 % of the motion: each interval of 95 % holds the truth in about 95 of them."""
+@pytest.mark.parametrize("trials, least", [(20, 16), pytest.param(100, 90, marks=pytest.mark.full)])
+def test_intervals_hold_what_they_say(trials, least):
+    """Seeded trials with noise of 1 % of the motion: each interval of 95 % holds the truth in about 95 % of them."""
     times = np.linspace(0.1, 6.0, 60)
     x, _ = course(times)
     sigma, rng, (model, _) = 0.01 * float(np.ptp(x)), np.random.default_rng(7), oscillator()
     inside = np.zeros(2, dtype=int)
     noises = []
-    for _ in range(100):
+    for _ in range(trials):
         data = Measurement(times, {"mass.x": x + rng.normal(0.0, sigma, len(x))}, {"mass.x": sigma})
         found = fit(model, data, WITHIN, rtol=1e-8)
         low, high = found.intervals.T
         true = np.array(list(TRUE.values()))
         inside += (low <= true) & (true <= high)
         noises.append(found.noise)
-    # 95 of 100 with a binomial spread of 2.2
-    assert np.all(inside >= 90), inside
-    assert np.mean(noises) == pytest.approx(1.0, abs=0.03)
+    # binomial spreads: 1.0 of 19, 2.2 of 95
+    assert np.all(inside >= least), inside
+    assert np.mean(noises) == pytest.approx(1.0, abs=0.3 / trials**0.5)
 
 
 def test_refusals():
