@@ -25,6 +25,7 @@ from ..elements import (
     distance3d,
     dot1_3d,
     dot2_3d,
+    interface_load3d,
     joint_coordinates3d,
     joint_load3d,
     point3d,
@@ -90,8 +91,8 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     for kernel in (
         marker_channels2d.marker_channels2d, marker_channels3d.marker_channels3d, angular_velocity.angular_velocity,
         joint_coordinates3d.joint_angle, joint_coordinates3d.joint_position, joint_load3d.joint_load,
-        point3d.point_load, distance3d.separation_load, dot1_3d.dot1_load, dot2_3d.dot2_load, twist3d.twist_load,
-        rolling3d.rolling_load,
+        interface_load3d.interface_load, point3d.point_load, distance3d.separation_load, dot1_3d.dot1_load,
+        dot2_3d.dot2_load, twist3d.twist_load, rolling3d.rolling_load,
     ):  # fmt: skip
         yield kernel, derived.DERIVE_SIGNATURE
     for part in (*instant.PARTS, *instant.IN_SPACE.values()):
