@@ -135,8 +135,9 @@ def count_operations(l: Triangle, u: Triangle) -> int:
 
 def operation_list(n: int, l: Triangle, u: Triangle) -> Operations:
     """Write down the refactorisation."""
-    steps = np.empty((3, count_operations(l, u)), np.uint32)
-    sums = np.empty((2, len(u.row)), np.uint32)
+    # zeros: of what stays unused images of runs would have what memory happened to hold
+    steps = np.zeros((3, count_operations(l, u)), np.uint32)
+    sums = np.zeros((2, len(u.row)), np.uint32)
     step_start, sum_start = np.zeros(n + 1, np.uint32), np.zeros(n + 1, np.uint32)
     place = np.zeros(n, np.int64)
     _write_operations(n, l.start, l.row, u.start, u.row, step_start, steps, sum_start, sums, place)
