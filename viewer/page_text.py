@@ -6,7 +6,7 @@ from string import Template
 
 from .scene import SPACE, Scene
 
-COMMON = ("marks.js", "symbols.js", "plots.js", "timeline.js", "controls.js")
+COMMON = ("pointers.js", "marks.js", "symbols.js", "plots.js", "timeline.js", "controls.js")
 PLANE = ("data.js", "camera.js", *COMMON, "draw.js", "main.js")
 SOLID = ("three.js", "data.js", "space_camera.js", *COMMON, "space_draw.js", "main.js")
 """In the order in which they stand in the page; they share one scope. three.js is made by `make three`."""

@@ -66,7 +66,7 @@ def _there(pose: Floats, point: Point) -> Point:
 
 
 def _place(scene: Scene, anchor: Anchor, frame: int) -> Point:
-    return _there(_pose(scene.frames[anchor.frame].motion, frame), anchor.point)
+    return _there(_pose(scene.frames[anchor.frame].motion, frame), (anchor.point[0], anchor.point[1]))
 
 
 def _parts(drawing: Drawing, scene: Scene, frame: int, layer: int) -> None:

@@ -70,40 +70,9 @@ function lookAlong(name) {
   fit();
 }
 
-// Mouse, pen and fingers: one turns, two move and zoom; with shift or another button the mouse moves.
-function watchView(canvas, changed) {
-  const pointers = new Map();
-  const middle = () => {
-    const all = [...pointers.values()];
-    const x = all.reduce((s, p) => s + p.x, 0) / all.length, y = all.reduce((s, p) => s + p.y, 0) / all.length;
-    return { x, y, spread: all.length > 1 ? Math.hypot(all[0].x - all[1].x, all[0].y - all[1].y) : 0 };
-  };
-  const local = (event) => {
-    const box = canvas.getBoundingClientRect();
-    return { x: event.clientX - box.left, y: event.clientY - box.top };
-  };
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    pointers.set(event.pointerId, local(event));
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!pointers.has(event.pointerId)) return;
-    const old = middle();
-    pointers.set(event.pointerId, local(event));
-    const now = middle(), moves = pointers.size > 1 || event.shiftKey || event.buttons > 1;
-    (moves ? pan : turnView)(now.x - old.x, now.y - old.y);
-    if (old.spread > 0 && now.spread > 0) zoomAt(now.x, now.y, now.spread / old.spread);
-    changed();
-  });
-  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (e) => pointers.delete(e.pointerId));
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    const p = local(event);
-    zoomAt(p.x, p.y, Math.exp(-0.0015 * event.deltaY));
-    changed();
-  }, { passive: false });
-  canvas.addEventListener("dblclick", () => { fit(); changed(); });
+// What a drag by (dx, dy) pixels does: with shift, another button or two fingers the picture moves.
+function dragged(dx, dy, moves) {
+  (moves ? pan : turnView)(dx, dy);
 }
 
 // The list of sides to look from.

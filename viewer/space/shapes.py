@@ -85,8 +85,13 @@ def _touching(stage: Stage3D, body: str) -> bool:
 def _grouped(model: Model) -> Iterator[Sphere3D | Cornered3D | SmoothShape3D]:
     for group in model.groups:
         if isinstance(group, ContactGroup3D):
-            yield from (*group.spheres, *group.boxes, *group.polyhedra, *group.capsules)
-            yield from (*group.cylinders, *group.meshes, *group.smooth)
+            yield from group.spheres
+            yield from group.boxes
+            yield from group.polyhedra
+            yield from group.capsules
+            yield from group.cylinders
+            yield from group.meshes
+            yield from group.smooth
 
 
 def _single(model: Model) -> list[Contact3D]:
