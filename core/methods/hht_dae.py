@@ -13,7 +13,11 @@ an error O(h) in lambda, which decays by (1 + alpha)/(1 - alpha) a step, and so 
 With a step of another size than the one before it a_n is moved to the time t_n + alpha h by its slope: else each
 change of the step by d adds alpha d h a' to the velocities, of first order.
 
-The stage solves for b = a_{n+1} / (1 + alpha): M b + F_{n+1} = alpha / (1 + alpha) F_n.
+So the mass matrix must be that of t_{n+1} + alpha h too: with M_{n+1} a method of order 1 comes out where M depends on
+q, as with Euler parameters or a floating frame. Taken is (1 + alpha) M_{n+1} - alpha M_n, whose change against M_{n+1}
+acts on a predicted acceleration at predicted coordinates.
+
+The stage solves for b = a_{n+1} / (1 + alpha): M b + F_{n+1} = alpha / (1 + alpha) F_n - alpha (M_{n+1} - M_n) b.
 Error estimate of positions (Negrut et al. 2007): (beta - 1/(6 (1 + alpha))) h^2 (a_{n+1} - a_n), of order 2: the step
 follows Theta^(-1/6), Theta the square of its norm. Beside it that of the velocities (`velocity_error.py`), in the norm
 of all methods: the larger counts.
@@ -53,6 +57,29 @@ def carry_force(ws: Any, ms: Any, factor: float) -> None:
         offset[i] = factor * r[i]
 
 
+@internal
+def carry_change_of_mass(ws: Any, ms: Any, h: float, alpha: float, ahead: float) -> None:
+    """offset -= alpha (M(q_n + h v_n + h^2 a_n / 2) - M(q_n)) b, with b = a_n / (1 + alpha), a_n moved by `ahead`.
+
+    M b is what the residuals with b are more than those without; the power of h that is left out is the third.
+    """
+    n = ws.n_ext
+    row, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
+    offset, q, a, r = vec(ws.offset, n), vec(ws.q, n), vec(ws.a, n), vec(ws.r, n)
+    for k in range(4):
+        at_end, with_mass = k // 2 == 1, k % 2 == 1
+        recall(ws, ms, 0)
+        for i in range(ws.n):
+            a_n = row[2 * n + i] + ahead * (row[2 * n + i] - older[2 * n + i])
+            a[i] = a_n / (1.0 + alpha) if with_mass else 0.0
+            if at_end:
+                q[i] += h * (row[n + i] + 0.5 * h * a_n)
+        evaluate_residuals(ws)
+        sign = alpha if at_end == with_mass else -alpha
+        for i in range(ws.n):
+            offset[i] -= sign * r[i]
+
+
 @inlined
 def _change(ms: Any, h: float) -> float:
     """By how much the step has changed, s."""
@@ -81,6 +108,8 @@ def hht_dae_step(ws: Any, ms: Any, h: float) -> int:
     older, ahead = history_row(ws, ms, 1), 0.0
     if rows_available(ms) > 1:
         ahead = alpha * _change(ms, h) / _between(ms, alpha)
+    if alpha != 0.0:
+        carry_change_of_mass(ws, ms, h, alpha, ahead)
     for i in range(n):
         a_n = row[2 * n + i] + ahead * (row[2 * n + i] - older[2 * n + i])
         q_star[i] = row[i] + h * row[n + i] + h * h * (0.5 - beta) * a_n

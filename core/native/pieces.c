@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-enum { ROOM = 1 << 16, HEAD = 16, UNIT = 16 };
+enum { ROOM = 1 << 16, UNIT = 16 };
 
 #if defined _MSC_VER
 #define OF_THREAD __declspec(thread)
@@ -14,45 +14,54 @@ enum { ROOM = 1 << 16, HEAD = 16, UNIT = 16 };
 #define OF_THREAD __thread
 #endif
 
+/* Before each piece. */
+typedef struct {
+    size_t before; /* where the piece below begins; OF_MALLOC: it is none of the stack */
+    size_t given;  /* 1: given back, but pieces above it are not */
+} Head;
+enum { HEAD = sizeof(Head) };
+#define OF_MALLOC SIZE_MAX
+
 static OF_THREAD struct {
     _Alignas(UNIT) char room[ROOM];
-    size_t used, count; /* bytes, and pieces that are taken */
+    size_t used, top; /* bytes, and where the uppermost piece begins */
 } stack;
 
-/* Before each piece: its size, 0 for one of `malloc`. */
+static Head *head_at(size_t place) {
+    return (Head *)(void *)(stack.room + place);
+}
 
 void *tlismni_take(int64_t size) {
     size_t whole = HEAD + ((size_t)size + UNIT - 1) / UNIT * UNIT;
-    char *piece;
+    Head *head;
     if (size >= 0 && whole <= ROOM - stack.used) {
-        piece = stack.room + stack.used;
-        *(size_t *)(void *)piece = whole;
+        head = head_at(stack.used);
+        *head = (Head){stack.top, 0};
+        stack.top = stack.used;
         stack.used += whole;
-        stack.count++;
-    } else if ((piece = malloc(whole))) {
-        *(size_t *)(void *)piece = 0;
+    } else if ((head = malloc(whole))) {
+        *head = (Head){OF_MALLOC, 0};
     }
-    return piece ? piece + HEAD : NULL;
+    return head ? head + 1 : NULL;
 }
 
-void tlismni_give(void *given) {
-    char *piece = given ? (char *)given - HEAD : NULL;
-    if (!piece) {
+void tlismni_give(void *piece) {
+    Head *head = piece ? (Head *)piece - 1 : NULL;
+    if (!head) {
         return;
     }
-    size_t whole = *(size_t *)(void *)piece;
-    if (!whole) {
-        free(piece);
+    if (head->before == OF_MALLOC) {
+        free(head);
         return;
     }
-    if (--stack.count == 0) {
-        stack.used = 0;
-    } else if (piece + whole == stack.room + stack.used) {
-        stack.used -= whole;
+    head->given = 1;
+    while (stack.used && head_at(stack.top)->given) {
+        stack.used = stack.top;
+        stack.top = head_at(stack.top)->before;
     }
 }
 
 void pieces_touch(void) {
     /* where the system makes a thread's memory when it is first used, that is now */
-    *(volatile size_t *)&stack.count = stack.count;
+    *(volatile size_t *)&stack.used = stack.used;
 }

@@ -35,6 +35,7 @@ def exact():
         ("ebdf", {"k": 3}, 4, (200, 400)),
         ("mebdf", {"k": 3}, 4, (120, 240)),
         ("irk", {"tableau": "sdirk4"}, 4, (80, 160)),
+        *((method, {"alpha": alpha}, 2, (160, 320)) for method in ("hht_i3", "hht_ggl") for alpha in (-0.1, -0.3)),
     ],
 )
 def test_observed_order(exact, name, method, options, expected, steps):

@@ -106,6 +106,8 @@ def test_upright_rolling_is_stable_above_its_speed(faster, grows):
         # with alpha < 0 both are of order 1 in space: M(q) and a belong to two times (the heavy top too)
         ("hht_i3", {"alpha": 0.0}, 2, (200, 400)),
         ("hht_ggl", {"alpha": 0.0}, 2, (200, 400)),
+        ("hht_i3", {"alpha": -0.2}, 2, (200, 400)),
+        ("hht_ggl", {"alpha": -0.2}, 2, (200, 400)),
         ("generalized_alpha", {"form": "index3"}, 2, (200, 400)),
         ("generalized_alpha", {"form": "index2"}, 2, (200, 400)),
         ("baumgarte", {"scheme": "rk23"}, 3, (100, 200)),
