@@ -143,17 +143,21 @@ from .shapes.box2d import Box2D, DiskOnBox2D
 from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
-from .shapes.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D
+from .shapes.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
 from .shapes.disk_on_cable import DiskOnCable2D
 from .shapes.disk_on_line import DiskOnLine2D, Line2D
 from .shapes.group2d import ContactGroup2D, contacts_between
 from .shapes.group3d import ContactGroup3D
+from .shapes.mesh3d import TriangleMesh3D, read_mesh
 from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
 from .shapes.ring2d import DiskInRing2D, Ring2D
 from .shapes.rope2d import Rope2D
+from .shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
+from .shapes.rounds3d import Ellipsoid3D, Torus3D
 from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
 from .shapes.segment2d import DiskOnSegment2D, Segment2D
 from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
+from .shapes.support3d import SmoothShape3D, support_formula
 from .simulate import simulate
 from .simulate_many import simulate_many
 from .tables.redundancy import RedundantRow
@@ -185,6 +189,7 @@ __all__ = [
     "Cable3D",
     "CableClamp3D",
     "Capsule3D",
+    "CapsuleOnCapsule3D",
     "CarvalhoMartins",
     "Channel",
     "Clamp2D",
@@ -202,6 +207,7 @@ __all__ = [
     "CoordinateTerm",
     "CoulombFriction",
     "Courses",
+    "Cylinder3D",
     "Cylindrical3D",
     "Disk2D",
     "DiskInRing2D",
@@ -214,6 +220,7 @@ __all__ = [
     "DiskOnSegment2D",
     "Distance2D",
     "Distance3D",
+    "Ellipsoid3D",
     "EquationError",
     "EquationSystem",
     "EulerParameters",
@@ -311,7 +318,10 @@ __all__ = [
     "SlideFriction2D",
     "SlideSpring2D",
     "SlideStop3D",
+    "SmoothOnHalfSpace3D",
+    "SmoothShape3D",
     "Sphere3D",
+    "SphereInSphere3D",
     "SphereOnHalfSpace3D",
     "SphereOnSphere3D",
     "Spherical3D",
@@ -327,6 +337,8 @@ __all__ = [
     "TlismniError",
     "TorsionSpring2D",
     "TorsionSpring3D",
+    "Torus3D",
+    "TriangleMesh3D",
     "Tsuji",
     "Universal3D",
     "ZhiyingQishao",
@@ -340,6 +352,7 @@ __all__ = [
     "deformed_shape",
     "force_formula",
     "load_result",
+    "read_mesh",
     "scalar_constraint",
     "scalar_contact",
     "scalar_force",
@@ -349,4 +362,5 @@ __all__ = [
     "sphere_on_plane",
     "sphere_on_sphere",
     "stress",
+    "support_formula",
 ]

@@ -149,16 +149,19 @@ STANDS = 1e-7
 along the tangents vanish together to what the location of the first one's zero leaves of the second."""
 NEARLY_JAMMED = 1e-6
 """Of a contact's inverse effective mass, in space: with less left of it by friction, it jams."""
-CONES_ENOUGH = 1e-14
+FRICTION_ENOUGH = 1e-14
 """Of the largest force of several contacts in space: what a sweep changes when it is done."""
-CONES_NEAR = 1e-12
+FRICTION_NEAR = 1e-12
 """The same: what Newton's method may leave."""
-CONES_GOOD = 1e-8
+FRICTION_GOOD = 1e-8
 """The same: contacts that nearly repeat each other leave what they differ by."""
-CONES_ROUGH = 1e-5
+FRICTION_ROUGH = 1e-5
 """The same: what sweeps may change that come to no end. Friction is in its cones then, and what still approaches is
 struck again."""
-CONES_RANK = 1e-13
+FRICTION_MOTION = 1e-6
+"""Of the largest motion without forces: what may be left of it where forces have been found. Forces that grow without
+bound, because there are none, change little against themselves."""
+FRICTION_RANK = 1e-13
 """Of the largest singular value in that Newton's method: a smaller one is zero."""
 STILL = 1e-9
 """Of the speed that weight gives over the mechanism's size: there the direction of sliding goes on through zero."""

@@ -44,6 +44,7 @@ from ..methods import adams, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..repair import mend
 from ..run import exchange, slopes
+from ..shapes.support3d import SUPPORT_SIGNATURE, SmoothShape3D
 from ..stage import accelerations, joints
 from ..state import run_records as run_records
 from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
@@ -187,7 +188,7 @@ def _modules() -> Iterator[Any]:
 
 
 def _of_one_kind() -> Iterator[tuple[Any, Any]]:
-    """Kernels, steps and stages of all modules, laws of all records."""
+    """Kernels, steps and stages of all modules, laws and smooth shapes of all records."""
     for module in _modules():
         for name, value in vars(module).items():
             if not isinstance(value, Dispatcher) or value.py_func.__module__ != module.__name__:
@@ -199,7 +200,9 @@ def _of_one_kind() -> Iterator[tuple[Any, Any]]:
                 yield value, STEP_SIGNATURE
             elif name.startswith("solve_") and name.endswith("_stage"):
                 yield value, STAGE_SIGNATURE
-    laws: tuple[tuple[type, Any], ...] = ((ForceLaw, LAW_SIGNATURE), (FrictionLaw, FRICTION_SIGNATURE))
+    laws: tuple[tuple[type, Any], ...] = (
+        (ForceLaw, LAW_SIGNATURE), (FrictionLaw, FRICTION_SIGNATURE), (SmoothShape3D, SUPPORT_SIGNATURE),
+    )  # fmt: skip
     for base, signature in laws:
         for kind in _kinds(base):
             formula = vars(kind).get("formula")

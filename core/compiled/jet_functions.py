@@ -4,13 +4,30 @@ import builtins
 import math
 import operator
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numba import types
 from numba.extending import intrinsic, overload
 
-from .jets import JetType, _minus, composed, made_of, parts_of
+from .jets import JetType, Parts, _minus, composed, made_of, parts_of
+
+
+@cache
+def variable(size: int, k: int) -> Any:
+    """Compiled function of a number: it as the jet of variable k of `size`."""
+    kind = JetType(size, (k,))
+
+    @intrinsic
+    def as_variable(typing_context: Any, x: Any) -> Any:
+        def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+            one = context.get_constant(types.float64, 1.0)
+            return made_of(context, builder, kind, Parts(args[0], {k: one}, {}))
+
+        return kind(types.float64), codegen
+
+    return as_variable
 
 
 @intrinsic

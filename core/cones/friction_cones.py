@@ -19,7 +19,14 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..linalg.small import call_least_norm, least_norm_size
-from ..rounding import CONES_ENOUGH, CONES_GOOD, CONES_NEAR, CONES_RANK, CONES_ROUGH
+from ..rounding import (
+    FRICTION_ENOUGH,
+    FRICTION_GOOD,
+    FRICTION_MOTION,
+    FRICTION_NEAR,
+    FRICTION_RANK,
+    FRICTION_ROUGH,
+)
 
 FAILED, FOUND = 0, 1
 SWEEPS, MOST_SWEEPS = 20, 5000
@@ -283,6 +290,29 @@ def _residual(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, 
 
 
 @internal
+def _motion_left(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any) -> float:
+    """What is left of the motion that the conditions want otherwise, in parts of the largest motion without forces."""
+    worst, largest = 0.0, 0.0
+    for i in range(n):
+        j, k = n + i, 2 * n + i
+        largest = max(largest, abs(b[i]), abs(b[j]), abs(b[k]))
+        trial = max(base[i], p[i] - _motion(a, b, p, i) / a[i, i])
+        worst = max(worst, a[i, i] * abs(p[i] - trial))
+        size, limit = a[j, j] + a[k, k], mu[i] * max(p[i], 0.0)
+        if size == 0.0:
+            continue
+        if known[i] != 0.0:
+            x, y = -limit * way[0, i], -limit * way[1, i]
+        else:
+            x, y = p[j] - _motion(a, b, p, j) / size, p[k] - _motion(a, b, p, k) / size
+            length = math.sqrt(x * x + y * y)
+            part = limit / length if length > limit else 1.0
+            x, y = part * x, part * y
+        worst = max(worst, size * abs(p[j] - x), size * abs(p[k] - y))
+    return worst / largest if largest > 0.0 else 0.0
+
+
+@internal
 def _newton(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
 ) -> float:
@@ -300,7 +330,7 @@ def _newton(
                 best[i], r[i, 0] = p[i], -left[i]
             if worst == 0.0:
                 break
-            call_least_norm(least_norm, jac, r, found, CONES_RANK, space)
+            call_least_norm(least_norm, jac, r, found, FRICTION_RANK, space)
         else:
             tried += 1
             if tried > HALVINGS:
@@ -337,7 +367,7 @@ def solve_friction_cones(
             sweeps += 1
             if not found:
                 return FAILED
-            if n == 1 or change <= CONES_ENOUGH * largest:
+            if n == 1 or change <= FRICTION_ENOUGH * largest:
                 return FOUND
         kept = vec(work + 8 * (9 * n * n + 12 * n), 3 * n)
         for i in range(3 * n):
@@ -347,11 +377,13 @@ def solve_friction_cones(
         for i in range(n):
             largest = max(largest, p[i])
         # directions that nearly repeat each other leave what they differ by
-        if left <= CONES_NEAR * largest or (left <= CONES_GOOD * largest and left > 0.5 * before):
+        near = left <= FRICTION_NEAR * largest or (left <= FRICTION_GOOD * largest and left > 0.5 * before)
+        if near and _motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_MOTION:
             return FOUND
         before = left
         for i in range(3 * n):
             p[i] = kept[i]
         # sweeps that go round in circles come to rest with smaller steps
         wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
-    return FOUND if change <= CONES_ROUGH * largest else FAILED
+    rough = change <= FRICTION_ROUGH * largest
+    return FOUND if rough and _motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_ROUGH else FAILED

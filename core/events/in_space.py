@@ -381,6 +381,10 @@ def find_forces_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     for i in range(whole(ev)[COUNT]):
         part[i] = 1.0 if col(ev, AT_REST)[i] != 0.0 and col(ev, LEAVES)[i] == 0.0 else 0.0
     status = _find_forces(ev, part, True)
+    for _ in range(whole(ev)[COUNT]):
+        if status != SETTLED or not _falls_back(ev, ws, part):
+            break
+        status = _find_forces(ev, part, True)
     if status == SETTLED:
         note_loaded(ev, ws)
         status = _refuse_jam(ev)
@@ -390,6 +394,19 @@ def find_forces_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     if wedged and decide_by_moment(ev, dr, ws, ms, col(ev, AT_REST), moment_of_wedge(ev, ws)):
         return SETTLED
     return status
+
+
+@internal
+def _falls_back(ev: Any, ws: Any, part: Any) -> bool:
+    """True if gaps that open would, with these accelerations, open by less than could be told from zero: they are at
+    rest too, and take `part` in the forces."""
+    found = False
+    for i in range(whole(ev)[COUNT]):
+        rate, k = col(ev, RATE)[i], ivec(ev.contacts, ev.most)[i]
+        if col(ev, AT_REST)[i] == 0.0 and 0.0 < rate <= unresolved_speed(ws, k, -col(ev, W_N)[i]):
+            col(ev, AT_REST)[i], found = 1.0, True
+            part[i] = 1.0 if col(ev, LEAVES)[i] == 0.0 else 0.0
+    return found
 
 
 @internal

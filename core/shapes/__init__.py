@@ -14,6 +14,7 @@ from .element import ContactElement
 from .polygon2d import DiskOnPolygon2D
 from .ring2d import DiskInRing2D
 from .rope2d import Rope2D
+from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
 from .segment2d import DiskOnSegment2D
 from .stop3d import AngleStop3D, Rope3D, SlideStop3D
 
@@ -31,6 +32,9 @@ CONTACTS = (
     CoordinateContact,
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
+    SmoothOnHalfSpace3D,
+    SphereInSphere3D,
+    CapsuleOnCapsule3D,
     AngleStop3D,
     SlideStop3D,
     Rope3D,

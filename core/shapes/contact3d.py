@@ -17,6 +17,7 @@ from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
 from .normal3d import SIZE, sphere3d_kernel
+from .support3d import SUPPORT_NUMBERS
 
 
 class HalfSpace3D(Record):
@@ -82,14 +83,21 @@ class Contact3D(ContactElement):
     def lengths(self) -> Sequence[float]:
         return tuple(sphere.radius for sphere in self.spheres())
 
-    def _row_of(self, numbering: Numbering, a: Marker3D, b: Marker3D, radius_a: float, radius_b: float) -> Row:
+    def _row_of(
+        self, numbering: Numbering, a: Marker3D, b: Marker3D, radius_a: float, radius_b: float, *,
+        extents: tuple[float, float] = (0.0, 0.0), numbers: tuple[float, ...] = (0.0,) * SUPPORT_NUMBERS,
+        address: int = 0,
+    ) -> Row:  # fmt: skip
+        """Row of the markers a and b; extents : how far points of contact may be from them, m; numbers, address : of a
+        smooth shape's formula."""
         law = self._law_columns(numbering)
         # small against all speeds that weight causes
         still = STILL * math.sqrt(numbering.length * (math.hypot(*numbering.gravity) or numbering.length))
-        geometry = (float(self.kind), radius_a, radius_b, still, 0.0, 0.0, 0.0)
+        geometry = (float(self.kind), radius_a, radius_b, still, *extents, 0.0)
         return Row(
-            (*geometry, *law.parameters, *columns_of(a, b, numbering)), coordinates_of(a, b, numbering), law.extra
-        )
+            (*geometry, *law.parameters, *columns_of(a, b, numbering), *numbers), coordinates_of(a, b, numbering),
+            (*law.extra, address),
+        )  # fmt: skip
 
 
 class SphereOnHalfSpace3D(Contact3D):

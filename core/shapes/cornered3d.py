@@ -1,17 +1,19 @@
-"""Shapes in space that touch half-spaces by corners: boxes, convex polyhedra and capsules."""
+"""Shapes in space that touch half-spaces by corners: boxes, convex polyhedra, capsules, cylinders."""
 
 from itertools import product
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import field_validator
+from pydantic import Field, field_validator
 
 from ..model.base import NonNegative, Positive, Record
 from ..model.markers import Marker3D
 from .contact3d import Sphere3D
+from .rounds3d import Torus3D
 
 FEWEST_VERTICES = 2
+FEWEST_RIM_POINTS = 3
 
 
 class Cornered3D(Record):
@@ -95,3 +97,42 @@ class Capsule3D(Cornered3D):
 
     def rounding(self) -> float:
         return self.radius
+
+
+class Cylinder3D(Cornered3D):
+    """A cylinder about the marker, its axis along the marker's z axis. It touches half-spaces, by its rims.
+
+    The point of a rim that touches runs round without bound as an end comes to lie flat, where there is no one point.
+    What lies or stands on its ends takes `rim_points` in place of smooth rims: it touches by these.
+    """
+
+    type: Literal["Cylinder3D"] = "Cylinder3D"
+    radius: Positive
+    """m."""
+    length: Positive
+    """m."""
+    rim_points: Annotated[int, Field(ge=0)] = 0
+    """Points of each rim that touch, evenly round; 0: smooth rims, for cylinders that roll."""
+
+    @field_validator("rim_points")
+    @classmethod
+    def _stands(cls, count: int) -> int:
+        if 0 < count < FEWEST_RIM_POINTS:
+            raise ValueError(f"{count} points of a rim do not hold a cylinder: give {FEWEST_RIM_POINTS} or more, or 0")
+        return count
+
+    def places(self) -> NDArray[np.float64]:
+        angles = 2.0 * np.pi * np.arange(self.rim_points) / max(self.rim_points, 1)
+        rim = [(self.radius * np.cos(a), self.radius * np.sin(a)) for a in angles]
+        return np.array([(x, y, z) for z in (0.5 * self.length, -0.5 * self.length) for x, y in rim]).reshape(-1, 3)
+
+    def rims(self) -> tuple[Torus3D, ...]:
+        """Its smooth rims; none if it touches by points."""
+        if self.rim_points > 0:
+            return ()
+        found = []
+        for side in (0.5, -0.5):
+            x, y, z = (np.array(self.marker.point) + side * self.length * self.marker.axes()[:, 2]).tolist()
+            marker = self.marker.model_copy(update={"point": (x, y, z)})
+            found.append(Torus3D(marker=marker, radius=self.radius))
+        return tuple(found)

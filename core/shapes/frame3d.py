@@ -9,8 +9,9 @@ import math
 from typing import Any
 
 from ..compiled.jit import inlined, internal
-from ..elements.measure3d import AXES_A, PLACE
+from ..elements.measure3d import AXES_A
 from ..model.rotation3d import columns_at, constant, cross, dot, less, plus, times
+from .held3d import on_plane
 from .tangent3d import NORMAL, SIZE, column, put
 
 T1, T2 = 19, 22
@@ -21,7 +22,7 @@ FRAME_ROWS = 25
 @internal
 def farthest_axis(b: Any, coord: Any, pair: Any, kind: int, n: Any) -> int:
     """1, 2 or 3: the axis of the first marker that angles are counted from, if it is chosen now."""
-    if kind == PLACE:
+    if on_plane(kind):
         return 1
     found, least = 1, 2.0
     for k in range(3):

@@ -12,12 +12,13 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..elements.measure3d import product
+from ..elements.measure3d import COLUMNS, product
 from ..laws.friction import call_friction
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from .held3d import MOVES
 from .normal2d import act, asleep, evaluate_law
-from .normal3d import KIND, PACKED, RADIUS_A, RADIUS_B, SIZE, gap_of, pair_of
+from .normal3d import KIND, PACKED, SIZE, gap_of, hold
 from .sliding2d import FRICTION, FRICTION_ADDRESS
 from .tangent3d import NORMAL, ROWS, U, W, add_directions, column, tangent_of_batch
 
@@ -36,12 +37,14 @@ def _law(b: Any, e: int, speed: float, normal: float) -> Any:
 
 
 @internal
-def regularised(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any, work: Any) -> None:
+def regularised(
+    b: Any, job: int, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any, work: Any
+) -> None:
     """The friction of element e of a batch, whose gap has been evaluated."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
-    coord, k, pair = imat(b.coord, b.count, SIZE)[e], extra[0], pair_of(b, e)
+    coord, k = imat(b.coord, b.count, SIZE)[e], extra[0]
     v = vec(b.v, b.n_extended)
-    n, u, beta_a, beta_b, size = tangent_of_batch(b, e, int(par[KIND]), par[RADIUS_A], par[RADIUS_B], coord, pair, work)
+    n, u, beta_a, beta_b, size = tangent_of_batch(b, par, coord, held, moves, work)
     across = dot(n, u)
     slide = less(u, times(across, n))
     speed = math.sqrt(dot(slide, slide))
@@ -69,7 +72,10 @@ def regularised(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any,
         values, slot, coef = vec(b.values, b.n_values), imat(b.slot_s + 8 * SIZE * SIZE * e, SIZE, SIZE), vec(b.coef, 2)
         if not found > 0.0:
             by_normal = 0.0
-        add_directions(values, slot, vec(b.q, b.n_extended), coord, pair, work, beta_a, beta_b, size, pull, -coef[0])
+        add_directions(
+            int(par[KIND]), values, slot, vec(b.q, b.n_extended), coord, held, moves, work, beta_a, beta_b, size,
+            pull, -coef[0],
+        )  # fmt: skip
         for j in range(SIZE):
             by_n, of_v = column(work, NORMAL, j), column(work, W, j)
             of_q = less(column(work, U, j), times(across, by_n))
@@ -93,10 +99,11 @@ def regularised(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any,
 @internal
 def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    work = np.empty((ROWS, SIZE))
+    work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
     for e in range(b.count):
         if asleep(b, e):
             continue
-        g = gap_of(b, e, gradient, hessian, packed)
+        hold(b, e, held, moves)
+        g = gap_of(b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        regularised(b, job, e, g, gradient, hessian, work)
+        regularised(b, job, e, g, held, moves, gradient, hessian, work)

@@ -19,11 +19,13 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
+from ..elements.measure3d import COLUMNS
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS, WAY
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
+from .held3d import MOVES
 from .normal2d import act, asleep
-from .normal3d import KIND, PACKED, RADIUS_A, RADIUS_B, SIZE, gap_of, pair_of
+from .normal3d import KIND, PACKED, SIZE, gap_of, hold
 from .tangent3d import U, W, add_directions, column, product_with, tangent_of_batch
 
 STILL_SPEED = 3
@@ -58,28 +60,28 @@ def _levels(b: Any, e: int, x: float, y: float, x_rate: float, y_rate: float, sl
 
 
 @internal
-def grip(b: Any, job: int, e: int, work: Any) -> None:
+def grip(b: Any, job: int, e: int, held: Any, moves: Any, work: Any) -> None:
     """The friction of element e of a batch, whose gap has been evaluated."""
     memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
     closed = memory[MODE] == CLOSED
     if job != RESIDUAL and not (closed and (job == TANGENT or job == POWER)):
         return
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
-    coord, k, pair = imat(b.coord, b.count, SIZE)[e], extra[0], pair_of(b, e)
+    coord, k, kind = imat(b.coord, b.count, SIZE)[e], extra[0], int(par[KIND])
     row, lam, v = imat(b.row, b.count, 3)[e], vec(b.lam, b.m_extended), vec(b.v, b.n_extended)
-    n, u, beta_a, beta_b, size = tangent_of_batch(b, e, int(par[KIND]), par[RADIUS_A], par[RADIUS_B], coord, pair, work)
+    n, u, beta_a, beta_b, size = tangent_of_batch(b, par, coord, held, moves, work)
     axis, angle = int(memory[AXIS]), memory[WAY]
     if not closed or axis == 0:
-        axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
-    t1, t2 = tangents(b, coord, pair, axis, angle, n, work)
+        axis, angle = farthest_axis(b, coord, held, kind, n), 0.0
+    t1, t2 = tangents(b, coord, held, axis, angle, n, work)
     x, y = dot(u, t1), dot(u, t2)
-    held = memory[SLIDE]
-    slides = closed and abs(held) == 1.0
-    both, one = closed and held == STICKS, closed and held == ALONG
+    state = memory[SLIDE]
+    slides = closed and abs(state) == 1.0
+    both, one = closed and state == STICKS, closed and state == ALONG
     # force on the second shape; how it goes with the normal's multiplier
     share, pull = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     c, s, by_x, by_y = 1.0, 0.0, 0.0, 0.0
-    if slides or (closed and held == IDLE):
+    if slides or (closed and state == IDLE):
         if slides:
             c, s, by_x, by_y = _direction(x, y, par[STILL_SPEED])
         share = times(-memory[RATIO], plus(times(c, t1), times(s, t2)))
@@ -111,7 +113,9 @@ def grip(b: Any, job: int, e: int, work: Any) -> None:
             vec(b.coef, 2)[0],
         )
         slot_j, slot_jt = imat(b.slot_j, b.count, 3 * SIZE)[e], imat(b.slot_jt, b.count, 3 * SIZE)[e]
-        add_directions(values, slot, vec(b.q, b.n_extended), coord, pair, work, beta_a, beta_b, size, pull, -c_q)
+        add_directions(
+            kind, values, slot, vec(b.q, b.n_extended), coord, held, moves, work, beta_a, beta_b, size, pull, -c_q
+        )
         across, load = plus(times(-s, t1), times(c, t2)), -memory[RATIO] * lam[row[0]]
         for j in range(SIZE):
             of_v, by_t1, by_t2 = column(work, W, j), column(work, T1, j), column(work, T2, j)
@@ -140,10 +144,11 @@ def grip(b: Any, job: int, e: int, work: Any) -> None:
 @internal
 def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    work = np.empty((FRAME_ROWS, SIZE))
+    work, held, moves = np.empty((FRAME_ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
     for e in range(b.count):
         if asleep(b, e):
             continue
-        g = gap_of(b, e, gradient, hessian, packed)
+        hold(b, e, held, moves)
+        g = gap_of(b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        grip(b, job, e, work)
+        grip(b, job, e, held, moves, work)

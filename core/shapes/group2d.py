@@ -1,9 +1,10 @@
 """Contacts between groups of shapes, instead of pairs listed by hand.
 
 Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box, a polygon, a segment or a ring
-around it; a box or polygon with a half-plane and with others by the corners; in space a sphere with a half-space and a
-sphere, a box with a half-space by its corners. Pairs on one body are left out. Pairs that are far from touching cost
-nothing during a run: contacts sleep until their margin is used up (`location/asleep.py`).
+around it; a box or polygon with a half-plane and with others by the corners; in space a sphere or a capsule with a
+half-space, a sphere and a capsule, what has corners or is smooth with a half-space. Pairs on one body are left out.
+Pairs that are far from touching cost nothing during a run: contacts sleep until their margin is used up
+(`location/asleep.py`).
 """
 
 from collections.abc import Iterable, Sequence
@@ -18,15 +19,17 @@ from ..model.markers import GROUND
 from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
-from .cornered3d import Cornered3D
+from .cornered3d import Capsule3D, Cornered3D, Cylinder3D
 from .polygon2d import DiskOnPolygon2D, Polygon2D
 from .ring2d import DiskInRing2D, Ring2D
+from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
 from .segment2d import DiskOnSegment2D, Segment2D
+from .support3d import SmoothShape3D
 
 PlanarShape = Disk2D | HalfPlane2D | Box2D | Polygon2D | Segment2D | Ring2D
 ANGULAR = (Box2D, Polygon2D)
 """What has corners in the plane."""
-SpatialShape = Sphere3D | HalfSpace3D | Cornered3D
+SpatialShape = Sphere3D | HalfSpace3D | Cornered3D | SmoothShape3D
 GroupShape = PlanarShape | SpatialShape
 
 MOST_PAIRS = 200_000
@@ -155,21 +158,32 @@ def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShap
         return ((a, b),) if a.radius + b.radius > 0.0 else ()
     if isinstance(b, HalfSpace3D):
         a, b = b, a
-    if isinstance(a, HalfSpace3D) and isinstance(b, Sphere3D):
+    if isinstance(a, HalfSpace3D) and isinstance(b, Sphere3D | SmoothShape3D):
         return ((a, b),)
+    if isinstance(a, HalfSpace3D) and isinstance(b, Cylinder3D) and b.rim_points == 0:
+        return tuple((a, rim) for rim in b.rims())
     if isinstance(a, HalfSpace3D) and isinstance(b, Cornered3D):
         return tuple((a, corner) for corner in b.corners())
+    if isinstance(b, Capsule3D):
+        a, b = b, a
+    if isinstance(a, Capsule3D) and isinstance(b, Capsule3D | Sphere3D):
+        return ((a, b),)
     if _body(a) == _body(b) == GROUND:
         return ()
     raise ModelError(
         f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: in space a "
-        "sphere touches spheres and half-spaces, what has corners touches half-spaces; give it spheres in their place"
+        "sphere or capsule touches spheres, capsules and half-spaces, all others touch half-spaces; give it spheres or "
+        "capsules in their place"
     )
 
 
 def _contact(
     name: str, a: GroupShape, disk: GroupShape, law: ContactLaw, friction: Friction | None
 ) -> Contact2D | Contact3D:
+    if isinstance(a, Capsule3D) and isinstance(disk, Capsule3D | Sphere3D):
+        return CapsuleOnCapsule3D(name=name, a=a, b=disk, law=law, friction=friction)
+    if isinstance(a, HalfSpace3D) and isinstance(disk, SmoothShape3D):
+        return SmoothOnHalfSpace3D(name=name, plane=a, shape=disk, law=law, friction=friction)
     if isinstance(disk, Sphere3D):
         if isinstance(a, HalfSpace3D):
             return SphereOnHalfSpace3D(name=name, plane=a, sphere=disk, law=law, friction=friction)

@@ -7,8 +7,10 @@ from ..laws.friction import Friction
 from ..model.base import Name, Record
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
-from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D
+from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
 from .group2d import GroupShape, contacts_between
+from .mesh3d import TriangleMesh3D
+from .round3d import Smooth3D
 
 
 class ContactGroup3D(Record):
@@ -22,13 +24,19 @@ class ContactGroup3D(Record):
     name: Name
     """Names of its contacts begin with it."""
     spheres: tuple[Sphere3D, ...] = ()
-    """They touch spheres and half-spaces."""
+    """They touch spheres, capsules and half-spaces."""
     boxes: tuple[Box3D, ...] = ()
     """They touch half-spaces, by their corners."""
     polyhedra: tuple[ConvexPolyhedron3D, ...] = ()
     """They touch half-spaces, by their corners."""
     capsules: tuple[Capsule3D, ...] = ()
-    """They touch half-spaces, by their ends."""
+    """They touch spheres, capsules and half-spaces."""
+    cylinders: tuple[Cylinder3D, ...] = ()
+    """They touch half-spaces, by their rims."""
+    meshes: tuple[TriangleMesh3D, ...] = ()
+    """They touch half-spaces, by the corners of their hulls."""
+    smooth: tuple[Smooth3D, ...] = ()
+    """Ellipsoids, tori and own smooth shapes; they touch half-spaces."""
     half_spaces: tuple[HalfSpace3D, ...] = ()
     """They touch all shapes but half-spaces."""
     law: ContactLaw
@@ -41,7 +49,9 @@ class ContactGroup3D(Record):
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact: shapes with
         corners and spheres, or other shapes with corners."""
-        cornered: tuple[GroupShape, ...] = (*self.boxes, *self.polyhedra, *self.capsules)
+        cornered: tuple[GroupShape, ...] = (
+            *self.boxes, *self.polyhedra, *self.capsules, *self.cylinders, *self.meshes, *self.smooth,
+        )  # fmt: skip
         return contacts_between(
             self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,
             except_bodies=self.except_bodies,

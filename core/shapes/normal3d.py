@@ -1,6 +1,7 @@
-"""Contact of two spheres, and of a sphere and a half-space, along the normal: the gap is a measure of two markers.
+"""Contact of two shapes in space along the normal: the gap is a measure of two points, less radii.
 
-Columns of the parameters: `KIND`, the radii, the laws' from 7 on, and those of the pair of markers from `PAIR` on.
+The points are those of two markers, or points of contact that move on their bodies (`held3d.py`). Columns of the
+parameters: `KIND`, the radii, the laws' from 7 on, those of the pair of markers from `PAIR` on, the shape's at the end.
 """
 
 from typing import Any
@@ -10,14 +11,20 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS, measure
+from .held3d import HOLLOW, MOVES, SIZE, SUPPORT, bend_held, hold_segments, hold_support, measured, moves_on
 from .normal2d import act, asleep
 
-SIZE = 14
-"""Coordinates of both bodies."""
 PACKED = SIZE * (SIZE + 1) // 2
 KIND, RADIUS_A, RADIUS_B = 0, 1, 2
-"""Kind of the measure that the gap is, DISTANCE or PLACE, and the radii; that of a half-space is 0."""
+"""Kind of the gap, DISTANCE or PLACE, or one of `held3d.py`, and the radii; that of a half-space is 0, that of a hollow
+sphere negative."""
+EXTENT_A, EXTENT_B = 4, 5
+"""How far points of contact may be from their markers, m; of segments their half lengths."""
 PAIR = 16
+NUMBERS = PAIR + COLUMNS
+"""The numbers of a smooth shape."""
+SUPPORT_ADDRESS = 6
+"""Column of `extra` with the address of a smooth shape's formula; 0: it has none."""
 
 
 @internal
@@ -27,12 +34,41 @@ def pair_of(b: Any, e: int) -> Any:
 
 
 @internal
-def gap_of(b: Any, e: int, gradient: Any, hessian: Any, packed: Any) -> float:
-    """Gap of element e of a batch, m; its derivatives go into gradient (14,), hessian (14, 14) and its upper triangle
-    row by row (105,)."""
+def hold(b: Any, e: int, held: Any, moves: Any) -> None:
+    """The pair of markers of element e of a batch with the points of contact in place of their points, to held
+    (COLUMNS,), and how these move on their bodies, to moves (MOVES, 14)."""
+    par, pair = mat(b.par, b.count, b.npar)[e], pair_of(b, e)
+    for i in range(COLUMNS):
+        held[i] = pair[i]
+    kind = int(par[KIND])
+    if not moves_on(kind):
+        return
+    moves[:, :] = 0.0
+    q, coord = vec(b.q, b.n_extended), imat(b.coord, b.count, SIZE)[e]
+    if kind == SUPPORT:
+        address = imat(b.extra, b.count, b.nextra)[e, SUPPORT_ADDRESS]
+        hold_support(q, coord, address, vec(b.par + 8 * (e * b.npar + NUMBERS), 4), held, moves)
+    else:
+        hold_segments(q, coord, par[EXTENT_A], par[EXTENT_B], held, moves)
+
+
+@internal
+def gap_of(b: Any, e: int, held: Any, moves: Any, gradient: Any, hessian: Any, packed: Any) -> float:
+    """Gap of element e of a batch, m, whose points are held; its derivatives go into gradient (14,), hessian (14, 14)
+    and its upper triangle row by row (105,)."""
     par = mat(b.par, b.count, b.npar)[e]
-    coord = imat(b.coord, b.count, SIZE)[e]
-    g = measure(int(par[KIND]), vec(b.q, b.n_extended), coord, pair_of(b, e), 0.0, gradient, hessian)
+    coord, kind = imat(b.coord, b.count, SIZE)[e], int(par[KIND])
+    g = measure(measured(kind), vec(b.q, b.n_extended), coord, held, 0.0, gradient, hessian)
+    if moves_on(kind):
+        bend_held(hessian, moves)
+    elif kind == HOLLOW:
+        # the centres may be one: then no wall is nearer than another
+        out = -1.0 if g > 0.0 else 0.0
+        g = -g
+        for i in range(SIZE):
+            gradient[i] = out * gradient[i] if out != 0.0 else 0.0
+            for j in range(SIZE):
+                hessian[i, j] = out * hessian[i, j] if out != 0.0 else 0.0
     k = 0
     for i in range(SIZE):
         for j in range(i, SIZE):
@@ -44,8 +80,10 @@ def gap_of(b: Any, e: int, gradient: Any, hessian: Any, packed: Any) -> float:
 @internal
 def sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
+    held, moves = np.empty(COLUMNS), np.empty((MOVES, SIZE))
     for e in range(b.count):
         if asleep(b, e):
             continue
-        g = gap_of(b, e, gradient, hessian, packed)
+        hold(b, e, held, moves)
+        g = gap_of(b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)

@@ -1,11 +1,12 @@
-"""Motion of two spheres, or of a sphere and a half-space, along their common tangent plane.
+"""Motion of two shapes in space along their common tangent plane.
 
 The velocity of the second shape on the first at the point of contact is u = W(q) v,
     u = s (x_b' - x_a') + w_b x beta_b - w_a x beta_a,
 x the markers' points and w the angular velocities in space, 2 E(p) p'. On a half-space s = 1, beta_b = -R n and
 beta_a = d - R n: the point of contact is on the sphere. Of two spheres s = (R_a + R_b)/|d|, beta_b = -R_b n and
-beta_a = R_a n: u is the rate of the arcs that they roll, and a force along it has no moment on both together. The
-acceleration is u' = W a + U v with U = d(W v)/dq.
+beta_a = R_a n: u is the rate of the arcs that they roll, and a force along it has no moment on both together; R_a of a
+hollow sphere is negative, and so is |d|. Points of contact that move on their bodies are held in them for W, and their
+moves are part of the derivatives (`held3d.py`). The acceleration is u' = W a + U v with U = d(W v)/dq.
 """
 
 import math
@@ -13,7 +14,7 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
-from ..elements.measure3d import AXES_A, DISTANCE, POINT_A, POINT_B, offset
+from ..elements.measure3d import AXES_A, AXES_B, POINT_A, POINT_B, offset
 from ..model.rotation3d import (
     along,
     bend,
@@ -29,7 +30,8 @@ from ..model.rotation3d import (
     turned,
     turning,
 )
-from .normal3d import SIZE
+from .held3d import HOLLOW, MOVE_A, MOVE_B, MOVED, SUPPORT, moves_on, on_plane
+from .normal3d import KIND, RADIUS_A, RADIUS_B, SIZE
 
 W, U, NORMAL, OFFSET, ARM_A, ARM_B, GROWTH = 0, 3, 6, 9, 12, 15, 18
 """Rows of the work matrix: W, U, and derivatives of the normal, of d, of beta_a and beta_b, and of s."""
@@ -60,8 +62,10 @@ def put(work: Any, first: int, j: int, x: Any) -> None:
 
 
 @internal
-def tangent_motion(kind: int, q: Any, v: Any, coord: Any, pair: Any, ra: float, rb: float, work: Any) -> Any:
-    """(n, u, beta_a, beta_b, s) of a pair of shapes; matrices go to work (ROWS, 14)."""
+def tangent_motion(
+    kind: int, q: Any, v: Any, coord: Any, pair: Any, moves: Any, ra: float, rb: float, work: Any
+) -> Any:
+    """(n, u, beta_a, beta_b, s) of a pair of shapes whose points are held; matrices go to work (ROWS, 14)."""
     p, s = four(q, coord, 3, pair[0]), four(q, coord, 10, pair[1])
     pd, sd = four(v, coord, 3, 0.0), four(v, coord, 10, 0.0)
     u_a, u_b, m = constant(pair, POINT_A), constant(pair, POINT_B), constant(pair, AXES_A + 6)
@@ -71,12 +75,24 @@ def tangent_motion(kind: int, q: Any, v: Any, coord: Any, pair: Any, ra: float, 
     w_a, w_b = times(2.0, along(axes_a, pd)), times(2.0, along(axes_b, sd))
     shift = plus(less(three(v, coord, 7), three(v, coord, 0)), less(along(of_w, sd), along(of_u, pd)))
     length = math.sqrt(dot(d, d))
-    spheres = kind == DISTANCE
-    n = times(1.0 / length, d) if spheres else turned(of_n, p)
-    size = (ra + rb) / length if spheres else 1.0
+    spheres, move = not on_plane(kind), moves_on(kind)
+    # between spheres in spheres with one centre no direction is the normal
+    one = 1.0 / length if length > 0.0 else 0.0
+    if kind == HOLLOW:
+        one = -one
+    n = times(one, d) if spheres else turned(of_n, p)
+    size = (ra + rb) * one if spheres else 1.0
     beta_a = times(ra, n) if spheres else less(d, times(rb, n))
     beta_b = times(-rb, n)
     zero = (0.0, 0.0, 0.0)
+    run_1 = run_2 = run_3 = zero
+    if kind == SUPPORT:
+        run_1 = along(turning(s, constant(pair, AXES_B)), sd)
+        run_2 = along(turning(s, constant(pair, AXES_B + 3)), sd)
+        run_3 = along(turning(s, constant(pair, AXES_B + 6)), sd)
+    elif move:
+        run_1 = times(-1.0, along(turning(p, m), pd))
+        run_2 = along(turning(s, constant(pair, AXES_B + 6)), sd)
     for j in range(SIZE):
         unit = (1.0 if j % 7 == 0 else 0.0, 1.0 if j % 7 == 1 else 0.0, 1.0 if j % 7 == 2 else 0.0)
         local = j % 7 - 3
@@ -84,12 +100,16 @@ def tangent_motion(kind: int, q: Any, v: Any, coord: Any, pair: Any, ra: float, 
             by_d = times(-1.0, of_u[local] if local >= 0 else unit)
         else:
             by_d = of_w[local] if local >= 0 else unit
+        goes_a, goes_b = zero, zero
+        if move:
+            goes_a, goes_b = column(moves, MOVE_A, j), column(moves, MOVE_B, j)
         if spheres:
-            by_n = times(1.0 / length, less(by_d, times(dot(n, by_d), n)))
-            by_size, by_a = -size / length * dot(n, by_d), times(ra, by_n)
+            apart = plus(by_d, less(goes_b, goes_a))
+            by_n = times(one, less(apart, times(dot(n, apart), n)))
+            by_size, by_a = -size * one * dot(n, apart), times(ra, by_n)
         else:
             by_n = of_n[local] if 0 <= local and j < 7 else zero
-            by_size, by_a = 0.0, less(by_d, times(rb, by_n))
+            by_size, by_a = 0.0, less(plus(by_d, goes_b), times(rb, by_n))
         by_b = times(-rb, by_n)
         of_v, of_q = times(size, by_d), times(by_size, shift)
         of_q = plus(of_q, less(cross(w_b, by_b), cross(w_a, by_a)))
@@ -102,6 +122,9 @@ def tangent_motion(kind: int, q: Any, v: Any, coord: Any, pair: Any, ra: float, 
             of_v = plus(of_v, times(2.0, cross(axes_b[local], beta_b)))
             of_q = plus(of_q, times(size, rate_w[local]))
             of_q = less(of_q, times(2.0, cross(spin_b[local], beta_b)))
+        if move:
+            held = plus(times(moves[MOVED, j], run_1), times(moves[MOVED + 1, j], run_2))
+            of_q = plus(of_q, times(size, plus(held, times(moves[MOVED + 2, j], run_3))))
         put(work, W, j, of_v)
         put(work, U, j, of_q)
         put(work, NORMAL, j, by_n)
@@ -143,11 +166,32 @@ def _add_bend(values: Any, slot: Any, first: int, factor: float, f: Any, u: Any)
 
 
 @internal
+def _add_moves(
+    kind: int, values: Any, slot: Any, q: Any, coord: Any, pair: Any, moves: Any, force: Any, factor: float
+) -> None:
+    """The same of points that move on their bodies, values += factor dB(p, u)^T force."""
+    p, s = four(q, coord, 3, pair[0]), four(q, coord, 10, pair[1])
+    for k in range(3):
+        on_a, axis = kind != SUPPORT and k == 0, AXES_B + 3 * k
+        if kind != SUPPORT:
+            axis = AXES_A + 6 if on_a else AXES_B + 6
+        pull = onto(turning(p if on_a else s, constant(pair, axis)), force)
+        first, sign = (3, -factor) if on_a else (10, factor)
+        for j in range(SIZE):
+            way = sign * moves[MOVED + k, j]
+            if way != 0.0:
+                for i in range(4):
+                    values[slot[first + i, j]] += way * pull[i]
+
+
+@internal
 def add_directions(
-    values: Any, slot: Any, q: Any, coord: Any, pair: Any, work: Any, beta_a: Any, beta_b: Any, size: float,
-    force: Any, factor: float,
+    kind: int, values: Any, slot: Any, q: Any, coord: Any, pair: Any, moves: Any, work: Any, beta_a: Any, beta_b: Any,
+    size: float, force: Any, factor: float,
 ) -> None:  # fmt: skip
     """values += factor d(W^T force)/dq, the force held."""
+    if moves_on(kind):
+        _add_moves(kind, values, slot, q, coord, pair, moves, force, factor * size)
     p, s = four(q, coord, 3, pair[0]), four(q, coord, 10, pair[1])
     axes_a, axes_b = space_axes(p), space_axes(s)
     for j in range(SIZE):
@@ -179,6 +223,9 @@ def product_with(work: Any, first: int, x: Any, coord: Any) -> Any:
 
 
 @internal
-def tangent_of_batch(b: Any, e: int, kind: int, ra: float, rb: float, coord: Any, pair: Any, work: Any) -> Any:
-    """`tangent_motion` at the current point of a batch."""
-    return tangent_motion(kind, vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, pair, ra, rb, work)
+def tangent_of_batch(b: Any, par: Any, coord: Any, held: Any, moves: Any, work: Any) -> Any:
+    """`tangent_motion` of an element with the parameters par at the current point of a batch."""
+    return tangent_motion(
+        int(par[KIND]), vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, held, moves, par[RADIUS_A],
+        par[RADIUS_B], work,
+    )  # fmt: skip

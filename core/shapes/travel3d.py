@@ -1,11 +1,12 @@
-"""How far the gap of a sphere in space can go within a step, from how far the coordinates go."""
+"""How far the gap of two shapes in space can go within a step, from how far the coordinates go."""
 
 import math
 from typing import Any
 
 from ..compiled.jit import inlined, internal
-from ..elements.measure3d import PLACE, POINT_A, POINT_B
-from .normal3d import KIND, PAIR
+from ..elements.measure3d import POINT_A, POINT_B
+from .held3d import on_plane
+from .normal3d import EXTENT_A, EXTENT_B, KIND, PAIR
 
 TURN = 2.0 * 1.01
 """|d(A u)| <= 2 |u| |dp| for |p| = 1; the dense output between two rows leaves that by less than the rest."""
@@ -28,11 +29,11 @@ def _at(way: Any, coord: Any, first: int, count: int) -> float:
 @internal
 def way_of_sphere(q: Any, coord: Any, par: Any, way: Any) -> float:
     """Upper bound, m (or m/s for rates in `way`)."""
-    arm_a, arm_b = _length(par, PAIR + POINT_A), _length(par, PAIR + POINT_B)
+    arm_a, arm_b = _length(par, PAIR + POINT_A) + par[EXTENT_A], _length(par, PAIR + POINT_B) + par[EXTENT_B]
     moves_a, moves_b = _at(way, coord, 0, 3), _at(way, coord, 7, 3)
     turns_a, turns_b = TURN * _at(way, coord, 3, 4), TURN * _at(way, coord, 10, 4)
     total = moves_a + moves_b + arm_b * turns_b
-    if int(par[KIND]) != PLACE:
+    if not on_plane(int(par[KIND])):
         return total + arm_a * turns_a
     if turns_a > 0.0:
         far = 0.0

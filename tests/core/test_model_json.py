@@ -26,6 +26,8 @@ from tlismni.core import (
     Cable2D,
     Cable3D,
     CableClamp3D,
+    Capsule3D,
+    CapsuleOnCapsule3D,
     Clamp2D,
     Constant,
     ConstantVelocity3D,
@@ -47,6 +49,7 @@ from tlismni.core import (
     DiskOnSegment2D,
     Distance2D,
     Distance3D,
+    Ellipsoid3D,
     EulerParameters,
     Fixed3D,
     FloatingBeam2D,
@@ -115,7 +118,9 @@ from tlismni.core import (
     SlideFriction2D,
     SlideSpring2D,
     SlideStop3D,
+    SmoothOnHalfSpace3D,
     Sphere3D,
+    SphereInSphere3D,
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
     Spherical3D,
@@ -126,6 +131,7 @@ from tlismni.core import (
     TableSpring2D,
     TorsionSpring2D,
     TorsionSpring3D,
+    Torus3D,
     Universal3D,
     simulate,
 )
@@ -401,6 +407,20 @@ ELEMENTS["contacts"] += [
         SphereOnSphere3D, name=st.just("x"), law=law, a=st.builds(Sphere3D, marker=st.builds(Marker3D, point=vector3)),
         b=sphere,
     ),
+    st.builds(
+        SmoothOnHalfSpace3D, name=st.just("x"), law=law, plane=st.builds(HalfSpace3D, marker=st.builds(Marker3D)),
+        shape=st.builds(Ellipsoid3D, marker=marker3d, half_axes=st.tuples(positive, positive, positive))
+        | st.builds(Torus3D, marker=marker3d, radius=positive, rim_radius=positive),
+    ),
+    st.builds(
+        SphereInSphere3D, name=st.just("x"), law=law,
+        hollow=st.builds(Sphere3D, marker=st.builds(Marker3D, point=vector3), radius=st.just(2e3)),
+        sphere=st.builds(Sphere3D, marker=marker3d, radius=st.floats(0.0, 1e3)),
+    ),
+    st.builds(
+        CapsuleOnCapsule3D, name=st.just("x"), law=law, b=sphere,
+        a=st.builds(Capsule3D, marker=st.builds(Marker3D, point=vector3), length=positive, radius=positive),
+    ),
 ]  # fmt: skip
 ELEMENTS["bodies"] += [
     st.builds(
@@ -442,7 +462,8 @@ SPATIAL = {
     "Cylindrical3D", "Prismatic3D", "Planar3D", "PointOnLine3D", "PointOnPlane3D", "Distance3D", "RevoluteSpherical3D",
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
     "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
-    "SphereOnSphere3D", "Cable3D", "MaterialPoint3D", "CableClamp3D",
+    "SphereOnSphere3D", "SmoothOnHalfSpace3D", "SphereInSphere3D", "CapsuleOnCapsule3D", "Cable3D", "MaterialPoint3D",
+    "CableClamp3D",
     "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)

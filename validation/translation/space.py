@@ -40,6 +40,7 @@ from ...core.model.derived import Derived as Group
 from ...core.model.frame3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
 from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
+from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
 from ..errors import NotTranslatable
 from .bodies import node_columns
 from .registry import BodyItems, Build, Derived, no_equal, translates
@@ -75,6 +76,9 @@ no_equal(
     "translation of those without friction is not written yet",
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
+    SmoothOnHalfSpace3D,
+    SphereInSphere3D,
+    CapsuleOnCapsule3D,
 )
 
 

@@ -7,7 +7,7 @@ from ...core.description import Model
 from ...core.elements import BodyElement, FlexibleBody, Gear2D, PlanarFrame, PointMass2D, SpatialFrame
 from ...core.elements.spatial_body import start_of_marker
 from ...core.model.markers import Marker, Marker2D, Marker3D
-from ...core.shapes.contact3d import Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
+from ...core.shapes.contact3d import Contact3D, Sphere3D
 from .shapes import Point, bounds, turned
 from .view import View, star
 
@@ -65,10 +65,8 @@ class Places:
         """The balls that bodies in space have for their contacts, each once."""
         found: list[Sphere3D] = []
         for contact in self.model.contacts:
-            if isinstance(contact, SphereOnHalfSpace3D):
-                found.append(contact.sphere)
-            elif isinstance(contact, SphereOnSphere3D):
-                found += [contact.a, contact.b]
+            if isinstance(contact, Contact3D):
+                found += contact.spheres()
         return [ball for k, ball in enumerate(found) if ball.radius > 0.0 and ball not in found[:k]]
 
     def axis(self, body: FlexibleBody) -> list[Point]:

@@ -7,9 +7,11 @@ import numpy as np
 from ...core.elements import AppliedForce3D, Distance3D, Joint3D
 from ...core.model.signals import INPUT_SIZE
 from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
+from ...core.shapes.round3d import SmoothOnHalfSpace3D, SphereInSphere3D
 from ...core.shapes.stop3d import Rope3D
 from ..forces import signal_values
 from ..scene import Floats
+from .rounds import lowest
 from .stage import Stage3D
 
 Values = Callable[[str], Floats | None]
@@ -59,6 +61,13 @@ def touch(contact: object, stage: Stage3D) -> tuple[Floats, Floats] | None:
         a, b = stage.at(contact.a.marker), stage.at(contact.b.marker)
         normal = _unit(b - a)
         return a + contact.a.radius * normal, normal
+    if isinstance(contact, SmoothOnHalfSpace3D):
+        normal, marker = stage.axes(contact.plane.marker)[:, :, 2], contact.shape.marker
+        return stage.at(marker) + lowest(contact.shape, stage.axes(marker), normal), normal
+    if isinstance(contact, SphereInSphere3D):
+        a, b = stage.at(contact.hollow.marker), stage.at(contact.sphere.marker)
+        normal = _unit(a - b)
+        return a - contact.hollow.radius * normal, normal
     if isinstance(contact, Rope3D):
         a, b = stage.at(contact.a), stage.at(contact.b)
         return b, _unit(a - b)

@@ -10,10 +10,13 @@ from ...core.elements import RigidBody3D, SpatialFrame
 from ...core.model.attitude import parameters_of_matrix
 from ...core.model.markers import Marker3D
 from ...core.shapes.contact3d import Contact3D, Sphere3D
-from ...core.shapes.cornered3d import Box3D, Capsule3D, Cornered3D
+from ...core.shapes.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
 from ...core.shapes.group3d import ContactGroup3D
+from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
+from ...core.shapes.support3d import SmoothShape3D
 from ..scene import Floats, Solid
 from . import meshes
+from .rounds import smooth_mesh
 from .stage import Stage3D
 
 ROD = 0.010
@@ -55,15 +58,18 @@ def attached(model: Model, body: str) -> list[tuple[float, float, float]]:
 
 def _touching(stage: Stage3D, body: str) -> bool:
     """The shapes that a body touches with; False if there are none."""
-    grouped = [shape for shape in _grouped(stage.motion.model) if shape.marker.body == body]
+    model = stage.motion.model
+    grouped = [shape for shape in (*_grouped(model), *_single_shapes(model)) if shape.marker.body == body]
     for shape in grouped:
-        if isinstance(shape, Cornered3D):
+        if isinstance(shape, SmoothShape3D):
+            stage.solid(shape.marker, smooth_mesh(shape), (1.0, 1.0, 1.0))
+        elif isinstance(shape, Cornered3D):
             add_cornered(stage, shape)
         else:
             add_ball(stage, shape)
     points: list[Floats] = []
     found = bool(grouped)
-    for ball in single_balls(stage.motion.model):
+    for ball in single_balls(model):
         if ball.marker.body == body and ball.radius > 0.0:
             add_ball(stage, ball)
             found = True
@@ -76,20 +82,38 @@ def _touching(stage: Stage3D, body: str) -> bool:
     return found
 
 
-def _grouped(model: Model) -> Iterator[Sphere3D | Cornered3D]:
+def _grouped(model: Model) -> Iterator[Sphere3D | Cornered3D | SmoothShape3D]:
     for group in model.groups:
         if isinstance(group, ContactGroup3D):
             yield from group.spheres
             yield from group.boxes
             yield from group.polyhedra
             yield from group.capsules
+            yield from group.cylinders
+            yield from group.meshes
+            yield from group.smooth
+
+
+def _single(model: Model) -> list[Contact3D]:
+    """The contacts that stand by themselves."""
+    made = {contact.name for group in model.groups for contact in group.contacts()}
+    return [c for c in model.contacts if isinstance(c, Contact3D) and c.name not in made]
+
+
+def _single_shapes(model: Model) -> list[Capsule3D | SmoothShape3D]:
+    """Their shapes other than balls, each once."""
+    found: list[Capsule3D | SmoothShape3D] = []
+    for contact in _single(model):
+        if isinstance(contact, SmoothOnHalfSpace3D):
+            found.append(contact.shape)
+        elif isinstance(contact, CapsuleOnCapsule3D):
+            found += [shape for shape in (contact.a, contact.b) if isinstance(shape, Capsule3D)]
+    return [shape for k, shape in enumerate(found) if shape not in found[:k]]
 
 
 def single_balls(model: Model) -> list[Sphere3D]:
     """The balls and points of contacts that stand by themselves, each once."""
-    made = {contact.name for group in model.groups for contact in group.contacts()}
-    contacts = [c for c in model.contacts if isinstance(c, Contact3D) and c.name not in made]
-    balls = [ball for contact in contacts for ball in contact.spheres()]
+    balls = [ball for contact in _single(model) for ball in contact.spheres()]
     return [ball for k, ball in enumerate(balls) if ball not in balls[:k]]
 
 
@@ -100,7 +124,7 @@ def add_ball(stage: Stage3D, ball: Sphere3D) -> None:
 
 
 def add_cornered(stage: Stage3D, shape: Cornered3D) -> None:
-    """A box, a capsule, or the hull of rounded corners."""
+    """A box, a capsule, a cylinder, or the hull of rounded corners."""
     if isinstance(shape, Box3D):
         stage.solid(shape.marker, meshes.box(), shape.size)
     elif isinstance(shape, Capsule3D):
@@ -108,6 +132,8 @@ def add_cornered(stage: Stage3D, shape: Cornered3D) -> None:
         stage.solid(shape.marker, meshes.cylinder(marked=True), (r, r, shape.length))
         for end in (0.5, -0.5):
             stage.solid(shape.marker, meshes.ball(), (r, r, r), shift=(0.0, 0.0, end * shape.length))
+    elif isinstance(shape, Cylinder3D):
+        stage.solid(shape.marker, meshes.cylinder(marked=True), (shape.radius, shape.radius, shape.length))
     else:
         places = shape.places()
         if shape.rounding() > 0.0:

@@ -1,0 +1,132 @@
+"""Tangents and levels of contacts whose points move on their bodies, against differences of their residuals."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from test_contact_tangents3d import HUNT, PEAK, SLIDES, forward
+from test_tangents import Point, check_levels, check_matrix, draw, quick
+from test_tangents3d import GROUND, LEFT, RIGHT, RIGHT_WHEEL, A, B, P
+from tlismni.core import (
+    Axes,
+    Capsule3D,
+    CapsuleOnCapsule3D,
+    CoulombFriction,
+    Ellipsoid3D,
+    HalfSpace3D,
+    Marker3D,
+    Model,
+    NewtonImpact,
+    SmoothOnHalfSpace3D,
+    Sphere3D,
+    SphereInSphere3D,
+    Torus3D,
+)
+from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
+
+SPAN = 1e-3
+"""Of the differences: these gaps bend more than those of spheres."""
+CLOSE = 1e-7
+HARD, GRIP = NewtonImpact(restitution=0.5), CoulombFriction(coefficient=0.4)
+FAR = Marker3D(body="b", point=(-0.4, 2.6, 0.25), attitude=Axes(z=(1.0, 0.2, 0.1)))
+
+
+def smooth(shape, a, **more):
+    return SmoothOnHalfSpace3D(name="c", plane=HalfSpace3D(marker=a), shape=shape, **more)
+
+
+def capsules(a, b, first, second, **more):
+    """By their ends where these are short, by their sides where they are long."""
+    pair = Capsule3D(marker=a, length=first, radius=1.6), Capsule3D(marker=b, length=second, radius=2.1)
+    return CapsuleOnCapsule3D(name="c", a=pair[0], b=pair[1], **more)
+
+
+SHAPES = {
+    "ellipsoid": lambda **more: smooth(Ellipsoid3D(marker=RIGHT, half_axes=(2.1, 3.2, 2.6)), LEFT, **more),
+    "torus": lambda **more: smooth(Torus3D(marker=RIGHT_WHEEL, radius=2.4, rim_radius=0.7), GROUND, **more),
+    "hollow sphere": lambda **more: SphereInSphere3D(
+        name="c", hollow=Sphere3D(marker=LEFT, radius=1.6), sphere=Sphere3D(marker=RIGHT, radius=1.5), **more
+    ),
+    "ends": lambda **more: capsules(LEFT, RIGHT_WHEEL, 0.02, 0.03, **more),
+    "crossed": lambda **more: capsules(LEFT, FAR, 30.0, 30.0, **more),
+    "end on side": lambda **more: capsules(LEFT, RIGHT_WHEEL, 0.02, 30.0, **more),
+    "sphere on capsule": lambda **more: CapsuleOnCapsule3D(
+        name="c", a=Capsule3D(marker=LEFT, length=30.0, radius=1.6), b=Sphere3D(marker=RIGHT, radius=2.1), **more
+    ),
+}  # fmt: skip
+
+
+def system(contact):
+    return Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], contacts=[contact])
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_levels_and_tangent_without_friction(name):
+    point = Point(system(SHAPES[name](law=HARD)), CLOSED)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        state = draw(point, seed)
+        check_matrix(point, state, h=SPAN)
+        check_levels(point, state, SPAN)
+
+    check()
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_tangent_of_regularised_friction(name):
+    point = Point(system(SHAPES[name](law=HUNT, friction=PEAK)), ACTIVE)
+    n = point.n
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        state = draw(point, seed)
+        point.at(*state)
+        # friction has a kink where the normal force vanishes
+        assume(abs(point.workspace.arrays["monitor"][0]) > 0.5)
+        matrix, zero = point.tangent(0.6, 0.8), np.zeros(point.m)
+        s = np.array([point.derivative(0, (0.0, 0.6 * e, 0.8 * e, e, zero), state, SPAN) for e in np.eye(n)]).T
+        assert np.abs(matrix[:n, :n] - s).max() < CLOSE * max(1.0, np.abs(s).max())
+
+    check()
+
+
+def gripping(name, slide):
+    point = Point(system(SHAPES[name](law=HARD, friction=GRIP)))
+    twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
+    point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
+    columns = [MODE, SLIDE, RATIO, WAY, AXIS]
+    axis = 1 if name in ("ellipsoid", "torus") else 2
+    point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis
+    return point
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("slides", [kind for kind in SLIDES if SLIDES[kind] is not None])
+def test_tangent_and_rates_of_coulomb_friction(name, slides):
+    """Rows of sticking at velocity level: their W is the derivative of phid by v; phidd is the rate of phid."""
+    point = gripping(name, SLIDES[slides])
+    n, active = point.n, point.workspace.structure.active
+    rows = point.workspace.assembly.contacts[0].slide_row + np.arange(2)
+
+    @quick
+    @given(st.integers(0, 10**6))
+    def check(seed):
+        state = draw(point, seed)
+        assume(SLIDES[slides] != 1.0 or forward(point, state))
+        _, q, v, a, lam = state
+        second = point.derivative(2, (1.0, v, a, np.zeros_like(q), np.zeros_like(lam)), state, SPAN)
+        found = point.at(*state)[3]
+        assert np.abs(found[rows] - second[rows]).max() < CLOSE * max(1.0, np.abs(second[rows]).max())
+        matrix, zero, unit, no_lam = point.tangent(0.6, 0.8), np.zeros(n), np.eye(n), np.zeros(point.m)
+        s = np.array([point.derivative(0, (0.0, 0.6 * e, 0.8 * e, e, no_lam), state, SPAN) for e in unit]).T
+        assert np.abs(matrix[:n, :n] - s).max() < CLOSE * max(1.0, np.abs(s).max())
+        jacobian = np.array([point.derivative(2, (0.0, zero, e, zero, no_lam), state, SPAN) for e in unit]).T[active]
+        assert np.abs(matrix[n:, :n] - jacobian).max(initial=0.0) < CLOSE
+        for i, row in enumerate(active):
+            force = point.derivative(0, (0.0, zero, zero, zero, np.eye(point.m)[row]), state)
+            assert np.abs(force - matrix[:n, n + i]).max() < 1e-9
+
+    check()
