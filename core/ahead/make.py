@@ -11,7 +11,7 @@ from typing import Any
 from ..compiled.library import USUAL_PLACE, core_digest
 from ..errors import TlismniError
 from .entries import entries, forms
-from .libm import FUNCTIONS, PREFIX, SEEN, libm_texts
+from .libm import BESIDE, FUNCTIONS, PREFIX, SEEN, libm_texts
 from .module import DIGEST, MANIFEST, TARGETS, Target, link, manifest_text, optimised, undefined
 from .record import compile_for, recording, texts_of
 from .shared import link_shared
@@ -20,7 +20,7 @@ logger = logging.getLogger(__name__)
 
 MEMORY = frozenset("memcpy memmove memset tlismni_give tlismni_take".split())
 """What compiled code may take from elsewhere; `native/pieces.c` has the last two."""
-ALLOWED = MEMORY | set(FUNCTIONS)
+ALLOWED = MEMORY | set(FUNCTIONS) | set(BESIDE)
 """The same without ziglang, where functions of numbers are the system's."""
 
 
