@@ -106,12 +106,19 @@ def test_the_page_on_fmus_without_python_runs(tmp_path: Path, monkeypatch: pytes
 
 
 def test_the_page_on_space_runs() -> None:
+    """The energy of each of its runs is accounted for, but what fixed steps of `hht` damp in stiff modes."""
     names: dict[str, Any] = {}
+    runs = 0
     for language, _, text in blocks(DOCS / "space.md"):
         if language == "python":
             exec(text, names)
-    found = names["result"]
-    assert abs(found["energy.balance"]).max() < 1e-5 * found["energy.kinetic"].max()
+            found = names.pop("result", None)
+            if found is None:
+                continue
+            runs += 1
+            part = 1e-4 if '"hht"' in text else 1e-5
+            assert abs(found["energy.balance"]).max() < part * found["energy.kinetic"].max(), text
+    assert runs >= 3
 
 
 def test_the_page_on_the_cross_check_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
