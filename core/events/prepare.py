@@ -11,7 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import follow, lu_at
 from ..linalg.analyze import call_analyze
-from ..linalg.record import WANT_ANALYSIS
+from ..linalg.record import WANT_ROOM as NO_MEMORY
 from ..linalg.row_pivoting import eliminate
 from ..rounding import RANK_TOLERANCE
 from ..state.workspace_records import (
@@ -23,20 +23,20 @@ from ..state.workspace_records import (
     PARTITIONS,
     RATE_SIZE,
     SENSITIVITY,
-    partition_at,
     structure_at,
 )
+from ..tables.building import partition_wanted
 from ..tables.evaluate import evaluate_tangent
 from ..tables.partition import GOLDEN, SILVER
-from ..tables.switch import engage_modes, take_partition
-from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_PARTITION, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
+from ..tables.switch import engage_modes
+from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANT_ROOM
 
 
 @internal
 def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Take the structure of the present modes, with a partition and pivots for the current point."""
-    if not engage_modes(ws):
-        return WANT_STRUCTURE
+    if engage_modes(ws) != OK:
+        return WANT_MEMORY
     evaluate_tangent(ws, 0.0, 0.0)
     status = _choose_partition(ev, ws)
     if status != SETTLED:
@@ -50,9 +50,9 @@ def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     if code == OK and 0 < ws.m_held < ws.m_act:
         code = call_analyze(ws.analyze, lu_at(ws.lu_p), ws.values)
     if code != OK:
-        return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_MATRIX
-    if not follow(lu_at(ws.kkt_query), lu_at(ws.kkt)):
-        return WANT_PIVOTS
+        return WANT_MEMORY if code == NO_MEMORY else SINGULAR_MATRIX
+    if follow(lu_at(ws.kkt_query), lu_at(ws.kkt)) != OK:
+        return WANT_MEMORY
     _set_probe(ws)
     rate[FACTOR_AGE], rate[SENSITIVITY], rate[FIRST_SENSITIVITY] = -1.0, 0.0, -1.0
     return SETTLED
@@ -87,30 +87,8 @@ def _choose_partition(ev: Any, ws: Any) -> int:
         return WANT_ROOM
     if rank < m:
         return REPEATED_ROWS
-    return _find_partition(ws, st, wanted)
-
-
-@internal
-def _find_partition(ws: Any, st: Any, wanted: Any) -> int:
-    """Take the partition with the dependent coordinates `wanted`."""
-    if st.partition != 0 and _same(partition_at(st.partition).dependent, wanted):
-        take_partition(ws, st.partition)
-        return SETTLED
-    known = ivec(st.partitions, st.n_partitions)
-    for i in range(st.n_partitions):
-        if _same(partition_at(known[i]).dependent, wanted):
-            take_partition(ws, known[i])
-            return SETTLED
-    return WANT_PARTITION
-
-
-@internal
-def _same(address: int, wanted: Any) -> bool:
-    own = ivec(address, len(wanted))
-    for i in range(len(wanted)):
-        if own[i] != wanted[i]:
-            return False
-    return True
+    partition_wanted(ws)
+    return SETTLED
 
 
 @internal
