@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..core.compiled.cache import cache_folder, user_cache
+from ..core.compiled.reach import present_digests
 
 DIGEST = re.compile(r"[0-9a-f]{16}")
 """What a folder of compiled code is called."""
@@ -26,17 +27,18 @@ class Entry:
 
 def entries() -> list[Entry]:
     """Everything that is kept, in the cache folder and in NUMBA_CACHE_DIR if that is set; nothing else is looked at."""
-    users, now = user_cache(), cache_folder()
+    users, place, present = user_cache(), cache_folder(), present_digests()
     found = []
     if users is not None and (users / "tlismni").is_dir():
         for path in sorted((users / "tlismni").iterdir()):
-            if DIGEST.fullmatch(path.name):
-                found.append(Entry(path, "compiled code", _size(path), path != now))
-            elif path.name in KINDS:
+            if path.name in KINDS:
                 found.append(Entry(path, KINDS[path.name], _size(path), False))
+            elif DIGEST.fullmatch(path.name):
+                found.append(Entry(path, "compiled code", _size(path), path.name not in present))
     # in a folder of numba's own only the present code is surely ours
-    if now is not None and now.is_dir() and all(entry.path != now for entry in found):
-        found.append(Entry(now, "compiled code", _size(now), False))
+    if place is not None and place.is_dir() and (users is None or place != users / "tlismni"):
+        ours = [path for path in sorted(place.iterdir()) if path.name in present]
+        found.extend(Entry(path, "compiled code", _size(path), False) for path in ours)
     return found
 
 

@@ -39,9 +39,15 @@ def cache(clear: Clear = None, json: Json = False, debug: Debug = False) -> None
             }
         )
         return
-    rows = [(entry.kind, "old" if entry.old else "in use", f"{entry.size / 1e6:.1f}", entry.path) for entry in found]
+    groups: dict[tuple[str, str, str], list[int]] = {}
+    for entry in found:
+        group = entry.kind, "old" if entry.old else "in use", str(entry.path.parent)
+        groups.setdefault(group, []).append(entry.size)
+    rows = [
+        (kind, state, len(sizes), f"{sum(sizes) / 1e6:.1f}", place) for (kind, state, place), sizes in groups.items()
+    ]
     if rows:
-        print_table("kept on this machine", ("what", "state", "MB", "folder"), rows, left=2)
+        print_table("kept on this machine", ("what", "state", "folders", "MB", "in"), rows, left=2)
     else:
         say("nothing is kept")
     if clear is not None:

@@ -1,18 +1,18 @@
-"""Where compiled code is cached: one folder for each content of the compiled sources.
+"""Where compiled code is cached: one folder for each content of the sources that it depends on.
 
 Numba looks only at the file of a function, not at the files of what it calls: after an edit or an upgrade in place it
-could run old code. A folder that is named by the content of all compiled sources cannot be stale, and does not need
-the package's own folder to be writable. `NUMBA_CACHE_DIR` is respected: the folder is then made inside it.
+could run old code. A folder that is named by the content of all that the function's module imports cannot be stale. It
+serves every copy of these sources on the machine, stays when other sources change, and does not need the package's own
+folder to be writable. A user's code may call any function of the core: its folder is named by all of them.
+`NUMBA_CACHE_DIR` is respected: the folders are then made inside it.
 """
 
 import hashlib
 import os
 import sys
-from functools import cache
 from pathlib import Path
 
-_MARKS = (b"@compiled", b"@internal", b"@inlined")
-_PACKAGE = Path(__file__).resolve().parents[1]
+from .reach import reach_digest, whole_digest
 
 
 def user_cache() -> Path | None:
@@ -32,22 +32,19 @@ def user_cache() -> Path | None:
     return found if found.is_absolute() else None  # "~" stays as it is where there is no home
 
 
-@cache
-def sources_digest() -> str:
-    """Digest of all compiled sources of this package."""
-    digest = hashlib.sha256()
-    for path in sorted(_PACKAGE.rglob("*.py")):
-        text = path.read_bytes()
-        if any(mark in text for mark in _MARKS) or path.parent.name == "compiled" or path.name == "records.py":
-            digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + text)
-    return digest.hexdigest()[:16]
-
-
-@cache
 def cache_folder() -> Path | None:
-    """Folder of the compiled code of exactly these sources; None if there is no place for one."""
+    """The folder with all compiled code; None if there is no place for one."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     if given:
-        return Path(given).absolute() / sources_digest()
+        return Path(given).absolute()
     user = user_cache()
-    return None if user is None else user / "tlismni" / sources_digest()
+    return None if user is None else user / "tlismni"
+
+
+def folder_name(source: Path) -> Path:
+    """Name of the folder, in `cache_folder()`, of code whose function stands in the file `source`."""
+    reached = reach_digest(source)
+    if reached is not None:
+        return Path(reached)
+    parent = source.parent
+    return Path(whole_digest(), f"{parent.name}_{hashlib.sha256(str(parent).encode()).hexdigest()[:16]}")

@@ -20,8 +20,9 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.serialize import dumps
 
 from . import notices, store
-from .cache import cache_folder
+from .cache import cache_folder, folder_name
 from .lock import ProcessLock
+from .reach import whole_digest
 
 
 class _Place:
@@ -115,8 +116,7 @@ class KeptCode(FunctionCache):
         folder = cache_folder()
         if folder is None or not self._source.is_file():
             return None
-        parent = self._source.resolve().parent
-        return folder / f"{parent.name}_{hashlib.sha256(str(parent).encode()).hexdigest()[:16]}"
+        return folder / folder_name(self._source.resolve())
 
     def _path(self, key: bytes) -> Path | None:
         folder = self._folder()
@@ -174,7 +174,7 @@ event.register("numba:compile", _in_progress)
 @cache
 def _lock() -> ProcessLock | None:
     folder = cache_folder()
-    return None if folder is None else ProcessLock(folder / "compiling.lock")
+    return None if folder is None else ProcessLock(folder / whole_digest() / "compiling.lock")
 
 
 @cache

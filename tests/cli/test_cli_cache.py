@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tlismni.core.compiled.cache import sources_digest
+from tlismni.core.compiled.reach import whole_digest
 
 Command = Callable[..., Any]
 
@@ -18,18 +18,18 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     from tlismni.cli import cached
 
     place = tmp_path / "tlismni"
-    for name in (sources_digest(), "0123456789abcdef", "packages", "notes"):
+    for name in (whole_digest(), "0123456789abcdef", "packages", "notes"):
         (place / name).mkdir(parents=True)
         (place / name / "file").write_bytes(b"x" * 1000)
     monkeypatch.setattr(cached, "user_cache", lambda: tmp_path)
-    monkeypatch.setattr(cached, "cache_folder", lambda: place / sources_digest())
+    monkeypatch.setattr(cached, "cache_folder", lambda: place)
     return place
 
 
 def test_it_is_shown(tlismni: Command, kept: Path) -> None:
     found = {Path(entry["path"]).name: entry for entry in tlismni("cache", "--json").json["entries"]}
-    assert set(found) == {sources_digest(), "0123456789abcdef", "packages"}
-    assert found["0123456789abcdef"]["old"] and not found[sources_digest()]["old"]
+    assert set(found) == {whole_digest(), "0123456789abcdef", "packages"}
+    assert found["0123456789abcdef"]["old"] and not found[whole_digest()]["old"]
     assert found["packages"]["bytes"] == 1000
     assert "in use" in tlismni("cache").out
 
@@ -37,7 +37,7 @@ def test_it_is_shown(tlismni: Command, kept: Path) -> None:
 def test_old_code_goes_and_the_rest_stays(tlismni: Command, kept: Path) -> None:
     done = tlismni("cache", "--clear", "old")
     assert done.code == 0 and "removed 1 folders" in done.err
-    assert sorted(path.name for path in kept.iterdir()) == sorted([sources_digest(), "packages", "notes"])
+    assert sorted(path.name for path in kept.iterdir()) == sorted([whole_digest(), "packages", "notes"])
 
 
 def test_all_goes_but_what_is_not_ours(tlismni: Command, kept: Path) -> None:
