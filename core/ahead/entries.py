@@ -47,7 +47,7 @@ from ..stage import accelerations, joints
 from ..state import run_records as run_records
 from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
 from ..state.workspace_records import ENGAGE_SIGNATURE, EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
-from ..tables import building, evaluate, levels, measure, projection
+from ..tables import building, evaluate, levels, measure, partition_building, probe, projection
 from .formed import forms
 
 _WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE
@@ -140,7 +140,8 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield measure.measure_rows, (_WS, _REALS, _REALS)
     yield measure.measure_motion, (_WS, _REALS, _REALS, _REALS, _WHOLE, _REALS, _REALS)
     yield projection.meet, (_WS, _FLAG)
-    yield building.partition_wanted, (_WS,)
+    yield partition_building.partition_wanted, (_WS,)
+    yield probe.set_probe, (_WS,)
     yield factor, record.FACTOR_SIGNATURE.args
     yield solve, record.SOLVE_SIGNATURE.args
     yield use_pivots, (_LU,)

@@ -5,8 +5,6 @@ What it does is `tables/partition.prepare`; the elimination is that of `linalg/r
 
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import follow, lu_at
@@ -25,9 +23,9 @@ from ..state.workspace_records import (
     SENSITIVITY,
     structure_at,
 )
-from ..tables.building import partition_wanted
 from ..tables.evaluate import evaluate_tangent
-from ..tables.partition import GOLDEN, SILVER
+from ..tables.partition_building import partition_wanted
+from ..tables.probe import set_probe
 from ..tables.switch import engage_modes
 from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANT_ROOM
 
@@ -53,7 +51,7 @@ def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return WANT_MEMORY if code == NO_MEMORY else SINGULAR_MATRIX
     if follow(lu_at(ws.kkt_query), lu_at(ws.kkt)) != OK:
         return WANT_MEMORY
-    _set_probe(ws)
+    set_probe(ws)
     rate[FACTOR_AGE], rate[SENSITIVITY], rate[FIRST_SENSITIVITY] = -1.0, 0.0, -1.0
     return SETTLED
 
@@ -89,19 +87,3 @@ def _choose_partition(ev: Any, ws: Any) -> int:
         return REPEATED_ROWS
     partition_wanted(ws)
     return SETTLED
-
-
-@internal
-def _set_probe(ws: Any) -> None:
-    """See `tables/partition._probe`."""
-    st = structure_at(ws.structure)
-    starts, columns = ivec(st.jacobian_start, ws.m_act + 1), ivec(st.jacobian_col, st.n_jacobian)
-    slots, values = ivec(st.jacobian_slot, st.n_jacobian), vec(ws.values, ws.n_values)
-    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
-    for i in range(ws.m_act):
-        size = 0.0
-        for e in range(starts[i], starts[i + 1]):
-            size = max(size, abs(values[slots[e]]) * scale[columns[e]])
-        golden, silver = GOLDEN * i, SILVER * i
-        sign = 1.0 if silver - np.floor(silver) < 0.5 else -1.0
-        probe[i] = size * (0.5 + golden - np.floor(golden)) * sign

@@ -27,7 +27,6 @@ from ..stage.joints import evaluate_joints, factor_joints, solve_joints
 from ..state.method_records import METHOD_TYPE
 from ..state.run_records import DRIVE_TYPE, FIND_EVENTS_SIGNATURE, LOOP_TYPE
 from ..state.workspace_records import STAGE_SIGNATURE, WORKSPACE_TYPE
-from ..tables.building import partition_wanted
 from ..tables.evaluate import (
     constraint_norm,
     evaluate_energy,
@@ -37,6 +36,8 @@ from ..tables.evaluate import (
 )
 from ..tables.levels import force_level, position_level, rate_level
 from ..tables.measure import measure_motion, measure_rows
+from ..tables.partition_building import partition_wanted
+from ..tables.probe import set_probe
 from ..tables.projection import meet
 
 if TYPE_CHECKING:
@@ -76,6 +77,7 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (factor_joints, (_WORKSPACE,)),
     (solve_joints, (_WORKSPACE,)),
     (partition_wanted, (_WORKSPACE,)),
+    (set_probe, (_WORKSPACE,)),
     (follow, (LU_TYPE, LU_TYPE)),
     (factor, FACTOR_SIGNATURE.args),
     (solve, SOLVE_SIGNATURE.args),

@@ -1,4 +1,4 @@
-"""Structures and partitions, built by compiled code into memory that Python has given.
+"""Structures, built by compiled code into memory that Python has given.
 
 A structure is the pattern of the matrix [S, Phi_q^T; Phi_q, 0] for one set of closed, acting and sticking contacts:
 slots of all entries, row by row and ascending in each, and behind them those of the gradients of contacts that are no
@@ -8,9 +8,9 @@ constraints now. All of it follows from the codes of the contacts and the rows t
 from typing import Any
 
 from ..compiled.jit import compiled, internal
-from ..compiled.views import ivec, vec
+from ..compiled.views import ivec
 from ..linalg import lu_at
-from ..linalg.analyze import lay_out, words_of
+from ..linalg.analyze import words_of
 from ..linalg.record import INDEX, SCRATCH, VALUES
 from ..state.workspace_records import (
     OF_D,
@@ -23,7 +23,9 @@ from ..state.workspace_records import (
     partition_at,
     structure_at,
 )
-from .switch import ENGAGED, HELD, STUCK, STUCK_TWICE, take_partition, take_structure
+from .serials import next_serial, same_numbers
+from .structure_tables import write_structure
+from .switch import ENGAGED, HELD, STUCK, STUCK_TWICE, take_structure
 
 
 @compiled
@@ -35,9 +37,9 @@ def engage_wanted(ws: Any) -> int:
     oldest, free = -1, 0
     for i in range(b.n_slots):
         st = structure_at(places[i])
-        if st.built != 0 and st.dropped == b.dropped and _same(st.codes, ws.wanted, b.n_contacts):
+        if st.built != 0 and st.dropped == b.dropped and same_numbers(st.codes, ws.wanted, b.n_contacts):
             take_structure(ws, places[i])
-            st.used = _next(b)
+            st.used = next_serial(b)
             return OK
         if places[i] == ws.structure or places[i] == ws.kept:
             continue
@@ -48,24 +50,9 @@ def engage_wanted(ws: Any) -> int:
     st.built = 0
     status = _build(ws, b, st)
     if status == OK:
-        st.used = _next(b)
+        st.used = next_serial(b)
         take_structure(ws, free)
     return int(status)
-
-
-@internal
-def _next(b: Any) -> int:
-    b.serial += 1
-    return int(b.serial)
-
-
-@internal
-def _same(one: int, other: int, count: int) -> bool:
-    a, b = ivec(one, count), ivec(other, count)
-    for k in range(count):
-        if a[k] != b[k]:
-            return False
-    return True
 
 
 @internal
@@ -117,8 +104,10 @@ def _build(ws: Any, b: Any, st: Any) -> int:
         enough = _need(needs, OF_KKT + VALUES, full * (full + 1), kkt.room) and enough
     if not enough:
         return WANT_ROOM
-    _write(ws, b, st, pt, m_act, m_held, left_out, nnz, total, n_mass, n_jacobian, kept, active, row, col, order, slot)
-    st.built, st.serial = 1, _next(b)
+    write_structure(
+        ws, b, st, pt, m_act, m_held, left_out, nnz, total, n_mass, n_jacobian, kept, active, row, col, order, slot
+    )
+    st.built, st.serial = 1, next_serial(b)
     return OK
 
 
@@ -214,199 +203,3 @@ def _sort(raw: int, cols: int, rows: int, row: Any, col: Any, by_col: Any, order
         order[count[row[e]]] = e
         count[row[e]] += 1
     return int(kept)
-
-
-@internal
-def _write(
-    ws: Any, b: Any, st: Any, pt: Any, m_act: int, m_held: int, left_out: int, nnz: int, total: int, n_mass: int, n_jacobian: int,
-    kept: int, active: Any, row: Any, col: Any, order: Any, slot: Any,
-) -> None:  # fmt: skip
-    full, at = b.n + m_act, st.words
-    st.n_values, st.m_act, st.n_redundant, st.nnz = total + 1, m_act, left_out, nnz
-    st.m_held, st.n_mass, st.n_jacobian, st.dropped = m_held, n_mass, n_jacobian, b.dropped
-    st.codes, st.active, st.redundant = at, at + 8 * b.n_contacts, at + 8 * (b.n_contacts + m_act)
-    at += 8 * (b.n_contacts + m_act + left_out)
-    st.entry_row, st.entry_col, everything = at, at + 8 * nnz, at + 16 * nnz
-    at += 24 * nnz
-    st.gradient_start, st.gradient_col = at, at + 8 * b.m_ext
-    st.gradient_slot = st.gradient_col + 8 * (total - nnz)
-    at = st.gradient_slot + 8 * (total - nnz)
-    st.mass_slot, st.jacobian_start = at, at + 8 * n_mass
-    at += 8 * (n_mass + m_act + 1)
-    st.jacobian_row, st.jacobian_col = at, at + 8 * n_jacobian
-    st.jacobian_slot, tables = at + 16 * n_jacobian, at + 24 * n_jacobian
-    at = tables + 8 * b.table_size
-    codes, wanted = ivec(st.codes, b.n_contacts), ivec(ws.wanted, b.n_contacts)
-    for k in range(b.n_contacts):
-        codes[k] = wanted[k]
-    own, redundant, out, count = ivec(st.active, m_act), ivec(st.redundant, left_out), ivec(b.left_out, b.m_ext), 0
-    for i in range(m_act):
-        own[i] = active[i]
-    for i in range(b.m):
-        if out[i] != 0:
-            redundant[count] = i
-            count += 1
-    _write_entries(b, st, full, kept, row, col, order, slot)
-    identity = ivec(everything, nnz)
-    for e in range(nnz):
-        identity[e] = e
-    _write_tables(b, st, tables, total, row, slot)
-    reals, many = st.reals, words_of(full, nnz)
-    st.values, st.probe = reals, reals + 8 * (total + 1)
-    reals += 8 * (total + 1 + m_act)
-    probe = vec(st.probe, m_act)
-    for i in range(m_act):
-        probe[i] = 0.0
-    dense = full <= b.dense_limit
-    lay_out(lu_at(st.kkt), full, nnz, st.entry_row, st.entry_col, everything, dense, at, reals)
-    at += 8 * many
-    lay_out(lu_at(st.kkt_query), full, nnz, st.entry_row, st.entry_col, everything, dense, at, reals + 24 * full)
-    at += 8 * many
-    _give_units(b, st)
-    pt.ready, pt.words, pt.reals = 0, at, reals + 48 * full
-
-
-@internal
-def _write_entries(b: Any, st: Any, full: int, kept: int, row: Any, col: Any, order: Any, slot: Any) -> None:
-    n, nnz, m_act = b.n, st.nnz, st.m_act
-    rows, cols = ivec(st.entry_row, nnz), ivec(st.entry_col, nnz)
-    beyond = st.n_values - 1 - nnz
-    g_start, g_col, g_slot = (
-        ivec(st.gradient_start, b.m_ext),
-        ivec(st.gradient_col, beyond),
-        ivec(st.gradient_slot, beyond),
-    )
-    mass, start = ivec(st.mass_slot, st.n_mass), ivec(st.jacobian_start, m_act + 1)
-    j_row, j_col = ivec(st.jacobian_row, st.n_jacobian), ivec(st.jacobian_col, st.n_jacobian)
-    j_slot = ivec(st.jacobian_slot, st.n_jacobian)
-    for i in range(b.m_ext):
-        g_start[i] = 0
-    for i in range(m_act + 1):
-        start[i] = 0
-    masses, jacobian, last = 0, 0, -1
-    for p in range(kept):
-        e = order[p]
-        k, i, j = slot[e], row[e], col[e]
-        if k == last:
-            continue
-        last = k
-        if i >= full:
-            g_col[k - nnz], g_slot[k - nnz] = j, k
-            g_start[i - full + 1] += 1
-            continue
-        rows[k], cols[k] = i, j
-        if i < n and j < n:
-            mass[masses] = k
-            masses += 1
-        elif j < n:
-            j_row[jacobian], j_col[jacobian], j_slot[jacobian] = i - n, j, k
-            jacobian += 1
-            start[i - n + 1] += 1
-    for i in range(b.m):
-        g_start[i + 1] += g_start[i]
-    for i in range(m_act):
-        start[i + 1] += start[i]
-
-
-@internal
-def _write_tables(b: Any, st: Any, tables: int, nowhere: int, row: Any, slot: Any) -> None:
-    """Where each entry of each element goes."""
-    block, starts, addresses = (
-        ivec(tables, b.table_size),
-        ivec(b.table_start, 3 * b.n_kernels),
-        ivec(st.slots, 3 * b.n_kernels),
-    )
-    for i in range(3 * b.n_kernels):
-        addresses[i] = tables + 8 * starts[i]
-    for i in range(b.table_size):
-        block[i] = nowhere
-    first = b.n
-    place = ivec(b.s_place, b.n_s)
-    for e in range(b.n_s):
-        if row[first + e] >= 0:
-            block[place[e]] = slot[first + e]
-    first += b.n_s
-    place, other = ivec(b.j_place, b.n_j), ivec(b.j_place_t, b.n_j)
-    for e in range(b.n_j):
-        if row[first + e] >= 0:
-            block[place[e]] = slot[first + e]
-        if row[first + b.n_j + e] >= 0:
-            block[other[e]] = slot[first + b.n_j + e]
-
-
-@internal
-def _give_units(b: Any, st: Any) -> None:
-    n, m_act, units, active = b.n, st.m_act, vec(b.units, b.n + b.m_ext), ivec(st.active, st.m_act)
-    for address in (st.kkt, st.kkt_query):
-        lu = lu_at(address)
-        rows, cols = vec(lu.row_unit, n + m_act), vec(lu.col_unit, n + m_act)
-        for i in range(n + m_act):
-            rows[i] = cols[i] = units[i] if i < n else units[n + active[i - n]]
-
-
-@compiled
-def partition_wanted(ws: Any) -> None:
-    """Take the partition with the dependent coordinates that are `wanted_dependent`, built if it is not the last one of
-    the structure."""
-    b, st = building_at(ws.building), structure_at(ws.structure)
-    pt, m_act = partition_at(st.partition), st.m_act
-    if pt.ready == 0 or not _same(pt.dependent, ws.wanted_dependent, m_act):
-        _build_partition(ws, b, st, pt)
-    take_partition(ws, st.partition)
-
-
-@internal
-def _build_partition(ws: Any, b: Any, st: Any, pt: Any) -> None:
-    n, m_act, count = b.n, st.m_act, st.n_jacobian
-    position, at = ivec(ivec(b.scratch, 2)[0], n), pt.words
-    pt.dependent, pt.free_row, pt.free_col = at, at + 8 * m_act, at + 8 * (m_act + count)
-    pt.free_slot = at + 8 * (m_act + 2 * count)
-    at += 8 * (m_act + 3 * count)
-    rows, cols, slots = ivec(at, count), ivec(at + 8 * count, count), ivec(at + 16 * count, count)
-    dependent, wanted = ivec(pt.dependent, m_act), ivec(ws.wanted_dependent, m_act)
-    for i in range(n):
-        position[i] = -1
-    for i in range(m_act):
-        dependent[i] = wanted[i]
-        position[wanted[i]] = i
-    j_row, j_col, j_slot = ivec(st.jacobian_row, count), ivec(st.jacobian_col, count), ivec(st.jacobian_slot, count)
-    f_row, f_col, f_slot = ivec(pt.free_row, count), ivec(pt.free_col, count), ivec(pt.free_slot, count)
-    free, bound = 0, 0
-    for e in range(count):
-        if position[j_col[e]] < 0:
-            f_row[free], f_col[free], f_slot[free] = j_row[e], j_col[e], j_slot[e]
-            free += 1
-        else:
-            rows[bound], cols[bound], slots[bound] = j_row[e], position[j_col[e]], j_slot[e]
-            bound += 1
-    pt.n_free, pt.ready, pt.serial = free, 1, _next(b)
-    words, reals = at + 24 * count, pt.reals
-    _lay_out_part(b, st, pt.lu_d, m_act, bound, at, count, words, reals, wanted)
-    if b.two_partitions == 0 or st.m_held == m_act:
-        pt.used_p = pt.lu_d
-        return
-    # dependent positions alone: the rows with a position form, which come first
-    pt.used_p = pt.lu_p
-    words, reals = words + 8 * words_of(m_act, count), reals + 24 * m_act
-    some, held = 0, st.m_held
-    held_rows, held_cols = ivec(words, count), ivec(words + 8 * count, count)
-    held_slots = ivec(words + 16 * count, count)
-    for e in range(bound):
-        if rows[e] < held and cols[e] < held:
-            held_rows[some], held_cols[some], held_slots[some] = rows[e], cols[e], slots[e]
-            some += 1
-    _lay_out_part(b, st, pt.lu_p, held, some, words, count, words + 24 * count, reals, wanted)
-
-
-@internal
-def _lay_out_part(
-    b: Any, st: Any, address: int, size: int, bound: int, at: int, count: int, words: int, reals: int, wanted: Any
-) -> None:
-    """The factorisation at `address` of the first `size` rows in their dependent columns, whose entries are listed at
-    `at`, `count` words apart."""
-    lu = lu_at(address)
-    lay_out(lu, size, bound, at, at + 8 * count, at + 16 * count, size <= b.dense_limit, words, reals)
-    units, active = vec(b.units, b.n + b.m_ext), ivec(st.active, st.m_act)
-    row_unit, col_unit = vec(lu.row_unit, size), vec(lu.col_unit, size)
-    for i in range(size):
-        row_unit[i], col_unit[i] = units[b.n + active[i]], units[wanted[i]]

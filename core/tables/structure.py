@@ -10,10 +10,17 @@ from ..compiled.records import Record, words_of
 from ..linalg import Matrix
 from ..state.workspace_records import PARTITION, STRUCTURE
 from .slots import MATRICES, Slots
+from .switch import key_of
 
 Array = NDArray[Any]
 _READY, _SERIAL = words_of(PARTITION)["ready"], words_of(PARTITION)["serial"]
 _WORD = words_of(STRUCTURE)
+OF_STRUCTURE = (
+    "values", "probe", "active", "redundant", "gradient_start", "gradient_col", "gradient_slot", "mass_slot",
+    "entry_row", "entry_col",
+)  # fmt: skip
+"""Arrays that the record of the workspace takes over."""
+_NAMES = {"entry_row": "rows", "entry_col": "cols"}
 
 
 class Partition:
@@ -85,6 +92,16 @@ class Structure:
 
     def _whole(self, name: str, count: int) -> NDArray[np.int64]:
         return self.view(self._word(name), count, np.int64)
+
+    @cached_property
+    def key(self) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
+        """Contacts closed, engaged and sticking."""
+        return key_of(self.codes)
+
+    @cached_property
+    def arrays(self) -> dict[str, Array]:
+        """Its arrays under the names that they have in the record of the workspace, as long as they do not move."""
+        return {name: getattr(self, _NAMES.get(name, name)) for name in OF_STRUCTURE}
 
     @property
     def codes(self) -> NDArray[np.int64]:

@@ -27,26 +27,24 @@ from ..state.workspace_records import (
     WORKSPACE,
 )
 from .assembly import Assembly
-from .building import engage_wanted, partition_wanted
+from .building import engage_wanted
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
+from .partition_building import partition_wanted
 from .raw_entries import raw_entries
 from .slots import MOST_STRUCTURES, Slots
 from .state_fields import STATE, Field, row_length, state_fields
-from .structure import Partition, Structure
-from .switch import codes_of, key_of
+from .structure import OF_STRUCTURE, Partition, Structure
+from .switch import codes_of
 
 _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
     "asleep",
 )  # fmt: skip
 
-_OF_STRUCTURE = (
-    "values", "probe", "active", "redundant", "gradient_start", "gradient_col", "gradient_slot", "mass_slot",
-)  # fmt: skip
 _OF_PARTITION = ("dependent", "free_row", "free_col", "free_slot")
 _NEVER_CHANGES = (
-    *_OF_STRUCTURE, *_OF_PARTITION, "entry_row", "entry_col", "kernels", "contact_rows", "contact_slide_rows",
+    *OF_STRUCTURE, *_OF_PARTITION, "kernels", "contact_rows", "contact_slide_rows",
 )  # fmt: skip
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
@@ -121,7 +119,7 @@ class Workspace:
             "probe": np.zeros(0),
             **{
                 name: np.zeros(0, dtype=np.int64)
-                for name in (*_OF_PARTITION, *_OF_STRUCTURE, "entry_row", "entry_col")
+                for name in (*_OF_PARTITION, *OF_STRUCTURE)
                 if name not in ("values", "probe")
             },
             "wanted": np.zeros(max(contacts, 1), dtype=np.int64),
@@ -258,7 +256,8 @@ class Workspace:
             {
                 "n": a.n, "m": a.m, "m_joints": a.m_joints, "m_ext": a.m + 1, "n_contacts": len(a.contacts),
                 "n_kernels": len(a.batches), "n_s": len(tables["s_row"]), "n_j": len(tables["j_row"]),
-                "table_size": sum(count * width for count, width in self._shapes), "n_replaced": len(rows), "two_partitions": int(bool(a.rate_rows)),
+                "table_size": sum(count * width for count, width in self._shapes), "n_replaced": len(rows),
+                "two_partitions": int(bool(a.rate_rows)),
                 "dropped": 0, "dense_limit": DENSE_LIMIT, "scratch": slots.scratch.cell.ctypes.data,
                 "n_slots": len(slots.structures), "serial": 0,
             },
@@ -328,9 +327,8 @@ class Workspace:
             two = bool(self.assembly.rate_rows)
             seen = self._views[address] = Structure(self.slots, address, self._shapes, two, self.give_room)
         structure = self.structure = seen
-        self.key = key_of(structure.codes)
-        named = {name: getattr(structure, name) for name in _OF_STRUCTURE}
-        self.arrays |= {**named, "entry_row": structure.rows, "entry_col": structure.cols}
+        self.key = structure.key
+        self.arrays |= structure.arrays
         present = structure.present
         if present is not None:
             self._use_partition(present)
