@@ -8,7 +8,7 @@ OUT := out/demo
 # what an installation depends on: the FMU shim is compiled by it
 SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/shim/*)
 
-.PHONY: demo test lint docs bench clean help
+.PHONY: demo test lint docs bench three clean help
 .DEFAULT_GOAL := help
 
 help:
@@ -17,6 +17,7 @@ help:
 	@echo "make lint   ruff"
 	@echo "make docs   the docs as a site, in build/site"
 	@echo "make bench  speed and work-precision against exudyn (minutes)"
+	@echo "make three  viewer/page/three.js anew, from viewer/three; needs node and npm"
 	@echo "make clean  remove .venv, build products and caches"
 
 demo: $(VENV)/.installed-all
@@ -40,6 +41,9 @@ bench: $(VENV)/.installed-dev
 	cd benchmarks && ../$(BIN)/python chain_speed.py
 	cd benchmarks && ../$(BIN)/python work_precision.py
 	cd benchmarks && ../$(BIN)/python rod_cost.py
+
+three:
+	cd viewer/three && npm install --no-audit --no-fund && npm run build && rm -rf node_modules package-lock.json
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -1,5 +1,7 @@
 """The application: one command a file in `commands/`, registered here."""
 
+from typing import Annotated
+
 import typer
 
 from .commands import (
@@ -24,6 +26,17 @@ from .commands import (
     warm,
 )
 from .commands import list as list_command
+
+AllowImports = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="MODULE",
+        help="Module that model files may import for their own elements; may be repeated; '*' for any.",
+    ),
+]
+
+ALLOW_IMPORTS = "TLISMNI_ALLOW_IMPORTS"
+"""The variable that `core/model/own_types.py` reads; named again here, as importing the core takes half a second."""
 
 app = typer.Typer(
     name="tlismni",
@@ -55,8 +68,15 @@ def print_version(wanted: bool) -> None:
 @app.callback()
 def tlismni(
     version: bool = typer.Option(False, "--version", callback=print_version, is_eager=True, help="Print the version."),
+    allow_imports: AllowImports = None,
 ) -> None:
     """Impact in flexible multibody systems with constraints: solve, export as an FMU, cross-check."""
+    if allow_imports:
+        import os
+
+        # in the environment, so that processes that a command starts follow it too
+        allowed = [*filter(None, [os.environ.get(ALLOW_IMPORTS)]), *allow_imports]
+        os.environ[ALLOW_IMPORTS] = ",".join(allowed)
 
 
 app.command("list", epilog=list_command.EXAMPLES)(list_command.list_scenarios)

@@ -62,7 +62,7 @@ def check_suffix(path: Path | None, suffixes: tuple[str, ...], option: str) -> N
 
 RESULT_KINDS = (".npz", ".csv", ".json", ".parquet", ".nc", ".h5")
 """Of files of results: the first one holds everything, `tlismni play` and `load_result` read it."""
-ANIMATION_KINDS = (".html", ".gif", ".mp4")
+ANIMATION_KINDS = (".html", ".gif", ".mp4", ".glb")
 
 _SOLVER, _OUTPUT = "Solver", "Output"
 

@@ -54,6 +54,7 @@ from .elements import (
     ReducedBody2D,
     ReducedPoint,
     RelationTerm,
+    RelativeLoad2D,
     RelativeMotor2D,
     Revolute2D,
     Revolute3D,
@@ -144,6 +145,8 @@ from .shapes.disk_on_cable import DiskOnCable2D
 from .shapes.disk_on_line import DiskOnLine2D, Line2D
 from .shapes.group2d import ContactGroup2D, contacts_between
 from .shapes.group3d import ContactGroup3D
+from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
+from .shapes.ring2d import DiskInRing2D, Ring2D
 from .shapes.rope2d import Rope2D
 from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
 from .shapes.segment2d import DiskOnSegment2D, Segment2D
@@ -198,11 +201,13 @@ __all__ = [
     "Courses",
     "Cylindrical3D",
     "Disk2D",
+    "DiskInRing2D",
     "DiskOnBox2D",
     "DiskOnCable2D",
     "DiskOnDisk2D",
     "DiskOnHalfPlane2D",
     "DiskOnLine2D",
+    "DiskOnPolygon2D",
     "DiskOnSegment2D",
     "Distance2D",
     "Distance3D",
@@ -260,6 +265,7 @@ __all__ = [
     "PointOnLine3D",
     "PointOnPlane3D",
     "PoissonImpact",
+    "Polygon2D",
     "Polynomial",
     "PositionDriver3D",
     "Prismatic2D",
@@ -271,6 +277,7 @@ __all__ = [
     "ReducedPoint",
     "RedundantRow",
     "RelationTerm",
+    "RelativeLoad2D",
     "RelativeMotor2D",
     "Result",
     "Revolute2D",
@@ -279,6 +286,7 @@ __all__ = [
     "RevoluteSpherical3D",
     "RigidBody2D",
     "RigidBody3D",
+    "Ring2D",
     "RollingDisk3D",
     "RollingSphere3D",
     "Rope2D",

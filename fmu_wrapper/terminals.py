@@ -12,7 +12,7 @@ are equal, too.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 from ..core.description import Model
 from ..core.elements import AppliedForce2D, AppliedTorque2D, CoordinateDriver, CoordinateLoad, MovingFrame2D
@@ -69,21 +69,26 @@ class Flange:
     coordinates: tuple[str, ...]
 
 
+def _plain(signal: Any) -> TypeGuard[InputSignal]:
+    """Whether a signal is an input as it is: with a gain its variable is no force or motion of a flange."""
+    return isinstance(signal, InputSignal) and signal.gain == 1.0
+
+
 def _flange(model: Model, element: Any) -> Flange | None:
     """The flange of an element; None if no input acts there."""
     if isinstance(element, AppliedForce2D):
         signals = {"force_x": element.force_x, "force_y": element.force_y}
-        inputs = {name: s.channel for name, s in signals.items() if isinstance(s, InputSignal)}
+        inputs = {name: s.channel for name, s in signals.items() if _plain(s)}
         at_origin = element.marker.point == (0.0, 0.0) and not element.follower
         moving = tuple(name[-1] for name in inputs) if at_origin else ()
         return Flange("force", element.marker.body, inputs, moving) if inputs else None
-    if isinstance(element, AppliedTorque2D) and isinstance(element.torque, InputSignal):
+    if isinstance(element, AppliedTorque2D) and _plain(element.torque):
         return Flange("force", element.body, {"torque": element.torque.channel}, ("angle",))
-    if isinstance(element, CoordinateLoad) and isinstance(element.load, InputSignal):
+    if isinstance(element, CoordinateLoad) and _plain(element.load):
         # a generalised force is named like its coordinate, so that the two are told apart
         force = FORCES.get(element.coordinate, f"force_{element.coordinate}")
         return Flange("force", element.body, {force: element.load.channel}, (element.coordinate,))
-    if isinstance(element, CoordinateDriver) and isinstance(element.motion, InputSignal):
+    if isinstance(element, CoordinateDriver) and _plain(element.motion):
         force = FORCES.get(element.coordinate, f"force_{element.coordinate}")
         members = {element.coordinate: element.motion.channel, force: f"{element.name}.reaction"}
         if element.motion.rate is not None:
@@ -98,7 +103,7 @@ def _frame(frame: MovingFrame2D) -> Flange | None:
     """The flange of a frame that inputs move: motion and reaction along the coordinates that they lead."""
     members: dict[str, str] = {}
     for c, motion in zip(frame.coordinate_records(), frame.motions(), strict=True):
-        if isinstance(motion, InputSignal):
+        if _plain(motion):
             members[c.name] = motion.channel
             if motion.rate is not None:
                 members[c.rate] = motion.rate

@@ -10,20 +10,22 @@ from ..core.errors import ModelError
 from .build import scene_of_result, scene_of_start
 from .fields import CrossSection
 from .page_text import page_text
-from .scene import Scene
+from .scene import SPACE, Scene
 from .sketches import Sketch
+from .space.gltf import write_glb
 from .timing import EVEN
 
 if TYPE_CHECKING:
     from ..core.results.result import Result
 
-KINDS = (".html", ".gif", ".mp4")
+KINDS = (".html", ".gif", ".mp4", ".glb")
 HEIGHT = 560
 """Of the picture in a notebook, pixels."""
 
 
 class Animation:
-    """A scene to play: `save` writes a page (.html) or a film (.gif, .mp4); a notebook shows it by itself.
+    """A scene to play: `save` writes a page (.html), a film (.gif, .mp4) or, in space, glTF (.glb); a notebook shows
+    it by itself.
 
     Attributes
     ----------
@@ -38,21 +40,27 @@ class Animation:
         return page_text(self.scene)
 
     def save(self, path: str | Path, **film: Any) -> Path:
-        """Write a page, or a film with the options of `tlismni.viewer.film.write_film` (fps, seconds, width).
+        """Write a page, glTF, or a film with the options of `tlismni.viewer.film.write_film` (fps, seconds, width).
 
         Raises
         ------
-        ModelError : for a file of another kind, or options of a film for a page.
+        ModelError : for a file of another kind, options of a film for what is none, or glTF of a model in the plane.
         ImportError : for a film without the library that writes it; says what to install.
         """
         target = Path(path)
         kind = target.suffix.lower()
         if kind not in KINDS:
-            raise ModelError(f"'{path}' must end in .html (a page to play), .gif or .mp4 (a film)")
+            raise ModelError(f"'{path}' must end in .html (a page to play), .gif or .mp4 (a film), or .glb (glTF)")
+        if kind in (".html", ".glb") and film:
+            raise ModelError(f"{sorted(film)} are options of films (.gif, .mp4), not of {kind} files")
         if kind == ".html":
-            if film:
-                raise ModelError(f"{sorted(film)} are options of films (.gif, .mp4), not of a page")
             target.write_text(self.html(), encoding="utf-8")
+        elif kind == ".glb":
+            if self.scene.dimension != SPACE:
+                raise ModelError(
+                    f"'{path}': glTF is for models in space; for one in the plane take .html, .gif or .mp4"
+                )
+            write_glb(self.scene, target)
         else:
             from .film import write_film
 
@@ -80,7 +88,7 @@ def animate(
     outlines: Mapping[str, Sequence[tuple[float, float]]] | None = None,
     sections: Mapping[str, CrossSection] | None = None,
     sketches: Sequence[Sketch] = (),
-    points: Mapping[str, tuple[str, str]] | None = None,
+    points: Mapping[str, tuple[str, ...]] | None = None,
     frames: int = EVEN,
 ) -> Animation:
     """A run as an animation; parameters as those of `scene_of_result`.

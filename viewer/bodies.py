@@ -13,14 +13,12 @@ from ..core.elements import (
     MovingFrame2D,
     PlanarFrame,
     ReducedBody2D,
-    SpatialFrame,
 )
 from ..core.elements.flexible_body import along_axis
-from ..core.model.markers import Marker2D, Marker3D
+from ..core.model.markers import Marker2D
 from ..core.model.outputs import MarkerOutput2D, MarkerOutput3D
 from .drawing.bodies import draw_body, standing
 from .drawing.shapes import INK, PORT, STEEL, Circle, Drawing, Label, Path, Point, turned
-from .drawing.view import star
 from .fields import CrossSection, fields_of
 from .magnify import Magnified
 from .motion import Motion
@@ -96,8 +94,6 @@ def add_bodies(stage: Stage, outlines: Mapping[str, Sequence[Point]], sections: 
     for body in stage.motion.model.bodies:
         if isinstance(body, PlanarFrame):
             _planar(stage, body, outlines.get(body.name))
-        if isinstance(body, SpatialFrame):
-            _spatial(stage, body)
         if isinstance(body, FlexibleBody):
             _flexible(stage, body, sections.get(body.name))
         elif isinstance(body, LinearSystem):
@@ -120,18 +116,6 @@ def _planar(stage: Stage, body: PlanarFrame, outline: Sequence[Point] | None) ->
         stage.scene.parts.append(Part(stage.number(body.name), 1, (outline_shape(outline),)))
     elif solid:
         stage.add_part(body.name, 1, drawing)
-
-
-def _spatial(stage: Stage, body: SpatialFrame) -> None:
-    """A body in space, seen from a corner: its centre as a frame, and lines from there to what is attached."""
-    motion = stage.motion
-    line = motion.in_space(body, star(motion.model, body))
-    centre = np.hstack([line[:, 0], np.zeros((len(line), 1))])
-    velocity = motion.places.view(motion.table(body.name)[1][:, :3]) if motion.moves else None
-    stage.add_frame(Frame(body.name, centre, velocity, (0.02 * stage.size, 0.02 * stage.size)))
-    dot = Circle((0.0, 0.0), 0.008 * stage.size, INK, STEEL, 0.3)
-    stage.scene.parts.append(Part(stage.number(body.name), 2, (dot,)))
-    stage.scene.bands.append(Band(body.name, line, BEAM))
 
 
 def outline_shape(points: Sequence[Point]) -> Path:
@@ -186,10 +170,7 @@ def _generalised(stage: Stage, body: LinearSystem) -> None:
 def add_output(stage: Stage, output: MarkerOutput2D | MarkerOutput3D) -> None:
     """A dot where a marker is, with its name, its velocity and its trail."""
     motion, marker = stage.motion, output.marker
-    if isinstance(marker, Marker3D):
-        seen = motion.seen(marker)
-        add_dot(stage, Frame(output.name, np.hstack([seen, np.zeros((len(seen), 1))]), None, (0.012 * stage.size, 0.0)))
-        return
+    assert isinstance(marker, Marker2D)
     path = np.hstack([motion.at(marker), motion.direction(marker)[:, None]])
     velocity = motion.velocity_at(marker) if motion.moves else None
     add_dot(stage, Frame(output.name, path, velocity, (0.012 * stage.size, 0.0)))
@@ -203,6 +184,4 @@ def add_dot(stage: Stage, frame: Frame) -> None:
 
 def has_place(body: BodyElement) -> bool:
     """True of bodies that have a frame in the scene."""
-    return isinstance(body, PlanarFrame | SpatialFrame) or (
-        isinstance(body, LinearSystem) and standing(body) is not None
-    )
+    return isinstance(body, PlanarFrame) or (isinstance(body, LinearSystem) and standing(body) is not None)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.description import Model
-from ..core.elements import FlexibleBody, PlanarFrame, SpatialFrame
+from ..core.elements import Cable3D, FlexibleBody, PlanarFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
-from . import fixtures3d, mechanical  # noqa: F401  (importing them teaches `place` their elements)
+from . import mechanical  # noqa: F401  (importing it teaches `place` its elements)
 from .bodies import Stage, add_bodies, add_dot, add_output
 from .drawing.shapes import Circle, Point
 from .fields import NO_SECTIONS, CrossSection
@@ -19,6 +19,7 @@ from .forces import add_forces
 from .motion import Motion
 from .scene import Floats, Frame, Part, Scene
 from .sketches import Sketch, add_sketches
+from .space.build import is_spatial, spatial_scene
 from .timing import EVEN, MOST_SAMPLES, choose_frames
 from .tracks import Tracks
 
@@ -44,9 +45,21 @@ def scene_of_start(
     ------
     ModelError : for an outline of a body that the model does not have.
     """
-    return _build(
-        Motion.at_start(model), title or f"{model.name}, as it starts", None, outlines or {}, sketches=sketches
-    )
+    motion, title = Motion.at_start(model), title or f"{model.name}, as it starts"
+    if is_spatial(model):
+        _no_plane(outlines, None, sketches)
+        return spatial_scene(motion, title, None)
+    return _build(motion, title, None, outlines or {}, sketches=sketches)
+
+
+def _no_plane(outlines: Outlines | None, sections: object, sketches: Sequence[Sketch]) -> None:
+    """Refuse what only pictures of the plane have."""
+    for what, given in (("outlines", outlines), ("sections", sections), ("sketches", sketches)):
+        if given:
+            raise ModelError(
+                f"{what} are for models of the plane; in space bodies look like the shapes of their contacts: "
+                f"leave {what} out, or give the body a Box3D, Sphere3D, Capsule3D or ConvexPolyhedron3D to touch with"
+            )
 
 
 def scene_of_result(
@@ -57,7 +70,7 @@ def scene_of_result(
     outlines: Outlines | None = None,
     sections: Mapping[str, CrossSection] | None = None,
     sketches: Sequence[Sketch] = (),
-    points: Mapping[str, tuple[str, str]] | None = None,
+    points: Mapping[str, tuple[str, ...]] | None = None,
     frames: int = EVEN,
 ) -> Scene:
     """A run as a scene.
@@ -68,7 +81,7 @@ def scene_of_result(
     outlines : polygons in the frames of bodies, m, in place of the shapes that are made up.
     sections : cross-sections of flexible bodies, which are then coloured by their stress.
     sketches : polygons that move with generalised coordinates.
-    points : channels that are the x and y of points to draw besides, by the points' names.
+    points : channels that are the x and y (in space: x, y and z) of points to draw besides, by the points' names.
     frames : how many at equal intervals, besides those of the solver's steps.
 
     Raises
@@ -82,8 +95,13 @@ def scene_of_result(
     among = choose_frames(result.t, (event.t for event in result.events), frames, most)
     tracks = Tracks(result, model, among)
     motion = Motion.of_result(model, result, among)
-    dots = points_of(tracks, points or {})
-    scene = _build(motion, title or model.name, tracks, outlines or {}, sections or {}, sketches, dots)
+    if is_spatial(model):
+        _no_plane(outlines, sections, sketches)
+        dots = {name: np.stack([tracks.values(c) for c in places], axis=1) for name, places in (points or {}).items()}
+        scene = spatial_scene(motion, title or model.name, tracks, dots)
+    else:
+        dots_2d = points_of(tracks, points or {})
+        scene = _build(motion, title or model.name, tracks, outlines or {}, sections or {}, sketches, dots_2d)
     wanted = tuple(channels) if channels is not None else tracks.interesting()
     for name in wanted:
         tracks.values(name)  # an unknown one is refused
@@ -128,28 +146,31 @@ def _build(
     return scene
 
 
-def points_of(tracks: Tracks, points: Mapping[str, tuple[str, str]]) -> list[Frame]:
+def points_of(tracks: Tracks, points: Mapping[str, tuple[str, ...]]) -> list[Frame]:
     """Points whose x and y are channels, as frames; with velocities where their rates are channels too."""
     found = []
-    for name, (x, y) in points.items():
-        places = np.stack([tracks.values(x), tracks.values(y)], axis=1)
+    for name, places in points.items():
+        if len(places) != 2:
+            raise ModelError(f"point '{name}' has {len(places)} channels: a point of the plane has two, its x and y")
+        x, y = places
+        path = np.stack([tracks.values(x), tracks.values(y)], axis=1)
         rates = [rate for rate in (tracks.rate(x), tracks.rate(y)) if rate is not None]
-        velocity = np.stack(rates, axis=1) if len(rates) == 2 else np.zeros_like(places)
-        found.append(Frame(name, np.hstack([places, np.zeros((len(places), 1))]), velocity))
+        velocity = np.stack(rates, axis=1) if len(rates) == 2 else np.zeros_like(path)
+        found.append(Frame(name, np.hstack([path, np.zeros((len(path), 1))]), velocity))
     return found
 
 
 def affordable(model: Model, frames: int) -> tuple[int, int]:
     """Even frames, and samples that become frames, of a model: less than wanted where it is so large that the page
     would be."""
-    width = 5 * len(model.bodies) + 200 * sum(isinstance(body, FlexibleBody) for body in model.bodies)
+    width = 5 * len(model.bodies) + 200 * sum(isinstance(body, FlexibleBody | Cable3D) for body in model.bodies)
     part = min(1.0, MOST_NUMBERS / (max(width, 1) * (frames + MOST_SAMPLES)))
     return max(LEAST, round(part * frames)) if part < 1.0 else frames, max(LEAST, round(part * MOST_SAMPLES))
 
 
 def _size(motion: Motion, sketches: Sequence[Sketch], points: Sequence[Frame]) -> float:
     """What symbols are drawn for, m: the mechanism's size at its start, or a part of the way that it goes."""
-    shown = [body for body in motion.model.bodies if isinstance(body, PlanarFrame | SpatialFrame)]
+    shown = [body for body in motion.model.bodies if isinstance(body, PlanarFrame)]
     ways = [motion.frame(body.name)[:, :2] for body in shown]
     drawn = [np.array(sketch.outline) + np.array(sketch.at[:2]) for sketch in sketches]
     drawn += [point.motion[:, :2] for point in points]

@@ -11,7 +11,8 @@ from ..core.errors import ModelError
 from ..core.extras import require
 from .drawing.png import to_image
 from .drawing.shapes import INK
-from .scene import Scene
+from .scene import SPACE, Scene
+from .space.still import still_in_space
 from .still import still
 
 LONGEST = 6.0
@@ -67,7 +68,8 @@ def _pictures(scene: Scene, count: int, width: int) -> Iterator[Any]:
     size = 2 * max(8, round(0.5 * (box[1][0] - box[0][0]) * scale)), 2 * max(8, round(0.5 * high * scale))
     for t in np.linspace(scene.t[0], scene.t[-1], count):
         frame = int(np.clip(np.searchsorted(scene.t, t, side="right") - 1, 0, len(scene.t) - 1))
-        picture = to_image(still(scene, frame), box, size, BACKGROUND)
+        drawn = still_in_space(scene, frame) if scene.dimension == SPACE else still(scene, frame)
+        picture = to_image(drawn, box, size, BACKGROUND)
         ImageDraw.Draw(picture).text((8, 6), _time(float(t), scene), INK)
         yield picture
 

@@ -8,6 +8,7 @@ from ..core.elements import (
     Belt2D,
     PIDController2D,
     Rack2D,
+    RelativeLoad2D,
     RelativeMotor2D,
     Servo2D,
     SlideSpring2D,
@@ -17,6 +18,8 @@ from ..core.elements import (
 from ..core.model.markers import Marker2D
 from ..core.shapes.angle_stop2d import AngleStop2D
 from ..core.shapes.box2d import DiskOnBox2D
+from ..core.shapes.polygon2d import DiskOnPolygon2D
+from ..core.shapes.ring2d import DiskInRing2D
 from ..core.shapes.rope2d import Rope2D
 from .bodies import Stage
 from .drawing import symbols
@@ -30,7 +33,7 @@ TURNS, SPIRAL = 2.5, 0.035
 
 
 @place.register
-def _(element: Servo2D | PIDController2D | RelativeMotor2D, stage: Stage) -> None:
+def _(element: Servo2D | PIDController2D | RelativeMotor2D | RelativeLoad2D, stage: Stage) -> None:
     """A cylinder between its ends; a ring about the joint that it turns."""
     if element.measure == "distance":
         stretched(stage, element.name, "damper", element.a, element.b)
@@ -77,6 +80,23 @@ def _(element: AngleStop2D, stage: Stage) -> None:
     hand = Drawing(stage.size)
     hand.shapes.append(Path(((0.0, 0.0), (far, 0.0)), TOUCH, width=0.4, dashed=True))
     _on_marker(stage, element.b, 1, hand)
+
+
+@place.register
+def _(element: DiskOnPolygon2D, stage: Stage) -> None:
+    drawing = Drawing(stage.size)
+    drawing.shapes.append(Path(element.shape.vertices, TOUCH, width=0.5, closed=True))
+    _on_marker(stage, element.shape.marker, 1, drawing)
+    if element.disk.radius > 0.0:
+        _disk(element.disk, stage)
+
+
+@place.register
+def _(element: DiskInRing2D, stage: Stage) -> None:
+    drawing = Drawing(stage.size)
+    drawing.shapes.append(Circle((0.0, 0.0), element.shape.radius, TOUCH, None, 0.9))
+    _on_marker(stage, element.shape.marker, 0, drawing)
+    _disk(element.disk, stage)
 
 
 @place.register

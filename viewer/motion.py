@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from ..core.between import Between
 from ..core.description import Model
-from ..core.elements import BodyElement, FlexibleBody, PlanarFrame, SpatialFrame
+from ..core.elements import BodyElement, FlexibleBody, PlanarFrame
 from ..core.elements.flexible_body import Section
 from ..core.flexible.section_loads import places
-from ..core.model.marker_channels3d import points_in_space
-from ..core.model.markers import GROUND, Marker2D, Marker3D
+from ..core.model.markers import GROUND, Marker2D
 from .drawing.places import Places
 
 if TYPE_CHECKING:
@@ -82,9 +81,7 @@ class Motion:
         """x, y, angle (F, 3) of a body's frame; zeros for the ground and for what has none."""
         found = np.zeros((len(self.t), 3))
         found_body = self.bodies.get(body)
-        if isinstance(found_body, SpatialFrame):
-            found[:, :2] = self.seen(Marker3D(body=body))
-        elif isinstance(found_body, PlanarFrame):
+        if isinstance(found_body, PlanarFrame):
             columns = [n for n in ("x", "y", "angle") if n in self.bodies[body].coordinate_names]
             for k, name in enumerate(columns):
                 found[:, k] = self.coordinate(body, name)
@@ -109,17 +106,6 @@ class Motion:
         c, s = np.cos(angle), np.sin(angle)
         u, w = marker.point
         return np.stack([x + c * u - s * w, y + s * u + c * w], axis=1)
-
-    def in_space(self, body: SpatialFrame, points: Floats) -> Floats:
-        """Points (n, 3) of a body in space on paper (F, n, 2)."""
-        return self.places.view(points_in_space(self._tables[body.name][0], points.tolist()))
-
-    def seen(self, marker: Marker3D) -> Floats:
-        """Places of a marker in space on paper (F, 2)."""
-        body = self.bodies.get(marker.body)
-        if not isinstance(body, SpatialFrame):
-            return np.tile(self.places.view(np.array(marker.point)), (len(self.t), 1))
-        return self.in_space(body, np.array([marker.point]))[:, 0]
 
     def direction(self, marker: Marker2D) -> Floats:
         """Angle (F,) of a marker's first axis."""

@@ -4,10 +4,16 @@ import json
 from importlib.resources import files
 from string import Template
 
-from .scene import Scene
+from .scene import SPACE, Scene
 
-SCRIPTS = ("data.js", "camera.js", "draw.js", "symbols.js", "plots.js", "timeline.js", "controls.js", "main.js")
-"""In the order in which they stand in the page; they share one scope."""
+COMMON = ("marks.js", "symbols.js", "plots.js", "timeline.js", "controls.js")
+PLANE = ("data.js", "camera.js", *COMMON, "draw.js", "main.js")
+SOLID = ("three.js", "data.js", "space_camera.js", *COMMON, "space_draw.js", "main.js")
+"""In the order in which they stand in the page; they share one scope. three.js is made by `make three`."""
+HINTS = {
+    2: "Drag to move, wheel or pinch to zoom.",
+    SPACE: "Drag to turn, shift and drag to move, wheel or pinch to zoom.",
+}
 
 
 def page_text(scene: Scene) -> str:
@@ -21,7 +27,8 @@ def page_text(scene: Scene) -> str:
         title=_escaped(scene.title),
         style=text("style.css"),
         scene=_in_script(json.dumps(scene.to_data(), separators=(",", ":"), allow_nan=False)),
-        script="\n".join(text(name) for name in SCRIPTS),
+        hint=HINTS[scene.dimension],
+        script="\n".join(text(name) for name in (SOLID if scene.dimension == SPACE else PLANE)),
     )
 
 

@@ -1,20 +1,25 @@
 """The scene: everything that a player needs, as data. F frames; lengths in m, angles in rad, times in s.
 
-The plane is the case of two dimensions: places have two numbers and a frame's motion three (x, y, angle). In space they
-will have three, and a motion seven (place, then Euler parameters); `dimension` says which.
+In the plane places have two numbers and a frame's motion three (x, y, angle). In space they have three, and a motion
+seven (place, then Euler parameters); `dimension` D says which. Solids stand on frames only in space, parts only in the
+plane.
 """
 
-from dataclasses import dataclass, field
+import base64
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .drawing.shapes import Circle, Path
+from .drawing.shapes import STEEL, Circle, Path
 from .packing import plain
+from .space.gltf import to_glb
+from .space.meshes import Mesh
 
 FORMAT = "tlismni-scene-1"
 GROUND_FRAME = 0
+SPACE = 3
 Floats = NDArray[np.float64]
 Shape = Path | Circle
 
@@ -25,10 +30,10 @@ class Frame:
 
     name: str
     motion: Floats
-    """(F, 3): x, y, angle; (1, 3) of what stands still."""
+    """(F, 3): x, y, angle, or (F, 7) in space; one row of what stands still."""
     velocity: Floats | None = None
-    """(F, 2) of its origin, m/s; None: no arrow."""
-    label: tuple[float, float] | None = None
+    """(F, D) of its origin, m/s; None: no arrow."""
+    label: tuple[float, ...] | None = None
     """Where its name stands, in the frame; None: no name."""
 
 
@@ -41,17 +46,33 @@ class Part:
     shapes: tuple[Shape, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A surface on a frame, in space."""
+
+    frame: int
+    mesh: Mesh
+    at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """m, in the frame."""
+    turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+    """Euler parameters in the frame."""
+    size: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """By which the mesh is stretched along its own axes, m."""
+    colour: str = STEEL
+    opacity: float = 1.0
+
+
 @dataclass(frozen=True)
 class Anchor:
     """A point of a frame."""
 
     frame: int
-    point: tuple[float, float]
+    point: tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class Link:
-    """What stretches between two points: kind "spring", "damper", "spring-damper" or "rod"."""
+    """What stretches between two points: kind "spring", "damper", "spring-damper", "rod" or "rope"."""
 
     name: str
     kind: str
@@ -88,7 +109,7 @@ class Band:
 
     name: str
     points: Floats
-    """(F, P, 2)."""
+    """(F, P, D)."""
     width: float
     """In hundredths of the scene's size."""
     fields: tuple[Field, ...] = ()
@@ -102,9 +123,9 @@ class Arrow:
     kind: str
     unit: str
     at: Floats
-    """(F, 2)."""
+    """(F, D)."""
     vector: Floats
-    """(F, 2)."""
+    """(F, D)."""
 
 
 @dataclass(frozen=True)
@@ -142,6 +163,7 @@ class Scene:
     """Of the mechanism, m: what symbols are drawn for."""
     frames: list[Frame] = field(default_factory=list)
     parts: list[Part] = field(default_factory=list)
+    solids: list[Solid] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
     lines: list[Line] = field(default_factory=list)
     bands: list[Band] = field(default_factory=list)
@@ -152,15 +174,21 @@ class Scene:
     """Names of the channels plotted at first."""
     events: list[dict[str, Any]] = field(default_factory=list)
     box: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)
-    """Left, bottom, right, top of everything over all frames, m."""
+    """Left, bottom, right, top of everything over all frames, m; in space of what is seen from `eye`."""
     notes: list[str] = field(default_factory=list)
     """What a reader must know of the picture, such as magnified displacements."""
     dimension: int = 2
+    eye: tuple[tuple[float, float, float], ...] = ()
+    """In space: the axes of the picture, to the right, upwards and towards the reader (of glTF: X, Y, Z), at first."""
+    corners: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    """In space: the outermost places (K, 3) over all frames, m; what a picture from any side must hold."""
     format: str = FORMAT
 
     def to_data(self) -> dict[str, Any]:
-        """The scene as JSON data (`tlismni-scene-1`)."""
-        data: dict[str, Any] = plain(self)
+        """The scene as JSON data (`tlismni-scene-1`); solids stand in it as glTF (.glb, as base64 text)."""
+        data: dict[str, Any] = plain(replace(self, solids=[]))
+        if self.dimension == SPACE:
+            data["solids"] = base64.b64encode(to_glb(self, bands=False)).decode("ascii")
         for part, record in zip(data["parts"], self.parts, strict=True):
             for shape, given in zip(part["shapes"], record.shapes, strict=True):
                 shape["kind"] = type(given).__name__.lower()

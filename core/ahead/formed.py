@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from ..elements import pid_controller2d, relative_motor2d, scalar_force2d, scalar_joint2d, servo2d
+from ..elements import pid_controller2d, relative_load2d, relative_motor2d, scalar_force2d, scalar_joint2d, servo2d
 from ..elements.base import Element, Form
 from ..elements.belt2d import Belt2D
 from ..elements.distance2d import Distance2D
@@ -13,6 +13,7 @@ from ..elements.joint_friction2d import RevoluteFriction2D, SlideFriction2D
 from ..elements.measures2d import MEASURES
 from ..elements.pid_controller2d import PIDController2D
 from ..elements.rack2d import Rack2D
+from ..elements.relative_load2d import RelativeLoad2D
 from ..elements.relative_motor2d import RelativeMotor2D
 from ..elements.scalar_force2d import ScalarForce2D
 from ..elements.scalar_joint2d import ScalarJoint2D
@@ -26,6 +27,8 @@ from ..model.signals import Constant
 from ..shapes.angle_stop2d import AngleStop2D
 from ..shapes.box2d import Box2D, DiskOnBox2D
 from ..shapes.contact2d import Disk2D
+from ..shapes.polygon2d import DiskOnPolygon2D, Polygon2D
+from ..shapes.ring2d import DiskInRing2D, Ring2D
 from ..shapes.rope2d import Rope2D
 from ..shapes.scalar_contact2d import ScalarContact2D
 
@@ -44,6 +47,7 @@ def _elements() -> Iterator[Element]:
     yield RevoluteFriction2D(name="turning", **ends, torque=1.0, transition_rate=1.0)
     yield SlideFriction2D(name="sliding", **ends, force=1.0, transition_speed=1.0)
     for measure in ("angle", "slide", "distance"):
+        yield RelativeLoad2D(name=measure, **ends, load=NOTHING, measure=measure)
         yield RelativeMotor2D(name=measure, **ends, motion=NOTHING, measure=measure)
         yield Servo2D(name=measure, **ends, target=NOTHING, gain=1.0, measure=measure)
         for sensed in ("angle", "slide", "distance"):
@@ -56,6 +60,15 @@ def _elements() -> Iterator[Element]:
     yield DiskOnBox2D(name="rubbed", **box, law=hard, friction=CoulombFriction(coefficient=0.5))
     bristles = LuGreFriction(coefficient=0.5, stribeck_speed=1.0, bristle_stiffness=1.0)
     yield DiskOnBox2D(name="bristled", **box, law=soft, friction=bristles)
+    corners = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+    polygon: dict[str, Any] = {"shape": Polygon2D(marker=A, vertices=corners), "disk": Disk2D(marker=B)}
+    yield DiskOnPolygon2D(name="polygon", **polygon, law=hard)
+    yield DiskOnPolygon2D(name="rubbed", **polygon, law=hard, friction=CoulombFriction(coefficient=0.5))
+    yield DiskOnPolygon2D(name="bristled", **polygon, law=soft, friction=bristles)
+    ring: dict[str, Any] = {"shape": Ring2D(marker=A, radius=2.0), "disk": Disk2D(marker=B, radius=1.0)}
+    yield DiskInRing2D(name="ring", **ring, law=hard)
+    yield DiskInRing2D(name="rubbed", **ring, law=hard, friction=CoulombFriction(coefficient=0.5))
+    yield DiskInRing2D(name="bristled", **ring, law=soft, friction=bristles)
 
 
 def _key(element: Any) -> tuple[str, tuple[Callable[..., Any], ...]]:
@@ -64,6 +77,8 @@ def _key(element: Any) -> tuple[str, tuple[Callable[..., Any], ...]]:
         return scalar_joint2d.KIND, (element.formula.formula,)
     if isinstance(element, ScalarForce2D):
         return scalar_force2d.KIND, element.formula.formulas
+    if isinstance(element, RelativeLoad2D):
+        return relative_load2d.KIND, (MEASURES[element.measure],)
     if isinstance(element, RelativeMotor2D):
         return relative_motor2d.KIND, (MEASURES[element.measure],)
     if isinstance(element, PIDController2D):

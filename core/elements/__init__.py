@@ -55,6 +55,7 @@ from .prismatic2d import Prismatic2D
 from .rack2d import Rack2D
 from .reduced_body2d import ReducedBody2D, ReducedPoint
 from .relation3d import Gear3D, RackAndPinion3D, Relation3D, Screw3D
+from .relative_load2d import RelativeLoad2D
 from .relative_motor2d import RelativeMotor2D
 from .revolute2d import Revolute2D
 from .rolling_joints3d import RollingDisk3D, RollingSphere3D
@@ -125,6 +126,7 @@ FORCES = (
     SlideFriction2D,
     Bushing2D,
     Servo2D,
+    RelativeLoad2D,
     PIDController2D,
     AppliedForce2D,
     AppliedTorque2D,
@@ -204,6 +206,7 @@ __all__ = [
     "ReducedPoint",
     "Relation3D",
     "RelationTerm",
+    "RelativeLoad2D",
     "RelativeMotor2D",
     "Revolute2D",
     "Revolute3D",

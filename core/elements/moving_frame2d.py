@@ -115,6 +115,6 @@ class MovingFrame2D(PlanarFrame):
 def _start(motion: Signal, inputs: Mapping[str, float]) -> tuple[float, float]:
     """Value and rate at t = 0."""
     if isinstance(motion, InputSignal):
-        return inputs.get(motion.channel, 0.0), inputs.get(motion.rate or "", 0.0)
+        return motion.gain * inputs.get(motion.channel, 0.0), motion.gain * inputs.get(motion.rate or "", 0.0)
     x, v, _ = interpreted(evaluate_signal)(np.array(motion.pool({})), np.zeros(0), 0, 0.0)
     return float(x), float(v)

@@ -29,7 +29,7 @@ from ..compiled.jit import internal
 from .signals import INPUT_SIZE, InputSignal, evaluate_signal
 
 MOTION = 7
-"""Kind of a signal beside those of `signals.py`: its pool is MOTION and the rows of position, rate and jumps."""
+"""Kind of a signal beside those of `signals.py`: its pool is MOTION, rows of position, rate and jumps, and a gain."""
 # A motion has a row of its own behind those of the input channels: c_0, c_1, t_k, T (0: not known yet).
 JUMP, RATE_JUMP, SINCE, DURATION = range(INPUT_SIZE)
 
@@ -45,10 +45,10 @@ def evaluate_motion(pool: Any, inputs: Any, offset: int, t: float) -> Any:
     if int(pool[offset]) != MOTION:
         return evaluate_signal(pool, inputs, offset, t)
     jumps = INPUT_SIZE * int(pool[offset + 3])
-    since = inputs[jumps + SINCE]
+    since, gain = inputs[jumps + SINCE], pool[offset + 4]
     x, v, a = said(inputs, int(pool[offset + 1]), int(pool[offset + 2]), since, t)
     c, dc, ddc = closing(inputs[jumps + JUMP], inputs[jumps + RATE_JUMP], inputs[jumps + DURATION], t - since)
-    return x + c, v + dc, a + ddc
+    return gain * x + c, gain * v + dc, gain * a + ddc
 
 
 @internal
@@ -95,16 +95,17 @@ class InputMotion:
     rate: int
     """-1: none, the velocity is the position's derivative."""
     jumps: int
+    gain: float = 1.0
 
     @classmethod
     def of(cls, signal: InputSignal, inputs: dict[str, int], number: int) -> "InputMotion":
         """The motion `number` of a model whose input channels have these numbers."""
         rate = -1 if signal.rate is None else inputs[signal.rate]
-        return cls(inputs[signal.channel], rate, max(len(inputs), 1) + number)
+        return cls(inputs[signal.channel], rate, max(len(inputs), 1) + number, signal.gain)
 
     def pool(self) -> list[float]:
         """Its numbers in the pool of signals."""
-        return [float(x) for x in (MOTION, self.position, self.rate, self.jumps)]
+        return [float(x) for x in (MOTION, self.position, self.rate, self.jumps, self.gain)]
 
     def state(self, inputs: NDArray[np.float64], t: float) -> tuple[float, float]:
         """Position and velocity at time `t`, s."""
@@ -117,4 +118,4 @@ class InputMotion:
         """Position and velocity at time `t` as the channels say."""
         since = float(inputs[self.jumps, SINCE])
         x, v, _ = said.py_func(inputs.reshape(-1), self.position, self.rate, since, t)
-        return float(x), float(v)
+        return self.gain * float(x), self.gain * float(v)

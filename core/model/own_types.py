@@ -82,8 +82,8 @@ def find_classes(imports: Any, allowed: bool | Collection[str]) -> dict[str, typ
                     continue
                 raise ModelError(
                     f"type '{name}' is an own class of its author, {path}, and to import it runs that module's code: "
-                    f"if you trust it, read the file with Model.load(path, allow_imports=['{module}']), or set the "
-                    f"environment variable {ALLOW}={module}"
+                    f"if you trust it, read the file with Model.load(path, allow_imports=['{module}']), give the "
+                    f"command --allow-imports {module}, or set the environment variable {ALLOW}={module}"
                 )
             try:
                 importlib.import_module(module)

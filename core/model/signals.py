@@ -160,20 +160,22 @@ class Table(TimeFunction):
 
 class InputSignal(TimeFunction):
     """The model's input channel `channel`: the value that was set last, going on with the derivatives that it was given
-    (none unless set). As a motion it may have its velocity in another channel, `rate`, see `motion.py`; forces have no
-    use for that."""
+    (none unless set), times `gain`. As a motion it may have its velocity in another channel, `rate`, see `motion.py`;
+    forces have no use for that."""
 
     type: Literal["Input"] = "Input"
     channel: Name
     """Name of the input whose value it is."""
     rate: Name | None = None
     """Input channel with the velocity of a motion, in the position's unit per s."""
+    gain: float = 1.0
+    """What its value, and that of `rate`, is multiplied by: the constant of a motor, a valve, another unit."""
 
     def channels(self) -> tuple[str, ...]:
         return (self.channel,) if self.rate is None else (self.channel, self.rate)
 
     def pool(self, inputs: dict[str, int]) -> list[float]:
-        return [INPUT, inputs[self.channel]]
+        return [INPUT, inputs[self.channel], self.gain]
 
     def breakpoints(self) -> list[float]:
         return []
@@ -191,8 +193,10 @@ def evaluate_signal(pool: Any, inputs: Any, offset: int, t: float) -> Any:
         return pool[offset + 1], 0.0, 0.0
     if kind == INPUT:
         k = INPUT_SIZE * int(pool[offset + 1])
-        rate, curvature, x = inputs[k + 1], inputs[k + 2], t - inputs[k + 3]
-        return inputs[k] + x * (rate + 0.5 * x * curvature), rate + x * curvature, curvature
+        rate, curvature, x, gain = inputs[k + 1], inputs[k + 2], t - inputs[k + 3], pool[offset + 2]
+        return (
+            gain * (inputs[k] + x * (rate + 0.5 * x * curvature)), gain * (rate + x * curvature), gain * curvature,
+        )  # fmt: skip
     if kind == SINE:
         amplitude, w = pool[offset + 1], pool[offset + 2]
         s = math.sin(w * t + pool[offset + 3])

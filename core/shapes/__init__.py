@@ -11,6 +11,8 @@ from .coordinate_contact import CoordinateContact
 from .disk_on_cable import DiskOnCable2D
 from .disk_on_line import DiskOnLine2D
 from .element import ContactElement
+from .polygon2d import DiskOnPolygon2D
+from .ring2d import DiskInRing2D
 from .rope2d import Rope2D
 from .segment2d import DiskOnSegment2D
 from .stop3d import AngleStop3D, Rope3D, SlideStop3D
@@ -22,6 +24,8 @@ CONTACTS = (
     DiskOnSegment2D,
     DiskOnLine2D,
     DiskOnCable2D,
+    DiskInRing2D,
+    DiskOnPolygon2D,
     Rope2D,
     AngleStop2D,
     CoordinateContact,

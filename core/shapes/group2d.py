@@ -1,9 +1,9 @@
 """Contacts between groups of shapes, instead of pairs listed by hand.
 
-Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box or a segment; a box with a
-half-plane and with a box by its corners; in space a sphere with a half-space and a sphere, a box with a half-space by
-its corners. Pairs on one body are left out. Pairs that are far from touching cost nothing
-during a run: contacts sleep until their margin is used up (`location/asleep.py`).
+Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box, a polygon, a segment or a ring
+around it; a box or polygon with a half-plane and with others by the corners; in space a sphere with a half-space and a
+sphere, a box with a half-space by its corners. Pairs on one body are left out. Pairs that are far from touching cost
+nothing during a run: contacts sleep until their margin is used up (`location/asleep.py`).
 """
 
 from collections.abc import Iterable, Sequence
@@ -19,9 +19,13 @@ from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .cornered3d import Cornered3D
+from .polygon2d import DiskOnPolygon2D, Polygon2D
+from .ring2d import DiskInRing2D, Ring2D
 from .segment2d import DiskOnSegment2D, Segment2D
 
-PlanarShape = Disk2D | HalfPlane2D | Box2D | Segment2D
+PlanarShape = Disk2D | HalfPlane2D | Box2D | Polygon2D | Segment2D | Ring2D
+ANGULAR = (Box2D, Polygon2D)
+"""What has corners in the plane."""
 SpatialShape = Sphere3D | HalfSpace3D | Cornered3D
 GroupShape = PlanarShape | SpatialShape
 
@@ -88,11 +92,15 @@ class ContactGroup2D(Record):
     disks: tuple[Disk2D, ...] = ()
     """They touch all shapes."""
     boxes: tuple[Box2D, ...] = ()
-    """They touch boxes and half-planes by their corners, and disks."""
+    """They touch boxes, polygons and half-planes by their corners, and disks."""
+    polygons: tuple[Polygon2D, ...] = ()
+    """They touch what boxes touch."""
     segments: tuple[Segment2D, ...] = ()
     """They touch disks."""
     half_planes: tuple[HalfPlane2D, ...] = ()
-    """They touch disks and boxes."""
+    """They touch disks, boxes and polygons."""
+    rings: tuple[Ring2D, ...] = ()
+    """They hold disks in them, every one of the group."""
     law: ContactLaw
     """What happens when a gap closes."""
     friction: Friction | None = None
@@ -102,7 +110,9 @@ class ContactGroup2D(Record):
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
-        shapes: tuple[GroupShape, ...] = (*self.disks, *self.boxes, *self.segments, *self.half_planes)
+        shapes: tuple[GroupShape, ...] = (
+            *self.disks, *self.boxes, *self.polygons, *self.segments, *self.half_planes, *self.rings,
+        )  # fmt: skip
         return contacts_between(
             self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies
         )
@@ -120,15 +130,16 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
         return ((a, b),)
     if isinstance(a, Disk2D):
         return ((b, a),)
-    if isinstance(a, Box2D) and isinstance(b, Box2D):
+    if isinstance(a, ANGULAR) and isinstance(b, ANGULAR):
         return (*((a, corner) for corner in b.corners()), *((b, corner) for corner in a.corners()))
-    if isinstance(a, Box2D):
+    if isinstance(a, ANGULAR):
         a, b = b, a
-    if isinstance(b, Box2D):
+    if isinstance(b, ANGULAR):
         if isinstance(a, HalfPlane2D):
             return tuple((a, corner) for corner in b.corners())
+        remedy = "make the segment a thin box" if isinstance(a, Segment2D) else "put disks at its corners"
         raise ModelError(
-            f"a box on '{_body(b)}' and a segment on '{_body(a)}' have no contact: make the segment a thin box"
+            f"a {type(b).__name__} on '{_body(b)}' and a {type(a).__name__} on '{_body(a)}' have no contact: {remedy}"
         )
     if _body(a) == _body(b) == GROUND:
         return ()
@@ -172,6 +183,10 @@ def _contact(
         return DiskOnDisk2D(name=name, a=a, b=disk, law=law, friction=friction)
     if isinstance(a, Box2D):
         return DiskOnBox2D(name=name, shape=a, disk=disk, law=law, friction=friction)
+    if isinstance(a, Polygon2D):
+        return DiskOnPolygon2D(name=name, shape=a, disk=disk, law=law, friction=friction)
+    if isinstance(a, Ring2D):
+        return DiskInRing2D(name=name, shape=a, disk=disk, law=law, friction=friction)
     if isinstance(a, Segment2D):
         return DiskOnSegment2D(name=name, segment=a, disk=disk, law=law, friction=friction)
     raise TypeError("a disk touches no shapes of space")

@@ -5,19 +5,24 @@ from tlismni.core import (
     AngleStop2D,
     Belt2D,
     CoordinateRelation,
+    Disk2D,
+    DiskInRing2D,
     KelvinVoigt,
     KnifeEdge2D,
     NewtonImpact,
     PIDController2D,
     Rack2D,
     RelationTerm,
+    RelativeLoad2D,
     RelativeMotor2D,
     RevoluteFriction2D,
+    Ring2D,
     Rope2D,
     Servo2D,
     Sine,
     SlideFriction2D,
     SlideSpring2D,
+    SpringDamper2D,
     TableSpring2D,
     TorsionSpring2D,
 )
@@ -89,6 +94,21 @@ CASES = {
     },
     "controller of what it drives": {
         "forces": [PIDController2D(name="f", **ENDS, target=SINE, gain=-2.0, integral_gain=-0.9, measure="slide")]
+    },
+    **{
+        f"{measure} load": {"forces": [RelativeLoad2D(name="f", **ENDS, load=SINE, measure=measure)]}
+        for measure in ("angle", "slide", "distance")
+    },
+    "spring whose length moves": {
+        "forces": [SpringDamper2D(name="f", **ENDS, stiffness=2.0, damping=0.4, natural_length=SINE)]
+    },
+    "disk in a ring": {
+        "contacts": [
+            DiskInRing2D(
+                name="c", shape=Ring2D(marker=LEFT, radius=0.9), disk=Disk2D(marker=RIGHT, radius=0.5), law=SOFT
+            )
+        ],
+        "mode": ACTIVE,
     },
     "rate servo": {"forces": [Servo2D(name="f", **ENDS, target=SINE, rate_gain=0.7, of_rate=True)]},
     "taut rope": {"contacts": [Rope2D(name="c", **ENDS, length=1.2, law=HARD)], "mode": CLOSED},

@@ -11,7 +11,8 @@ UNITS_DEPEND = {
     # on what they belong to: a coordinate, an input, a parameter, what a signal drives, or an entry of a matrix
     "Axes": {"x", "z"}, "Bushing3D": {"stiffness", "damping"}, "Cable2D": {"shape"},
     "Cable3D": {"shape"}, "Constant": {"value"},
-    "CoordinateContact": {"offset"}, "CoordinateRelation": {"offset"}, "CoordinateTerm": {"factor"}, "Input": {"start"},
+    "CoordinateContact": {"offset"}, "CoordinateRelation": {"offset"}, "CoordinateTerm": {"factor"},
+    "Input": {"start", "gain"},
     "EulerParameters": {"values"}, "FloatingBeam2D": {"amplitudes", "amplitude_rates", "damping_ratio"},
     "Gear3D": {"radius_a", "radius_b"}, "Parameter": {"value", "minimum", "maximum"}, "Polynomial": {"coefficients"},
     "Ramp": {"before", "after"}, "RelationTerm": {"factor"},

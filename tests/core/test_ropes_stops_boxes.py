@@ -13,6 +13,7 @@ from tlismni.core import (
     DiskOnBox2D,
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
+    DiskOnPolygon2D,
     HalfPlane2D,
     KelvinVoigt,
     Marker2D,
@@ -20,6 +21,7 @@ from tlismni.core import (
     ModelError,
     NewtonImpact,
     PointMass2D,
+    Polygon2D,
     RigidBody2D,
     Rope2D,
     Segment2D,
@@ -164,6 +166,17 @@ def test_a_corner_of_a_box_is_a_point(corner):
         return DiskOnDisk2D(name="c", a=tip, b=disk, law=law, friction=friction)
 
     compare(place, point, 0.1)
+
+
+@pytest.mark.parametrize("place", [*(place for place, _ in PLACES.values()), (0.45, 0.3), (-0.45, -0.29)])
+def test_a_polygon_of_four_corners_acts_as_a_box(place):
+    """Beside its sides and about its corners, with friction and rolling."""
+
+    def polygon(disk, law, friction):
+        shape = Polygon2D(marker=BOX.marker, vertices=[(-0.4, 0.25), (-0.4, -0.25), (0.4, -0.25), (0.4, 0.25)])
+        return DiskOnPolygon2D(name="c", shape=shape, disk=disk, law=law, friction=friction)
+
+    compare(place, polygon, 0.1)
 
 
 def test_the_sliding_distance_goes_on_round_the_box():

@@ -114,7 +114,7 @@ def test_the_page_of_animations_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.chdir(tmp_path)
     for block in blocks("animations.md", "python"):
         exec(block, {})
-    assert {path.name for path in tmp_path.iterdir()} == {"crank.html", "hub.html", "toy.html"}
+    assert {path.name for path in tmp_path.iterdir()} == {"crank.html", "hub.html", "toy.html", "top.html", "top.glb"}
 
 
 def test_the_page_of_exponents_runs() -> None:

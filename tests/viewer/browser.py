@@ -48,7 +48,8 @@ def probe(page: Path, script: str, size: tuple[int, int] = (1280, 800)) -> dict[
     probed.write_text(text.replace("</body>", f"{PROBE % body}</body>"), encoding="utf-8")
     done = subprocess.run(
         [
-            browser(), "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+            browser(), "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+            "--disable-background-networking",
             f"--user-data-dir={page.parent / 'profile'}", f"--window-size={size[0]},{size[1]}",
             "--virtual-time-budget=6000", "--dump-dom", f"{probed.as_uri()}#t=0",
         ],

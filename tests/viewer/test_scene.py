@@ -28,6 +28,7 @@ from tlismni.models import load, names
 from tlismni.viewer import CrossSection, animate, show
 from tlismni.viewer.packing import unpack
 from tlismni.viewer.scene import Scene
+from tlismni.viewer.space.build import is_spatial
 
 
 def frame(scene: Scene, name: str) -> Any:
@@ -158,8 +159,8 @@ def test_every_scenario_can_be_shown_at_its_start(name: str) -> None:
     scene = show(load(name).model).scene
     assert len(scene.t) == 1 and np.all(np.isfinite(scene.box))
     data = json.loads(json.dumps(scene.to_data(), allow_nan=False))
-    assert data["format"] == "tlismni-scene-1" and data["dimension"] == 2
-    assert data["parts"] or data["bands"] or data["gauges"]
+    assert data["format"] == "tlismni-scene-1" and data["dimension"] == (3 if is_spatial(load(name).model) else 2)
+    assert data["parts"] or data["bands"] or data["gauges"] or data["solids"]
 
 
 def test_arrays_come_back_from_the_data() -> None:

@@ -10,14 +10,27 @@ from .signals import TimeFunction, time_function, turned
 
 @translates(SpringDamper2D)
 def spring_damper(record: SpringDamper2D, build: Build) -> None:
-    """ObjectConnectorSpringDamper."""
+    """ObjectConnectorSpringDamper; a natural length that moves is a function of the user."""
+    more = {}
+    if signals := record.signals():
+        more["springForceUserFunction"] = _pulled(time_function(signals[0], build.model))
     build.add(
         "ObjectConnectorSpringDamper",
         markerNumbers=[build.point(record.a), build.point(record.b)],
-        referenceLength=record.natural_length,
+        referenceLength=record.fixed_length,
         stiffness=record.stiffness,
         damping=record.damping,
+        **more,
     )
+
+
+def _pulled(length: TimeFunction) -> Any:
+    """Force of a spring whose natural length, beyond the reference of 0, is this function."""
+
+    def force(mbs: Any, t: float, item: int, stretch: float, rate: float, k: float, d: float, f: float) -> float:
+        return k * (stretch - length.value(t)) + d * rate
+
+    return force
 
 
 @translates(Bushing2D)

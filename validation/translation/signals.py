@@ -41,7 +41,7 @@ def time_function(signal: Signal, model: Model) -> TimeFunction:
     """
     if isinstance(signal, InputSignal):
         starts = {i.name: i.start for i in model.inputs}
-        start, rate = starts[signal.channel], starts.get(signal.rate or "", 0.0)
+        start, rate = signal.gain * starts[signal.channel], signal.gain * starts.get(signal.rate or "", 0.0)
         return TimeFunction(lambda t: start + rate * t, lambda t: rate) if rate else _constant(start)
     if isinstance(signal, Constant):
         return _constant(signal.value)

@@ -22,6 +22,7 @@ function addShows() {
     });
     box.append(button);
   }
+  if (D === 3) box.append(sideSelect());
   if (scene.frames.length > 1 && !still) box.append(followSelect());
 }
 

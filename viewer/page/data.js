@@ -19,6 +19,8 @@ function unpacked(value) {
 const scene = unpacked(JSON.parse(document.getElementById("scene").textContent));
 const times = scene.t.numbers;
 const first = times[0], last = times[times.length - 1];
+// Numbers of a place and of a frame's motion.
+const D = scene.dimension, POSE = D === 3 ? 7 : 3;
 const still = times.length < 2 || last <= first;
 
 // Where a time lies among the frames: after frame k, by the part x of the way to the next one. At a jump, where two
@@ -42,16 +44,24 @@ function at(packed, place, width, index) {
   return a + place.x * (n[Math.min(place.k + 1, rows - 1) * width + index] - a);
 }
 
-// x, y and angle of a frame.
+// Of a frame: x, y and angle; in space its place and Euler parameters.
 function pose(frame, where) {
   const m = scene.frames[frame].motion;
-  return [at(m, where, 3, 0), at(m, where, 3, 1), at(m, where, 3, 2)];
+  return Array.from({ length: POSE }, (_, k) => at(m, where, POSE, k));
 }
 
 // A point of a frame in the inertial frame.
 function anchored(anchor, where) {
+  if (D === 3) return turnedBy(pose(anchor.frame, where), anchor.point);
   const [x, y, angle] = pose(anchor.frame, where), c = Math.cos(angle), s = Math.sin(angle), [u, w] = anchor.point;
   return [x + c * u - s * w, y + s * u + c * w];
+}
+
+// A point of a frame that has this place and these Euler parameters.
+function turnedBy([x, y, z, e0, e1, e2, e3], [u, v, w]) {
+  const norm = 2 / (e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3);
+  const a = e2 * w - e3 * v + e0 * u, b = e3 * u - e1 * w + e0 * v, c = e1 * v - e2 * u + e0 * w;
+  return [x + u + norm * (e2 * c - e3 * b), y + v + norm * (e3 * a - e1 * c), z + w + norm * (e1 * b - e2 * a)];
 }
 
 // The largest of a list's numbers but for the topmost few, so that a short blow does not make all else invisible.

@@ -68,6 +68,7 @@ function resized() {
   camera.height = view.clientHeight;
   view.width = Math.round(camera.width * ratio);
   view.height = Math.round(camera.height * ratio);
+  sized();
   if (!camera.moved) fit();
   for (const card of cards) card.picture = null;
   redraw();
@@ -106,5 +107,7 @@ const asked = new URLSearchParams(location.hash.slice(1)).get("t");
 if (asked !== null) seek(Number(asked));
 else if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) play();
 
+const extras = D === 3 ? { ready, placed } : { ready: Promise.resolve() };
+
 // For whoever drives the page from outside: tests, slides.
-window.tlismni = { scene, state, camera, play, pause, seek, paint, place, pose, toScreen };
+window.tlismni = { scene, state, camera, play, pause, seek, paint, place, pose, toScreen, ...extras };

@@ -8,6 +8,7 @@ for (const event of scene.events) {
   if (!blows.has(event.contact)) blows.set(event.contact, []);
   blows.get(event.contact).push(event);
 }
+const hardest = Math.max(0, ...scene.events.map((event) => event.impulse || 0));
 const EDGE = 7;
 
 function lineX(t, wide) {

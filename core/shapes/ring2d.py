@@ -1,0 +1,89 @@
+"""Disk inside a ring: the gap is what the ring's inner radius has left over the disk's distance from its middle.
+
+gap = R - r - d, d the distance of the centres. Where the centres meet d has no direction; the gap is largest there, and
+1e-8 of R beside it gives it one.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar, Literal
+
+from pydantic import model_validator
+
+from ..elements.formula2d import Frame2D
+from ..model.base import Positive, Record
+from ..model.markers import Marker2D
+from .contact2d import Disk2D
+from .scalar_contact2d import ScalarContact, ScalarContact2D, scalar_contact
+
+
+class Ring2D(Record):
+    """A round hole about the marker, touched from inside: the bore of a bearing, a drum."""
+
+    type: Literal["Ring2D"] = "Ring2D"
+    marker: Marker2D
+    """Its centre."""
+    radius: Positive
+    """Of the hole, m."""
+
+
+def ring_gap(ring: Frame2D, centre: Frame2D, ring_radius: float, radius: float) -> float:
+    dx, dy = centre.x - ring.x, centre.y - ring.y
+    return ring_radius - radius - math.sqrt(dx * dx + dy * dy + 1e-16 * ring_radius * ring_radius)
+
+
+def ring_slide(ring: Frame2D, centre: Frame2D, ring_radius: float, radius: float) -> float:
+    """Arc of the place of contact on the ring, counter-clockwise, less the same on the disk: R (phi - alpha) - r (phi -
+    beta), alpha and beta the angles of ring and disk, phi the direction of the centres."""
+    phi = math.atan2(centre.y - ring.y, centre.x - ring.x)
+    return ring_radius * (phi - ring.angle) - radius * (phi - centre.angle)
+
+
+class DiskInRing2D(ScalarContact2D):
+    """A disk, or a point, in a round hole: gap = radius of the hole - radius of the disk - distance of the centres."""
+
+    type: Literal["DiskInRing2D"] = "DiskInRing2D"
+    formula: ClassVar[ScalarContact] = scalar_contact(ring_gap, ring_slide)
+
+    shape: Ring2D
+    """The hole."""
+    disk: Disk2D
+    """The disk in it."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> "DiskInRing2D":
+        if not self.disk.radius < self.shape.radius:
+            raise ValueError(
+                f"contact '{self.name}': a disk of radius {self.disk.radius:g} m does not go into a hole of radius "
+                f"{self.shape.radius:g} m: the hole must be larger"
+            )
+        return self
+
+    @property
+    def ring(self) -> Marker2D:
+        """Centre of the hole."""
+        return self.shape.marker
+
+    @property
+    def centre(self) -> Marker2D:
+        """Of the disk."""
+        return self.disk.marker
+
+    @property
+    def ring_radius(self) -> float:
+        """Of the hole, m."""
+        return self.shape.radius
+
+    @property
+    def radius(self) -> float:
+        """Of the disk, m."""
+        return self.disk.radius
+
+    def disks(self) -> Sequence[Disk2D]:
+        return (self.disk,)
+
+    def lengths(self) -> Sequence[float]:
+        return self.disk.radius, self.shape.radius
+
+    def slide_period(self) -> float:
+        return 2.0 * math.pi * (self.shape.radius - self.disk.radius)

@@ -1,0 +1,1 @@
+"""Mechanisms in space as scenes: solids, their motion, and glTF of both."""

@@ -1,0 +1,216 @@
+"""Joints, forces and planes in space as solids and links."""
+
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from ...core.elements import (
+    AngleDriver3D,
+    AxialSpring3D,
+    Bushing3D,
+    ConstantVelocity3D,
+    Cylindrical3D,
+    Distance3D,
+    Fixed3D,
+    Gear3D,
+    Planar3D,
+    PointOnLine3D,
+    PointOnPlane3D,
+    Prismatic3D,
+    RackAndPinion3D,
+    Revolute3D,
+    RevoluteSpherical3D,
+    RollingDisk3D,
+    RollingSphere3D,
+    Screw3D,
+    Spherical3D,
+    SpringDamper3D,
+    TorsionSpring3D,
+    Universal3D,
+)
+from ...core.elements.cable_clamp3d import CableClamp3D
+from ...core.model.markers import GROUND, Marker3D
+from ...core.shapes.contact3d import HalfSpace3D, SphereOnHalfSpace3D
+from ...core.shapes.stop3d import Rope3D
+from ..scene import Floats
+from . import meshes
+from .colours import BASE, FLOOR, JOINT, WIRE
+from .stage import Stage3D
+
+PIN, KNUCKLE, BAR, BLOCK = 0.018, 0.022, 0.009, 0.03
+"""Radii of hinges, balls and guides, and half the edge of blocks, in parts of the scene's size."""
+MARGIN = 0.12
+"""By which planes and guides go beyond what moves on them."""
+FIELDS = 12
+"""Of a plane, along its longer edge, about."""
+
+
+@singledispatch
+def place(element: Any, stage: Stage3D) -> None:
+    """Put an element into the scene; what has no symbol stays out."""
+
+
+@place.register
+def _(element: Spherical3D | ConstantVelocity3D, stage: Stage3D) -> None:
+    stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
+    _support(element, stage)
+
+
+@place.register
+def _(element: Revolute3D | AngleDriver3D, stage: Stage3D) -> None:
+    u = stage.size
+    stage.solid(element.b, meshes.cylinder(), (PIN * u, PIN * u, 0.08 * u), JOINT)
+    _support(element, stage)
+
+
+@place.register
+def _(element: Universal3D, stage: Stage3D) -> None:
+    u = 0.6 * PIN * stage.size
+    # the cross: the x axis of a, the y axis of b
+    for marker, along in ((element.a, (1.0, 0.0, 0.0)), (element.b, (0.0, 1.0, 0.0))):
+        way = 0.045 * stage.size * (marker.axes() @ np.array(along))
+        ends = [np.array(marker.point) + sign * way for sign in (-1.0, 1.0)]
+        (xa, ya, za), (xb, yb, zb) = (end.tolist() for end in ends)
+        stage.rod(marker.body, (xa, ya, za), (xb, yb, zb), u, meshes.cylinder(), JOINT)
+    _support(element, stage)
+
+
+@place.register
+def _(element: Fixed3D, stage: Stage3D) -> None:
+    stage.solid(element.b, meshes.box(), (1.2 * BLOCK * stage.size,) * 3, JOINT)
+    _support(element, stage)
+
+
+@place.register
+def _(element: CableClamp3D, stage: Stage3D) -> None:
+    colour = BASE if element.marker.body == GROUND else JOINT
+    stage.solid(element.marker, meshes.box(), (BLOCK * stage.size,) * 3, colour)
+
+
+@place.register
+def _(element: Cylindrical3D | Prismatic3D | Screw3D | PointOnLine3D, stage: Stage3D) -> None:
+    """A bar along the z axis of a, as long as its way, and a sleeve on b."""
+    u = stage.size
+    along = np.sum((stage.at(element.b) - stage.at(element.a)) * stage.axes(element.a)[:, :, 2], axis=1)
+    low, high = min(0.0, float(along.min())) - MARGIN * u, max(0.0, float(along.max())) + MARGIN * u
+    radius = BAR * u
+    stage.solid(element.a, meshes.cylinder(), (radius, radius, high - low), BASE, shift=(0.0, 0.0, 0.5 * (low + high)))
+    if isinstance(element, Prismatic3D):
+        stage.solid(element.b, meshes.box(), (2.0 * BLOCK * u, 2.0 * BLOCK * u, 3.0 * BLOCK * u), JOINT)
+    elif isinstance(element, PointOnLine3D):
+        stage.solid(element.b, meshes.ball(), (KNUCKLE * u,) * 3, JOINT)
+    else:
+        stage.solid(element.b, meshes.cylinder(), (BLOCK * u, BLOCK * u, 3.0 * BLOCK * u), JOINT)
+
+
+@place.register
+def _(element: Planar3D | PointOnPlane3D, stage: Stage3D) -> None:
+    """A pane that shines through, where b moves on it."""
+    away = stage.at(element.b) - stage.at(element.a)
+    local = np.einsum("fi,fij->fj", away, stage.axes(element.a))[:, :2]
+    low, high = np.minimum(local.min(axis=0), 0.0), np.maximum(local.max(axis=0), 0.0)
+    _pane(stage, element.a, low, high, 0.35)
+    stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
+
+
+@place.register
+def _(element: Distance3D | RevoluteSpherical3D, stage: Stage3D) -> None:
+    stage.link(element.name, "rod", element.a, element.b)
+    for marker in (element.a, element.b):
+        stage.solid(marker, meshes.ball(), (0.7 * KNUCKLE * stage.size,) * 3, JOINT)
+    _support(element, stage)
+
+
+@place.register
+def _(element: RollingSphere3D, stage: Stage3D) -> None:
+    stage.solid(element.b, meshes.ball(), (element.radius,) * 3)
+    _ground_under(stage, element.a)
+
+
+@place.register
+def _(element: RollingDisk3D, stage: Stage3D) -> None:
+    r = element.radius
+    stage.solid(element.b, meshes.cylinder(marked=True), (r, r, max(2.0 * element.rim_radius, 0.06 * r)))
+    _ground_under(stage, element.a)
+
+
+@place.register
+def _(element: Gear3D, stage: Stage3D) -> None:
+    for marker, radius in ((element.wheel_a, element.radius_a), (element.wheel_b, element.radius_b)):
+        r, thick = abs(radius), 0.04 * stage.size
+        stage.solid(marker, meshes.cylinder(marked=True), (r, r, thick), opacity=1.0 if radius > 0.0 else 0.3)
+
+
+@place.register
+def _(element: RackAndPinion3D, stage: Stage3D) -> None:
+    r, u = abs(element.radius), stage.size
+    stage.solid(element.wheel, meshes.cylinder(marked=True), (r, r, 0.04 * u))
+    stage.solid(element.rack, meshes.box(), (BLOCK * u, BLOCK * u, 6.0 * r), JOINT)
+
+
+@place.register
+def _(element: SpringDamper3D | AxialSpring3D, stage: Stage3D) -> None:
+    damped, stiff = element.damping > 0.0, element.stiffness > 0.0
+    kind = "spring-damper" if damped and stiff else "damper" if damped else "spring"
+    stage.link(element.name, kind, element.a, element.b)
+    _support(element, stage)
+
+
+@place.register
+def _(element: TorsionSpring3D, stage: Stage3D) -> None:
+    u = 0.032 * stage.size
+    stage.solid(element.a, meshes.coil(), (u, u, 0.05 * stage.size), WIRE, shift=(0.0, 0.0, -0.025 * stage.size))
+
+
+@place.register
+def _(element: Bushing3D, stage: Stage3D) -> None:
+    stage.solid(element.b, meshes.ball(), (0.035 * stage.size,) * 3, WIRE, opacity=0.55)
+    _support(element, stage)
+
+
+@place.register
+def _(element: Rope3D, stage: Stage3D) -> None:
+    stage.link(element.name, "rope", element.a, element.b)
+    _support(element, stage)
+
+
+@place.register
+def _(element: SphereOnHalfSpace3D, stage: Stage3D) -> None:
+    _ground_under(stage, element.plane.marker)
+
+
+@place.register
+def _(element: HalfSpace3D, stage: Stage3D) -> None:
+    _ground_under(stage, element.marker)
+
+
+def _support(element: Any, stage: Stage3D) -> None:
+    """A block where something is held by the ground."""
+    for marker in (element.a, element.b):
+        if marker.body == GROUND:
+            edge = 1.5 * BLOCK * stage.size
+            stage.solid(Marker3D(point=marker.point), meshes.box(), (edge, edge, edge), BASE)
+
+
+def _ground_under(stage: Stage3D, marker: Marker3D) -> None:
+    """A plane, once; it is drawn when all else is there."""
+    if marker not in stage.planes:
+        stage.planes.append(marker)
+
+
+def add_planes(stage: Stage3D, places: Floats) -> None:
+    """The planes, as far as anything of the scene (places (N, 3)) comes."""
+    for marker in stage.planes:
+        origin, axes = stage.at(marker)[0], stage.axes(marker)[0]
+        local = np.concatenate([(places - origin) @ axes, np.zeros((1, 3))])[:, :2]
+        _pane(stage, marker, local.min(axis=0), local.max(axis=0), 1.0)
+
+
+def _pane(stage: Stage3D, marker: Marker3D, low: Any, high: Any, opacity: float) -> None:
+    low, high = low - MARGIN * stage.size, high + MARGIN * stage.size
+    wide, deep = (high - low).tolist()
+    field = max(wide, deep) / FIELDS
+    cells = max(1, round(wide / field)), max(1, round(deep / field))
+    x, y = (0.5 * (low + high)).tolist()
+    stage.solid(marker, meshes.checkered(*cells), (wide, deep, 1.0), FLOOR, shift=(x, y, 0.0), opacity=opacity)

@@ -1,0 +1,150 @@
+"""What a body in space looks like: the shapes that touch, or the uniform body with its inertia."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...core.description import Model
+from ...core.elements import RigidBody3D, SpatialFrame
+from ...core.model.attitude import parameters_of_matrix
+from ...core.model.markers import Marker3D
+from ...core.shapes.contact3d import Contact3D, Sphere3D
+from ...core.shapes.cornered3d import Box3D, Capsule3D, Cornered3D
+from ...core.shapes.group3d import ContactGroup3D
+from ..scene import Floats, Solid
+from . import meshes
+from .stage import Stage3D
+
+ROD = 0.010
+"""Radius of the bars from a body's centre to what is attached, in parts of the scene's size."""
+LINK = 0.016
+"""The same of a body that is nothing but a link: with two such bars or more."""
+POINT = 0.018
+"""Radius of a point mass."""
+LARGEST = 0.3
+"""Reach of a body that is made up from its inertia: a larger one would hide the mechanism, and is no body like that."""
+ALIKE = 1e-6
+"""Relative difference of moments of inertia that count as equal."""
+CORNERS = 4
+"""Fewest points that touch and make a body of a hull."""
+
+
+def add_body(stage: Stage3D, body: SpatialFrame) -> None:
+    """The solids of a body."""
+    size = stage.size
+    ends = [point for point in attached(stage.motion.model, body.name) if math.hypot(*point) > 2.0 * ROD * size]
+    shaped = body.name in stage.shaped or _touching(stage, body.name)
+    link = not shaped and len(ends) > 1
+    if not shaped and not link and not (isinstance(body, RigidBody3D) and _uniform(stage, body)):
+        stage.solid(Marker3D(body=body.name), meshes.ball(), (POINT * size,) * 3)
+    for end in ends:
+        stage.rod(body.name, (0.0, 0.0, 0.0), end, (LINK if link else ROD) * size, meshes.cylinder())
+
+
+def attached(model: Model, body: str) -> list[tuple[float, float, float]]:
+    """Points of a body where joints and forces are."""
+    found = [
+        marker.point
+        for element in (*model.joints, *model.forces)
+        for marker in element.markers()
+        if marker.body == body and isinstance(marker, Marker3D)
+    ]
+    return list(dict.fromkeys(found))
+
+
+def _touching(stage: Stage3D, body: str) -> bool:
+    """The shapes that a body touches with; False if there are none."""
+    grouped = [shape for shape in _grouped(stage.motion.model) if shape.marker.body == body]
+    for shape in grouped:
+        if isinstance(shape, Cornered3D):
+            add_cornered(stage, shape)
+        else:
+            add_ball(stage, shape)
+    points: list[Floats] = []
+    found = bool(grouped)
+    for ball in single_balls(stage.motion.model):
+        if ball.marker.body == body and ball.radius > 0.0:
+            add_ball(stage, ball)
+            found = True
+        elif ball.marker.body == body:
+            points.append(np.array(ball.marker.point))
+    if len(points) >= CORNERS and np.linalg.matrix_rank(np.array(points) - points[0], tol=1e-9 * stage.size) == 3:
+        corners = tuple((float(x), float(y), float(z)) for x, y, z in points)
+        stage.solid(Marker3D(body=body), meshes.hull(corners), (1.0, 1.0, 1.0))
+        found = True
+    return found
+
+
+def _grouped(model: Model) -> Iterator[Sphere3D | Cornered3D]:
+    for group in model.groups:
+        if isinstance(group, ContactGroup3D):
+            yield from (*group.spheres, *group.boxes, *group.polyhedra, *group.capsules)
+
+
+def single_balls(model: Model) -> list[Sphere3D]:
+    """The balls and points of contacts that stand by themselves, each once."""
+    made = {contact.name for group in model.groups for contact in group.contacts()}
+    contacts = [c for c in model.contacts if isinstance(c, Contact3D) and c.name not in made]
+    balls = [ball for contact in contacts for ball in contact.spheres()]
+    return [ball for k, ball in enumerate(balls) if ball not in balls[:k]]
+
+
+def add_ball(stage: Stage3D, ball: Sphere3D) -> None:
+    """A ball; a point is a small one."""
+    radius = max(ball.radius, 0.004 * stage.size)
+    stage.solid(ball.marker, meshes.ball(), (radius,) * 3)
+
+
+def add_cornered(stage: Stage3D, shape: Cornered3D) -> None:
+    """A box, a capsule, or the hull of rounded corners."""
+    if isinstance(shape, Box3D):
+        stage.solid(shape.marker, meshes.box(), shape.size)
+    elif isinstance(shape, Capsule3D):
+        r = shape.radius
+        stage.solid(shape.marker, meshes.cylinder(marked=True), (r, r, shape.length))
+        for end in (0.5, -0.5):
+            stage.solid(shape.marker, meshes.ball(), (r, r, r), shift=(0.0, 0.0, end * shape.length))
+    else:
+        places = shape.places()
+        if shape.rounding() > 0.0:
+            places = (places[:, None] + shape.rounding() * meshes.ball().vertices[::4]).reshape(-1, 3)
+        if np.linalg.matrix_rank(places - places[0], tol=1e-9 * stage.size) == 3:
+            corners = tuple((float(x), float(y), float(z)) for x, y, z in places)
+            stage.solid(shape.marker, meshes.hull(corners), (1.0, 1.0, 1.0))
+
+
+def _uniform(stage: Stage3D, body: RigidBody3D) -> bool:
+    """The ball, cylinder or box of uniform density with the body's mass and inertia; False if it would be too large."""
+    xx, yy, zz = body.inertia
+    xy, xz, yz = body.inertia_products
+    moments, axes = np.linalg.eigh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    odd = _odd_one(moments)
+    a, b, c = (moments / body.mass).tolist()
+    if odd is None:  # J = 2/5 m r^2
+        mesh, size, reach = meshes.ball(), np.full(3, math.sqrt(2.5 * a)), math.sqrt(2.5 * a)
+    elif odd < 3:  # along the axis m r^2/2, across it m (3 r^2 + h^2)/12
+        along, across = moments[odd] / body.mass, moments[(odd + 1) % 3] / body.mass
+        r, h = math.sqrt(2.0 * along), math.sqrt(max(12.0 * across - 6.0 * along, 0.0))
+        axes = np.roll(axes, 2 - odd, axis=1)
+        mesh, size, reach = meshes.cylinder(marked=True), np.array([r, r, h]), max(r, 0.5 * h)
+    else:  # J_xx = m (y^2 + z^2)/12
+        size = np.sqrt(np.maximum(6.0 * np.array([b + c - a, a + c - b, a + b - c]), 0.0))
+        mesh, reach = meshes.box(), 0.5 * float(size.max())
+    alone = len(stage.motion.model.bodies) == 1 and not stage.motion.model.joints
+    if reach > LARGEST * stage.size and not alone:
+        return False
+    size = np.maximum(size, 0.008 * stage.size)
+    e0, e1, e2, e3 = parameters_of_matrix(axes)
+    x, y, z = size.tolist()
+    stage.scene.solids.append(Solid(stage.number(body.name), mesh, turn=(e0, e1, e2, e3), size=(x, y, z)))
+    return True
+
+
+def _odd_one(moments: Floats) -> int | None:
+    """Which of three moments differs from two equal ones; None if all are equal, 3 if all differ."""
+    small = ALIKE * float(moments.max())
+    if float(np.ptp(moments)) <= small:
+        return None
+    return next((k for k in range(3) if abs(moments[(k + 1) % 3] - moments[(k + 2) % 3]) <= small), 3)
