@@ -8,7 +8,7 @@ OUT := out/demo
 # what an installation depends on: the FMU shim is compiled by it
 SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/shim/*)
 
-.PHONY: demo test lint docs bench three clean help
+.PHONY: demo test lint docs bench three dist clean help
 .DEFAULT_GOAL := help
 
 help:
@@ -17,6 +17,7 @@ help:
 	@echo "make lint   ruff"
 	@echo "make docs   the docs as a site, in build/site"
 	@echo "make bench  speed and work-precision against exudyn (minutes)"
+	@echo "make dist   wheels with machine code for all platforms, and the sources' archive, in dist (tens of minutes)"
 	@echo "make three  viewer/page/three.js anew, from viewer/three; needs node and npm"
 	@echo "make clean  remove .venv, build products and caches"
 
@@ -41,6 +42,21 @@ bench: $(VENV)/.installed-dev
 	cd benchmarks && ../$(BIN)/python chain_speed.py
 	cd benchmarks && ../$(BIN)/python work_precision.py
 	cd benchmarks && ../$(BIN)/python rod_cost.py
+
+TARGETS := linux-x86_64 linux-aarch64 musl-x86_64 musl-aarch64 windows-x86_64 windows-aarch64 macos-x86_64 macos-aarch64
+
+# one recording, machine code of it for each platform, a wheel of each
+dist: $(VENV)/.installed-dev
+	$(BIN)/pip install --disable-pip-version-check --quiet -e ".[cross]" "setuptools>=77"
+	rm -rf build/dist
+	$(BIN)/python -m tlismni.core.ahead $(TARGETS:%=--target %) --output build/dist
+	for target in $(TARGETS); do \
+		rm -rf build/lib build/bdist.* build/temp.*; \
+		TLISMNI_AHEAD=build/dist TLISMNI_TARGET=$$target $(BIN)/pip wheel --disable-pip-version-check --quiet \
+			--no-deps --no-build-isolation -w dist . || exit 1; \
+	done
+	$(BIN)/python -c 'from setuptools.build_meta import build_sdist; build_sdist("dist")'
+	@ls -l dist
 
 three:
 	cd viewer/three && npm install --no-audit --no-fund && npm run build && rm -rf node_modules package-lock.json

@@ -4,8 +4,10 @@ asked for; everything else stands in pyproject.toml.
 The shim is a plain shared library, no extension module: it is not tied to a Python version. It is compiled with
 $CC, or cc, gcc, clang, or where there is none with `python -m ziglang cc`, which is then a build requirement.
 
-The machine code takes two minutes and needs the core's own packages and numba, so it is made only with TLISMNI_AHEAD=1
-(`TLISMNI_AHEAD=1 pip wheel . --no-build-isolation --no-deps`). A wheel that has it does not depend on numba.
+The machine code takes minutes and needs the core's own packages and numba, so it is made only with TLISMNI_AHEAD=1
+(`TLISMNI_AHEAD=1 pip wheel . --no-build-isolation --no-deps`). A wheel that has it does not depend on numba. With
+TLISMNI_AHEAD=FOLDER it is taken from there, as `python -m tlismni.core.ahead --output FOLDER` has made it, and with
+TLISMNI_TARGET=NAME the wheel is for another platform, which takes ziglang (`make dist` makes all).
 """
 
 import os
@@ -26,7 +28,24 @@ FLAGS = ["-std=c11", "-O2", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra"
 SYSTEM_FLAGS = {"win32": [], "darwin": ["-fPIC"]}.get(sys.platform, ["-fPIC", "-ldl", "-lpthread"])
 
 
-AHEAD = os.environ.get("TLISMNI_AHEAD") == "1"
+TARGETS = {
+    "linux-x86_64": ("x86_64-linux-gnu.2.17", ".so", "manylinux_2_17_x86_64.manylinux2014_x86_64"),
+    "linux-aarch64": ("aarch64-linux-gnu.2.17", ".so", "manylinux_2_17_aarch64.manylinux2014_aarch64"),
+    "musl-x86_64": ("x86_64-linux-musl", ".so", "musllinux_1_1_x86_64"),
+    "musl-aarch64": ("aarch64-linux-musl", ".so", "musllinux_1_1_aarch64"),
+    "windows-x86_64": ("x86_64-windows-gnu", ".dll", "win_amd64"),
+    "windows-aarch64": ("aarch64-windows-gnu", ".dll", "win_arm64"),
+    "macos-x86_64": ("x86_64-macos.11.0", ".dylib", "macosx_11_0_x86_64"),
+    "macos-aarch64": ("aarch64-macos.11.0", ".dylib", "macosx_11_0_arm64"),
+}
+"""Platforms that a wheel can be made for from another: zig's name, the suffix of libraries, the tag of the wheel."""
+TARGET = os.environ.get("TLISMNI_TARGET", "")
+if TARGET:
+    if TARGET not in TARGETS:
+        raise SystemExit(f"TLISMNI_TARGET={TARGET} is unknown: there are {', '.join(TARGETS)}")
+    SUFFIX = TARGETS[TARGET][1]
+    SYSTEM_FLAGS = ["-fPIC", "-ldl", "-lpthread"] if SUFFIX == ".so" else ["-fPIC"] if SUFFIX == ".dylib" else []
+AHEAD = os.environ.get("TLISMNI_AHEAD", "")
 NEEDED = ["numpy>=2.0", "scipy>=1.13", "pydantic>=2.9", *([] if AHEAD else ["numba>=0.61"])]
 
 
@@ -49,14 +68,26 @@ class BuildShim(build_ext):
         """One call of the compiler."""
         target = Path(self.get_ext_fullpath(ext.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        command = compiler() or [sys.executable, "-m", "ziglang", "cc"]
+        zig = [sys.executable, "-m", "ziglang", "cc"]
+        command = [*zig, "-target", TARGETS[TARGET][0], "-s"] if TARGET else compiler() or zig
         self.spawn([*command, *FLAGS, "-o", str(target), *ext.sources, *SYSTEM_FLAGS])
 
     def run(self) -> None:
         """The shim, and the machine code of the sources that are in the wheel."""
         super().run()
         if AHEAD and not self.inplace:
-            self.make_machine_code(Path(self.build_lib).resolve())
+            root = Path(self.build_lib).resolve()
+            if AHEAD == "1":
+                self.make_machine_code(root)
+            else:
+                self.take_machine_code(Path(AHEAD), root)
+
+    def take_machine_code(self, folder: Path, root: Path) -> None:
+        """Put what was made before beside the sources."""
+        found = [path for path in folder.rglob("tlismni_core.*") if not TARGET or path.parent.name == TARGET]
+        if len(found) != 1:
+            raise SystemExit(f"in '{folder}' there is not one library for {TARGET or 'this machine'}, but {len(found)}")
+        shutil.copy(found[0], root / "tlismni" / "core" / "compiled" / found[0].name)
 
     def make_machine_code(self, root: Path) -> None:
         """Let the copied sources make their library, and put it beside them."""
@@ -79,7 +110,7 @@ class PlatformWheel(bdist_wheel):
 
     def get_tag(self) -> tuple[str, str, str]:
         """Python, ABI, platform."""
-        return "py3", "none", super().get_tag()[2]
+        return "py3", "none", TARGETS[TARGET][2] if TARGET else super().get_tag()[2]
 
 
 setup(

@@ -149,6 +149,9 @@ Protect = Annotated[
     bool,
     typer.Option("--protect", help="With --native: show no parameters, laws and settings of the model."),
 ]
+Sources = Annotated[
+    bool, typer.Option("--sources", help="With --native: put the model's text, page and pictures into it.")
+]
 Arrays = Annotated[
     bool, typer.Option("--arrays", help="FMI 3: describe vectors as arrays too; not every master reads such FMUs.")
 ]

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, model_validator
 
 from .elements import Body, BodyElement, Element, Force, Joint
 from .errors import ModelError
+from .model.array_files import beside
 from .model.base import Gravity, Record
 from .model.channels import Formula, Input, Parameter
 from .model.files import is_yaml, read_json, read_yaml, with_lines, write_yaml
@@ -283,7 +284,8 @@ class Model(Record):
         except OSError as error:
             raise ModelError(f"model file '{path}' cannot be read: {error.strerror or error}") from None
         try:
-            return (cls.from_yaml if is_yaml(path) else cls.from_json)(text, allow_imports=allow_imports)
+            with beside(path):
+                return (cls.from_yaml if is_yaml(path) else cls.from_json)(text, allow_imports=allow_imports)
         except ModelError as error:
             raise ModelError(f"model file '{path}': {with_lines(error, text)}", error.problems) from None
 

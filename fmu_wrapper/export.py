@@ -1,15 +1,10 @@
 """Writes a model or scenario as an FMU."""
 
-import getpass
-import json
 import logging
-import os
 import platform
-import re
 import sys
 import uuid
 from collections.abc import Callable, Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +21,8 @@ from .extras import require
 from .libpython import python_record
 from .model_description import fmi2_description
 from .model_description3 import fmi3_description
-from .native_export import native_binaries, native_resources, native_table
+from .naming import c_identifier, date_of_export, json_bytes, user_name
+from .native_export import NativeRun, native_binaries, variables_file
 from .nominal import with_nominals
 from .own_code import OwnCode
 from .platforms import PLATFORMS, choose, this_platform
@@ -60,6 +56,7 @@ def export_fmu(
     native: bool = False,
     outputs: Sequence[str] = (),
     protect: bool = False,
+    sources: bool = False,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
@@ -89,6 +86,8 @@ def export_fmu(
     outputs : names of the channels that become outputs; "*" and "?" stand for any characters ("stop.*"). All if none.
     protect : show nothing of what the model is made of: no parameters, laws, settings, descriptions (docs/fmu.md says
         what can be seen still). Only an FMU without Python (`native`) can do that: the other kind carries the model.
+    sources : put the model's text, a page about its parts and pictures into an FMU without Python (`native`) too; the
+        other kind has them in any case.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -114,6 +113,11 @@ def export_fmu(
             "an FMU that runs with Python carries the model as text, so it cannot be protected: export it with "
             "native=True (--native) too, whose FMU holds numbers only"
         )
+    if sources and (protect or not native):
+        raise ExportError(
+            "sources are for FMUs without Python (native) that are not protected: "
+            + ("leave out protect, or sources" if protect else "one that runs with Python carries the model anyway")
+        )
     if native and (bundle or arrays):
         raise ExportError(
             "an FMU without Python (native) has no package to bundle and describes no arrays: leave out "
@@ -132,8 +136,11 @@ def export_fmu(
     variables = with_nominals(slave.variables, slave.model, slave.settings, simulation)
     channels = [v.name for v in variables.block("channel")]
     variables = with_outputs(variables, [outputs] if isinstance(outputs, str) else outputs)
+    run = None
     if native:
-        variables = native_table(without_secrets(variables) if protect else variables)
+        variables = without_secrets(variables) if protect else variables
+        run = NativeRun.of(slave.model, slave.settings, variables, slave.origin)
+        variables = run.table(variables)
     slave = Slave(slave.model, variables=variables, origin=slave.origin, **solver_data)
     identifier, code = c_identifier(slave.model.name), OwnCode.of(slave.model)
     content = slave.identity + (code.digest if code.types else "")
@@ -142,17 +149,20 @@ def export_fmu(
     text = slave.model.name if protect else text
     generator = f"tlismni {package_version()}"
     about = About(
-        identifier, slave.model.name, token, text, generator, derivatives=not native, arrays=arrays, native=native,
-        author=_user() if author is None else author, version=slave.identity[:12] if version is None else version,
-        date=_date(), needs_tool=needs_execution_tool and not native,
+        identifier, slave.model.name, token, text, generator, derivatives=True, arrays=arrays, native=native,
+        author=user_name() if author is None else author, version=slave.identity[:12] if version is None else version,
+        date=date_of_export(), needs_tool=needs_execution_tool and not native,
     )  # fmt: skip
     description, folder = VERSIONS[fmi_version]
     described = description(slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables))
-    if native:
+    if run is not None:
+        _say_what_is_fixed(run, slave.model.name)
         files = {
             "modelDescription.xml": described,
-            **native_resources(slave.model, slave.settings, slave.variables, token, channels),
+            "resources/model.image": run.image,
+            "resources/variables.bin": variables_file(slave.variables, token, slave.settings.rtol, channels),
             **native_binaries(folder(), identifier, fmi_version, platforms),
+            **(_of_model(slave, about, fmi_version) if sources else {}),
         }
         return write_archive(path, files)
     settings = {
@@ -169,8 +179,8 @@ def export_fmu(
         "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
         **_pictures(slave, fmi_version),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
-        f"resources/{SETTINGS_FILE}": _json(settings),
-        f"resources/{PYTHON_FILE}": _json(python_record(digest)),
+        f"resources/{SETTINGS_FILE}": json_bytes(settings),
+        f"resources/{PYTHON_FILE}": json_bytes(python_record(digest)),
         "resources/libpython.txt": library_record().encode(),
         **{f"resources/{name}": (HERE / name).read_bytes() for name in ("boot.py", "python_library.py")},
         **({} if archive is None else {"resources/tlismni.zip": archive}),
@@ -186,6 +196,14 @@ def export_fmu(
     return write_archive(path, files)
 
 
+def _say_what_is_fixed(run: NativeRun, name: str) -> None:
+    reasons: dict[str, list[str]] = {}
+    for parameter, why in run.fixed.items():
+        reasons.setdefault(why, []).append(parameter)
+    for why, parameters in reasons.items():
+        logging.getLogger(__name__).info("'%s', parameters fixed in the FMU: %s: %s", name, ", ".join(parameters), why)
+
+
 def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> dict[str, bytes]:
     """The binary for this machine, and those for other platforms, which replace it if it is among them: they run on
     older systems too."""
@@ -197,6 +215,15 @@ def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> di
         target = PLATFORMS[name]
         files[f"{target.folder(fmi_version)}/{identifier}{target.suffix}"] = binary(name).read_bytes()
     return {f"binaries/{name}": data for name, data in files.items()}
+
+
+def _of_model(slave: Slave, about: About, fmi_version: str) -> dict[str, bytes]:
+    """What shows the model: its text, a page about its parts, pictures."""
+    return {
+        "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
+        **_pictures(slave, fmi_version),
+        f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
+    }
 
 
 def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
@@ -262,39 +289,3 @@ def known_version(version: str) -> str:
     if full not in VERSIONS:
         raise ExportError(f"fmi_version '{version}': there is no such FMI version; use one of {list(VERSIONS)}")
     return full
-
-
-def _user() -> str | None:
-    """Who is logged in; None where nobody is known."""
-    try:
-        return getpass.getuser()
-    except (OSError, KeyError, ImportError):  # a container's user may have no name
-        return None
-
-
-def _date() -> str:
-    """Now, as FMI writes it, or the time (s) in SOURCE_DATE_EPOCH, for files that can be made again byte by byte.
-
-    Raises
-    ------
-    ExportError : if that is no time.
-    """
-    given = os.environ.get("SOURCE_DATE_EPOCH")
-    try:
-        now = datetime.now(UTC) if not given else datetime.fromtimestamp(int(given), UTC)
-    except (ValueError, OverflowError, OSError):
-        raise ExportError(f"SOURCE_DATE_EPOCH = '{given}' is no time: give seconds since 1970, or unset it") from None
-    return now.strftime("%Y-%m-%dT%H:%M:%SZ")
-
-
-def c_identifier(name: str) -> str:
-    """`name` as a C identifier."""
-    text = re.sub(r"\W", "_", name, flags=re.ASCII) or "model"
-    return f"_{text}" if text[0].isdigit() else text
-
-
-def _json(data: Any) -> bytes:
-    try:
-        return json.dumps(data, indent=1, allow_nan=False).encode()
-    except (TypeError, ValueError) as error:
-        raise ExportError(f"the solver settings are no JSON data: {error}; use numbers and strings") from None

@@ -30,7 +30,7 @@ CAPABILITIES = {
     "canSerializeFMUstate": "true",
 }
 
-WITHOUT_PYTHON = {"canInterpolateInputs": "false", "maxOutputDerivativeOrder": "0"}
+WITHOUT_PYTHON = {"canInterpolateInputs": "false"}
 """Where an FMU without Python differs."""
 
 _TYPES = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "string": "String"}

@@ -33,12 +33,6 @@ CAPABILITIES = {
     "providesEvaluateDiscreteStates": "false",
 }
 
-WITHOUT_PYTHON = {
-    "maxOutputDerivativeOrder": "0", "providesIntermediateUpdate": "false",
-    "canReturnEarlyAfterIntermediateUpdate": "false",
-}  # fmt: skip
-"""Where an FMU without Python differs."""
-
 _TYPES = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "string": "String"}
 
 
@@ -48,7 +42,7 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     derivatives = dict.fromkeys(("providesDirectionalDerivatives", "providesAdjointDerivatives"), about.derivatives)
     add(
         root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool,
-        **(CAPABILITIES | (WITHOUT_PYTHON if about.native else {})), **derivatives,
+        **CAPABILITIES, **derivatives,
     )  # fmt: skip
     add_units(root, table)
     if types := enumerations(table):
@@ -60,7 +54,7 @@ def fmi3_description(table: VariableTable, settings: Settings, about: About, kno
     variables = add(root, "ModelVariables")
     for variable in table.variables:
         own = attributes(variable)
-        if variable.role in ("input", "output") and not about.native:
+        if variable.role in ("input", "output"):
             own["intermediateUpdate"] = True
         if variable.kind == "string":
             element = add(variables, "String", **own)

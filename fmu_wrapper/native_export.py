@@ -6,17 +6,22 @@ It holds numbers, not the model: no JSON, no drawing, no page about the model's 
 import math
 import os
 import struct
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..core.compiled.library import LIBRARY, core_digest
 from ..core.description import Model
-from ..core.native import NativeError, image_of
-from .errors import ExportError
+from ..core.native import NativeError
+from ..core.native.export import image_and_parameters
+from ..core.native.parameters import Parameter, Setting
+from .effective import effective
+from .errors import ExportError, FmuValueError
+from .origin import Origin
 from .platforms import PLATFORMS, choose, this_platform
 from .run import MAX_STEPS
 from .settings import Settings
+from .values import Values
 from .variables import Variable, VariableTable
 
 LIBRARIES = "TLISMNI_LIBRARIES"
@@ -26,49 +31,75 @@ _TARGETS = {
     "aarch64-darwin": "macos-aarch64", "x86_64-windows": "windows-x86_64",
 }  # fmt: skip
 _KINDS = {"real": 0, "integer": 1, "boolean": 2}
-_SOURCES = {"time": 0, "constant": 1, "input": 2, "channel": 3, "figure": 4}
+_SOURCES = {"time": 0, "constant": 1, "input": 2, "parameter": 3, "channel": 4, "figure": 5}
 _MAGIC, _VERSION, _TOKEN = b"TLISVARS", 1, 64
 
 
-def native_table(table: VariableTable) -> VariableTable:
-    """The variables of an FMU without Python: parameters are constants, there are no strings."""
-    kept = [v for v in table.variables if v.kind != "string"]
-    return VariableTable(
-        replace(v, reference=k, role="constant" if v.role == "parameter" else v.role, minimum=_minimum(v),
-                maximum=None if v.role == "parameter" else v.maximum)
-        for k, v in enumerate(kept, start=1)
-    )  # fmt: skip
+@dataclass(frozen=True)
+class NativeRun:
+    """The image of a run, and which parameters it has; `fixed` says of the others by name why they are constants."""
+
+    image: bytes
+    parameters: tuple[Parameter, ...]
+    fixed: Mapping[str, str]
+
+    @classmethod
+    def of(cls, model: Model, settings: Settings, table: VariableTable, origin: Origin | None) -> "NativeRun":
+        """The run of the default experiment of `model` with `settings`; parameters are those of `table` that can be.
+
+        Raises
+        ------
+        ExportError : if the model needs Python when it runs; it says for what.
+        """
+        if settings.t_end is None:
+            raise ExportError(
+                "an FMU without Python is prepared by its default experiment, which has no end here: give t_end (s)"
+            )
+        solver = {
+            "method": settings.method, "rtol": settings.rtol, "atol": settings.tolerance, "step": settings.step or None,
+            **{"max_steps": MAX_STEPS, **settings.options},
+        }  # fmt: skip
+        parameters, fixed = table.of_role("parameter"), {}
+        wanted = []
+        for v in parameters:
+            if v.block in ("scenario", "parameter") and v.kind == "real":
+                wanted.append(_setting(v, model, settings, table, origin))
+            else:
+                fixed[v.name] = "it is a setting of the solver" if v.block == "solver" else "it is no real number"
+        try:
+            image, found, others = image_and_parameters(model, settings.t_end, wanted, **solver)
+        except NativeError as error:
+            raise ExportError(f"'{model.name}' cannot be an FMU without Python: {error}") from error
+        return cls(image, tuple(found), {**fixed, **others})
+
+    def table(self, table: VariableTable) -> VariableTable:
+        """The variables of the FMU: parameters that the image has not are constants, and there are no strings."""
+        ranges = {p.name: (p.least, p.largest) for p in self.parameters}
+
+        def shown(v: Variable) -> Variable:
+            if v.role != "parameter":
+                return v
+            role = "parameter" if v.name in ranges else "constant"
+            least, largest = ranges.get(v.name, (None, None))
+            return replace(v, role=role, minimum=least, maximum=largest)  # type: ignore[arg-type]
+
+        kept = [shown(v) for v in table.variables if v.kind != "string"]
+        return VariableTable(replace(v, reference=k) for k, v in enumerate(kept, start=1))
 
 
-def _minimum(v: Variable) -> float | None:
-    return None if v.role == "parameter" else v.minimum
+def _setting(v: Variable, model: Model, settings: Settings, table: VariableTable, origin: Origin | None) -> Setting:
+    """A parameter as the image is to have it: what the FMU with Python would build with another value."""
 
+    def changed(value: float) -> Model:
+        values = Values(table)
+        values[v] = value
+        found = effective(model, settings, values, origin)
+        if found.following or found.settings != settings:
+            raise FmuValueError("other parameters or the solver's settings follow from it")
+        return found.model
 
-def native_resources(
-    model: Model, settings: Settings, table: VariableTable, token: str, channels: Sequence[str]
-) -> dict[str, bytes]:
-    """The files in the folder `resources`; `channels` are all that the run has, in its order.
-
-    Raises
-    ------
-    ExportError : if the model needs Python when it runs; it says for what.
-    """
-    if settings.t_end is None:
-        raise ExportError(
-            "an FMU without Python is prepared by its default experiment, which has no end here: give t_end (s)"
-        )
-    solver = {
-        "method": settings.method, "rtol": settings.rtol, "atol": settings.tolerance, "step": settings.step or None,
-        **{"max_steps": MAX_STEPS, **settings.options},
-    }  # fmt: skip
-    try:
-        image = image_of(model, settings.t_end, **solver)
-    except NativeError as error:
-        raise ExportError(f"'{model.name}' cannot be an FMU without Python: {error}") from error
-    return {
-        "resources/model.image": image,
-        "resources/variables.bin": variables_file(table, token, settings.rtol, channels),
-    }
+    least, largest = (-math.inf if v.minimum is None else v.minimum), (math.inf if v.maximum is None else v.maximum)
+    return Setting(v.name, float(v.start or 0.0), least, largest, changed)
 
 
 def variables_file(table: VariableTable, token: str, rtol: float, names: Sequence[str]) -> bytes:
@@ -79,11 +110,12 @@ def variables_file(table: VariableTable, token: str, rtol: float, names: Sequenc
     inputs = {v.reference: k for k, v in enumerate(table.block("input"))}
     places = {name: k for k, name in enumerate(names)}
     channels = {v.reference: places[v.name] for v in table.block("channel")}
+    parameters = {v.reference: k for k, v in enumerate(table.of_role("parameter"))}
     rows = [struct.pack("<8sqqd64s", _MAGIC, _VERSION, len(table.variables), rtol, text)]
     for v in table.variables:
-        source = "constant" if v.role == "constant" else v.block
+        source = v.role if v.role in ("constant", "parameter") else v.block
         low, high = (-math.inf if v.minimum is None else v.minimum), (math.inf if v.maximum is None else v.maximum)
-        number = {**inputs, **channels}.get(v.reference, 0)
+        number = {**inputs, **channels, **parameters}.get(v.reference, 0)
         start = 0.0 if v.start is None else float(v.start)
         numbers = (_KINDS[v.kind], _SOURCES[source], int(v.enumeration is not None), number)
         rows.append(struct.pack("<4i3d", *numbers, start, low, high))

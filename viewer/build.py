@@ -107,7 +107,11 @@ def scene_of_result(
         tracks.values(name)  # an unknown one is refused
     scene.plots = list(wanted)
     scene.tracks = tracks.chosen(wanted)
-    scene.events = [event.to_dict() for event in result.events[:MOST_EVENTS]]
+    units = {channel.name: channel.unit for channel in result.channel_records}
+    scene.events = [
+        event.to_dict() | {"impulse_unit": units.get(f"{event.contact}.impulse", "N.s")}
+        for event in result.events[:MOST_EVENTS]
+    ]
     if len(result.events) > MOST_EVENTS:
         scene.notes.append(f"The first {MOST_EVENTS} of {len(result.events)} events are marked.")
     return scene

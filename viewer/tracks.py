@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..core.between import Between
 from ..core.description import Model
 from ..core.elements import MaterialPoint2D
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
 MOST_NUMBERS = 400_000
 """Values of channels in one page: 2 MB."""
+STILL = 1e-9
+"""Part of the largest change of a body's coordinates below which another one is none."""
 ENERGIES = ("kinetic", "potential", "strain", "dissipation", "impact_loss")
 
 
@@ -54,14 +58,21 @@ class Tracks:
         return self.values(name) if name in self._records else None
 
     def interesting(self) -> tuple[str, ...]:
-        """What to plot of a model that does not say: the last body's motion, the first contacts' forces, energies."""
+        """What to plot of a model that does not say: the last body's motion as far as it moves, the first contacts'
+        forces, energies."""
         bodies = [b for b in self._model.bodies if not isinstance(b, MaterialPoint2D)]
         points = [b for b in self._model.bodies if isinstance(b, MaterialPoint2D)]
         shown = (points or bodies)[-1:]
         found = list(getattr(self._result.system, "coordinates", ()))[:4]
-        found += [f"{body.name}.{name}" for body in shown for name in body.coordinate_names[:3]]
+        found += self._moving([f"{body.name}.{name}" for body in shown for name in body.coordinate_names[:3]])
         found += [f"{contact.name}.normal_force" for contact in self._model.contacts[:2]]
         return tuple(name for name in (*found, "energy.kinetic") if name in self._records)
+
+    def _moving(self, names: list[str]) -> list[str]:
+        """Those that change by more than rounding; all of them where none does."""
+        spans = [float(np.ptp(self._result[name])) if name in self._records else 0.0 for name in names]
+        found = [name for name, span in zip(names, spans, strict=True) if span > STILL * max(spans)]
+        return found or names
 
     def chosen(self, first: Iterable[str]) -> list[Track]:
         """`first`, then energies, contacts and all others as far as a page can hold them."""

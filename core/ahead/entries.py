@@ -25,6 +25,7 @@ from ..elements import (
     distance3d,
     dot1_3d,
     dot2_3d,
+    interface_load3d,
     joint_coordinates3d,
     joint_load3d,
     point3d,
@@ -42,7 +43,7 @@ from ..loop import drive, loop, sample
 from ..methods import adams, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..repair import mend
-from ..run import exchange
+from ..run import exchange, slopes
 from ..stage import accelerations, joints
 from ..state import run_records as run_records
 from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
@@ -91,8 +92,8 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     for kernel in (
         marker_channels2d.marker_channels2d, marker_channels3d.marker_channels3d, angular_velocity.angular_velocity,
         joint_coordinates3d.joint_angle, joint_coordinates3d.joint_position, joint_load3d.joint_load,
-        point3d.point_load, distance3d.separation_load, dot1_3d.dot1_load, dot2_3d.dot2_load, twist3d.twist_load,
-        rolling3d.rolling_load,
+        interface_load3d.interface_load, point3d.point_load, distance3d.separation_load, dot1_3d.dot1_load,
+        dot2_3d.dot2_load, twist3d.twist_load, rolling3d.rolling_load,
     ):  # fmt: skip
         yield kernel, derived.DERIVE_SIGNATURE
     for part in (*instant.PARTS, *instant.IN_SPACE.values()):
@@ -121,6 +122,8 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
         yield function, (_DR,)
     for function in (exchange.exchange, exchange.tell, exchange.read):
         yield function, (types.from_dtype(exchange.EXCHANGE),)
+    yield slopes.along_inputs, slopes.ALONG_ARGUMENTS
+    yield slopes.in_time, slopes.SLOPES_ARGUMENTS
     yield dense_output.interpolate, (_WS, _MS, _REAL)
     yield derived.derive_rows, (_MATRIX, types.Array(_WHOLE, 2, "C"), _WHOLES, _REALS, _MATRIX)
     yield history.recall, (_WS, _MS, _WHOLE)

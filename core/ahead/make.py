@@ -11,17 +11,17 @@ from typing import Any
 from ..compiled.library import USUAL_PLACE, core_digest
 from ..errors import TlismniError
 from .entries import entries, forms
+from .libm import FUNCTIONS, PREFIX, SEEN, libm_texts
 from .module import DIGEST, MANIFEST, TARGETS, Target, link, manifest_text, optimised, undefined
 from .record import compile_for, recording, texts_of
 from .shared import link_shared
 
 logger = logging.getLogger(__name__)
 
-ALLOWED = frozenset(
-    "acos asin atan atan2 cos cosh exp expm1 fmod free hypot log log10 log1p malloc memcpy memmove memset nextafter pow"
-    " sin sinh sqrt tan tanh".split()
-)
-"""What the code may take from the C library: functions of numbers, and memory."""
+MEMORY = frozenset("memcpy memmove memset tlismni_give tlismni_take".split())
+"""What compiled code may take from elsewhere; `native/pieces.c` has the last two."""
+ALLOWED = MEMORY | set(FUNCTIONS)
+"""The same without ziglang, where functions of numbers are the system's."""
 
 
 def c_sources() -> list[Path]:
@@ -43,8 +43,9 @@ def own_target() -> Target:
     return TARGETS[name]
 
 
-def whole_module(only: Sequence[str]) -> tuple[Any, dict[str, str], dict[str, str]]:
-    """The module of everything, not optimised; its symbols by LLVM's names; and these by what they are asked for."""
+def whole_module(only: Sequence[str], libm: Sequence[str] = ()) -> tuple[Any, dict[str, str], dict[str, str]]:
+    """The module of everything, `libm` too, not optimised; its symbols by LLVM's names; and these by what they are
+    asked for."""
     symbols: dict[str, str] = {}
     keys: dict[str, str] = {}
     with recording():
@@ -55,7 +56,7 @@ def whole_module(only: Sequence[str]) -> tuple[Any, dict[str, str], dict[str, st
             symbol = symbols.setdefault(made.fndesc.llvm_func_name, f"tlismni_{plain}_{number}")
             keys[entry.key(made.signature.return_type)] = symbol
             compilations.append(made)
-        texts = texts_of(compilations)
+        texts = [*texts_of(compilations), *libm]
     return link(texts), symbols, keys
 
 
@@ -85,14 +86,18 @@ def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",
     if unknown:
         raise TlismniError(f"there is no target {sorted(unknown)}: known are {sorted(TARGETS)}")
     wanted = [TARGETS[name] for name in targets] or [own]
-    whole, symbols, keys = whole_module(only)
-    constants = {DIGEST: core_digest(), MANIFEST: manifest_text(keys, form_tables())}
+    libm = libm_texts()
+    if not libm:
+        logger.warning("without ziglang the library takes the system's libm: its bits are those of this system")
+    whole, symbols, keys = whole_module(only, libm)
+    functions = {name: PREFIX + name for name in SEEN} if libm else {}
+    constants = {DIGEST: core_digest(), MANIFEST: manifest_text(keys, form_tables(), functions)}
     logger.info("%d functions taken from numba in %.0f s", len(keys), time.perf_counter() - began)
     made = []
     for target in wanted:
         began = time.perf_counter()
         module, machine = optimised(whole, symbols, constants, target)
-        missing = sorted(set(undefined(module)) - ALLOWED)
+        missing = sorted(set(undefined(module)) - (MEMORY if libm else ALLOWED))
         if missing:
             raise UndefinedError(f"compiled code needs {missing}, which no C library has")
         beside = folder is None and target is own

@@ -7,6 +7,8 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
+from .libm import BESIDE, FUNCTIONS, PREFIX
+
 DIGEST, MANIFEST = "tlismni_digest", "tlismni_manifest"
 
 
@@ -29,18 +31,22 @@ TARGETS = {
     for target in (
         Target("linux-x86_64", "x86_64-unknown-linux-gnu", "x86-64-v2", "", ".so", "x86_64-linux-gnu.2.17"),
         Target("linux-aarch64", "aarch64-unknown-linux-gnu", "generic", "", ".so", "aarch64-linux-gnu.2.17"),
+        Target("musl-x86_64", "x86_64-unknown-linux-musl", "x86-64-v2", "", ".so", "x86_64-linux-musl"),
+        Target("musl-aarch64", "aarch64-unknown-linux-musl", "generic", "", ".so", "aarch64-linux-musl"),
         Target("windows-x86_64", "x86_64-pc-windows-gnu", "x86-64-v2", "", ".dll", "x86_64-windows-gnu"),
+        Target("windows-aarch64", "aarch64-pc-windows-gnu", "generic", "", ".dll", "aarch64-windows-gnu"),
         Target("macos-x86_64", "x86_64-apple-macosx11.0.0", "x86-64-v2", "", ".dylib", "x86_64-macos.11.0"),
         Target("macos-aarch64", "arm64-apple-macosx11.0.0", "apple-m1", "", ".dylib", "aarch64-macos.11.0"),
     )
 }
 
-# What compiled code takes from numba's runtime. The few arrays that it allocates are counted as numba does it; those
-# of views have no owner. They never leave the call that makes them, so counting needs no lock. What is raised is read
-# by Python (`compiled/crossing.py`), and not made into objects by functions of the library.
+# What compiled code takes from numba's runtime. The few arrays that it allocates come from a stack of the thread
+# (`native/pieces.c`) and are counted as numba does it; those of views have no owner. They never leave the call that
+# makes them, so counting needs no lock. What is raised is read by Python (`compiled/crossing.py`), and not made into
+# objects by functions of the library.
 _RUNTIME = """
-declare ptr @malloc(i64)
-declare void @free(ptr)
+declare ptr @tlismni_take(i64)
+declare void @tlismni_give(ptr)
 declare double @nextafter(double, double)
 
 %owner = type { i64, ptr, ptr, ptr, i64, ptr }
@@ -49,7 +55,7 @@ define weak_odr ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %alignment) {
   %wide = zext i32 %alignment to i64
   %head = add i64 %wide, 48
   %room = add i64 %head, %size
-  %new = call ptr @malloc(i64 %room)
+  %new = call ptr @tlismni_take(i64 %room)
   %missing = icmp eq ptr %new, null
   br i1 %missing, label %none, label %there
 none:
@@ -99,19 +105,19 @@ count:
   %last = icmp eq i64 %less, 0
   br i1 %last, label %free, label %done
 free:
-  call void @free(ptr %x)
+  call void @tlismni_give(ptr %x)
   br label %done
 done:
   ret void
 }
 
 define weak_odr ptr @NRT_Allocate(i64 %size) {
-  %new = call ptr @malloc(i64 %size)
+  %new = call ptr @tlismni_take(i64 %size)
   ret ptr %new
 }
 
 define weak_odr void @NRT_Free(ptr %x) {
-  call void @free(ptr %x)
+  call void @tlismni_give(ptr %x)
   ret void
 }
 
@@ -125,6 +131,9 @@ define weak_odr void @PyErr_SetString(ptr %kind, ptr %text) {
 }
 @PyExc_RuntimeError = weak_odr constant ptr null
 """
+
+
+_OF_LIBM = frozenset((*FUNCTIONS, *BESIDE))
 
 
 def link(texts: Iterable[str]) -> Any:
@@ -159,7 +168,10 @@ def optimised(whole: Any, symbols: Mapping[str, str], texts: Mapping[str, str], 
         if function.name in symbols:
             function.linkage = "external"
             function.name = symbols[function.name]
-        elif not function.is_declaration:
+        elif function.name in _OF_LIBM and not function.is_declaration:
+            # the code generator asks for them by name, when it is too late to bring them back
+            function.linkage, function.visibility = "external", "hidden"
+        elif not function.is_declaration and not function.name.startswith(PREFIX):
             function.linkage = "internal"
     for variable in module.global_variables:
         if not variable.is_declaration:
@@ -182,6 +194,7 @@ def undefined(module: Any) -> list[str]:
     return sorted(f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm."))
 
 
-def manifest_text(entries: Mapping[str, str], forms: Mapping[str, Any]) -> str:
-    """What `compiled/library.py` reads."""
-    return json.dumps({"entries": dict(entries), "forms": dict(forms)}, separators=(",", ":"))
+def manifest_text(entries: Mapping[str, str], forms: Mapping[str, Any], functions: Mapping[str, str]) -> str:
+    """What `compiled/library.py` reads; `functions`: symbols of the functions of its own libm, by name."""
+    content = {"entries": dict(entries), "forms": dict(forms), "libm": dict(functions)}
+    return json.dumps(content, separators=(",", ":"))

@@ -14,12 +14,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .needed import numba_module
+from .needed import numba_module, use_libm
 
 logger = logging.getLogger(__name__)
 
 PLACE = "TLISMNI_LIBRARY"
 """Environment variable: path of a library; "none": without one."""
+LIBM = "TLISMNI_LIBM"
+"""Environment variable: path of a library, of any sources, whose functions of numbers (`sin`, `pow`) code that is
+compiled in this process calls, so that it has that library's bits; without it those of the library in use, else the
+system's."""
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 USUAL_PLACE = Path(__file__).with_name(f"tlismni_core{SUFFIX}")
 _CORE = Path(__file__).resolve().parents[1]
@@ -47,6 +51,7 @@ class Library:
     ----------
     entries : symbols by "name signature", the signature as `signatures.py` writes it.
     forms : of kernels made from formulas: which derivatives there are.
+    libm : symbols of its own functions of numbers by name; none if it takes the system's.
     """
 
     def __init__(self, path: Path) -> None:
@@ -56,6 +61,7 @@ class Library:
         manifest = json.loads(self._text("tlismni_manifest"))
         self.entries: dict[str, str] = manifest["entries"]
         self.forms: dict[str, dict[str, Any]] = manifest["forms"]
+        self.libm: dict[str, str] = manifest.get("libm", {})
         self._signatures: dict[str, list[str]] = {}
         for entry in self.entries:
             name, signature = entry.rsplit(" ", 1)
@@ -74,6 +80,11 @@ class Library:
         if symbol is None:
             return None
         return ctypes.cast(getattr(self._holding, symbol), ctypes.c_void_p).value
+
+    def libm_addresses(self) -> dict[str, int]:
+        """Machine addresses of its own functions of numbers."""
+        found = {name: getattr(self._holding, symbol) for name, symbol in self.libm.items()}
+        return {name: ctypes.cast(function, ctypes.c_void_p).value or 0 for name, function in found.items()}
 
     def function(self, name: str, signature: str, unlocked: bool) -> Any:
         """A new ctypes function; `unlocked`: other threads of Python run on meanwhile."""
@@ -108,5 +119,8 @@ def _find() -> Library | None:
 
 LIBRARY = _find()
 """The library of this process; None where functions are compiled when they are first used."""
+_OF_LIBM = Library(Path(os.environ[LIBM])) if LIBM in os.environ else LIBRARY
+if _OF_LIBM is not None:
+    use_libm(_OF_LIBM.libm_addresses())
 if LIBRARY is None:
     numba_module()  # rather than an error of the first module that imports it, which would not say what to do

@@ -1,12 +1,16 @@
 """numba where it is needed: for what a user writes, and for what is in no library of machine code."""
 
 import sys
+from collections.abc import Mapping
 from typing import Any
 
 from ..errors import ModelError
 
 EXTRA = "own"
 """The extra of the package that brings numba."""
+
+
+_LIBM: dict[str, int] = {}
 
 
 class NumbaMissingError(ModelError, ImportError):
@@ -24,7 +28,24 @@ def numba_module() -> Any:
         import numba
     except ImportError as error:
         raise NumbaMissingError(_missing(error)) from error
+    if _LIBM:
+        _bind()
     return numba
+
+
+def use_libm(addresses: Mapping[str, int]) -> None:
+    """Let code that numba compiles in this process call these functions of numbers, by name. Nothing is imported."""
+    _LIBM.update(addresses)
+
+
+def _bind() -> None:
+    import llvmlite.binding as llvm
+    from numba.core.externals import c_math_functions
+
+    c_math_functions.install(None)  # numba's own choice, which would else come later and replace ours
+    for name, address in _LIBM.items():
+        llvm.add_symbol(name, address)
+    _LIBM.clear()
 
 
 def compiler_module() -> Any:

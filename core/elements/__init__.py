@@ -26,6 +26,7 @@ from .floating_beam2d import Attachment, FloatingBeam2D
 from .floating_body2d import FloatingBody2D
 from .formula2d import Frame2D
 from .gear2d import Gear2D
+from .interface_frame3d import InterfaceFrame3D
 from .joint3d import Joint3D
 from .joint_friction2d import RevoluteFriction2D, SlideFriction2D
 from .joints3d import (
@@ -54,6 +55,7 @@ from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
 from .prismatic2d import Prismatic2D
 from .rack2d import Rack2D
 from .reduced_body2d import ReducedBody2D, ReducedPoint
+from .reduced_body3d import Interface3D, ReducedBody3D
 from .relation3d import Gear3D, RackAndPinion3D, Relation3D, Screw3D
 from .relative_load2d import RelativeLoad2D
 from .relative_motor2d import RelativeMotor2D
@@ -83,6 +85,8 @@ BODIES = (
     RigidBody3D,
     Cable3D,
     MaterialPoint3D,
+    ReducedBody3D,
+    InterfaceFrame3D,
 )
 JOINTS = (
     Revolute2D,
@@ -181,6 +185,8 @@ __all__ = [
     "Frame2D",
     "Gear2D",
     "Gear3D",
+    "Interface3D",
+    "InterfaceFrame3D",
     "Joint",
     "Joint3D",
     "JointElement",
@@ -203,6 +209,7 @@ __all__ = [
     "Rack2D",
     "RackAndPinion3D",
     "ReducedBody2D",
+    "ReducedBody3D",
     "ReducedPoint",
     "Relation3D",
     "RelationTerm",

@@ -178,7 +178,7 @@ def angle_between(a: Marker3D, b: Marker3D, bodies: Mapping[str, BodyElement]) -
     return math.atan2(of_a[:, 1] @ of_b[:, 0], of_a[:, 0] @ of_b[:, 0])
 
 
-def marker_on(body: "SpatialBody", point: Vector3, attitude: Attitude) -> Marker3D:
+def marker_on(body: SpatialFrame, point: Vector3, attitude: Attitude) -> Marker3D:
     """The marker on `body` that is at `point` (m) with `attitude` in space where the body starts."""
     q = (*body.initial_state()[0], *Marker3D.rest[3:])
     turn = rotation_matrix(q[3:7])
@@ -277,11 +277,16 @@ class RigidBody3D(SpatialBody):
 
     def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0)."""
-        e0, x, y, z = p = self.attitude.parameters()
-        w = self.angular_velocity
-        along = -0.5 * math.fsum(a * b for a, b in zip((x, y, z), w, strict=True))
-        # p' = G^T w / 2 of the angular velocity in the body, E^T w / 2 of that in space
-        sign = 1.0 if self.angular_velocity_in == "body" else -1.0
-        c = (y * w[2] - z * w[1], z * w[0] - x * w[2], x * w[1] - y * w[0])
-        rates = (along, *(0.5 * (e0 * w[i] + sign * c[i]) for i in range(3)))
+        p = self.attitude.parameters()
+        rates = parameter_rates(p, self.angular_velocity, self.angular_velocity_in)
         return (*self.position, *p), (*self.velocity, *rates)
+
+
+def parameter_rates(p: Sequence[float], w: Vector3, axes: str) -> tuple[float, ...]:
+    """Rates of Euler parameters p with angular velocity w, rad/s, in the axes of the "body" or of "space": p' = G^T w/2
+    or E^T w/2."""
+    e0, x, y, z = p
+    along = -0.5 * math.fsum(a * b for a, b in zip((x, y, z), w, strict=True))
+    sign = 1.0 if axes == "body" else -1.0
+    c = (y * w[2] - z * w[1], z * w[0] - x * w[2], x * w[1] - y * w[0])
+    return (along, *(0.5 * (e0 * w[i] + sign * c[i]) for i in range(3)))

@@ -1,25 +1,33 @@
 """From a model to its image: built, rehearsed, written, and proved."""
 
+import logging
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
+from ..description import Model
 from ..errors import SimulationError
 from ..run.simulation import Simulation
 from .errors import NativeError
-from .image_file import native_image, own_library
+from .image_file import native_image, own_library, refuse_motions
 from .in_process import NativeModel, NativeRun
+from .parameters import Parameter, Setting, apart, parameter_of, settings_of, startable
 from .prepare import points, rehearse, start_inputs
+
+logger = logging.getLogger(__name__)
 
 MOST_STEPS = 1_000_000
 """Steps of the solver within one call, unless settings say otherwise."""
 
 
-def image_of(model: Any, t_end: float, **settings: Any) -> bytes:
+def image_of(model: Any, t_end: float, *, parameters: Iterable[str | Setting] | None = None, **settings: Any) -> bytes:
     """The image of a model at its start, proved by a run to `t_end` (s) that gives the same bits as in Python.
 
     Parameters
     ----------
+    parameters : names of the model's parameters, or places of numbers ("ball.mass"), that shall be parameters of the
+        image; all of the model's if left out. Those that cannot be (`parameters.py`) are fixed, and named in the log.
     settings : of `Simulation`.
 
     Raises
@@ -27,16 +35,78 @@ def image_of(model: Any, t_end: float, **settings: Any) -> bytes:
     NativeError : if the model needs Python when it runs; it says for what.
     ModelError, ConsistencyError, SimulationError : as `Simulation`, and if the run to `t_end` fails.
     """
+    return image_and_parameters(model, t_end, parameters, **settings)[0]
+
+
+def image_and_parameters(
+    model: Any, t_end: float, parameters: Iterable[str | Setting] | None = None, **settings: Any
+) -> tuple[bytes, list[Parameter], dict[str, str]]:
+    """`image_of`; the parameters that it has; and why the others are fixed, by name."""
     library = own_library()
-    sim = Simulation(model, **{"max_steps": MOST_STEPS, **settings})
+    full = {"max_steps": MOST_STEPS, **settings}
+    sim = Simulation(model, **full)
+    if isinstance(model, Model):
+        refuse_motions(sim)
+    most = sim.settings.max_steps or MOST_STEPS
+    wanted = _wanted(model, parameters)
+    good, fixed = {}, {}
+    for setting in wanted:
+        try:
+            good[setting.name] = startable(sim, setting, lambda other: Simulation(other, **full))
+        except NativeError as error:
+            fixed[setting.name] = str(error)
     rehearse(sim, t_end)
-    image = native_image(sim, sim.settings.max_steps or MOST_STEPS)
-    _prove(sim, NativeRun(NativeModel(image, library)), t_end)
-    return image
+    found = []
+    for setting in wanted:
+        if setting.name in good:
+            try:
+                found.append(parameter_of(sim, setting, good[setting.name]))
+            except NativeError as error:
+                fixed[setting.name] = str(error)
+    found, shared = apart(found)
+    fixed |= shared
+    for name, why in fixed.items():
+        logger.info("parameter '%s' is fixed at its value: %s", name, why)
+    image = native_image(sim, most, found)
+    native = NativeModel(image, library)
+    _prove(sim, NativeRun(native), t_end)
+    for k, p in enumerate(found):
+        _prove_parameter(full, native, k, good[p.name], t_end)
+    return image, found, fixed
+
+
+def _wanted(model: Any, parameters: Iterable[str | Setting] | None) -> list[Setting]:
+    if not isinstance(model, Model):
+        return []
+    given = None if parameters is None else list(parameters)
+    names = given if given is None else [x for x in given if isinstance(x, str)]
+    return [*settings_of(model, names), *(x for x in given or () if isinstance(x, Setting))]
+
+
+def _prove_parameter(
+    settings: dict[str, Any], native: NativeModel, number: int, good: list[tuple[float, Model]], t_end: float
+) -> None:
+    """A run with the least value of a parameter that was tried (or the largest, where that is the present one) has the
+    bits of Python's, as far as it meets only what the image was prepared for."""
+    run = NativeRun(native)
+    value, variant = good[0] if good[0][0] != run.parameters[number] else good[-1]
+    run.set_parameter(number, value)
+    sim = Simulation(variant, **settings)
+    try:
+        _prove(sim, run, t_end)
+    except SimulationError as error:
+        logger.info("with %s = %r the run ends in Python too: %s", run.model.names(3)[number], value, error)
+    except Unprepared as error:
+        logger.info("with %s = %r: %s", run.model.names(3)[number], value, error)
+
+
+class Unprepared(NativeError):
+    """A run without Python has come to something that takes it."""
 
 
 def _prove(sim: Any, run: NativeRun, t_end: float) -> None:
-    """Let both go to `t_end` (s). Raises NativeError if one does what the other does not."""
+    """Let both go to `t_end` (s). Raises NativeError if one does what the other does not: Unprepared if the one without
+    Python fails."""
     inputs = start_inputs(sim)
     for t in points(sim.t, t_end):
         quick = sim.exchange(inputs, t)
@@ -44,7 +114,7 @@ def _prove(sim: Any, run: NativeRun, t_end: float) -> None:
         try:
             found = run.step(t, inputs)
         except SimulationError as error:
-            raise NativeError(f"the run from the start to {t_end:.6g} s takes Python: {error}") from error
+            raise Unprepared(f"the run from the start to {t_end:.6g} s takes Python: {error}") from error
         if found.tobytes() != wanted.tobytes():
             k = int(np.flatnonzero(found.view(np.int64) != wanted.view(np.int64))[0])
             raise NativeError(

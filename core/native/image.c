@@ -114,6 +114,22 @@ static void relocate_shared(tlismni_model *m, const int64_t *to_shared, const in
     }
 }
 
+/* Whether all words of parameters are in the part of a run's memory that has numbers. */
+static bool parameters_inside(const tlismni_model *m) {
+    for (int64_t k = 0; k < m->head.parameters; k++) {
+        const Parameter *p = m->parameters + k;
+        if (p->first < 0 || p->count < 0 || p->first > m->head.words || p->count > m->head.words - p->first) {
+            return false;
+        }
+    }
+    for (int64_t k = 0; k < m->head.words; k++) {
+        if (m->words[k].place < m->head.tables || m->words[k].place > m->head.decisive - 8 || m->words[k].place % 8) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* Everything behind the head; false if it does not fit together. */
 static bool read_body(tlismni_model *m, const char *at, const char *end) {
     const Head *h = &m->head;
@@ -130,12 +146,17 @@ static bool read_body(tlismni_model *m, const char *at, const char *end) {
             return false;
         }
     }
+    if (h->parameters < 0 || h->parameters > h->size || h->words < 0 || h->words > h->size ||
+        !(m->parameters = part(&at, end, h->parameters * (int64_t)sizeof *m->parameters)) ||
+        !(m->words = part(&at, end, h->words * (int64_t)sizeof *m->words))) {
+        return false;
+    }
     const char *function_text = part(&at, end, h->function_text), *text = part(&at, end, h->text_size);
     const char *shared = part(&at, end, h->shared), *own = part(&at, end, h->decisive);
     const Numbers *n = &m->numbers;
     if (!function_text || !text || !shared || !own || at != end || h->own < h->decisive || h->tables > h->decisive ||
         h->tables < 0 || h->tables % 8 || h->functions < CALLED || h->functions > h->size || h->texts > h->size ||
-        n->inputs < 0 || n->channels < 0 || n->contacts < 0 || n->inputs + n->channels + n->contacts != h->texts) {
+        n->inputs < 0 || n->channels < 0 || n->contacts < 0 || n->inputs + n->channels + n->contacts + h->parameters != h->texts || !parameters_inside(m)) {
         return false;
     }
     const int64_t *place = (const int64_t *)&m->places;
@@ -238,6 +259,9 @@ static size_t names_of(const tlismni_model *m, tlismni_kind kind, size_t *count)
     case TLISMNI_CONTACT:
         *count = (size_t)n->contacts;
         return (size_t)(n->inputs + n->channels);
+    case TLISMNI_PARAMETER:
+        *count = (size_t)m->head.parameters;
+        return (size_t)(n->inputs + n->channels + n->contacts);
     }
     *count = 0;
     return 0;

@@ -14,6 +14,7 @@ typedef struct {
     int64_t version, size, checksum;
     int64_t shared, tables, decisive, own;
     int64_t functions, function_text, texts, text_size;
+    int64_t parameters, words;
     int64_t shared_shared, shared_function, own_own, own_shared, own_function;
 } Head;
 
@@ -24,11 +25,22 @@ typedef struct {
 
 typedef struct {
     int64_t exchange, drive, reads, budget, times, inputs, channels, goals, counts, events, pending, clock, counters,
-        method_times, ring;
+        method_times, ring, parameters;
 } Places;
 
+/* A parameter, and a word of a run's memory that follows from it: `form` says how (parameters.c). */
+typedef struct {
+    int64_t first, count;
+    double value, least, largest;
+} Parameter;
+
+typedef struct {
+    int64_t place, form;
+    double constant;
+} Word;
+
 /* The functions that the C code calls: the first ones of the image's list. */
-enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, CALLED };
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, ALONG, IN_TIME, CALLED };
 
 typedef void (*Function)(void);
 
@@ -37,8 +49,10 @@ struct tlismni_model {
     Numbers numbers;
     Places places;
     const int64_t *own_own, *own_shared, *own_function; /* words of a run's memory that are addresses */
+    const Parameter *parameters;
+    const Word *words;
     Function *functions;
-    const char **texts;     /* names of inputs, channels, contacts */
+    const char **texts;     /* names of inputs, channels, contacts, parameters */
     const char *own_bytes;  /* a run's memory at the start, with places for addresses */
     char *shared;           /* what runs share, aligned */
     char *bytes;            /* the image */
@@ -48,7 +62,7 @@ struct tlismni_model {
 /* What decides the future of a run besides its memory. */
 typedef struct {
     double now;
-    int64_t events, failed;
+    int64_t events, failed, begun; /* since the start */
 } Beside;
 
 struct tlismni_run {

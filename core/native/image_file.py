@@ -12,7 +12,8 @@ from ..compiled.library import LIBRARY, Library
 from ..run.exchange import possible
 from .errors import NativeError
 from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
-from .reach import Found, check_words, held_by, holds_reals, like_addresses, reached, without_parts, words_of
+from .parameters import Parameter
+from .reach import Found, begin_of, check_words, held_by, holds_reals, like_addresses, reached, without_parts, words_of
 from .scratch import own_of, scratch_of
 
 _ALIGNED = 64
@@ -31,6 +32,15 @@ def own_library() -> Library:
 def _has_none(x: NDArray[Any]) -> bool:
     """Whether an array has no addresses, though its words may look like some."""
     return holds_reals(x) or x.dtype.itemsize % 8 != 0
+
+
+def refuse_motions(sim: Any) -> None:
+    """Raise NativeError for a run whose steps are not made in one crossing."""
+    if not possible(sim) or sim.crossing is None:
+        raise NativeError(
+            "the motion of a driver is an input, and what a run does when that jumps is Python's as yet: let an input "
+            "be a force, or use the FMU that runs with Python"
+        )
 
 
 class _Segment:
@@ -55,23 +65,20 @@ class _Segment:
             self.data[begin : begin + x.nbytes] = x.reshape(-1).view(np.uint8)
 
 
-def native_image(sim: Any, most_steps: int) -> bytes:
+def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()) -> bytes:
     """The image of a simulation of a Model: it goes on from the present point.
 
     Parameters
     ----------
     most_steps : of the solver between two times that are asked for; more are an error of the run.
+    parameters : of the present memory of the simulation (`parameters.py`).
 
     Raises
     ------
     NativeError : if the model needs Python when it runs; it says for what.
     """
     library = own_library()
-    if not possible(sim) or sim.crossing is None:
-        raise NativeError(
-            "the motion of a driver is an input, and what a run does when that jumps is Python's as yet: let an input "
-            "be a force, or use the FMU that runs with Python"
-        )
+    refuse_motions(sim)
     times = sim.crossing.times
     times[:5] = sim.t, sim.t, *sim.input_times, sim.table.initial_energy
     sim.crossing.wanted[:] = sim.workspace.arrays["inputs"][: len(sim.crossing.wanted), 0]
@@ -80,9 +87,12 @@ def native_image(sim: Any, most_steps: int) -> bytes:
     found = reached(sim.crossing._record.table, held)
     own = without_parts(own_of(sim))
     scratch = without_parts(scratch_of(sim))
-    is_own = own.owner(found.begin) >= 0
+    set_by_others = [begin_of(word.array) for p in parameters for word in p.words]
+    is_own = (own.owner(found.begin) >= 0) | np.isin(found.begin, set_by_others)
+    values = np.array([p.value for p in parameters])
     shared = _Segment([x for x, mine in zip(found.arrays, is_own, strict=True) if not mine])
-    mine = _Segment([x for x, mine in zip(found.arrays, is_own, strict=True) if mine], scratch)
+    of_run = [x for x, mine in zip(found.arrays, is_own, strict=True) if mine]
+    mine = _Segment([*of_run, values] if len(values) else of_run, scratch)
     symbols = called_symbols(library)
     addresses: dict[int, str] = {}
     for key, symbol in library.entries.items():
@@ -96,11 +106,15 @@ def native_image(sim: Any, most_steps: int) -> bytes:
                 lists.setdefault((kind, to), []).append(at)
     if (0, 1) in lists:
         raise NativeError("memory that all runs share points into that of one: it cannot be written as an image")
-    names = [*sim.assembly.input_names, *(c.name for c in sim.table.channels), *(c.name for c in sim.assembly.contacts)]
-    places = [_place(x, found, mine) for x in arrays_in_places(sim)]
+    names = [
+        *sim.assembly.input_names, *(c.name for c in sim.table.channels), *(c.name for c in sim.assembly.contacts),
+        *(p.name for p in parameters),
+    ]  # fmt: skip
+    places = [_place(x, found, mine) for x in arrays_in_places(sim, values)]
     order = ((0, 0), (0, 2), (1, 1), (1, 0), (1, 2))
     relocations = [np.concatenate(lists.get(key, [np.zeros(0, dtype=np.int64)])) for key in order]
-    return _file(library, numbers_of(sim, most_steps), places, relocations, symbols, names, (shared, mine))
+    numbers = numbers_of(sim, most_steps)
+    return _file(library, numbers, places, relocations, symbols, names, (shared, mine), parameters)
 
 
 def _place(x: NDArray[Any], found: Found, mine: _Segment) -> int:
@@ -108,6 +122,8 @@ def _place(x: NDArray[Any], found: Found, mine: _Segment) -> int:
     if not x.nbytes:
         return 0
     address = x.ctypes.data
+    if address in mine.start:
+        return mine.start[address]
     (number,) = found.owner(np.array([address]))
     begin = int(found.begin[number])
     if number < 0 or begin not in mine.start:
@@ -151,9 +167,10 @@ def _relocate(
 
 def _file(
     library: Library, numbers: bytes, places: list[int], relocations: list[NDArray[np.int64]], symbols: list[str],
-    names: list[str], segments: tuple[_Segment, _Segment],
+    names: list[str], segments: tuple[_Segment, _Segment], parameters: Sequence[Parameter],
 ) -> bytes:  # fmt: skip
     shared, own = segments
+    heads, words = _parameter_parts(parameters, own)
     function_text = _padded(b"".join(name.encode() + b"\0" for name in symbols))
     text = _padded(b"".join(name.encode() + b"\0" for name in names))
     body = b"".join(
@@ -161,18 +178,31 @@ def _file(
             numbers,
             struct.pack(f"<{len(places)}q", *places),
             *(x.astype("<i8").tobytes() for x in relocations),
+            b"".join(heads), b"".join(words),
             function_text, text, shared.data.tobytes(), own.data.tobytes(),
         )
     )  # fmt: skip
     head = {
         "version": VERSION, "size": 0, "checksum": zlib.crc32(body),
         "shared": len(shared.data), "tables": own.tables, "decisive": own.copied, "own": own.size,
+        "parameters": len(heads), "words": len(words),
         "functions": len(symbols), "function_text": len(function_text), "texts": len(names), "text_size": len(text),
         **dict(zip(HEAD[-5:], map(len, relocations), strict=True)),
     }  # fmt: skip
     start = MAGIC + library.digest.encode().ljust(32, b"\0")[:32]
     head["size"] = len(start) + 8 * len(HEAD) + len(body)
     return start + struct.pack(f"<{len(HEAD)}q", *(head[name] for name in HEAD)) + body
+
+
+def _parameter_parts(parameters: Sequence[Parameter], own: _Segment) -> tuple[list[bytes], list[bytes]]:
+    """What `parameters.c` reads: of each parameter its words' first number and count, value and limits; of each word
+    its place, form and constant."""
+    heads, words = [], []
+    for p in parameters:
+        heads.append(struct.pack("<2q3d", len(words), len(p.words), p.value, p.least, p.largest))
+        for array, offset, form in p.words:
+            words.append(struct.pack("<2qd", own.start[begin_of(array)] + offset, form.code, form.constant))
+    return heads, words
 
 
 def _padded(data: bytes) -> bytes:

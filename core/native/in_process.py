@@ -25,6 +25,11 @@ _SIGNATURES = {
     "tlismni_step": (ctypes.c_int, _POINTER, ctypes.c_double, ctypes.c_bool),
     "tlismni_step_to_event": (ctypes.c_int, _POINTER, ctypes.c_double, _POINTER),
     "tlismni_happen": (ctypes.c_int, _POINTER, _POINTER),
+    "tlismni_parameter": (ctypes.c_double, _POINTER, _SIZE),
+    "tlismni_set_parameter": (ctypes.c_int, _POINTER, _SIZE, ctypes.c_double),
+    "tlismni_next_point": (ctypes.c_int, _POINTER, ctypes.c_double, _POINTER),
+    "tlismni_derivatives": (ctypes.c_int, _POINTER, _POINTER, _POINTER, _POINTER),
+    "tlismni_rates": (ctypes.c_int, _POINTER, _POINTER, _POINTER),
     "tlismni_look": (ctypes.c_int, _POINTER),
     "tlismni_event_count": (ctypes.c_int64, _POINTER),
     "tlismni_steps": (ctypes.c_int64, _POINTER),
@@ -58,7 +63,7 @@ class NativeModel:
             raise NativeError(f"the image is refused: {why.value.decode()}")
 
     def names(self, kind: int) -> tuple[str, ...]:
-        """Names of the inputs (0), channels (1) or contacts (2)."""
+        """Names of the inputs (0), channels (1), contacts (2) or parameters (3)."""
         count = self.library.tlismni_count(self.address, kind)
         return tuple(self.library.tlismni_name(self.address, kind, k).decode() for k in range(count))
 
@@ -99,6 +104,15 @@ class NativeRun:
         """Steps of the solver since the start."""
         return int(self._library.tlismni_steps(self.address))
 
+    @property
+    def parameters(self) -> list[float]:
+        """Values of the parameters."""
+        return [self._library.tlismni_parameter(self.address, k) for k in range(len(self.model.names(3)))]
+
+    def set_parameter(self, number: int, value: float) -> None:
+        """Give a parameter another value; before the run goes on. Raises SimulationError."""
+        self._check(self._library.tlismni_set_parameter(self.address, number, value))
+
     def limit_steps(self, steps: int) -> None:
         """Most steps in one call; 0: no bound."""
         self._library.tlismni_limit_steps(self.address, steps)
@@ -132,6 +146,26 @@ class NativeRun:
         """The channels at the present time. Raises SimulationError."""
         self._check(self._library.tlismni_look(self.address))
         return self._channels.copy()
+
+    def next_point(self, t: float) -> float:
+        """Where the newest step ends, s, at most `t`. Raises SimulationError."""
+        point = ctypes.c_double()
+        self._check(self._library.tlismni_next_point(self.address, t, ctypes.byref(point)))
+        return point.value
+
+    def derivatives(self, direction: Sequence[float]) -> NDArray[np.float64]:
+        """Of all channels along a direction of the inputs. Raises SimulationError."""
+        given, found = np.array(direction, dtype=np.float64), np.zeros(len(self._channels))
+        room = ctypes.create_string_buffer(self._library.tlismni_state_size(self.model.address))
+        self._check(self._library.tlismni_derivatives(self.address, given.ctypes.data, found.ctypes.data, room))
+        return found
+
+    def rates(self) -> NDArray[np.float64]:
+        """Time derivatives of all channels, NaN where they are not known. Raises SimulationError."""
+        found = np.zeros(len(self._channels))
+        room = ctypes.create_string_buffer(self._library.tlismni_state_size(self.model.address))
+        self._check(self._library.tlismni_rates(self.address, found.ctypes.data, room))
+        return found
 
     def save(self) -> bytes:
         """The state, for this run."""

@@ -15,15 +15,17 @@ HEAD = (
     "version", "size", "checksum",
     "shared", "tables", "decisive", "own",     # bytes: never written; that have addresses, that a state has, and all
     "functions", "function_text", "texts", "text_size",
+    "parameters", "words",
     "shared_shared", "shared_function", "own_own", "own_shared", "own_function",  # addresses: in, to
 )  # fmt: skip
 """Sizes and counts, 8 bytes each."""
 
-CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "locate_now")
+CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "locate_now", "along_inputs", "in_time")
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
     "exchange": "run.exchange", "tell": "run.exchange", "read": "run.exchange", "drive": "loop.drive",
     "settle_pending": "loop.drive", "repair_now": "repair.mend", "locate_now": "loop.drive",
+    "along_inputs": "run.slopes", "in_time": "run.slopes",
 }  # fmt: skip
 
 NUMBERS = (
@@ -35,7 +37,7 @@ NUMBERS = (
 
 PLACES = (
     "exchange", "drive", "reads", "budget", "times", "inputs", "channels", "goals", "counts", "events", "pending",
-    "clock", "counters", "method_times", "ring",
+    "clock", "counters", "method_times", "ring", "parameters",
 )  # fmt: skip
 """Where these stand in a run's memory."""
 
@@ -61,11 +63,12 @@ def numbers_of(sim: Any, most_steps: int) -> bytes:
     return struct.pack(f"<{len(whole)}q4d", *whole, sim.t, SHORTEST, 1e-6 * sim.scales.time, PUNCTUAL)
 
 
-def arrays_in_places(sim: Any) -> tuple[NDArray[Any], ...]:
+def arrays_in_places(sim: Any, parameters: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     """The arrays of PLACES."""
     ex, ws = sim.crossing._record, sim.workspace.arrays
     return (
         ex.table, sim.drive.record.table, ex.table["read"], ex.table["chunk"], ex.arrays["times"],
         ex.arrays["inputs"], ex.arrays["channels"], sim.drive.goals, sim.drive.counts, sim.drive.events,
         sim.drive.pending, sim.clock, ws["counters"], sim.method_arrays["times"], sim.method_arrays["ring"],
+        parameters,
     )  # fmt: skip

@@ -29,6 +29,8 @@ class Found(NamedTuple):
 
     def owner(self, words: Whole) -> Whole:
         """Number of the array that each word points into; -1: into none."""
+        if not self.arrays:
+            return np.full(words.shape, -1)
         at = np.searchsorted(self.begin, words, side="right") - 1
         return np.where((at >= 0) & (words < self.end[at]), at, -1)
 
@@ -97,6 +99,30 @@ def reached(first: Array, held: Found) -> Found:
         seen |= new
         left += new
     return without_parts(held.arrays[k] for k in seen)
+
+
+def content(first: Array, held: Found, blank: Found, empty: frozenset[int]) -> list[bytes]:
+    """What is reached from `first`, in the order in which it is: the same for runs that differ only in where their
+    memory is. Of arrays that are `blank` their sizes count alone; `empty` are addresses of those without content."""
+    start = int(held.owner(np.array([begin_of(first)]))[0])
+    number, order, found = {start: 0}, [start], []
+    for k in order:  # which grows meanwhile
+        x = held.arrays[k]
+        if int(blank.owner(held.begin[k : k + 1])[0]) >= 0:
+            found.append(str(x.nbytes).encode())
+            continue
+        words = words_of(x).copy()
+        owner = held.owner(words)
+        for at in np.flatnonzero(owner >= 0).tolist():
+            to = int(owner[at])
+            if to not in number:
+                number[to] = len(order)
+                order.append(to)
+            words[at] += (number[to] << 32) - int(held.begin[to])
+        if not holds_reals(x):
+            words[[at for at in np.flatnonzero((owner < 0) & like_addresses(words)) if int(words[at]) in empty]] = 0
+        found.append(words.tobytes() if len(words) else x.tobytes())
+    return found
 
 
 def like_addresses(words: Whole) -> NDArray[np.bool_]:

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "codes.h"
+#include "pieces.h"
 
 static size_t head_size(void) {
     return (sizeof(tlismni_run) + ALIGNED - 1) / ALIGNED * ALIGNED;
@@ -30,7 +31,8 @@ tlismni_run *tlismni_start_in(const tlismni_model *m, void *memory, size_t size)
 
 void tlismni_restart(tlismni_run *run) {
     const tlismni_model *m = run->model;
-    run->beside = (Beside){m->numbers.start, m->numbers.events, 0};
+    pieces_touch();
+    run->beside = (Beside){m->numbers.start, m->numbers.events, 0, 0};
     memcpy(run->own, m->own_bytes, (size_t)m->head.decisive);
     memset(run->own + m->head.decisive, 0, (size_t)(m->head.own - m->head.decisive));
     int64_t *words = (int64_t *)run->own;

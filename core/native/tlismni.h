@@ -4,8 +4,8 @@
  * *run* is a copy of its working memory: as many as wanted, each used by one thread at a time, all sharing the model.
  * Units are SI. What is said here of bits: a run gives the same bits as the same run in Python, on the same libm.
  *
- * Nothing here writes to files or screens. `tlismni_open` and `tlismni_start` allocate, `tlismni_start_in` does not; what
- * steps take from `malloc` they give back before they return (docs/embedding.md says which do). */
+ * Nothing here writes to files or screens. `tlismni_open` and `tlismni_start` allocate, `tlismni_start_in` does not; steps
+ * take small pieces from a stack of the thread, and give them back before they return (docs/embedding.md). */
 #ifndef TLISMNI_H
 #define TLISMNI_H
 
@@ -32,7 +32,7 @@ typedef int tlismni_status;
 enum { TLISMNI_OK = 0 };
 
 /* Names of an image, and how many there are. */
-typedef enum { TLISMNI_INPUT, TLISMNI_CHANNEL, TLISMNI_CONTACT } tlismni_kind;
+typedef enum { TLISMNI_INPUT, TLISMNI_CHANNEL, TLISMNI_CONTACT, TLISMNI_PARAMETER } tlismni_kind;
 
 /* A contact event. */
 typedef struct {
@@ -74,6 +74,14 @@ TLISMNI_API tlismni_run *tlismni_start_in(const tlismni_model *model, void *memo
 /* Back to the point at which the image was made, in the same memory. */
 TLISMNI_API void tlismni_restart(tlismni_run *run);
 
+/* A parameter's value: that of the image, unless another one is set. Between the start of a run (or its restart) and the
+ * first call that goes on or looks, a parameter takes any value from `least` to `largest`: the run is then that of the
+ * model with this value. It keeps it until it is restarted; a state has it too. */
+TLISMNI_API double tlismni_parameter(const tlismni_run *run, size_t number);
+TLISMNI_API tlismni_status tlismni_set_parameter(tlismni_run *run, size_t number, double value);
+TLISMNI_API tlismni_status tlismni_parameter_range(const tlismni_model *model, size_t number, double *least,
+                                                   double *largest);
+
 /* Present time, s; and the time up to which the run is computed already. */
 TLISMNI_API double tlismni_time(const tlismni_run *run);
 TLISMNI_API double tlismni_computed(const tlismni_run *run);
@@ -96,6 +104,16 @@ TLISMNI_API bool tlismni_event_due(const tlismni_run *run);
 
 /* Let the inputs count now, and have the channels at the present time. */
 TLISMNI_API tlismni_status tlismni_look(tlismni_run *run);
+
+/* Where the solver's newest step ends, but at most `t`: a step is made if none goes beyond the present time, which stays.
+ * Whoever wants to look, or to set inputs, at each of the solver's steps goes from one such point to the next. */
+TLISMNI_API tlismni_status tlismni_next_point(tlismni_run *run, double t, double *point);
+
+/* Derivatives of all channels at the present time: along a direction of the inputs, with coordinates, velocities and
+ * contact modes held (of accelerations and forces, that is); and in time, NaN where that is not known. `room` is memory of
+ * `tlismni_state_size` bytes; the run stays as it is. */
+TLISMNI_API tlismni_status tlismni_derivatives(tlismni_run *run, const double *direction, double *found, void *room);
+TLISMNI_API tlismni_status tlismni_rates(tlismni_run *run, double *found, void *room);
 
 /* Events of the last call that went on: copies at most `room`, gives how many there were. A thousand or so are kept; of
  * more in one call the first are lost, though counted. */

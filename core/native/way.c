@@ -2,6 +2,7 @@
 
 #include "codes.h"
 #include "image.h"
+#include "way.h"
 
 #include <math.h>
 
@@ -40,7 +41,7 @@ static void drop_events(tlismni_run *run) {
     WHOLES(run, counts)[EVENTS] = 0;
 }
 
-static bool any_pending(const tlismni_run *run) {
+bool way_any_pending(const tlismni_run *run) {
     const int64_t *pending = WHOLES(run, pending);
     for (int64_t k = 0; k < run->model->numbers.contacts; k++) {
         if (pending[k]) {
@@ -51,10 +52,10 @@ static bool any_pending(const tlismni_run *run) {
 }
 
 bool tlismni_event_due(const tlismni_run *run) {
-    return any_pending(run) && tlismni_computed(run) == run->beside.now;
+    return way_any_pending(run) && tlismni_computed(run) == run->beside.now;
 }
 
-static int64_t used(const tlismni_run *run) {
+int64_t way_used(const tlismni_run *run) {
     return WHOLES(run, counters)[STEPS] + WHOLES(run, counts)[HANDLED];
 }
 
@@ -135,9 +136,7 @@ static tlismni_status after(tlismni_run *run, int64_t code, bool hold, double *r
     }
 }
 
-/* Go on after `code`, until the goal or, to `hold`, until events are pending. `first`: steps made before; `seen`: events
- * that are counted already. */
-static tlismni_status go_on(tlismni_run *run, int64_t code, bool hold, int64_t first, int64_t seen) {
+tlismni_status way_go_on(tlismni_run *run, int64_t code, bool hold, int64_t first, int64_t seen) {
     double repaired = NAN;
     int64_t *counts = WHOLES(run, counts);
     for (;;) {
@@ -147,7 +146,7 @@ static tlismni_status go_on(tlismni_run *run, int64_t code, bool hold, int64_t f
         if (status != TLISMNI_OK) {
             return status == DONE ? TLISMNI_OK : status;
         }
-        int64_t left = run->limit - (used(run) - first);
+        int64_t left = run->limit - (way_used(run) - first);
         if (left <= 0) {
             return TOO_MANY_STEPS;
         }
@@ -156,8 +155,7 @@ static tlismni_status go_on(tlismni_run *run, int64_t code, bool hold, int64_t f
     }
 }
 
-/* Before anything else: can the run go on to `t`? The inputs count from now on. */
-static tlismni_status begin(tlismni_run *run, double t) {
+tlismni_status way_begin(tlismni_run *run, double t) {
     double *times = REALS(run, times);
     if (run->beside.failed) {
         return HAS_FAILED;
@@ -170,6 +168,7 @@ static tlismni_status begin(tlismni_run *run, double t) {
             return WRONG_INPUT;
         }
     }
+    run->beside.begun = 1;
     WHOLES(run, counts)[EVENTS] = 0;
     times[NOW] = run->beside.now;
     times[TO] = t;
@@ -177,55 +176,43 @@ static tlismni_status begin(tlismni_run *run, double t) {
     return told ? TLISMNI_OK : INPUT_REFUSED;
 }
 
-/* A failed run can only be restored. */
-static tlismni_status end(tlismni_run *run, tlismni_status status) {
+tlismni_status way_end(tlismni_run *run, tlismni_status status) {
     if (status != TLISMNI_OK && status != INPUT_REFUSED) {
         run->beside.failed = 1;
     }
     return status;
 }
 
-static tlismni_status read_at(tlismni_run *run, double t) {
+tlismni_status way_read(tlismni_run *run, double t) {
     REALS(run, times)[TO] = t;
     return call(run, READ, run->model->places.exchange) == 1 ? TLISMNI_OK : NOT_READ;
 }
 
 tlismni_status tlismni_step(tlismni_run *run, double t, bool read) {
-    tlismni_status status = begin(run, t);
+    tlismni_status status = way_begin(run, t);
     if (status != TLISMNI_OK) {
         return status;
     }
-    int64_t first = used(run);
+    int64_t first = way_used(run);
     *WHOLES(run, reads) = read;
     *WHOLES(run, budget) = run->limit < run->model->numbers.chunk ? run->limit : run->model->numbers.chunk;
     int64_t code = call(run, EXCHANGE, run->model->places.exchange);
-    status = go_on(run, code, false, first, 0);
+    status = way_go_on(run, code, false, first, 0);
     if (status == TLISMNI_OK) {
         run->beside.now = t;
         if (read && code != WAS_READ) {
-            status = read_at(run, t);
+            status = way_read(run, t);
         }
     }
-    return end(run, status);
+    return way_end(run, status);
 }
 
 tlismni_status tlismni_look(tlismni_run *run) {
-    tlismni_status status = begin(run, run->beside.now);
-    return status == TLISMNI_OK ? end(run, read_at(run, run->beside.now)) : status;
+    tlismni_status status = way_begin(run, run->beside.now);
+    return status == TLISMNI_OK ? way_end(run, way_read(run, run->beside.now)) : status;
 }
 
-/* Where a step must end because the inputs are expected to change (`inputs.py`). */
-static double stop_of(const tlismni_run *run, double t) {
-    const double *times = REALS(run, times);
-    double expected = times[LAST_CHANGE] + times[INTERVAL];
-    if (!(run->beside.now < expected && expected < INFINITY)) {
-        return INFINITY;
-    }
-    return expected <= t + run->model->numbers.punctual * times[INTERVAL] ? t : expected;
-}
-
-/* Let the pending events of the present time happen. */
-static tlismni_status settle(tlismni_run *run) {
+tlismni_status way_settle(tlismni_run *run) {
     int64_t first = WHOLES(run, counts)[EVENTS];
     if (run->model->numbers.redundant) {
         return NEEDS_ROWS;
@@ -241,48 +228,4 @@ static tlismni_status settle(tlismni_run *run) {
         return TLISMNI_OK;
     }
     return (tlismni_status)(status == NOT_SETTLED ? NEEDS_EVENT : status < RAISED ? SETTLING + status : status);
-}
-
-tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
-    *event = false;
-    tlismni_status status = begin(run, t);
-    if (status != TLISMNI_OK) {
-        return status;
-    }
-    double start = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
-    int64_t first = used(run);
-    for (;;) {
-        while (status == TLISMNI_OK && tlismni_event_due(run)) {
-            status = settle(run);
-        }
-        if (status != TLISMNI_OK) {
-            return end(run, status);
-        }
-        goals[GOAL] = t;
-        goals[LAST_STOP] = stop;
-        status = go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
-        if (status != TLISMNI_OK) {
-            return end(run, status);
-        }
-        double computed = tlismni_computed(run);
-        if (!any_pending(run) || computed > t) {
-            run->beside.now = t;
-            return TLISMNI_OK;
-        }
-        run->beside.now = computed;
-        if (computed > start) {
-            *event = true;
-            return TLISMNI_OK;
-        }
-    }
-}
-
-tlismni_status tlismni_happen(tlismni_run *run, bool *again) {
-    *again = false;
-    tlismni_status status = begin(run, run->beside.now);
-    if (status == TLISMNI_OK && tlismni_event_due(run)) {
-        status = settle(run);
-        *again = status == TLISMNI_OK && tlismni_event_due(run);
-    }
-    return status == INPUT_REFUSED ? status : end(run, status);
 }

@@ -88,6 +88,16 @@ const char *tlismni_why(tlismni_status status) {
                "position): ask at another time" WITH_PYTHON;
     case NOT_PACKED:
         return "the bytes are no packed state of this image, or are damaged";
+    case NO_PARAMETER:
+        return "the image has no such parameter: tlismni_find gives the number of a name";
+    case OUT_OF_RANGE:
+        return "the parameter's value is not finite, or outside the range that the image was prepared for: make the image "
+               "with a value nearer to it";
+    case HAS_BEGUN:
+        return "parameters are set before a run goes on, or is looked at: restart it, then set them";
+    case NO_DERIVATIVES:
+        return "there are no derivatives here: the mechanism is near a singular position, its matrix takes pivots that the "
+               "image was not prepared for, or a value is not finite";
     default:
         return "unknown status";
     }

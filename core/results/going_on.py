@@ -14,12 +14,14 @@ from ..elements import (
     Cable2D,
     Cable3D,
     FloatingBody2D,
+    InterfaceFrame3D,
     LinearSystem,
     MaterialPoint2D,
     MaterialPoint3D,
     MovingFrame2D,
     PointMass2D,
     PointMass3D,
+    ReducedBody3D,
     RigidBody2D,
     RigidBody3D,
 )
@@ -117,14 +119,13 @@ def _(body: PointMass3D, q: Floats, v: Floats) -> dict[str, Any]:
 
 @moved.register
 def _(body: RigidBody3D, q: Floats, v: Floats) -> dict[str, Any]:
-    """Its angular velocity in the body is 2 G p'."""
-    (e0, *e), (rate, *rates) = q[3:].tolist(), v[3:].tolist()
-    spin = 2.0 * (e0 * np.array(rates) - rate * np.array(e) - np.cross(e, rates))
-    return {
-        "position": tuple(q[:3].tolist()), "velocity": tuple(v[:3].tolist()),
-        "attitude": EulerParameters(values=(e0, e[0], e[1], e[2])),
-        "angular_velocity": tuple(spin.tolist()), "angular_velocity_in": "body",
-    }  # fmt: skip
+    return _turning_frame(q, v)
+
+
+@moved.register
+def _(body: ReducedBody3D, q: Floats, v: Floats) -> dict[str, Any]:
+    own = {"amplitudes": tuple(q[7:].tolist()), "amplitude_rates": tuple(v[7:].tolist())}
+    return {**_turning_frame(q[:7], v[:7]), **own}
 
 
 @moved.register
@@ -142,6 +143,7 @@ def _(body: LinearSystem, q: Floats, v: Floats) -> dict[str, Any]:
     return {"position": tuple(q.tolist()), "velocity": tuple(v.tolist())}
 
 
+@moved.register(InterfaceFrame3D)
 @moved.register(MaterialPoint3D)
 @moved.register(MaterialPoint2D)
 @moved.register(MovingFrame2D)
@@ -201,4 +203,15 @@ def _frame(q: Floats, v: Floats) -> dict[str, Any]:
     return {
         "position": tuple(q[:2].tolist()), "angle": float(q[2]),
         "velocity": tuple(v[:2].tolist()), "angular_velocity": float(v[2]),
+    }  # fmt: skip
+
+
+def _turning_frame(q: Floats, v: Floats) -> dict[str, Any]:
+    """Its angular velocity in the body is 2 G p'."""
+    (e0, *e), (rate, *rates) = q[3:].tolist(), v[3:].tolist()
+    spin = 2.0 * (e0 * np.array(rates) - rate * np.array(e) - np.cross(e, rates))
+    return {
+        "position": tuple(q[:3].tolist()), "velocity": tuple(v[:3].tolist()),
+        "attitude": EulerParameters(values=(e0, e[0], e[1], e[2])),
+        "angular_velocity": tuple(spin.tolist()), "angular_velocity_in": "body",
     }  # fmt: skip

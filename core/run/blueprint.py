@@ -18,7 +18,7 @@ from .simulation import Simulation
 _BLANK = ("samples", "log", "events")
 """Buffers that are empty whenever a blueprint is made."""
 _LISTS = ("events", "fallbacks", "step_logs", "samples", "pending")
-_OF_ONE_RUN = ("crossing",)
+_OF_ONE_RUN = ("crossing", "outside")
 """Cached properties that hold addresses of a run."""
 
 

@@ -187,13 +187,22 @@ class Exchange:
                 "n_terms": len(formulas["number"]), "n_flags": len(formulas["flags"]), "balance": table.balance,
                 "n_derived": len(formulas["derived"]), "n_derived_places": len(formulas["derived_places"]),
                 "n_derived_numbers": len(formulas["derived_numbers"]), "first_derived": table.first_derived,
+                "n_derived_rates": len(formulas["derived_rates"]),
             },
         )  # fmt: skip
         self.record = self._record.record
-        exchange.compile((types.from_dtype(EXCHANGE),))  # not at the first step
         # whose elements are written in half the time of those of the array
         self.clock: Any = self.times.data
         self.reads = False
+
+    @property
+    def table(self) -> NDArray[Any]:
+        """The record as an array."""
+        return self._record.table
+
+    def prepare(self) -> None:
+        """Compile `exchange` now, not at the first step."""
+        exchange.compile((types.from_dtype(EXCHANGE),))
 
     def set_reads(self, wanted: bool) -> None:
         """Say whether the channels are to be read."""

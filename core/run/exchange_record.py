@@ -23,6 +23,8 @@ EXCHANGE = np.dtype(
             # of derived channels (`model/derived.py`), which follow one another from `first_derived` on
             "derived", "n_derived", "derived_places", "n_derived_places", "derived_numbers", "n_derived_numbers",
             "first_derived",
+            "derived_rates", "n_derived_rates",                    # number of each one's rate among them; < 0: none
+            "residual_channels",                                   # (3,) int64
         )
     ]
 )  # fmt: skip

@@ -17,6 +17,9 @@ from ..tables.sample_layout import SampleLayout
 
 CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
 
+LEVELS = ("position", "velocity", "acceleration")
+"""At which constraints are met."""
+
 
 @dataclass(frozen=True)
 class Sum:
@@ -78,9 +81,7 @@ class ChannelTable:
                 channel = Channel(f"{contact.name}.bristle", contact.units[1], "deflection of the friction's bristles")
                 self._formulas.append((channel, layout.v.start + contact.bristle))
         self._add_energies(assembly)
-        for column, level, unit in zip(
-            layout.residuals, ("position", "velocity", "acceleration"), ("m", "m/s", "m/s2"), strict=True
-        ):
+        for column, level, unit in zip(layout.residuals, LEVELS, ("m", "m/s", "m/s2"), strict=True):
             text = f"largest constraint violation at {level} level"
             self._formulas.append((Channel(f"residual.{level}", unit, text), column))
         self.channels = tuple(channel for channel, _ in self._formulas)
@@ -130,6 +131,8 @@ class ChannelTable:
         return {
             **{name: x.astype(np.int64) for name, x in found.items()}, "signs": self._signs.astype(np.float64),
             "derived": derived.heads, "derived_places": derived.places, "derived_numbers": derived.numbers,
+            "derived_rates": self._derived_rate.astype(np.int64),
+            "residual_channels": np.array([self.index[f"residual.{level}"] for level in LEVELS], dtype=np.int64),
         }  # fmt: skip
 
     @property

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..tables.evaluate import evaluate_power
+from .slopes import in_time
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -22,16 +22,7 @@ def output_rates(sim: "Simulation") -> NDArray[np.float64]:
 
     At a contact event they are those before it, as long as it has not happened.
     """
-    sample, layout, assembly, arrays = sim.sample(), sim.table.layout, sim.assembly, sim.workspace.arrays
-    evaluate_power(sim.workspace.record)
-    rates = np.full(len(sample), np.nan)
-    rates[layout.q], rates[layout.v] = sample[layout.v], sample[layout.a]
-    for k, contact in enumerate(assembly.contacts):
-        rates[layout.gap + k] = sample[layout.gap_rate + k]
-        rates[layout.gap_rate + k] = arrays["phidd"][contact.row]
-        if contact.slide_row >= 0:
-            rates[layout.sliding + k] = arrays["phidd"][contact.slide_row]
-        rates[layout.impulse_jump + k] = rates[layout.loss_jump + k] = 0.0
-    for name, column in layout.work.items():
-        rates[column] = arrays["a"][assembly.work_index(name)]
-    return sim.table.rates(sample, rates)
+    sim.sample()
+    found = np.zeros(len(sim.channels))
+    in_time(sim.outside.record, found)
+    return found

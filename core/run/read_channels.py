@@ -31,8 +31,19 @@ def read_at_goal(ex: Any, ws: Any, ms: Any) -> bool:
     t = vec(ex.times, TIMES_SIZE)[GOAL]
     if near_singular(ws, ms, t) or call_query(ex.query, ws, ms, t) != OK:
         return False
-    sample, out = vec(ex.sample, ex.sample_length), vec(ex.channels, ex.n_channels)
-    write_sample(ws, sample)
+    out = vec(ex.channels, ex.n_channels)
+    write_sample(ws, vec(ex.sample, ex.sample_length))
+    put_channels(ex, out)
+    for k in range(ex.n_channels):
+        if not np.isfinite(out[k]):
+            return False
+    return True
+
+
+@internal
+def put_channels(ex: Any, out: Any) -> None:
+    """What the sample gives."""
+    sample = vec(ex.sample, ex.sample_length)
     places = ivec(ex.places, ex.n_channels)
     for k in range(ex.n_channels):
         out[k] = sample[places[k]]
@@ -51,7 +62,3 @@ def read_at_goal(ex: Any, ws: Any, ms: Any) -> bool:
         heads = imat(ex.derived, ex.n_derived, HEAD_SIZE)
         places, numbers = ivec(ex.derived_places, ex.n_derived_places), vec(ex.derived_numbers, ex.n_derived_numbers)
         derive_row(sample, heads, places, numbers, out[ex.first_derived :])
-    for k in range(ex.n_channels):
-        if not np.isfinite(out[k]):
-            return False
-    return True

@@ -269,7 +269,15 @@ class Simulation(Engine):
     @cached_property
     def crossing(self) -> exchange.Exchange | None:
         """What `exchange` works with; None where it does nothing of its own."""
-        return exchange.Exchange(self) if exchange.possible(self) else None
+        if not exchange.possible(self):
+            return None
+        self.outside.prepare()
+        return self.outside
+
+    @cached_property
+    def outside(self) -> exchange.Exchange:
+        """The record of what is asked from outside: inputs and channels."""
+        return exchange.Exchange(self)
 
     def exchange(self, values: Sequence[float], t: float, read: bool = True) -> NDArray[np.float64] | None:
         """`set_inputs` of all inputs, in their order and without derivatives, then `advance(t)`, then the `values()`.

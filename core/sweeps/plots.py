@@ -10,8 +10,8 @@ from ..extras import require
 if TYPE_CHECKING:
     from .sweep import Sweep
 
-FEW = 500
-"""Points up to which they are drawn large."""
+FEW, LINE = 500, 60
+"""Points up to which they are drawn large, and up to which a line joins those of one sweep."""
 
 
 def plot_sweep(
@@ -36,7 +36,10 @@ def plot_sweep(
     figure = Figure(figsize=(7.5, 5.0), layout="constrained")
     axis = figure.subplots()
     size = 9.0 if len(across) <= FEW else 1.0
-    if colour is None:
+    if colour is None and len(across) <= LINE and len(sweep.names) == 1:
+        order = np.argsort(across)
+        axis.plot(across[order], up[order], "o-", ms=4.5, lw=1.0, color="tab:blue")
+    elif colour is None:
         axis.plot(across, up, ".", ms=size**0.5 * 1.5, color="0.1", alpha=1.0 if len(across) <= FEW else 0.5, mew=0)
     else:
         shade = sweep[colour].astype(float)

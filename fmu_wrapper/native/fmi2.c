@@ -94,7 +94,7 @@ EXPORT fmi2Status fmi2Terminate(fmi2Component c) {
 }
 
 EXPORT fmi2Status fmi2Reset(fmi2Component c) {
-    return slave_reset(c);
+    return slave_reset(c, "fmi2Reset");
 }
 
 /* values */
@@ -247,13 +247,12 @@ EXPORT fmi2Status fmi2GetStringStatus(fmi2Component c, int kind, fmi2String *val
     return no_status(c, "fmi2GetStringStatus", kind);
 }
 
-/* derivatives, which the model description says that there are none of */
+/* derivatives */
 
 EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
                                                const fmi2ValueReference known[], size_t knowns, const double seed[],
                                                double sensitivity[]) {
-    (void)unknown, (void)unknowns, (void)known, (void)knowns, (void)seed, (void)sensitivity;
-    return slave_refuses(c, "fmi2GetDirectionalDerivative");
+    return slave_directional(c, "fmi2GetDirectionalDerivative", unknown, unknowns, known, knowns, seed, sensitivity);
 }
 
 EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const int order[],
@@ -264,6 +263,5 @@ EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueRe
 
 EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const int order[],
                                                double value[]) {
-    (void)vr, (void)n, (void)order, (void)value;
-    return slave_refuses(c, "fmi2GetRealOutputDerivatives");
+    return slave_output_derivatives(c, "fmi2GetRealOutputDerivatives", vr, n, order, value);
 }

@@ -18,6 +18,13 @@ static void log_to_host(const Slave *self, int status, const char *category, con
     }
 }
 
+static bool update_of_host(const Slave *self, double time, bool may_end_early, double *end) {
+    bool wanted = false;
+    *end = time;
+    ((fmi3IntermediateUpdateCallback)self->updater)(self->environment, time, true, true, true, may_end_early, &wanted, end);
+    return may_end_early && wanted;
+}
+
 static Slave given_by(void *environment, fmi3LogMessageCallback logger) {
     Slave given = {0};
     given.log = log_to_host;
@@ -41,15 +48,14 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String toke
                                                 const fmi3ValueReference intermediate[], size_t intermediates,
                                                 void *environment, fmi3LogMessageCallback logger,
                                                 fmi3IntermediateUpdateCallback update) {
-    (void)visible, (void)intermediate, (void)update; /* there is nothing to show, and no intermediate update */
+    (void)visible; /* there is nothing to show */
     Slave given = given_by(environment, logger);
     given.event_mode = event_mode;
     given.early_return = early_return;
-    if (intermediates) {
-        slave_error(&given, "fmi3InstantiateCoSimulation", "this FMU has no intermediate updates, as its model description "
-                    "says: instantiate it without requiredIntermediateVariables");
-        return NULL;
-    }
+    given.update = update ? update_of_host : NULL;
+    given.updater = (void (*)(void))update;
+    given.intermediate = (uint32_t *)(uintptr_t)intermediate; /* copied, not written into */
+    given.intermediates = intermediate ? intermediates : 0;
     return slave_new(&given, "fmi3InstantiateCoSimulation", name, token, resources, logging_on);
 }
 
@@ -89,7 +95,7 @@ EXPORT fmi3Status fmi3Terminate(fmi3Instance c) {
 }
 
 EXPORT fmi3Status fmi3Reset(fmi3Instance c) {
-    return slave_reset(c);
+    return slave_reset(c, "fmi3Reset");
 }
 
 /* values */
@@ -230,4 +236,40 @@ EXPORT fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, bool *again, bool *te
 
 EXPORT fmi3Status fmi3EnterStepMode(fmi3Instance c) {
     return slave_enter_step_mode(c, "fmi3EnterStepMode");
+}
+
+/* derivatives */
+
+#define OF_KNOWNS                                                                                                       \
+    fmi3Instance c, const fmi3ValueReference unknown[], size_t unknowns, const fmi3ValueReference known[], size_t knowns, \
+        const double seed[], size_t seeds, double sensitivity[], size_t sensitivities
+
+static bool of_lengths(fmi3Instance c, const char *function, size_t seeds, size_t wanted, size_t room, size_t needed) {
+    if (slave_alive(c) && (seeds != wanted || room != needed)) {
+        slave_error(c, function, "a seed of %zu numbers and room for %zu sensitivities were given, %zu and %zu are needed",
+                    seeds, room, wanted, needed);
+        return false;
+    }
+    return true;
+}
+
+EXPORT fmi3Status fmi3GetDirectionalDerivative(OF_KNOWNS) {
+    const char *name = "fmi3GetDirectionalDerivative";
+    return of_lengths(c, name, seeds, knowns, sensitivities, unknowns)
+               ? slave_directional(c, name, unknown, unknowns, known, knowns, seed, sensitivity)
+               : STATUS_ERROR;
+}
+
+EXPORT fmi3Status fmi3GetAdjointDerivative(OF_KNOWNS) {
+    const char *name = "fmi3GetAdjointDerivative";
+    return of_lengths(c, name, seeds, unknowns, sensitivities, knowns)
+               ? slave_adjoint(c, name, unknown, unknowns, known, knowns, seed, sensitivity)
+               : STATUS_ERROR;
+}
+
+EXPORT fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const int32_t order[],
+                                           double value[], size_t values) {
+    return of_one_length(c, "fmi3GetOutputDerivatives", n, values)
+               ? slave_output_derivatives(c, "fmi3GetOutputDerivatives", vr, n, order, value)
+               : STATUS_ERROR;
 }

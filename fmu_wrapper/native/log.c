@@ -15,6 +15,7 @@ static const char *const WAYS[] = {
     [INSTANTIATED] = "enter and exit initialization mode first",
     [INITIALIZATION] = "exit initialization mode first",
     [STEP_MODE] = "reset first",
+    [INTERMEDIATE] = "return from the callback of the intermediate update first",
     [EVENT_DUE] = "the last step ended at an event: enter event mode, update the discrete states, enter step mode",
     [EVENT_MODE] = "update the discrete states and enter step mode first",
     [FAILED] = "the last step failed: set a stored state, or reset",

@@ -65,14 +65,29 @@ Slave *slave_new(const Slave *given, const char *function, const char *name, con
     self->heard = logging_on ? (1u << LOG_CATEGORIES) - 1 : 0;
     self->model = NULL;
     self->run = NULL;
+    self->parameters = self->room = NULL;
+    self->intermediate = NULL;
     self->file = NULL;
     self->stored = NULL;
     self->name = text_copy(name && *name ? name : "instance");
     at_start(self);
-    if (self->name && load(self, function, token ? token : "", resources)) {
-        self->run = tlismni_start(self->model);
+    if (given->intermediates) {
+        self->intermediate = malloc(given->intermediates * sizeof *self->intermediate);
+        if (self->intermediate) {
+            memcpy(self->intermediate, given->intermediate, given->intermediates * sizeof *self->intermediate);
+        }
     }
-    if (!self->run) {
+    if (self->name && (self->intermediate || !given->intermediates) && load(self, function, token ? token : "", resources)) {
+        size_t numbers = tlismni_count(self->model, TLISMNI_PARAMETER) + tlismni_count(self->model, TLISMNI_INPUT);
+        self->run = tlismni_start(self->model);
+        self->parameters = malloc((numbers + 1) * sizeof *self->parameters);
+        if (!self->run || !self->parameters) {
+            slave_error(self, function, "there is no memory left for an instance");
+        }
+    }
+    if (self->run && self->parameters) {
+        slave_take_parameters(self);
+    } else {
         slave_free(self);
         return NULL;
     }
@@ -80,12 +95,15 @@ Slave *slave_new(const Slave *given, const char *function, const char *name, con
 }
 
 void slave_free(Slave *self) {
-    if (!slave_alive(self)) {
+    if (!slave_alive(self) || self->phase == INTERMEDIATE) { /* not while it is at work */
         return;
     }
     slave_forget_states(self);
     tlismni_end(self->run);
     tlismni_close(self->model);
+    free(self->parameters);
+    free(self->room);
+    free(self->intermediate);
     free(self->file);
     free(self->name);
     self->magic = 0;
@@ -144,11 +162,12 @@ int slave_terminate(Slave *self, const char *function) {
     return STATUS_OK;
 }
 
-int slave_reset(Slave *self) {
-    if (!slave_alive(self)) {
+int slave_reset(Slave *self, const char *function) {
+    if (!slave_may(self, function, ~IN(INTERMEDIATE))) {
         return STATUS_ERROR;
     }
     tlismni_restart(self->run);
+    slave_take_parameters(self);
     at_start(self); /* stored states stay */
     return STATUS_OK;
 }

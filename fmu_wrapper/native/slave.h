@@ -20,13 +20,13 @@
 /* Status numbers of FMI 2.0 and 3.0. */
 typedef enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR, STATUS_FATAL } Status;
 
-typedef enum { INSTANTIATED, INITIALIZATION, STEP_MODE, EVENT_DUE, EVENT_MODE, FAILED, TERMINATED } Phase;
+typedef enum { INSTANTIATED, INITIALIZATION, STEP_MODE, INTERMEDIATE, EVENT_DUE, EVENT_MODE, FAILED, TERMINATED } Phase;
 
 enum { LOG_EVENTS, LOG_WARNING, LOG_DISCARD, LOG_ERROR, LOG_COMPILATION, LOG_TRACEBACK, LOG_ALL, LOG_CATEGORIES };
 
 /* What a variable's values are, and where they come from (`variable_file.py`). */
 typedef enum { REAL, INTEGER, BOOLEAN } Kind;
-typedef enum { TIME, CONSTANT, INPUT, CHANNEL, EVENT_COUNT } Source;
+typedef enum { TIME, CONSTANT, INPUT, PARAMETER, CHANNEL, EVENT_COUNT } Source;
 typedef struct {
     int32_t kind, source, enumeration, number;
     double start, least, largest;
@@ -36,6 +36,9 @@ typedef struct Slave Slave;
 
 /* Hands one message to the host, in the manner of the FMI version. */
 typedef void (*HostLogger)(const Slave *, int status, const char *category, const char *message);
+
+/* Intermediate update at `time` (FMI 3.0): true if the host wants the step to end at `*end`. */
+typedef bool (*HostUpdate)(const Slave *, double time, bool may_end_early, double *end);
 
 typedef struct Stored {
     struct Stored *next;
@@ -49,6 +52,10 @@ struct Slave {
     HostLogger log;
     void (*logger)(void); /* the host's callback, of the type that `log` knows; NULL for none */
     void *environment;
+    HostUpdate update;      /* NULL: no intermediate updates */
+    void (*updater)(void);  /* the host's callback, of the type that `update` knows */
+    uint32_t *intermediate; /* value references of the inputs that are set in these */
+    size_t intermediates;
     char *name;
     unsigned heard; /* bits of the log categories */
     bool event_mode, early_return;
@@ -58,6 +65,8 @@ struct Slave {
     bool asked;  /* outputs have been asked for since the last step */
     tlismni_model *model;
     tlismni_run *run;
+    double *parameters; /* values, behind them room for the inputs */
+    double *room;       /* for derivatives; NULL until they are asked for */
     void *file; /* the variables' */
     const Variable *variables;
     size_t count;
@@ -81,7 +90,7 @@ int slave_set_up(Slave *self, const char *function, bool tolerance_defined, doub
 int slave_enter_initialization(Slave *self, const char *function);
 int slave_exit_initialization(Slave *self, const char *function);
 int slave_terminate(Slave *self, const char *function);
-int slave_reset(Slave *self);
+int slave_reset(Slave *self, const char *function);
 
 /* steps and events (steps.c) */
 int slave_step(Slave *self, const char *function, double t, double h, StepEnd *end);
@@ -94,8 +103,23 @@ int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size
 int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerations, const uint32_t vr[], size_t n,
                      int64_t value[]);
 int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]);
+/* The parameters as the run has them, after it has been restarted or restored. */
+void slave_take_parameters(Slave *self);
 /* None but reals can be set: says so. */
 int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n);
+
+/* What a reference of this kind stands for; NULL with a line in the log. */
+const Variable *slave_variable(const Slave *self, const char *function, uint32_t reference, Kind kind);
+/* Have the channels at the present time with the present inputs. */
+int slave_look(Slave *self, const char *function);
+
+/* derivatives (derivatives.c) */
+int slave_directional(Slave *self, const char *function, const uint32_t unknown[], size_t unknowns, const uint32_t known[],
+                      size_t knowns, const double seed[], double sensitivity[]);
+int slave_adjoint(Slave *self, const char *function, const uint32_t unknown[], size_t unknowns, const uint32_t known[],
+                  size_t knowns, const double seed[], double sensitivity[]);
+int slave_output_derivatives(Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
+                             double value[]);
 
 /* states (states.c) */
 int slave_get_state(Slave *self, const char *function, void **state);

@@ -58,7 +58,7 @@ static Stored *room_for(Slave *self, const char *function, void *state) {
 }
 
 int slave_get_state(Slave *self, const char *function, void **state) {
-    if (!slave_may(self, function, ~IN(FAILED)) || !slave_has_room(self, function, state, 1)) {
+    if (!slave_may(self, function, ~(IN(FAILED) | IN(INTERMEDIATE))) || !slave_has_room(self, function, state, 1)) {
         return STATUS_ERROR;
     }
     Stored *s = room_for(self, function, *state);
@@ -73,7 +73,7 @@ int slave_get_state(Slave *self, const char *function, void **state) {
 }
 
 int slave_set_state(Slave *self, const char *function, void *state) {
-    Stored *s = slave_alive(self) ? kept(self, function, state) : NULL;
+    Stored *s = slave_may(self, function, ~IN(INTERMEDIATE)) ? kept(self, function, state) : NULL;
     if (!s) {
         return STATUS_ERROR;
     }
@@ -85,6 +85,7 @@ int slave_set_state(Slave *self, const char *function, void *state) {
     self->stop = s->stop;
     self->fresh = false;
     tlismni_restore(self->run, s->saved);
+    slave_take_parameters(self);
     return STATUS_OK;
 }
 
@@ -153,7 +154,7 @@ int slave_read_state(Slave *self, const char *function, const void *bytes, size_
     }
     memcpy(&head, bytes, sizeof head);
     if (memcmp(head.magic, STATE_MAGIC, sizeof head.magic) != 0 || head.check != check_of(&head) || head.phase < 0 ||
-        head.phase > TERMINATED || head.phase == FAILED) {
+        head.phase > TERMINATED || head.phase == FAILED || head.phase == INTERMEDIATE) {
         return slave_error(self, function, "the bytes are no stored state of this FMU, or damaged: store it again");
     }
     Stored *s = new_state(self, function);

@@ -38,11 +38,11 @@ static bool check_step(const Slave *self, const char *function, double t, double
     return true;
 }
 
-/* To `goal`, or to an event before that which ends the step. */
-static int advance(Slave *self, double goal, StepEnd *end) {
+/* To `t` on the way to `goal`, or to an event before that which ends the step. */
+static int advance(Slave *self, double t, double goal, StepEnd *end) {
     bool event, again;
     int status;
-    while ((status = tlismni_step_to_event(self->run, goal, &event)) == TLISMNI_OK && event) {
+    while ((status = tlismni_step_to_event(self->run, t, &event)) == TLISMNI_OK && event) {
         double reached = tlismni_time(self->run);
         bool early = self->early_return && reached < goal;
         slave_log_events(self);
@@ -66,6 +66,36 @@ static int advance(Slave *self, double goal, StepEnd *end) {
     return status;
 }
 
+/* The same with an intermediate update where each step of the solver ends on the way. */
+static int advance_with_updates(Slave *self, double target, StepEnd *end) {
+    double goal = target, point, wanted;
+    for (;;) {
+        int status = tlismni_next_point(self->run, goal, &point);
+        *end = (StepEnd){point, false, false};
+        if (status == TLISMNI_OK) {
+            status = advance(self, point, goal, end);
+        }
+        if (status != TLISMNI_OK || end->early || end->event_due || end->time >= goal) {
+            end->early = status == TLISMNI_OK && end->time < target;
+            return status;
+        }
+        self->phase = INTERMEDIATE;
+        self->fresh = false;
+        bool ends = self->update(self, end->time, self->early_return, &wanted);
+        if (self->phase != INTERMEDIATE) { /* there are no outputs with the inputs that the host has set */
+            return tlismni_look(self->run);
+        }
+        self->phase = STEP_MODE;
+        if (ends) {
+            goal = fmin(goal, wanted);
+            if (goal <= end->time) {
+                end->early = true;
+                return TLISMNI_OK;
+            }
+        }
+    }
+}
+
 int slave_step(Slave *self, const char *function, double t, double h, StepEnd *end) {
     double goal;
     if (!slave_may(self, function, IN(STEP_MODE))) {
@@ -75,10 +105,12 @@ int slave_step(Slave *self, const char *function, double t, double h, StepEnd *e
     if (!check_step(self, function, t, h, &goal)) {
         return STATUS_ERROR;
     }
-    bool read = self->asked, plain = !(self->event_mode || self->early_return);
+    bool read = self->asked, plain = !(self->event_mode || self->early_return || self->update);
     self->asked = self->fresh = false;
     *end = (StepEnd){goal, false, false};
-    int status = plain ? tlismni_step(self->run, goal, read) : advance(self, goal, end);
+    int status = plain          ? tlismni_step(self->run, goal, read)
+                 : self->update ? advance_with_updates(self, goal, end)
+                                : advance(self, goal, goal, end);
     if (status) {
         self->phase = FAILED;
         end->time = tlismni_time(self->run);

@@ -3,13 +3,13 @@
 #include "slave.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char *const KIND_NAMES[] = {"real", "integer", "boolean"};
 #define READABLE (~IN(INSTANTIATED))
-#define SETTABLE (IN(INSTANTIATED) | IN(INITIALIZATION) | IN(STEP_MODE) | IN(EVENT_DUE) | IN(EVENT_MODE))
+#define SETTABLE (IN(INSTANTIATED) | IN(INITIALIZATION) | IN(STEP_MODE) | IN(INTERMEDIATE) | IN(EVENT_DUE) | IN(EVENT_MODE))
 
-/* The variable behind a value reference; NULL with a line in the log. */
-static const Variable *find(const Slave *self, const char *function, uint32_t reference, Kind kind) {
+const Variable *slave_variable(const Slave *self, const char *function, uint32_t reference, Kind kind) {
     if (reference < 1 || reference > self->count) {
         slave_error(self, function, "value reference %lu is unknown: this FMU has 1 to %zu, which stand in "
                     "modelDescription.xml", (unsigned long)reference, self->count);
@@ -24,8 +24,7 @@ static const Variable *find(const Slave *self, const char *function, uint32_t re
     return v;
 }
 
-/* Have the channels at the present time with the present inputs. */
-static int look(Slave *self, const char *function) {
+int slave_look(Slave *self, const char *function) {
     self->asked = true;
     if (self->fresh) {
         return STATUS_OK;
@@ -50,6 +49,8 @@ static double value_of(const Slave *self, const Variable *v) {
         return tlismni_time(self->run);
     case INPUT:
         return tlismni_inputs(self->run)[v->number];
+    case PARAMETER:
+        return self->parameters[v->number];
     case CHANNEL:
         return tlismni_channels(self->run)[v->number];
     case EVENT_COUNT:
@@ -65,8 +66,8 @@ int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) {
-        const Variable *v = find(self, function, vr[k], REAL);
-        if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
+        const Variable *v = slave_variable(self, function, vr[k], REAL);
+        if (!v || (v->source >= CHANNEL && slave_look(self, function) != STATUS_OK)) {
             return STATUS_ERROR;
         }
         value[k] = value_of(self, v);
@@ -81,12 +82,12 @@ int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerati
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) {
-        const Variable *v = find(self, function, vr[k], kind);
+        const Variable *v = slave_variable(self, function, vr[k], kind);
         if (v && enumerations >= 0 && v->enumeration != enumerations) {
             return slave_error(self, function, "value reference %lu is %s: use the functions for %s", (unsigned long)vr[k],
                                enumerations ? "an Int32, no enumeration" : "an enumeration", enumerations ? "Int32" : "Int64");
         }
-        if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
+        if (!v || (v->source >= CHANNEL && slave_look(self, function) != STATUS_OK)) {
             return STATUS_ERROR;
         }
         double number = value_of(self, v);
@@ -96,9 +97,67 @@ int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerati
 }
 
 static int refuse(const Slave *self, const char *function, uint32_t reference) {
-    return slave_error(self, function, "value reference %lu cannot be set: an FMU that needs no Python takes inputs, and "
-                       "its parameters are those that it was exported with; export it with others, or with Python",
+    return slave_error(self, function, "value reference %lu cannot be set: it is neither an input nor a parameter that an "
+                       "FMU without Python can change; export it with another value, or with Python",
                        (unsigned long)reference);
+}
+
+static bool among(const uint32_t references[], size_t count, uint32_t one) {
+    for (size_t k = 0; k < count; k++) {
+        if (references[k] == one) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether a value may be set now; false with a line in the log. */
+static bool may_set(const Slave *self, const char *function, const Variable *v, uint32_t reference, double value) {
+    if (v->source != INPUT && v->source != PARAMETER) {
+        refuse(self, function, reference);
+        return false;
+    }
+    if (v->source == PARAMETER && self->phase != INSTANTIATED && self->phase != INITIALIZATION) {
+        slave_error(self, function, "value reference %lu is a parameter, which is fixed after initialization: reset, then "
+                    "set it before", (unsigned long)reference);
+        return false;
+    }
+    if (self->phase == INTERMEDIATE && !among(self->intermediate, self->intermediates, reference)) {
+        slave_error(self, function, "in an intermediate update only the required intermediate variables can be set, not value "
+                    "reference %lu: name it when the instance is made", (unsigned long)reference);
+        return false;
+    }
+    if (!isfinite(value) || value < v->least || value > v->largest) {
+        const char *name = tlismni_name(self->model, v->source == INPUT ? TLISMNI_INPUT : TLISMNI_PARAMETER,
+                                        (size_t)v->number);
+        slave_error(self, function, "'%s' was set to %g, which is not finite or outside its range [%g, %g]: check what "
+                    "feeds it", name ? name : "?", value, v->least, v->largest);
+        return false;
+    }
+    return true;
+}
+
+void slave_take_parameters(Slave *self) {
+    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER);
+    for (size_t k = 0; k < count; k++) {
+        self->parameters[k] = tlismni_parameter(self->run, k);
+    }
+}
+
+/* The run from its start with the parameters as they are now, and the inputs as they were. */
+static int start_anew(Slave *self, const char *function) {
+    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER), inputs = tlismni_count(self->model, TLISMNI_INPUT);
+    double *kept = self->parameters + count;
+    memcpy(kept, tlismni_inputs(self->run), inputs * sizeof *kept);
+    tlismni_restart(self->run);
+    memcpy(tlismni_inputs(self->run), kept, inputs * sizeof *kept);
+    for (size_t k = 0; k < count; k++) {
+        int status = tlismni_set_parameter(self->run, k, self->parameters[k]);
+        if (status) {
+            return slave_run_error(self, function, status);
+        }
+    }
+    return STATUS_OK;
 }
 
 int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]) {
@@ -107,25 +166,20 @@ int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) { /* all of them or none */
-        const Variable *v = find(self, function, vr[k], REAL);
-        if (!v) {
+        const Variable *v = slave_variable(self, function, vr[k], REAL);
+        if (!v || !may_set(self, function, v, vr[k], value[k])) {
             return STATUS_ERROR;
-        }
-        if (v->source != INPUT) {
-            return refuse(self, function, vr[k]);
-        }
-        if (!isfinite(value[k]) || value[k] < v->least || value[k] > v->largest) {
-            const char *name = tlismni_name(self->model, TLISMNI_INPUT, (size_t)v->number);
-            return slave_error(self, function, "'%s' was set to %g, which is not finite or outside its range [%g, %g]: check "
-                               "what feeds it", name ? name : "?", value[k], v->least, v->largest);
         }
     }
     double *inputs = tlismni_inputs(self->run);
+    bool changed = false;
     for (size_t k = 0; k < n; k++) {
-        inputs[self->variables[vr[k] - 1].number] = value[k];
+        const Variable *v = &self->variables[vr[k] - 1];
+        changed = changed || v->source == PARAMETER;
+        (v->source == INPUT ? inputs : self->parameters)[v->number] = value[k];
     }
     self->fresh = self->fresh && !n;
-    return STATUS_OK;
+    return changed ? start_anew(self, function) : STATUS_OK;
 }
 
 int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n) {

@@ -20,7 +20,7 @@ UNITS_DEPEND = {
     "Servo2D": {"gain", "rate_gain", "largest"},
     "Sine": {"amplitude", "offset"}, "Step": {"before", "after"}, "Table": {"values"},
 }  # fmt: skip
-MATRICES = {"LinearSystem", "ReducedBody2D", "ReducedPoint"}
+MATRICES = {"Interface3D", "LinearSystem", "ReducedBody2D", "ReducedBody3D", "ReducedPoint"}
 
 
 RECORDS = records(Model)

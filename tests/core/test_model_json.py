@@ -493,8 +493,8 @@ def test_the_list_of_elements_above_is_complete():
         "SlideSpring2D", "TableSpring2D", "RevoluteFriction2D", "SlideFriction2D", "Servo2D", "PIDController2D",
         "RelativeLoad2D", "Rope2D", "AngleStop2D", "DiskInRing2D", "DiskOnPolygon2D",
         "DiskOnBox2D", "KnifeEdge2D", *SPATIAL,
-        # (`test_contact_groups.py`, `test_cornered_shapes.py`)
-        "ContactGroup2D", "ContactGroup3D",
+        # (`test_contact_groups.py`, `test_cornered_shapes.py`, `test_reduced_body3d.py`)
+        "ReducedBody3D", "InterfaceFrame3D", "ContactGroup2D", "ContactGroup3D",
     }  # fmt: skip
     assert found == here and "HalfPlane2D" in definitions
 

@@ -6,6 +6,7 @@ Euler parameters are moved off their norm too: the equations hold as functions o
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from reduced_bodies import points_with_modes
 from test_tangents import SINE, H, Point, check_levels, check_matrix, draw, quick
 from tlismni.core import (
     AngleDriver3D,
@@ -24,6 +25,7 @@ from tlismni.core import (
     EulerParameters,
     Fixed3D,
     Gear3D,
+    InterfaceFrame3D,
     Marker3D,
     MaterialPoint3D,
     Model,
@@ -34,6 +36,7 @@ from tlismni.core import (
     PositionDriver3D,
     Prismatic3D,
     RackAndPinion3D,
+    ReducedBody3D,
     Revolute3D,
     RevoluteSpherical3D,
     RigidBody3D,
@@ -68,6 +71,14 @@ CABLE = Cable3D(
     name="c", elements=2, length=1.5, mass_per_length=1.3, axial_stiffness=5.0, bending_stiffness=0.7,
     axial_damping=0.4, reference_strain=0.02, attitude=RotationVector(vector=(0.4, 0.2, -0.3)),
 )  # fmt: skip
+
+CLOUD = points_with_modes(seed=3, points=9, modes=3)
+REDUCED = ReducedBody3D(
+    name="r", **CLOUD, position=(0.2, -0.1, 0.4), attitude=RotationVector(vector=(0.4, 0.2, -0.3)),
+    amplitudes=(0.1, -0.2, 0.15), damping=((0.3, 0.1, 0.0), (-0.1, 0.4, 0.05), (0.0, 0.02, 0.2)),
+)  # fmt: skip
+TIP = InterfaceFrame3D(name="m", body="r", interface="turning")
+CORNER = InterfaceFrame3D(name="n", body="r", interface="node")
 
 PAIRS = {"two bodies": (LEFT, RIGHT), "ground": (GROUND, RIGHT), "a point mass": (LEFT, MASS)}
 JOINTS = {
@@ -105,6 +116,12 @@ CASES = {
     **{f"rolling {what}": {"joints": [joint]} for what, joint in WHEELS.items()},
     "cable": {"bodies": [CABLE]},
     "material point": {"bodies": [CABLE, MaterialPoint3D(name="m", body="c", s=0.7)]},
+    "reduced body": {"bodies": [REDUCED]},
+    "interface": {"bodies": [REDUCED, TIP]},
+    "joint between interfaces": {
+        "bodies": [REDUCED, TIP, CORNER],
+        "joints": [Revolute3D(name="j", a=Marker3D(body="m", point=(0.1, 0.2, 0.0)), b=RIGHT)],
+    },
     **{
         f"cable clamp {marker.body}": {
             "bodies": [CABLE],

@@ -142,6 +142,41 @@ static void life(Held *h) {
     refused += s != fmi3OK;
 }
 
+static void derivatives(Held *h) {
+    fmi3ValueReference unknown[MOST], known[MOST];
+    double seeds[MOST], found[MOST];
+    fmi3Int32 order[MOST];
+    size_t n = 1 + any(2), m = 1 + any(2), room = any(12) ? n : any(MOST);
+    for (size_t k = 0; k < MOST; k++) {
+        unknown[k] = 1 + any(variables), known[k] = 1 + any(variables);
+        seeds[k] = number();
+        order[k] = any(20) ? 1 : 2;
+    }
+    fmi3Status s;
+    switch (any(3)) {
+    case 0: s = fmi3GetDirectionalDerivative(h->fmu, unknown, n, known, m, any(60) ? seeds : NULL, m, found, room); break;
+    case 1: s = fmi3GetAdjointDerivative(h->fmu, unknown, m, known, n, seeds, m, any(60) ? found : NULL, room); break;
+    default: s = fmi3GetOutputDerivatives(h->fmu, unknown, n, any(60) ? order : NULL, found, room);
+    }
+    refused += s != fmi3OK;
+}
+
+/* What a host may do in an intermediate update, and what it may not. */
+static void update(fmi3InstanceEnvironment environment, double time, fmi3Boolean set, fmi3Boolean get, fmi3Boolean finished,
+                   fmi3Boolean may_return, fmi3Boolean *returns, double *return_time) {
+    (void)set, (void)get, (void)finished;
+    Held *h = environment;
+    if (h->fmu) {
+        unsigned what = any(12);
+        double now = h->time;
+        calls++;
+        (what < 5 ? values : what < 7 ? derivatives : what < 9 ? states : what < 10 ? step : life)(h);
+        h->time = now;
+    }
+    *returns = may_return && !any(9);
+    *return_time = any(3) ? time : number();
+}
+
 static void end(Held *h) {
     fmi3FreeInstance(h->fmu);
     free(h->bytes);
@@ -158,9 +193,13 @@ int main(int count, char **argument) {
     for (long k = 0; k < atol(argument[4]); k++) {
         Held *h = &held[any(INSTANCES)];
         if (!h->fmu || !any(8)) {
+            fmi3ValueReference wanted[] = {1 + any(variables), 1 + any(variables)};
             end(h);
             h->fmu = fmi3InstantiateCoSimulation("it", any(50) ? argument[2] : "{other}", any(50) ? argument[1] : NULL, false,
-                                                 any(2), any(2), any(2), NULL, 0, NULL, logger, NULL);
+                                                 any(2), any(2), any(2), wanted, any(3), h, logger, any(3) ? NULL : update);
+            for (unsigned sets = any(4); h->fmu && sets; sets--) { /* parameters, at times */
+                values(h);
+            }
             if (h->fmu && any(10)) {
                 fmi3EnterInitializationMode(h->fmu, false, 0.0, 0.0, true, END);
                 fmi3ExitInitializationMode(h->fmu);
@@ -168,8 +207,8 @@ int main(int count, char **argument) {
             }
         }
         for (unsigned more = any(20); h->fmu && more; more--, calls++) {
-            unsigned what = any(10);
-            (what < 4 ? step : what < 7 ? values : what < 9 ? states : life)(h);
+            unsigned what = any(11);
+            (what < 4 ? step : what < 7 ? values : what < 8 ? derivatives : what < 10 ? states : life)(h);
         }
     }
     for (int k = 0; k < INSTANCES; k++) {

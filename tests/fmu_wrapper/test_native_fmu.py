@@ -15,7 +15,8 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 from fmu_helpers import ball_model
-from native_pair import Pair, scenario_pair
+from native_pair import Pair, Side, scenario_pair
+from tlismni.core import Model
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.errors import ExportError
@@ -108,6 +109,98 @@ def test_going_back_here_and_in_another_instance(version, tmp_path):
         getattr(here.fmu, read)(bytes(data))
 
 
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_parameters_are_set_before_the_run(version, tmp_path):
+    """The bits of the FMU with Python; a reset and a stored state take them along."""
+    pair = scenario_pair("impact_oscillator", tmp_path, version)
+    sides = pair.instances()
+    for side in sides:
+        side.set(restitution=0.37, frequency=2.2)
+        side.begin(damping_ratio=0.11)
+    for _ in range(12):
+        assert sides[0].step(0.9) == sides[1].step(0.9)
+        assert sides[0].read() == sides[1].read()
+    side, number = sides[0], sides[0].by_name["restitution"].valueReference
+    get = side.fmu.getFloat64 if side.three else side.fmu.getReal
+    assert get([number]) == [0.37]
+    for wrong in ({"restitution": 0.5}, {"restitution": 2.0}):
+        with pytest.raises(FMICallException):
+            side.set(**wrong)
+    side.fmu.reset()
+    side.time = 0.0
+    with pytest.raises(FMICallException):
+        side.set(restitution=2.0)
+    plain = pair.instances()[1]
+    for s in (side, plain):
+        s.begin()
+        s.step(7.0)
+    assert side.read() == plain.read()
+
+
+def test_what_is_fixed_is_named(tmp_path, caplog):
+    with caplog.at_level("INFO", logger="tlismni.fmu_wrapper.export"):
+        path = export_fmu(load("bouncing_ball"), tmp_path / "x.fmu", native=True)
+    assert re.search(r"fixed in the FMU: .*\bmass\b.*: the start follows from it", caplog.text)
+    found = {v.name: v for v in fmpy.read_model_description(str(path)).modelVariables}
+    assert found["restitution"].causality == "parameter" and found["restitution"].variability == "fixed"
+    assert found["mass"].variability == "constant"
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_derivatives_are_those_of_the_fmu_with_python(version, tmp_path):
+    pair = scenario_pair("slider_crank_stop", tmp_path, version)
+    sides = pair.instances()
+    names = ("crank.ax", "crank.angular_acceleration", "stop.normal_force", "slider.x")
+    weights = (1.0, 0.5, -2.0, 0.0)
+    for side in sides:
+        side.begin(torque=1.5)
+    for _ in range(6):
+        found = []
+        for side in sides:
+            side.step(0.07)
+            fmu, known = side.fmu, [side.by_name["torque"].valueReference]
+            unknown = [side.by_name[name].valueReference for name in names]
+            along = fmu.getDirectionalDerivative(unknown, known, [0.3])
+            if side.three:
+                (adjoint,) = fmu.getAdjointDerivative(unknown, known, list(weights), nSensitivity=1)
+                assert adjoint == pytest.approx(np.dot(weights, along) / 0.3, rel=1e-9)
+                rates = fmu.getOutputDerivatives(unknown[3:], [1])
+                with pytest.raises(FMICallException):  # of accelerations there are none
+                    fmu.getOutputDerivatives(unknown[:1], [1])
+            else:
+                rates = fmu.getRealOutputDerivatives(unknown[3:], [1])
+            found.append((list(along), list(rates)))
+            with pytest.raises(FMICallException):
+                fmu.getDirectionalDerivative(known, unknown[:1], [1.0])
+        assert found[0] == found[1] and found[0][0][1] != 0.0 and found[0][0][3] == 0.0
+        assert sides[0].read() == sides[1].read()
+
+
+def test_intermediate_updates(tmp_path):
+    """A host that looks at each step of the solver, and ends one early, sees the same of both."""
+    pair, seen = scenario_pair("slider_crank_stop", tmp_path, "3.0"), ([], [])
+    for k in range(2):
+        holder = {}
+
+        def update(environment, time, set_requested, get_allowed, finished, may_return, returns, return_time, k=k,
+                   holder=holder):  # fmt: skip
+            side = holder["side"]
+            seen[k].append((time, *side.fmu.getFloat64([side.by_name["crank.angular_velocity"].valueReference])))
+            if len(seen[k]) % 7 == 0:
+                side.set(torque=float(len(seen[k]) % 5))
+            returns[0], return_time[0] = bool(may_return and len(seen[k]) % 11 == 0), time
+
+        _, unzipped, description = pair.sides[k]
+        torque = next(v.valueReference for v in description.modelVariables if v.name == "torque")
+        holder["side"] = side = Side("3.0", unzipped, description, earlyReturnAllowed=True,
+                                     requiredIntermediateVariables=[torque], intermediateUpdate=update)  # fmt: skip
+        side.begin()
+        for _ in range(12):
+            seen[k].append(side.step(0.02))
+        seen[k].append(side.read())
+    assert seen[0] == seen[1] and len(seen[0]) > 30
+
+
 def test_reset_is_a_new_instance(tmp_path):
     pair = scenario_pair("bouncing_ball", tmp_path, "2.0")
     side, fresh = pair.instances()[0], pair.instances()[0]
@@ -134,7 +227,7 @@ def test_errors_leave_a_living_instance(tmp_path):
     for wrong in (
         lambda: side.fmu.doStep(0.1, 0.1), lambda: side.fmu.doStep(0.25, -0.1), lambda: side.fmu.doStep(0.25, np.nan),
         lambda: side.fmu.getReal([9999]), lambda: side.fmu.getInteger([vr["ball.y"]]),
-        lambda: side.fmu.setReal([vr["mass"]], [3.0]), lambda: side.fmu.setReal([vr["push"]], [np.inf]),
+        lambda: side.fmu.setReal([vr["solver.rtol"]], [1e-3]), lambda: side.fmu.setReal([vr["push"]], [np.inf]),
         lambda: side.fmu.setReal([vr["push"], vr["ball.y"]], [5.0, 1.0]), lambda: side.fmu.setupExperiment(),
         lambda: side.fmu.enterInitializationMode(), lambda: side.fmu.getString([1]),
         lambda: side.fmu.setRealInputDerivatives([vr["push"]], [1], [1.0]),
@@ -167,7 +260,17 @@ def test_it_holds_numbers_not_the_model(tmp_path):
     ]  # fmt: skip
     description = fmpy.read_model_description(str(path))
     assert not description.coSimulation.needsExecutionTool
-    assert not [v.name for v in description.modelVariables if v.causality == "parameter"]
+    assert [v.name for v in description.modelVariables if v.causality == "parameter"] == ["restitution"]
+
+
+def test_with_sources_it_holds_the_model(tmp_path):
+    path = export_fmu(load("pendulum_stop"), tmp_path / "x.fmu", "3.0", native=True, sources=True)
+    with zipfile.ZipFile(path) as archive:
+        assert Model.from_json(archive.read("resources/model.json").decode()) == load("pendulum_stop").model
+        assert "documentation/index.html" in archive.namelist()
+    for wrong in ({}, {"native": True, "protect": True}):
+        with pytest.raises(ExportError, match="sources are for FMUs without Python"):
+            export_fmu(load("pendulum_stop"), tmp_path / "y.fmu", sources=True, **wrong)
 
 
 @pytest.mark.parametrize("name, text", [("split_wall", "motion of a driver"), ("four_bar", "singular position")])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from runs import run
 from tlismni.core import (
+    AngleStop2D,
     AppliedForce2D,
     Disk2D,
     DiskOnDisk2D,
@@ -15,10 +16,13 @@ from tlismni.core import (
     Marker2D,
     Model,
     ModelError,
+    NewtonImpact,
     PointMass2D,
+    Revolute2D,
     RigidBody2D,
     Sine,
     SpringDamper2D,
+    TorsionSpring2D,
     axial_force,
     bending_stress,
     deformed_shape,
@@ -161,6 +165,28 @@ def test_every_scenario_can_be_shown_at_its_start(name: str) -> None:
     data = json.loads(json.dumps(scene.to_data(), allow_nan=False))
     assert data["format"] == "tlismni-scene-1" and data["dimension"] == (3 if is_spatial(load(name).model) else 2)
     assert data["parts"] or data["bands"] or data["gauges"] or data["solids"]
+
+
+def test_impulses_of_angle_stops_are_angular_and_a_link_in_line_is_a_bar() -> None:
+    arm = RigidBody2D(name="arm", mass=1.0, inertia=0.1, position=(0.0, 0.5), angle=1.5708)
+    pin = Revolute2D(name="pin", a=Marker2D(), b=Marker2D(body="arm", point=(-0.5, 0.0)))
+    spring = TorsionSpring2D(name="spring", a=Marker2D(), b=Marker2D(body="arm"), stiffness=5.0, natural_angle=-0.1)
+    stop = AngleStop2D(name="stop", b=Marker2D(body="arm"), side="lower", limit=0.0, law=NewtonImpact(restitution=0.2))
+    model = Model(gravity=(0.0, 0.0), bodies=[arm], joints=[pin], forces=[spring], contacts=[stop])
+    scene = animate(simulate(model, 1.5)).scene
+    assert {event["impulse_unit"] for event in scene.events} == {"N.m.s"}
+    assert {event["impulse_unit"] for event in animate(run("pendulum_stop")).scene.events} == {"N.s"}
+    number = next(k for k, f in enumerate(scene.frames) if f.name == "arm")
+    bar = next(part for part in scene.parts if part.frame == number and part.layer == 1)
+    assert [len(shape.points) for shape in bar.shapes if not hasattr(shape, "radius")][:2] == [2, 2]
+
+
+def test_what_stands_still_is_not_plotted_unless_asked_for() -> None:
+    result = run("slider_crank_stop")
+    assert animate(result).scene.plots[0] == "slider.x" and "slider.y" not in animate(result).scene.plots
+    assert "slider.y" in animate(result, channels=["slider.y"]).scene.plots
+    resting = simulate(Model(gravity=(0.0, 0.0), bodies=[PointMass2D(name="ball", mass=1.0)]), 1.0)
+    assert animate(resting).scene.plots[:2] == ["ball.x", "ball.y"]
 
 
 def test_arrays_come_back_from_the_data() -> None:

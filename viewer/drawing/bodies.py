@@ -19,6 +19,8 @@ from .places import Places
 from .shapes import FLEX, INK, STEEL, Circle, Drawing, Label, Path, Point, between, hull, moved, turned
 
 MOST_NAMES = 8
+FLAT = 1e-4
+"""Width of a hull over its length below which it is a line."""
 LINK = 2.6  # width of a link, in hundredths of the drawing's size
 
 
@@ -124,7 +126,18 @@ def _outline(points: list[Point], centre: Point) -> list[Point]:
     if centre in corners and len(corners) > 1:
         (cx, cy), known = centre, list(corners)
         corners = hull((*known, *((2.0 * cx - x, 2.0 * cy - y) for x, y in known)))
-    return corners
+    return _without_width(corners)
+
+
+def _without_width(corners: list[Point]) -> list[Point]:
+    """The two ends of a hull that is a line but for rounding; another one as it is."""
+    pairs = [(a, b) for k, a in enumerate(corners) for b in corners[k + 1 :]]
+    if len(corners) < 3:
+        return corners
+    a, b = max(pairs, key=lambda pair: math.dist(*pair))
+    (ux, uy), length = between(a, b)
+    flat = all(abs((p[0] - a[0]) * uy - (p[1] - a[1]) * ux) <= FLAT * length for p in corners)
+    return [a, b] if flat else corners
 
 
 def _block(

@@ -73,7 +73,7 @@ function usual(values) {
 // A number with its unit in engineering manner: four digits, with k, M, m, u, n where the unit takes one.
 function shown(value, unit) {
   if (!Number.isFinite(value)) return "–";
-  const known = ["N", "m", "m/s", "J", "N.m", "N.s", "Pa", "s"].includes(unit);
+  const known = ["N", "m", "m/s", "J", "N.m", "N.s", "N.m.s", "Pa", "s"].includes(unit);
   const size = Math.abs(value);
   if (known && size >= 1e-12 && (size >= 1e4 || size < 1e-2)) {
     const power = Math.max(-4, Math.min(3, Math.floor(Math.log10(size) / 3)));

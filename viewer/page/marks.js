@@ -2,7 +2,8 @@
 
 const ARROWS = { contact: "#b3402a", joint: "#8a6d00", load: "#c96a00" };
 const FLEX = "#1f7a5c", SPEED = "#1565c0";
-const shows = { forces: true, joints: false, velocities: false, trails: true, names: true };
+const labelled = scene.frames.filter((f) => f.label).length + scene.bands.length;
+const shows = { forces: true, joints: false, velocities: false, trails: true, names: labelled <= 15 };
 const chosen = new Map(scene.bands.map((band) => [band, 0]));
 
 // Lengths of arrows: the usual one is an eighth of the scene.
@@ -135,7 +136,7 @@ function drawBlows(g, arrow, time) {
     g.lineWidth = 3 * strength + 0.5;
     g.stroke();
     // of blows that follow one another only the last one says its size, and what is left of bouncing does not
-    if (event === near[near.length - 1] && event.impulse > 1e-3 * hardest) drawText(g, shown(event.impulse, "N.s"), x + 12, y + 14, ARROWS.contact);
+    if (event === near[near.length - 1] && event.impulse > 1e-3 * hardest) drawText(g, shown(event.impulse, event.impulse_unit), x + 12, y + 14, ARROWS.contact);
   }
 }
 

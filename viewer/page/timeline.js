@@ -71,7 +71,7 @@ function tellEvent(time) {
   const near = 1e-9 * Math.max(Math.abs(last), 1e-9), past = scene.events.filter((event) => event.t <= time + near);
   const event = past[past.length - 1], box = document.getElementById("newest");
   if (!event) return void (box.textContent = "");
-  const more = event.impulse ? `, ${shown(event.impulse, "N.s")}` : "";
+  const more = event.impulse ? `, ${shown(event.impulse, event.impulse_unit)}` : "";
   box.textContent = `${shown(event.t, "s")}: ${event.kind} of ${event.contact}${more}`;
 }
 

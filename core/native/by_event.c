@@ -1,0 +1,82 @@
+/* From one contact event to the next, or from one step of the solver to the next: `Simulation.advance_to_event`,
+ * `handle_event` and `next_point`. */
+
+#include "codes.h"
+#include "image.h"
+#include "way.h"
+
+#include <math.h>
+
+/* Where a step must end because the inputs are expected to change (`inputs.py`). */
+static double stop_of(const tlismni_run *run, double t) {
+    const double *times = REALS(run, times);
+    double expected = times[LAST_CHANGE] + times[INTERVAL];
+    if (!(run->beside.now < expected && expected < INFINITY)) {
+        return INFINITY;
+    }
+    return expected <= t + run->model->numbers.punctual * times[INTERVAL] ? t : expected;
+}
+
+tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
+    *event = false;
+    tlismni_status status = way_begin(run, t);
+    if (status != TLISMNI_OK) {
+        return status;
+    }
+    double start = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
+    int64_t first = way_used(run);
+    for (;;) {
+        while (status == TLISMNI_OK && tlismni_event_due(run)) {
+            status = way_settle(run);
+        }
+        if (status != TLISMNI_OK) {
+            return way_end(run, status);
+        }
+        goals[GOAL] = t;
+        goals[LAST_STOP] = stop;
+        status = way_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
+        if (status != TLISMNI_OK) {
+            return way_end(run, status);
+        }
+        double computed = tlismni_computed(run);
+        if (!way_any_pending(run) || computed > t) {
+            run->beside.now = t;
+            return TLISMNI_OK;
+        }
+        run->beside.now = computed;
+        if (computed > start) {
+            *event = true;
+            return TLISMNI_OK;
+        }
+    }
+}
+
+tlismni_status tlismni_next_point(tlismni_run *run, double t, double *point) {
+    *point = run->beside.now;
+    tlismni_status status = way_begin(run, t);
+    if (status != TLISMNI_OK) {
+        return status;
+    }
+    double now = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
+    int64_t first = way_used(run);
+    while (status == TLISMNI_OK && tlismni_event_due(run)) {
+        status = way_settle(run);
+    }
+    if (status == TLISMNI_OK && tlismni_computed(run) <= now) {
+        goals[GOAL] = now + 8.0 * (nextafter(fabs(now), INFINITY) - fabs(now)); /* no step ends before that */
+        goals[LAST_STOP] = stop;
+        status = way_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
+    }
+    *point = fmin(tlismni_computed(run), t);
+    return way_end(run, status);
+}
+
+tlismni_status tlismni_happen(tlismni_run *run, bool *again) {
+    *again = false;
+    tlismni_status status = way_begin(run, run->beside.now);
+    if (status == TLISMNI_OK && tlismni_event_due(run)) {
+        status = way_settle(run);
+        *again = status == TLISMNI_OK && tlismni_event_due(run);
+    }
+    return status == INPUT_REFUSED ? status : way_end(run, status);
+}

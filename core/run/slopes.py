@@ -1,0 +1,181 @@
+"""Derivatives of all channels at the workspace's point, compiled: along inputs, and in time.
+
+What they are and why they are exact stands in `sensitivity.py` and `output_rates.py`, which call this; so does the C
+code of runs without Python.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled import types
+from ..compiled.jit import compiled, internal
+from ..compiled.views import imat, ivec, vec
+from ..linalg import factor, lu_at, solve
+from ..loop.drive import workspace_at
+from ..loop.sample import write_sample
+from ..model.derived import HEAD_SIZE, derive_row
+from ..model.signals import INPUT_SIZE
+from ..rounding import SENSITIVITY_SOLVED
+from ..state.workspace_records import OK
+from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
+from .exchange_record import EXCHANGE
+from .read_channels import put_channels
+
+LARGE = 2.0**40
+"""s relative to what the residual holds without the change: its rounding is 2^-40 of itself beside the change."""
+REFINEMENTS = 2
+UNSOLVED = 1000
+"""`along_inputs`: the system is too near a singular one, or a value is not finite."""
+
+_REALS = types.Array(types.float64, 1, "C")
+SLOPES_ARGUMENTS = (types.from_dtype(EXCHANGE), _REALS)
+ALONG_ARGUMENTS = (types.from_dtype(EXCHANGE), _REALS, _REALS)
+
+
+@internal
+def _largest(x: Any) -> float:
+    largest = 0.0
+    for value in x:
+        largest = max(largest, abs(value))
+    return largest
+
+
+@internal
+def _channels_at(ex: Any, ws: Any, out: Any) -> None:
+    """All channels of the workspace's point as it stands."""
+    evaluate_residuals(ws)
+    write_sample(ws, vec(ex.sample, ex.sample_length))
+    put_channels(ex, out)
+
+
+@internal
+def _solve_joints(ws: Any, x: Any, load: Any) -> int:
+    """[M Phi_q^T; Phi_q 0] x = (-load, 0), the matrix being factorised: OK or UNSOLVED."""
+    n, size = ws.n, ws.n + ws.m_act
+    lu = lu_at(ws.kkt_query)
+    count = lu.nnz
+    row, col, values = ivec(ws.entry_row, count), ivec(ws.entry_col, count), vec(ws.values, count)
+    rhs, product, sizes = vec(ws.rhs, size), np.zeros(size), np.zeros(size)
+    x[:] = 0.0
+    for sweep in range(2 + REFINEMENTS):
+        product[:] = 0.0
+        sizes[:] = 0.0
+        for k in range(count):
+            term = values[k] * x[col[k]]
+            product[row[k]] += term
+            sizes[row[k]] += abs(term)
+        if sweep == 1 + REFINEMENTS:
+            break
+        for i in range(size):
+            rhs[i] = (-load[i] if i < n else 0.0) - product[i]
+        solve(lu, ws.rhs)
+        for i in range(size):
+            x[i] += rhs[i]
+    most = _largest(load)
+    for i in range(size):
+        left = abs((-load[i] if i < n else 0.0) - product[i])
+        if not left <= SENSITIVITY_SOLVED * (most + sizes[i]):
+            return UNSOLVED
+    return OK
+
+
+@compiled
+def along_inputs(ex: Any, seed: Any, found: Any) -> int:
+    """Derivatives of all channels along `seed` (inputs,), whose largest number is 1: OK, UNSOLVED, or what `factor`
+    returns for the pivots that there are. The workspace's point is changed."""
+    ws = workspace_at(ex.workspace)
+    n, active = ws.n, ivec(ws.active, ws.m_act)
+    a, lam, r = vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext), vec(ws.r, ws.n_ext)
+    inputs = vec(ws.inputs, len(seed) * INPUT_SIZE)
+    for k in range(len(seed)):
+        if seed[k] != 0.0:
+            for j in range(3):
+                inputs[INPUT_SIZE * k + j] = 0.0
+    a[:n] = 0.0
+    lam[:] = 0.0
+    evaluate_residuals(ws)
+    at_rest = r[:n].copy()
+    size, most = 1.0, 1.0 + _largest(at_rest)
+    while size < most:
+        size *= 2.0
+    size *= LARGE
+    resting = np.zeros(ex.n_channels)
+    _channels_at(ex, ws, resting)
+    for k in range(len(seed)):
+        if seed[k] != 0.0:
+            inputs[INPUT_SIZE * k] = size * seed[k]
+    evaluate_residuals(ws)
+    load = (r[:n] - at_rest) / size
+    evaluate_tangent(ws, 0.0, 0.0)
+    status = factor(lu_at(ws.kkt_query), ws.values)
+    if status != OK:
+        return int(status)
+    change = np.zeros(n + ws.m_act)
+    if _solve_joints(ws, change, load) != OK:
+        return UNSOLVED
+    for i in range(n):
+        a[i] = size * change[i]
+    for i in range(ws.m_act):
+        lam[active[i]] = size * change[n + i]
+    _channels_at(ex, ws, found)
+    for k in range(ex.n_channels):
+        found[k] = (found[k] - resting[k]) / size
+    for k in ivec(ex.residual_channels, 3):
+        # violations are zero for all inputs
+        found[k] = 0.0
+    return OK
+
+
+@compiled
+def in_time(ex: Any, found: Any) -> None:
+    """Time derivatives of all channels, NaN where they are not known."""
+    ws = workspace_at(ex.workspace)
+    n, m, contacts, work = ws.n, ws.m_ext - 1, ws.n_contacts, ws.n_work
+    sample = vec(ex.sample, ex.sample_length)
+    write_sample(ws, sample)
+    evaluate_power(ws)
+    rates = np.full(ex.sample_length, np.nan)
+    rates[1 : 1 + 2 * n] = sample[1 + n : 1 + 3 * n]
+    at = 1 + 3 * n + m
+    phidd = vec(ws.phidd, ws.m_ext)
+    rows, slide_rows = ivec(ws.contact_rows, contacts), ivec(ws.contact_slide_rows, contacts)
+    for k in range(contacts):
+        # in the order of a sample: force, gap, its rate, mode, jumps of impulse and loss, friction, sliding
+        rates[at + contacts + k] = sample[at + 2 * contacts + k]
+        rates[at + 2 * contacts + k] = phidd[rows[k]]
+        rates[at + 4 * contacts + k] = rates[at + 5 * contacts + k] = 0.0
+        if slide_rows[k] >= 0:
+            rates[at + 7 * contacts + k] = phidd[slide_rows[k]]
+    at += 8 * contacts + 3
+    a = vec(ws.a, ws.n_ext)
+    for i in range(work):
+        rates[at + i] = a[ws.n_ext - work + i]
+    places = ivec(ex.places, ex.n_channels)
+    for k in range(ex.n_channels):
+        found[k] = rates[places[k]]
+    flags, summed = ivec(ex.flags, ex.n_flags), ivec(ex.summed, ex.n_sums)
+    for k in range(ex.n_flags):
+        found[flags[k]] = np.nan
+    for k in range(ex.n_sums):
+        found[summed[k]] = 0.0
+    number, column, signs = ivec(ex.number, ex.n_terms), ivec(ex.column, ex.n_terms), vec(ex.signs, ex.n_terms)
+    for i in range(ex.n_terms):
+        found[summed[number[i]]] += signs[i] * rates[column[i]]
+    _derived_rates(ex, sample, found)
+
+
+@internal
+def _derived_rates(ex: Any, sample: Any, found: Any) -> None:
+    """Those of derived channels are others of them, or not known."""
+    if ex.n_derived == 0:
+        return
+    rate_of = ivec(ex.derived_rates, ex.n_derived_rates)
+    values = np.full(len(rate_of), np.nan)
+    heads = imat(ex.derived, ex.n_derived, HEAD_SIZE)
+    derive_row(
+        sample, heads, ivec(ex.derived_places, ex.n_derived_places), vec(ex.derived_numbers, ex.n_derived_numbers),
+        values,
+    )  # fmt: skip
+    for k in range(len(rate_of)):
+        found[ex.first_derived + k] = values[rate_of[k]] if rate_of[k] >= 0 else np.nan
