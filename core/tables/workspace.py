@@ -360,9 +360,10 @@ class Workspace:
         for factorization in (structure.kkt, structure.kkt_query):
             factorization.use_units(both, both)
         partition = structure.present
-        for factorization in () if partition is None else partition.factorizations:
-            m = factorization.n
-            factorization.use_units(units[n + structure.active[:m]], units[partition.dependent[:m]])
+        if partition is not None:
+            for factorization in partition.factorizations:
+                m = factorization.n
+                factorization.use_units(units[n + structure.active[:m]], units[partition.dependent[:m]])
         self.arrays["values"][:] = 0.0
         self._forget()
 
