@@ -60,10 +60,15 @@ class Slots:
         self.addresses[:] = _begin(self.structures) + STRUCTURE.itemsize * np.arange(count)
         self.structures["partition"] = _begin(self.partitions) + PARTITION.itemsize * np.arange(count)
         self.structures["slots"] = _begin(self.tables) + 8 * self.tables.shape[1] * np.arange(count)
+        positions = self.partitions["used_p"].copy()
+        of_both = positions == self.partitions["lu_d"]
         matrices = _begin(self.lus) + LU.itemsize * np.arange(self.lus.size).reshape(self.lus.shape)
         for k, name in enumerate(MATRICES):
             (self.structures if k < 2 else self.partitions)[name] = matrices[:, k]
             self.lus["needs"][:, k] = _begin(self.needs) + 8 * _OF[k]
+        # built ones know which of their two matrices serves for positions
+        follows = np.where(of_both, self.partitions["lu_d"], self.partitions["lu_p"])
+        self.partitions["used_p"] = np.where(positions == 0, 0, follows)
         self.lus["functions"], self.lus["scratch"] = _begin(self._functions), _begin(self.scratch.cell)
 
     def _sizes(self) -> NDArray[np.int64]:
