@@ -8,10 +8,11 @@ from pydantic import Field, model_validator
 
 from ..errors import ModelError
 from ..model.base import Positive, Record, Vector2
-from ..rounding import ON_NODE, SAME_PLACE, SYMMETRY
+from ..rounding import ON_NODE, SAME_PLACE
 from .flexible_body import PointShape
 from .floating_body2d import Array, FloatingBody2D, Invariants
 from .linear_system import Matrix, Vector
+from .reduced_checks import check_mass, check_sign, check_size, check_symmetry
 
 
 class ReducedPoint(Record):
@@ -80,58 +81,22 @@ class ReducedBody2D(FloatingBody2D):
             "geometric_first_moment": (2, n, n), "geometric_inertia": square, "geometric_coupling": square,
             "amplitudes": row, "amplitude_rates": row,
         }  # fmt: skip
+        rows = f"modal_mass has n = {n}"
         for name, size in sizes.items():
-            self._check_size(name, getattr(self, name), size)
+            check_size(self.name, name, getattr(self, name), size, rows)
         for point in self.points:
-            self._check_size(f"shape of the point {point.point}", point.shape, (2, n))
-            self._check_size(f"rotation of the point {point.point}", point.rotation, row)
+            check_size(self.name, f"shape of the point {point.point}", point.shape, (2, n), rows)
+            check_size(self.name, f"rotation of the point {point.point}", point.rotation, row, rows)
         symmetric = ("modal_mass", "centrifugal_mass", "stiffness", "geometric_inertia", "geometric_coupling")
         for name in symmetric:
-            self._check_symmetry(name, getattr(self, name), 1.0)
+            check_symmetry(self.name, name, getattr(self, name))
         for table in self.geometric_first_moment or ():
-            self._check_symmetry("geometric_first_moment", table, 1.0)
-        self._check_symmetry("gyroscopic", self.gyroscopic, -1.0)
-        least = float(np.linalg.eigvalsh(self._scaled_mass())[0])
-        if least <= SYMMETRY:
-            raise ValueError(f"the mass matrix of frame and modes of '{self.name}', scaled to a unit diagonal, has the "
-                             f"eigenvalue {least:.3g}: it must be positive definite; do the modes hold a rigid motion, "
-                             "which the frame has already?")  # fmt: skip
-        self._check_sign("stiffness", self.stiffness, "no strain has negative energy")
-        self._check_sign("damping", self.damping, "it would put energy in")
+            check_symmetry(self.name, "geometric_first_moment", table)
+        check_symmetry(self.name, "gyroscopic", self.gyroscopic, -1.0)
+        check_mass(self.name, self.invariants().mass_matrix(self.mass))
+        check_sign(self.name, "stiffness", self.stiffness, "no strain has negative energy")
+        check_sign(self.name, "damping", self.damping, "it would put energy in")
         return self
-
-    def _check_size(self, name: str, value: Any, size: tuple[int, ...]) -> None:
-        if value is None:
-            return
-        try:
-            found: Any = np.array(value, dtype=float).shape
-        except ValueError:
-            found = "rows of different length"
-        if found != size:
-            raise ValueError(f"{name} of '{self.name}' has {found}, but modal_mass has n = {len(self.modal_mass)} rows:"
-                             f" {size} is needed")  # fmt: skip
-
-    def _check_symmetry(self, name: str, value: Any, sign: float) -> None:
-        x = np.zeros((1, 1)) if value is None else np.array(value)
-        wrong = np.abs(x - sign * x.T)
-        if wrong.max() > SYMMETRY * np.abs(x).max():
-            i, j = np.unravel_index(int(np.argmax(wrong)), x.shape)
-            kind = "symmetric" if sign > 0.0 else "skew"
-            raise ValueError(f"{name} of '{self.name}' must be {kind}; entries ({i}, {j}) and ({j}, {i}) are "
-                             f"{x[i, j]:g} and {x[j, i]:g}")  # fmt: skip
-
-    def _check_sign(self, name: str, value: Any, why: str) -> None:
-        if value is None:
-            return
-        found = np.linalg.eigvalsh(0.5 * (np.array(value) + np.array(value).T))
-        if found[0] < -SYMMETRY * np.abs(found).max():
-            raise ValueError(f"{name} of '{self.name}' has, in its symmetric part, the negative eigenvalue "
-                             f"{found[0]:.3g}: {why}")  # fmt: skip
-
-    def _scaled_mass(self) -> Array:
-        full = self.invariants().mass_matrix(self.mass)
-        size = np.sqrt(np.maximum(np.diag(full), 1e-300))
-        return np.asarray(full / np.outer(size, size))
 
     def mode_names(self) -> tuple[str, ...]:
         return tuple(f"mode{k + 1}" for k in range(len(self.modal_mass)))

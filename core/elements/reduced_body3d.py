@@ -16,10 +16,10 @@ from ..model.attitude import UPRIGHT, Attitude
 from ..model.base import Name, Positive, Record, Vector3
 from ..model.derived import Derived
 from ..model.markers import Marker3D
-from ..rounding import SYMMETRY
 from .base import Form, Numbering, Row
 from .coordinate import Coordinate
 from .linear_system import Matrix, Vector
+from .reduced_checks import check_mass, check_sign, check_size, check_symmetry
 from .reduced_kernel3d import reduced_body3d_kernel
 from .spatial_body import EULER, SpatialFrame, X, Y, Z, marker_on, parameter_rates
 
@@ -124,54 +124,23 @@ class ReducedBody3D(SpatialFrame):
             "stiffness": (n, n), "damping": (n, n), "modal_first_moment": (n, 3), "modal_moment": (n, 3, 3),
             "modal_second_moment": (n, n, 3, 3), "amplitudes": (n,), "amplitude_rates": (n,),
         }  # fmt: skip
+        rows = f"stiffness has n = {n}"
         for name, size in sizes.items():
-            self._check_size(name, getattr(self, name), size)
+            check_size(self.name, name, getattr(self, name), size, rows)
         for place in self.interfaces:
-            self._check_size(f"shape of the interface '{place.name}'", place.shape, (n, 3))
-            self._check_size(f"rotation of the interface '{place.name}'", place.rotation, (n, 3))
+            check_size(self.name, f"shape of the interface '{place.name}'", place.shape, (n, 3), rows)
+            check_size(self.name, f"rotation of the interface '{place.name}'", place.rotation, (n, 3), rows)
         names = [place.name for place in self.interfaces]
         if len(set(names)) < len(names):
             raise ValueError(f"interfaces of '{self.name}' need names of their own: {names}")
         both = np.array(self.modal_second_moment)
-        self._check_symmetry("second_moment", np.array(self.second_moment))
-        self._check_symmetry("stiffness", np.array(self.stiffness))
-        self._check_symmetry("modal_second_moment", both.transpose(0, 2, 1, 3).reshape(3 * n, 3 * n))
-        full = self.mass_matrix()
-        scale = np.sqrt(np.maximum(np.diag(full), 1e-300))
-        least = float(np.linalg.eigvalsh(full / np.outer(scale, scale))[0])
-        if least <= SYMMETRY:
-            raise ValueError(f"the mass matrix of frame and modes of '{self.name}', scaled to a unit diagonal, has the "
-                             f"eigenvalue {least:.3g}: it must be positive definite; do the modes hold a rigid motion, "
-                             "which the frame has already?")  # fmt: skip
-        self._check_sign("stiffness", self.stiffness, "no strain has negative energy")
-        self._check_sign("damping", self.damping, "it would put energy in")
+        check_symmetry(self.name, "second_moment", np.array(self.second_moment))
+        check_symmetry(self.name, "stiffness", np.array(self.stiffness))
+        check_symmetry(self.name, "modal_second_moment", both.transpose(0, 2, 1, 3).reshape(3 * n, 3 * n))
+        check_mass(self.name, self.mass_matrix())
+        check_sign(self.name, "stiffness", self.stiffness, "no strain has negative energy")
+        check_sign(self.name, "damping", self.damping, "it would put energy in")
         return self
-
-    def _check_size(self, name: str, value: Any, size: tuple[int, ...]) -> None:
-        if value is None:
-            return
-        try:
-            found: Any = np.array(value, dtype=float).shape
-        except ValueError:
-            found = "rows of different length"
-        if found != size:
-            raise ValueError(f"{name} of '{self.name}' has {found}, but stiffness has n = {len(self.stiffness)} rows: "
-                             f"{size} is needed")  # fmt: skip
-
-    def _check_symmetry(self, name: str, x: Array) -> None:
-        wrong = np.abs(x - x.T)
-        if wrong.max() > SYMMETRY * np.abs(x).max():
-            i, j = np.unravel_index(int(np.argmax(wrong)), x.shape)
-            raise ValueError(f"{name} of '{self.name}' must be symmetric; entries ({i}, {j}) and ({j}, {i}) are "
-                             f"{x[i, j]:g} and {x[j, i]:g}")  # fmt: skip
-
-    def _check_sign(self, name: str, value: Any, why: str) -> None:
-        if value is None:
-            return
-        found = np.linalg.eigvalsh(0.5 * (np.array(value) + np.array(value).T))
-        if found[0] < -SYMMETRY * np.abs(found).max():
-            raise ValueError(f"{name} of '{self.name}' has, in its symmetric part, the negative eigenvalue "
-                             f"{found[0]:.3g}: {why}")  # fmt: skip
 
     def mode_names(self) -> tuple[str, ...]:
         """Names of the amplitudes."""

@@ -238,22 +238,6 @@ class ChannelTable:
         if self._derived.size:
             values[self._derived_at] = self._derived(sample[None, :])[0]
 
-    def rates(self, sample: NDArray[np.float64], rates: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Rates of all channels (channels,) from those of the columns of a sample; NaN: not known."""
-        found = np.full(len(self._formulas), np.nan)
-        for k, (_, formula) in enumerate(self._formulas):
-            if isinstance(formula, int):
-                found[k] = rates[formula]
-            elif isinstance(formula, Sum):
-                found[k] = formula(rates[None, :])[0]
-        if self._derived.size:
-            values = np.full(len(self._formulas), np.nan)
-            self.put_derived(sample, values)
-            values = values[self._derived_at]
-            known = self._derived_rate != NOT_KNOWN
-            found[self._derived_at[known]] = values[self._derived_rate[known]]
-        return found
-
     def total_energy(self, sample: NDArray[np.float64]) -> float:
         """Stored energy in one sample, J."""
         layout = self.layout
