@@ -6,6 +6,7 @@ Needs a C compiler, fmpy (for the standard's headers) and the library of machine
 import argparse
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -59,6 +60,34 @@ def costs(scenarios: list[str]) -> None:
                 print(name, "native" if native else "python", *(f"{k}={v:.4g}" for k, v in found.items()), flush=True)
 
 
+def peer() -> None:
+    """The same of an FMU written in C by hand."""
+    with tempfile.TemporaryDirectory() as folder:
+        program, library = host(Path(folder)), Path(folder, "ball.so")
+        headers, source = Path(fmpy.__file__).parent / "c-code", HERE / "fmu_peers" / "ball.c"
+        subprocess.run(["cc", "-O2", "-shared", "-fPIC", f"-I{headers}", "-o", str(library), str(source)], check=True)
+        arguments = [library, "file:///", "guid", 3.0, 0, 1, 2]
+        done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True)
+        print("by hand in C:", *("=".join(line.split()) for line in done.stdout.splitlines()), flush=True)
+
+
+def first_result() -> None:
+    """Wall and CPU time of a process from its start to the first result of `bouncing_ball`, with no caches, and of a C
+    host from the image to the same."""
+    code = (
+        "from tlismni.models import load; from tlismni.core import simulate; s = load('bouncing_ball'); "
+        "print(simulate(s.model, s.t_end, method=s.method, rtol=s.rtol, atol=s.atol, **s.options)['ball.y'][-1])"
+    )
+    for attempt in ("first", "again"):
+        with tempfile.TemporaryDirectory() as home:
+            environment = {**os.environ, "HOME": home, "XDG_CACHE_HOME": home, "PYTHONDONTWRITEBYTECODE": "1"}
+            began, before = time.perf_counter(), os.times()
+            subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True)
+            after = os.times()
+            cpu = after.children_user + after.children_system - before.children_user - before.children_system
+            print(f"first result in Python, new home, {attempt}: {time.perf_counter() - began:.3f} s, CPU {cpu:.3f} s")
+
+
 def share() -> None:
     """Which scenarios of the catalogue can be FMUs without Python."""
     with tempfile.TemporaryDirectory() as folder:
@@ -84,6 +113,8 @@ def main() -> None:
     if given.share:
         share()
     else:
+        first_result()
+        peer()
         costs(given.scenarios)
 
 
