@@ -64,7 +64,7 @@ def image_and_parameters(
             tried[setting.name] = startable(sim, setting, lambda other: Simulation(other, **full), begins)
         except NativeError as error:
             fixed[setting.name] = str(error)
-    rehearse(sim, t_end)
+    rehearse(sim, t_end, list(tried.values()))
     found = []
     for setting in wanted:
         if setting.name in tried:
@@ -102,7 +102,7 @@ def _that_begin(
     kept, refused = [], {}
     for k, p in enumerate(found):
         try:
-            kept.append(as_far_as_it_begins(native, k, p, tried[p.name].channels or {}) if p.begins else p)
+            kept.append(as_far_as_it_begins(native, k, p, tried[p.name].starts or {}) if p.begins else p)
         except NativeError as error:
             refused[p.name] = str(error)
     return kept, refused

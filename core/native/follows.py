@@ -21,7 +21,7 @@ SPANS = (4.0, 2.0, 1.2)
 
 def parameter_of(sim: Any, setting: Setting, tried: Tried) -> Parameter:
     """Where the run's memory takes the parameter. Raises NativeError for words that follow in no known way."""
-    begins, memory = tried.channels is not None, Memory(sim)
+    begins, memory = tried.starts is not None, Memory(sim)
     copies = memory.copies(model for _, model in tried.values)
     p = np.array([x for x, _ in tried.values])
     simple = all(form_of(p, values) for values in memory.words(copies).values())

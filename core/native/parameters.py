@@ -80,12 +80,18 @@ class Parameter(NamedTuple):
         return all(word.form.exact for word in self.words)
 
 
+class Start(NamedTuple):
+    """A start in Python: positions and channels."""
+
+    q: NDArray[np.float64]
+    channels: NDArray[np.float64]
+
+
 class Tried(NamedTuple):
-    """Values of a parameter with which runs start, with their models, and the channels at these starts if the start
-    follows from it."""
+    """Values of a parameter with which runs start, with their models, and these starts if they follow from it."""
 
     values: list[tuple[float, Model]]
-    channels: dict[float, NDArray[np.float64]] | None
+    starts: dict[float, Start] | None
 
 
 def settings_of(model: Model, names: Iterable[str] | None = None) -> list[Setting]:
@@ -148,9 +154,9 @@ def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any], begins:
     models = variants(setting)
     plain, why = _around(sim, setting, models, begun)
     if len(plain) < len(models) and begins:
-        wide, why = _around(sim, setting, models, begun, channels := {})
+        wide, why = _around(sim, setting, models, begun, starts := {})
         if len(wide) > len(plain):
-            return Tried(wide, channels)
+            return Tried(wide, starts)
     if len(plain) == 1:
         raise NativeError(why)
     return Tried(plain, None)
@@ -158,10 +164,10 @@ def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any], begins:
 
 def _around(
     sim: Any, setting: Setting, models: Sequence[tuple[float, Model]], begun: Callable[[Model], Any],
-    channels: dict[float, NDArray[np.float64]] | None = None,
+    starts: dict[float, Start] | None = None,
 ) -> tuple[list[tuple[float, Model]], str]:  # fmt: skip
     """Values around the present one with which runs start, and why not others: as `sim` does but for the words that
-    follow from them; or in any way, and then the `channels` at the start are added."""
+    follow from them; or in any way, and then the `starts` are added."""
     model, good = sim.system, [(setting.value, sim.system)]
     low, high, why = -math.inf, math.inf, "all other values that were tried are refused by the model"
     for x, variant in models:
@@ -170,10 +176,10 @@ def _around(
         try:
             other = begun(variant)
             take(sim, variant)
-            fits = channels is not None or _content(other) == _content(sim)
+            fits = starts is not None or _content(other) == _content(sim)
             why = "the start follows from it, and runs of this model begin as it was exported only"
-            if channels is not None:
-                channels[x] = other.values()
+            if starts is not None:
+                starts[x] = Start(other.workspace.arrays["q"].copy(), other.values())
         except NativeError as error:
             fits, why = False, str(error)
         except TlismniError as error:

@@ -5,7 +5,7 @@ down: with all that it meets on its way, and with the structures of all states o
 positions that it goes through, and at others (`wander.py`). None of this changes a bit of the run.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import product
 from typing import Any
 
@@ -17,9 +17,11 @@ from ..events.instant import PART_SIGNATURE, Instant
 from ..events.prepare import use_modes
 from ..laws import ForceLaw
 from ..run.drive_record import Drive
+from ..tables.evaluate import evaluate_residuals
 from ..tables.patterns import MOST_STRUCTURES
 from ..tables.switch import APART, ENGAGED, HELD, STUCK, STUCK_TWICE, key_of
 from .errors import NativeError
+from .parameters import Tried, take
 from .scratch import factorizations_of
 from .wander import Key, know, nearly_full, wander
 
@@ -39,8 +41,8 @@ def start_inputs(sim: Any) -> list[float]:
     return [float(sim.workspace.arrays["inputs"][k, 0]) for k in range(len(sim.assembly.input_names))]
 
 
-def rehearse(sim: Any, t_end: float) -> None:
-    """Let `sim`, which has just begun, know what its run to `t_end` (s) meets; then it is where it was.
+def rehearse(sim: Any, t_end: float, tried: Iterable[Tried] = ()) -> None:
+    """Let `sim`, which has just begun, know what its run to `t_end` (s) meets, and other starts; it is as before then.
 
     Raises
     ------
@@ -58,11 +60,30 @@ def rehearse(sim: Any, t_end: float) -> None:
             sim.restore(state)
             know(sim, keys)
     sim.restore(start)
+    if tried:
+        _know_starts(sim, tried)
+        sim.restore(start)
     wander(sim, keys)
     sim.restore(start)
     sim.events[:] = events
     _make_room(sim)
     _as_at_first(sim)
+
+
+def _know_starts(sim: Any, tried: Iterable[Tried]) -> None:
+    """Partitions and pivots at other starts, with contacts open."""
+    nobody: frozenset[int] = frozenset()
+    model, key = sim.system, (nobody, nobody, nobody)
+    try:
+        for values in tried:
+            for x, variant in values.values:
+                if values.starts and x in values.starts and not nearly_full(sim):
+                    take(sim, variant)
+                    sim.workspace.arrays["q"][:] = values.starts[x].q
+                    evaluate_residuals(sim.workspace.record)
+                    know(sim, [key])
+    finally:
+        take(sim, model)
 
 
 def _refuse(sim: Any) -> None:

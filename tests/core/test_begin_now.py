@@ -6,7 +6,7 @@ from tlismni.core import Simulation
 from tlismni.core.compiled.jit import address_of
 from tlismni.core.events.instant import PART_SIGNATURE
 from tlismni.core.events.prepare import use_modes
-from tlismni.core.events.records import SETTLED
+from tlismni.core.events.records import DECLINED, SETTLED, SINGULAR_JOINTS
 from tlismni.core.native.beginning import Beginning
 from tlismni.core.run import begin_now as starts
 from tlismni.core.run.blueprint import take_numbers
@@ -35,7 +35,9 @@ class Starts:
     def begin(self, model):
         take_numbers(self.sim, model, model.assemble())
         self.beginning.take_numbers(self.sim.assembly)
-        code = int(starts.begin_now(self.beginning.record.record))
+        while DECLINED < (code := int(starts.begin_now(self.beginning.record.record))) < SINGULAR_JOINTS:
+            self.sim.workspace.sync()
+            self.sim.build_wanted(code)  # which runs without Python have before
         self.sim.workspace.sync()
         return code
 
