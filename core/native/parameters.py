@@ -154,7 +154,8 @@ def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any], begins:
     models = variants(setting)
     plain, why = _around(sim, setting, models, begun)
     if len(plain) < len(models) and begins:
-        wide, why = _around(sim, setting, models, begun, starts := {})
+        starts: dict[float, Start] = {}
+        wide, why = _around(sim, setting, models, begun, starts)
         if len(wide) > len(plain):
             return Tried(wide, starts)
     if len(plain) == 1:

@@ -31,7 +31,8 @@ LIKE = 1e-13
 
 def together(sim: Any, found: Sequence[Parameter], settings: Mapping[str, Setting]) -> list[Parameter]:
     """The parameters with the modes of the words that they share, and with those that exclude each other."""
-    copies, excluded = _Copies(Memory(sim), settings), set()
+    copies = _Copies(Memory(sim), settings)
+    excluded: set[tuple[int, int]] = set()
     fits: dict[tuple[int, int], dict[Place, tuple[int, ...]]] = {}
     for pair in combinations(range(len(found)), 2):
         modes_of = _modes(copies, found[pair[0]], found[pair[1]])
