@@ -72,10 +72,13 @@ def _constants(k: int, u: Floats, w: Floats) -> Iterator[float]:
     yield from sorted((c for c in found if np.isfinite(c) and c), key=lambda c: (len(repr(c)), c))
 
 
-def _alike(constants: Floats) -> bool:
-    """Whether they may be one constant, but for rounding."""
-    size = float(np.max(np.abs(constants)))
-    return math.isfinite(size) and float(np.ptp(constants)) <= PERHAPS * size
+def _alike(constants: Floats, others: float) -> bool:
+    """Whether they may be one constant, but for rounding of numbers of the size of `others` too."""
+    known = constants[np.isfinite(constants)]  # zeros tell nothing of a factor
+    if not len(known):
+        return False
+    size = max(float(np.max(np.abs(known))), float(others))
+    return math.isfinite(size) and float(np.ptp(known)) <= PERHAPS * size
 
 
 def form_of(p: Floats, w: Floats) -> Form | None:
@@ -91,7 +94,7 @@ def form_of(p: Floats, w: Floats) -> Form | None:
             if u.tobytes() == wanted:
                 return Form(8 * i, 0.0)
             for k in range(1, len(BINARY) if i < SUMS else SUM):
-                if not _alike(_INVERSE[k](u, w)):
+                if not _alike(_INVERSE[k](u, w), np.max(np.abs(u)) if k >= SUM else 0.0):
                     continue
                 for constant in _constants(k, u, w):
                     if BINARY[k](u, constant).tobytes() == wanted:
