@@ -32,7 +32,9 @@ def prove_beginning(sim: Any, native: NativeModel) -> None:
         raise NativeError("a run that begins without Python starts otherwise than with it: please report this model")
 
 
-def as_far_as_it_begins(native: NativeModel, number: int, p: Parameter, starts: Mapping[float, NDArray[np.float64]]) -> Parameter:
+def as_far_as_it_begins(
+    native: NativeModel, number: int, p: Parameter, starts: Mapping[float, NDArray[np.float64]]
+) -> Parameter:
     """The parameter between the values with which a run begins as in Python, of those in `starts`, which has
     Python's channels. Raises NativeError if there are none."""
     least = largest = p.value
