@@ -37,7 +37,7 @@ class Beginning:
             "numbers": self.numbers, "q0": np.zeros(n), "v0": np.zeros(n),
             "placed": np.array(assembly.placed, dtype=np.int64).reshape(-1, 2),
             "internal": assembly.is_internal.astype(np.int64), "angle": assembly.is_angle.astype(np.int64),
-            "work_sizes": np.zeros(n_ext), "units": np.ones(n + assembly.m + 1), **room,
+            "work_sizes": np.zeros(n_ext), **room,
         }  # fmt: skip
         self.record = ArrayRecord(
             BEGIN,
@@ -73,4 +73,4 @@ class Beginning:
 
     def own(self) -> list[Any]:
         """Memory that a run has for itself."""
-        return [self.record.table, self.numbers, self._arrays["units"], *self.scratch]
+        return [self.record.table, self.numbers, *self.scratch]

@@ -10,7 +10,7 @@ from ..description import Model
 from ..errors import SimulationError, TlismniError
 from .errors import NativeError
 from .in_process import NativeModel, NativeRun
-from .parameters import Parameter, Setting, Start
+from .parameters import Parameter, Setting
 from .together import compatible, values_at_once
 
 SHARES = 0.1, 0.02, 0.003
@@ -32,16 +32,18 @@ def prove_beginning(sim: Any, native: NativeModel) -> None:
         raise NativeError("a run that begins without Python starts otherwise than with it: please report this model")
 
 
-def as_far_as_it_begins(native: NativeModel, number: int, p: Parameter, starts: Mapping[float, Start]) -> Parameter:
-    """The parameter between the values with which a run begins as in Python, of those in `starts`, which are
-    Python's. Raises NativeError if there are none."""
+def as_far_as_it_begins(
+    native: NativeModel, number: int, p: Parameter, starts: Mapping[float, NDArray[np.float64]]
+) -> Parameter:
+    """The parameter between the values with which a run begins as in Python, of those in `starts`, which has
+    Python's channels. Raises NativeError if there are none."""
     least = largest = p.value
     why = "no other value was tried"
     for side in (1.0, -1.0):
         for x in sorted((x for x in starts if side * (x - p.value) > 0.0), key=lambda x: side * x):
             if not p.least <= x <= p.largest:
                 break
-            why = _differs(native, number, p, x, starts[x].channels)
+            why = _differs(native, number, p, x, starts[x])
             if why:
                 break
             least, largest = min(least, x), max(largest, x)

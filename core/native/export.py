@@ -64,7 +64,7 @@ def image_and_parameters(
             tried[setting.name] = startable(sim, setting, lambda other: Simulation(other, **full), begins)
         except NativeError as error:
             fixed[setting.name] = str(error)
-    rehearse(sim, t_end, list(tried.values()))
+    rehearse(sim, t_end)
     found = []
     for setting in wanted:
         if setting.name in tried:

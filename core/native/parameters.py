@@ -80,18 +80,12 @@ class Parameter(NamedTuple):
         return all(word.form.exact for word in self.words)
 
 
-class Start(NamedTuple):
-    """A start in Python: positions and channels."""
-
-    q: NDArray[np.float64]
-    channels: NDArray[np.float64]
-
-
 class Tried(NamedTuple):
-    """Values of a parameter with which runs start, with their models, and these starts if they follow from it."""
+    """Values of a parameter with which runs start, with their models, and the channels at these starts if they follow
+    from it."""
 
     values: list[tuple[float, Model]]
-    starts: dict[float, Start] | None
+    starts: dict[float, NDArray[np.float64]] | None
 
 
 def settings_of(model: Model, names: Iterable[str] | None = None) -> list[Setting]:
@@ -154,7 +148,7 @@ def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any], begins:
     models = variants(setting)
     plain, why = _around(sim, setting, models, begun)
     if len(plain) < len(models) and begins:
-        starts: dict[float, Start] = {}
+        starts: dict[float, NDArray[np.float64]] = {}
         wide, why = _around(sim, setting, models, begun, starts)
         if len(wide) > len(plain):
             return Tried(wide, starts)
@@ -165,7 +159,7 @@ def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any], begins:
 
 def _around(
     sim: Any, setting: Setting, models: Sequence[tuple[float, Model]], begun: Callable[[Model], Any],
-    starts: dict[float, Start] | None = None,
+    starts: dict[float, NDArray[np.float64]] | None = None,
 ) -> tuple[list[tuple[float, Model]], str]:  # fmt: skip
     """Values around the present one with which runs start, and why not others: as `sim` does but for the words that
     follow from them; or in any way, and then the `starts` are added."""
@@ -180,7 +174,7 @@ def _around(
             fits = starts is not None or _content(other) == _content(sim)
             why = "the start follows from it, and runs of this model begin as it was exported only"
             if starts is not None:
-                starts[x] = Start(other.workspace.arrays["q"].copy(), other.values())
+                starts[x] = other.values()
         except NativeError as error:
             fits, why = False, str(error)
         except TlismniError as error:

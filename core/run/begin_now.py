@@ -17,7 +17,6 @@ from ..events.prepare import rank_of
 from ..events.progress import GUARD_SIZE
 from ..events.records import REPEATED_ROWS, SETTLED, call_part, instant_at
 from ..events.settle import begin_pending_forces
-from ..linalg import lu_at
 from ..location.dense_output import query
 from ..location.watch import remember
 from ..loop.drive import loop_at, method_at, workspace_at
@@ -44,7 +43,8 @@ from ..state.workspace_records import (
     OK,
     RATE_SCALE,
     STIFFNESS_SCALE,
-    partition_at,
+    building_at,
+    call_engage,
     structure_at,
 )
 from ..tables.evaluate import evaluate_power, evaluate_residuals
@@ -53,7 +53,6 @@ from ..tables.measure import HEAVIEST, MEASURED, SQUARE, STIFFEST, measure_motio
 from ..tables.measure import WORK as FOUND_WORK
 from ..tables.projection import meet
 from ..tables.scales import MOST_TIMES, WORK
-from ..tables.switch import engage_modes, take_structure
 from .begin_record import (
     ANGLES,
     ANGULAR_SPEEDS,
@@ -214,44 +213,24 @@ def _measure(bg: Any, dr: Any, ws: Any) -> bool:
     for i in range(ws.n_ext):
         if given[i] > 0.0:
             work[i] = given[i]
-    return _use_units(bg, ws, np.sqrt(heaviest))
+    return _use_units(ws, np.sqrt(heaviest))
 
 
 @internal
-def _use_units(bg: Any, ws: Any, root: float) -> bool:
+def _use_units(ws: Any, root: float) -> bool:
     """Units that make M and Phi_q numbers of about 1, and a structure with them."""
-    units, scale, row_scale = vec(bg.units, ws.n + ws.m_ext), vec(ws.scale, ws.n), vec(ws.row_scale, ws.m_ext)
+    b = building_at(ws.building)
+    units, scale, row_scale = vec(b.units, ws.n + ws.m_ext), vec(ws.scale, ws.n), vec(ws.row_scale, ws.m_ext)
     for i in range(ws.n):
         units[i] = scale[i] / root
     for i in range(ws.m_ext):
         units[ws.n + i] = root / row_scale[i]
-    known = ivec(ws.known, ws.n_known)
-    for i in range(ws.n_known):
-        _give_units(ws, structure_at(known[i]), units)
-    if not engage_modes(ws):
-        return False
-    take_structure(ws, ws.structure)
-    return True
-
-
-@internal
-def _give_units(ws: Any, st: Any, units: Any) -> None:
-    """Units for the choice of pivots in the matrices of a structure and of its partitions."""
-    n, active = ws.n, ivec(st.active, st.m_act)
-    for address in (st.kkt, st.kkt_query):
-        lu = lu_at(address)
-        rows, cols = vec(lu.row_unit, n + st.m_act), vec(lu.col_unit, n + st.m_act)
-        for i in range(n + st.m_act):
-            rows[i] = cols[i] = units[i] if i < n else units[n + active[i - n]]
-    partitions = ivec(st.partitions, st.n_partitions)
-    for k in range(st.n_partitions):
-        pt = partition_at(partitions[k])
-        dependent = ivec(pt.dependent, st.m_act)
-        for address in (pt.lu_d, pt.lu_p):
-            lu = lu_at(address)
-            rows, cols = vec(lu.row_unit, lu.n), vec(lu.col_unit, lu.n)
-            for i in range(lu.n):
-                rows[i], cols[i] = units[n + active[i]], units[dependent[i]]
+    places, wanted = ivec(b.structures, b.n_slots), ivec(ws.wanted, ws.n_contacts)
+    for i in range(b.n_slots):
+        structure_at(places[i]).built = 0
+    for k in range(ws.n_contacts):
+        wanted[k] = 0
+    return bool(call_engage(ws.engage, ws) == OK)
 
 
 @internal

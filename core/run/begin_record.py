@@ -14,7 +14,6 @@ BEGIN = np.dtype(
             "q0", "v0",                         # (n,) float64: as they are given
             "placed", "n_placed",               # (n_placed, 2) int64: coordinates that start where a row of Phi says
             "internal", "angle",                # (n,) int64: 1 for internal coordinates, and for angles
-            "units",                            # (n + m_ext,) float64: what brings coordinates and rows to one unit
             "work_sizes",                       # (n_ext,) float64: of work accounts that are no energies; 0: none
             "m_joints", "energies",             # rows of joints; column of a sample of the first of three energies
             "later", "scale", "mass", "sizes",  # room: (LATER,), (n,), (n,), (m_ext,) float64
