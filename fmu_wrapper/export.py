@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..viewer.drawing import draw, to_png, to_svg
 from .archive import write_archive
 from .bundle import package_archive
 from .chosen import with_outputs, without_secrets
@@ -25,13 +24,13 @@ from .naming import c_identifier, date_of_export, json_bytes, user_name
 from .native_export import NativeRun, native_binaries, variables_file
 from .nominal import with_nominals
 from .own_code import OwnCode
+from .pictures import pictures, scene
 from .platforms import PLATFORMS, choose, this_platform
 from .python_library import library_record, shared_library
 from .recommended_step import recommended_step
 from .run import build_simulation
 from .settings import Settings
 from .slave import Slave
-from .terminals import terminals, terminals_and_icons
 from .variables import VariableTable
 from .version import package_version
 
@@ -162,6 +161,7 @@ def export_fmu(
             "resources/model.image": run.image,
             "resources/variables.bin": variables_file(slave.variables, token, slave.settings.rtol, channels),
             **native_binaries(folder(), identifier, fmi_version, platforms),
+            **({} if protect else scene(slave.model)),
             **(_of_model(slave, about, fmi_version) if sources else {}),
         }
         return write_archive(path, files)
@@ -177,7 +177,8 @@ def export_fmu(
     files = {
         "modelDescription.xml": described,
         "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
-        **_pictures(slave, fmi_version),
+        **pictures(slave, fmi_version),
+        **scene(slave.model),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": json_bytes(settings),
         f"resources/{PYTHON_FILE}": json_bytes(python_record(digest)),
@@ -221,32 +222,10 @@ def _of_model(slave: Slave, about: About, fmi_version: str) -> dict[str, bytes]:
     """What shows the model: its text, a page about its parts, pictures."""
     return {
         "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
-        **_pictures(slave, fmi_version),
+        **pictures(slave, fmi_version),
+        **scene(slave.model),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
     }
-
-
-def _pictures(slave: Slave, fmi_version: str) -> dict[str, bytes]:
-    """The icon, and for FMI 3.0 the terminals beside it."""
-    from lxml import etree
-
-    drawing, files = draw(slave.model), {}
-    try:
-        picture = to_png(drawing)
-    except ImportError:
-        logging.getLogger(__name__).warning(
-            "the FMU gets no icon: that needs Pillow, which is not installed (pip install 'tlismni[fmu]')"
-        )
-        picture = None
-    if fmi_version == "2.0":
-        return {} if picture is None else {"model.png": picture}
-    folder = "terminalsAndIcons"
-    if picture is not None:
-        files = {f"{folder}/icon.png": picture, f"{folder}/icon.svg": etree.tostring(to_svg(drawing, names=False))}
-    if files or terminals(slave.model, slave.variables):
-        described = terminals_and_icons(slave.model, slave.variables, bool(files))
-        files[f"{folder}/terminalsAndIcons.xml"] = described
-    return files
 
 
 def shim_path() -> Path:

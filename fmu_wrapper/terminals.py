@@ -14,8 +14,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, TypeGuard
 
+import numpy as np
+
 from ..core.description import Model
-from ..core.elements import AppliedForce2D, AppliedTorque2D, CoordinateDriver, CoordinateLoad, MovingFrame2D
+from ..core.elements import (
+    AngleDriver3D,
+    AppliedForce2D,
+    AppliedForce3D,
+    AppliedTorque2D,
+    AppliedTorque3D,
+    CoordinateDriver,
+    CoordinateLoad,
+    MovingFrame2D,
+    PositionDriver3D,
+)
 from ..core.model.signals import InputSignal
 from .description_parts import add
 from .variables import VariableTable
@@ -56,7 +68,7 @@ def terminals(model: Model, table: VariableTable) -> list[Terminal]:
 
 def _is_force(member: str) -> bool:
     """Whether a member is a force or a torque: the names that `FORCES` and `_flange` give them."""
-    return member == "torque" or member.startswith("force_")
+    return member.startswith(("torque", "force_"))
 
 
 @dataclass(frozen=True)
@@ -76,12 +88,10 @@ def _plain(signal: Any) -> TypeGuard[InputSignal]:
 
 def _flange(model: Model, element: Any) -> Flange | None:
     """The flange of an element; None if no input acts there."""
-    if isinstance(element, AppliedForce2D):
-        signals = {"force_x": element.force_x, "force_y": element.force_y}
-        inputs = {name: s.channel for name, s in signals.items() if _plain(s)}
-        at_origin = element.marker.point == (0.0, 0.0) and not element.follower
-        moving = tuple(name[-1] for name in inputs) if at_origin else ()
-        return Flange("force", element.marker.body, inputs, moving) if inputs else None
+    if isinstance(element, AppliedForce2D | AppliedForce3D | AppliedTorque3D):
+        return _load(element)
+    if isinstance(element, AngleDriver3D | PositionDriver3D):
+        return _driver(element)
     if isinstance(element, AppliedTorque2D) and _plain(element.torque):
         return Flange("force", element.body, {"torque": element.torque.channel}, ("angle",))
     if isinstance(element, CoordinateLoad) and _plain(element.load):
@@ -97,6 +107,41 @@ def _flange(model: Model, element: Any) -> Flange | None:
     if isinstance(element, MovingFrame2D):
         return _frame(element)
     return None
+
+
+def _load(load: AppliedForce2D | AppliedForce3D | AppliedTorque3D) -> Flange | None:
+    """The flange of a force or of a torque in space, along its components that are inputs.
+
+    Its motion is that of the body's centre of mass, of a force elsewhere or one that turns with the body there is none.
+    A torque's angular velocity is along the axes that the torque is along.
+    """
+    what = "torque" if isinstance(load, AppliedTorque3D) else "force"
+    signals = {axis: getattr(load, f"{what}_{axis}", None) for axis in "xyz"}
+    inputs = {axis: signal.channel for axis, signal in signals.items() if _plain(signal)}
+    members = {f"{what}_{axis}": channel for axis, channel in inputs.items()}
+    body = load.marker.body
+    if not inputs:
+        return None
+    if isinstance(load, AppliedTorque3D):
+        rate = "body_angular_velocity" if load.follower else "angular_velocity"
+        if not load.follower or np.array_equal(load.marker.axes(), np.eye(3)):
+            members |= {f"angular_velocity_{axis}": f"{body}.{rate}_{axis}" for axis in inputs}
+        return Flange("force", body, members, ())
+    at_origin = not any(load.marker.point) and not load.follower
+    return Flange("force", body, members, tuple(inputs) if at_origin else ())
+
+
+def _driver(driver: AngleDriver3D | PositionDriver3D) -> Flange | None:
+    """The flange of a joint in space that an input leads: the motion, its rate, and what it takes to make it."""
+    turns = isinstance(driver, AngleDriver3D)
+    motion = driver.angle if isinstance(driver, AngleDriver3D) else driver.position
+    if not _plain(motion):
+        return None
+    members = {"angle" if turns else "z": motion.channel}
+    if motion.rate is not None:
+        members["angular_velocity" if turns else "vz"] = motion.rate
+    members["torque" if turns else "force_z"] = f"{driver.name}.{'torque_z' if turns else 'force_z'}"
+    return Flange("motion", driver.b.body, members, ())
 
 
 def _frame(frame: MovingFrame2D) -> Flange | None:

@@ -36,6 +36,7 @@ from . import (  # noqa: F401  (importing a scenario's file puts it in the catal
     spinning_sphere,
     split_contact,
     stick_slip,
+    tippe_top,
     universal_pendulum,
     woodpecker,
 )

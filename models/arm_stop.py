@@ -5,7 +5,6 @@ import math
 from ..core.description import Model
 from ..core.elements import Revolute3D, RigidBody3D, TorsionSpring3D
 from ..core.model.attitude import Axes
-from ..core.model.channels import Parameter
 from ..core.model.markers import Marker3D
 from ..core.shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D
 from .laws import contact_law, law_model_parameters, law_parameters
@@ -74,15 +73,6 @@ def arm_stop(
         SphereOnHalfSpace3D(name=name, plane=plane, sphere=Sphere3D(marker=marker, radius=tip_radius), law=contact)
         for name, marker in balls.items()
     )
-    parameters = tuple(
-        Parameter(
-            **{
-                **parameter.model_dump(),
-                "targets": tuple(f"{name}.{parameter.targets[0].partition('.')[2]}" for name in balls),
-            }
-        )
-        for parameter in law_model_parameters("table", contact)
-    )
     model = Model(
         name="arm_stop",
         gravity=(0.0, 0.0, -gravity),
@@ -103,7 +93,7 @@ def arm_stop(
             ),
         ),
         contacts=contacts,
-        parameters=parameters,
+        parameters=law_model_parameters("table", contact, "elbow_table"),
     )
     return Scenario(
         name=model.name,

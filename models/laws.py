@@ -166,8 +166,8 @@ def kelvin_voigt_restitution(damping_ratio: float) -> float:
     return math.exp(-z * math.atanh(2.0 * z * s / (2.0 * z * z - 1.0)) / s)
 
 
-def law_model_parameters(contact: str, law: ContactLaw) -> tuple[Parameter, ...]:
-    """The model parameters that stand as plain fields in the law of `contact`."""
+def law_model_parameters(contact: str, law: ContactLaw, *others: str) -> tuple[Parameter, ...]:
+    """The model parameters that stand as plain fields in the law of `contact`, and of `others` with the same law."""
     rows = (
         ("restitution", "1", 0.0, 1.0, "coefficient of restitution"),
         ("stiffness", "N/m^n", 0.0, None, "contact stiffness"),
@@ -181,7 +181,7 @@ def law_model_parameters(contact: str, law: ContactLaw) -> tuple[Parameter, ...]
             minimum=low,
             maximum=high,
             description=text,
-            targets=(f"{contact}.law.{name}",),
+            targets=tuple(f"{of}.law.{name}" for of in (contact, *others)),
         )
         for name, unit, low, high, text in rows
         if getattr(law, name, None) is not None

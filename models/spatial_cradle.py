@@ -4,7 +4,6 @@ import math
 
 from ..core.description import Model
 from ..core.elements import Distance3D, PointMass3D
-from ..core.model.channels import Parameter
 from ..core.model.markers import Marker3D
 from ..core.shapes.contact3d import Sphere3D, SphereOnSphere3D
 from .laws import contact_law, law_model_parameters, law_parameters
@@ -60,22 +59,13 @@ def spatial_cradle(
     contacts = tuple(
         SphereOnSphere3D(name=f"contact{k}", a=sphere(k), b=sphere(k + 1), law=contact) for k in range(1, balls)
     )
-    parameters = tuple(
-        Parameter(
-            **{
-                **parameter.model_dump(),
-                "targets": tuple(f"{c.name}.{parameter.targets[0].partition('.')[2]}" for c in contacts),
-            }
-        )
-        for parameter in law_model_parameters("contact1", contact)
-    )
     model = Model(
         name="spatial_cradle",
         gravity=(0.0, 0.0, -gravity),
         bodies=tuple(bodies),
         joints=tuple(strings),
         contacts=contacts,
-        parameters=parameters,
+        parameters=law_model_parameters("contact1", contact, *(c.name for c in contacts[1:])),
     )
     return Scenario(
         name=model.name,

@@ -105,6 +105,7 @@ CASES: Mapping[str, Sequence[Case]] = {
     "spatial_cradle": (Case("spatial_cradle", not_comparable=NOT_WRITTEN),),
     "spatial_slider_crank_stop": (Case("spatial_slider_crank_stop", not_comparable=NOT_WRITTEN),),
     "spinning_sphere": (Case("spinning_sphere", not_comparable=NOT_WRITTEN),),
+    "tippe_top": (Case("tippe_top", not_comparable=NOT_WRITTEN),),
     "heavy_top": (Case("heavy_top", coarse={"t_end": 0.3}),),
     "rolling_disk": (Case("rolling_disk", coarse={"t_end": 0.3}),),
     "chain": (Case("chain", coarse={"t_end": 0.5, "links": 3}),),

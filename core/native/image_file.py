@@ -29,6 +29,11 @@ def own_library() -> Library:
     return LIBRARY
 
 
+def _has_none(x: NDArray[Any]) -> bool:
+    """Whether an array has no addresses, though its words may look like some."""
+    return holds_reals(x) or x.dtype.itemsize % 8 != 0
+
+
 def refuse_motions(sim: Any) -> None:
     """Raise NativeError for a run whose steps are not made in one crossing."""
     if not possible(sim) or sim.crossing is None:
@@ -45,7 +50,7 @@ class _Segment:
         """Those that lie in `last` come at the end, as room without content."""
         blank = {id(x) for x in arrays if last is not None and int(last.owner(np.array([x.ctypes.data]))[0]) >= 0}
         self.arrays = [x for x in arrays if id(x) not in blank]
-        self.arrays.sort(key=holds_reals)  # what may have addresses comes first
+        self.arrays.sort(key=_has_none)  # what may have addresses comes first
         self.start: dict[int, int] = {}
         self.tables = self.copied = self.size = 0
         for x in (*self.arrays, *(x for x in arrays if id(x) in blank)):
@@ -53,7 +58,7 @@ class _Segment:
             self.size += -(-x.nbytes // _ALIGNED) * _ALIGNED
             if id(x) not in blank:
                 self.copied = self.size
-                self.tables = self.tables if holds_reals(x) else self.size
+                self.tables = self.tables if _has_none(x) else self.size
         self.data = np.zeros(self.copied, dtype=np.uint8)
         for x in self.arrays:
             begin = self.start[x.ctypes.data]

@@ -9,14 +9,10 @@
 static const char *of_settling(int status) {
     switch (status) {
     case 2:
-        return "contacts have come together in a way that the image was not prepared for: prepare it with a run that "
-               "meets it" WITH_PYTHON;
-    case 3:
-    case 5:
-        return "the mechanism has come to a position whose pivots the image was not prepared for: prepare it with a run "
-               "that goes there" WITH_PYTHON;
-    case 4:
         return "more contacts touch at once than the image has room for" WITH_PYTHON;
+    case 3:
+        return "the equations of the contacts that are closed now are larger than the image has room for: prepare it with "
+               "a run that meets them" WITH_PYTHON;
     case 10:
         return "the joints depend on one another where contacts strike: start elsewhere, or look at the mechanism in "
                "Python, which names them";

@@ -356,7 +356,7 @@ def test_without_pillow_there_is_no_icon_but_all_else(tmp_path, monkeypatch, cap
     def none(drawing):
         raise ImportError("No module named 'PIL'")
 
-    monkeypatch.setattr("tlismni.fmu_wrapper.export.to_png", none)
+    monkeypatch.setattr("tlismni.fmu_wrapper.pictures.to_png", none)
     with zipfile.ZipFile(export_fmu(driven_crank(), tmp_path / "m.fmu", version, t_end=1.0)) as archive:
         held = archive.namelist()
         assert not [name for name in held if name.endswith((".png", "icon.svg"))]

@@ -99,3 +99,43 @@ def test_dropped_box_with_friction_of_a_force_law_comes_to_rest():
     _, result = run("dropped_box", law="hunt_crossley", friction=0.3, stiffness=1e5, transition_speed=1e-2)
     assert result["energy.kinetic"][-1] < 1e-4
     assert np.ptp(result["energy.balance"]) < 1e-6
+
+
+@pytest.mark.parametrize("law", ["newton", "hunt_crossley"])
+def test_tippe_top_turns_over_and_rises_on_its_stem(law):
+    """Jellett's quantity of the sphere that touches alone is constant, energy falls, the centre of mass rises."""
+    scenario, result = run("tippe_top", law=law, restitution=0.0 if law == "newton" else 0.3)
+    (top,) = scenario.model.bodies
+    e = np.stack([result[f"top.e{k}"] for k in range(4)])
+    up = e[0] ** 2 - e[1] ** 2 - e[2] ** 2 + e[3] ** 2
+    axis = np.stack([2.0 * (e[1] * e[3] + e[0] * e[2]), 2.0 * (e[2] * e[3] - e[0] * e[1]), up])
+    w = np.stack([result[f"top.angular_velocity_{k}"] for k in "xyz"])
+    across, _, along = top.inertia
+    momentum = across * w + (along - across) * result["top.body_angular_velocity_z"] * axis
+
+    def jellett(centre, radius):
+        return np.sum(momentum * (centre * axis - radius * UP[:, None]), axis=0)
+
+    stem = next(event.t for event in result.events if event.contact == "stem")
+    first = jellett(3e-3, 15e-3)
+    assert np.ptp(first[result.t < stem]) < 1e-7 * abs(first[0])
+    last = max(event.t for event in result.events if event.contact == "floor")
+    second = jellett(16e-3, 5e-3)[result.t > last]
+    assert len(second) > 100 and np.ptp(second) < 1e-7 * abs(second[0])
+    if law == "newton":  # both spheres touch
+        assert np.interp(stem, result.t, up) == pytest.approx((5.0 - 15.0) / (16.0 - 3.0), abs=1e-6)
+    assert up[0] > 0.99 and up[-1] < -0.95 and result["top.z"][-1] > result["top.z"][0] + 3e-3
+    assert np.all(np.diff(total(result)) < 1e-7 * total(result)[0])
+    assert np.ptp(result["energy.balance"]) < 1e-6 * total(result)[0]
+
+
+def test_a_flat_top_stays_upright():
+    """Upright spin of a top on a sphere of radius R at e over its centre of mass is stable where A/C < 1 - e/R."""
+    _, result = run("tippe_top", inertia_across=0.7 * 7e-7)
+    tilt = 2.0 * np.arcsin(np.hypot(result["top.e1"], result["top.e2"]))
+    assert tilt.max() < 0.25 and tilt[-1] < 0.12 and not any(event.contact == "stem" for event in result.events)
+
+
+def test_a_stem_in_the_floor_is_refused():
+    with pytest.raises(ScenarioError, match="in the floor"):
+        load("tippe_top", stem_radius=0.1)
