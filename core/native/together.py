@@ -98,7 +98,7 @@ def _modes(copies: _Copies, p: Parameter, q: Parameter) -> dict[Place, tuple[int
         if None in found:
             continue
         changed = memory.words([{}, *(copy for copy in found if copy is not None)])
-        result = dict.fromkeys(both, (PRODUCT, SUM))
+        result: dict[Place, tuple[int, ...]] = dict.fromkeys(both, (PRODUCT, SUM))
         for (k, offset), values in changed.items():
             place, four = (begin_of(memory.arrays[k]), offset), values.tolist()
             if place in both:
