@@ -4,9 +4,10 @@ What is measured is y_k = channel(t_k; p) + noise. The parameters minimise the s
 trust region, with bounds); their covariance is (J^T J)^-1 times the variance of what is left, intervals are those of
 Student's distribution. Each holds its own parameter with the probability `level`; that all hold theirs at once is less
 likely, and so `simultaneous` are wider: Bonferroni's, each at 1 - (1 - level)/p (Dunn, Journal of the American
-Statistical Association 56, 1961, 52). J comes from central differences of runs at tight tolerances. Positions answer smoothly to
-parameters through impacts; velocities jump there, and a sample beside a jump says little: give positions, or times of
-impacts.
+Statistical Association 56, 1961, 52). J comes from central differences of runs at tight tolerances.
+
+Positions answer smoothly to parameters through impacts; velocities jump there, and a sample beside a jump says little:
+give positions, or times of impacts.
 """
 
 from collections.abc import Mapping
