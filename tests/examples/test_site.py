@@ -123,7 +123,7 @@ def test_the_page_on_space_runs() -> None:
 
 
 def test_the_page_on_contact_in_space_runs() -> None:
-    """The ball of the page rolls after 2 v/(7 mu g) with 5/7 of its speed, to the run's rtol: a uniform ball's closed form."""
+    """Its ball rolls after 2 v/(7 mu g) with 5/7 of its speed, to the run's rtol."""
     names: dict[str, Any] = {}
     for language, _, text in blocks(DOCS / "space-contact.md"):
         if language == "python":
