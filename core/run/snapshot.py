@@ -1,7 +1,7 @@
 """Snapshot: what decides the future of a run, copied as it lies in memory.
 
 Its bulk is the state's buffer (`tables/state_fields.py`). The rest are the factors of the matrices, whose size changes
-with the structure, and what Python keeps. Index arrays and permutations are never written into, so they are not copied.
+with the structure, and what Python keeps.
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple

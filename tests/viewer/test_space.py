@@ -274,3 +274,21 @@ def test_in_a_browser_solids_are_drawn_where_the_result_says(tmp_path: Path, siz
     assert np.hypot(xx, xy) == pytest.approx(1.0) and xx * yx + xy * yy == pytest.approx(0.0, abs=1e-9)
     assert xx * yy - xy * yx == pytest.approx(1.0) and z == pytest.approx([0.0, 0.0], abs=1e-9)
     assert found["loaded"] == 0 and found["wide"] <= 0
+
+
+def test_a_browser_that_cannot_draw_in_space_says_so_and_shows_the_rest(tmp_path: Path) -> None:
+    simulate(bodies_in_space(), 0.1).animate(tmp_path / "x.html")
+    found = probe(
+        tmp_path / "x.html",
+        """
+    const told = document.getElementById("missing");
+    found.told = told.textContent;
+    found.height = told.getBoundingClientRect().height;
+    window.tlismni.seek(0.05);
+    window.tlismni.paint(0);
+    found.cards = document.querySelectorAll(".card").length;
+    """,
+        flags=("--disable-gpu", "--disable-3d-apis"),
+    )
+    assert "WebGL" in found["told"] and ".gif" in found["told"] and found["height"] > 10.0
+    assert found["cards"] > 0 and found["failures"] == []

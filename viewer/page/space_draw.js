@@ -19,7 +19,7 @@ try {
   renderer.shadowMap.enabled = true;
   renderer.shadowMap.type = THREE.PCFShadowMap;
 } catch (error) {
-  document.getElementById("notes").textContent = "This browser draws nothing in space (no WebGL): switch its hardware acceleration on, or make a film (.gif) of the run.";
+  document.getElementById("missing").textContent = "This browser cannot draw in space: it has no WebGL. Switch its hardware acceleration on, try another browser, or make a film of the run (a name that ends with .gif). Time line and plots work.";
 }
 
 const bytes = Uint8Array.from(atob(scene.solids), (letter) => letter.charCodeAt(0));
