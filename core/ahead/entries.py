@@ -43,7 +43,8 @@ from ..loop import drive, loop, sample
 from ..methods import adams, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..repair import mend
-from ..run import exchange, slopes
+from ..run import begin_now, exchange, slopes
+from ..run.begin_record import BEGIN
 from ..shapes.support3d import SUPPORT_SIGNATURE, SmoothShape3D
 from ..stage import accelerations, joints
 from ..state import run_records as run_records
@@ -123,6 +124,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
         yield function, (_DR,)
     for function in (exchange.exchange, exchange.tell, exchange.read):
         yield function, (types.from_dtype(exchange.EXCHANGE),)
+    yield begin_now.begin_now, (types.from_dtype(BEGIN),)
     yield slopes.along_inputs, slopes.ALONG_ARGUMENTS
     yield slopes.in_time, slopes.SLOPES_ARGUMENTS
     yield dense_output.interpolate, (_WS, _MS, _REAL)

@@ -58,6 +58,19 @@ def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 @internal
 def _choose_partition(ev: Any, ws: Any) -> int:
+    rank = rank_of(ev, ws, RANK_TOLERANCE)
+    if rank < 0:
+        return WANT_ROOM
+    if rank < ws.m_act:
+        return REPEATED_ROWS
+    partition_wanted(ws)
+    return SETTLED
+
+
+@internal
+def rank_of(ev: Any, ws: Any, tolerance: float) -> int:
+    """Rank of Phi_q as last evaluated, of whose rows less than `tolerance` is left when they repeat others; the
+    coordinates that depend to `wanted_dependent`. -1 where there is too little room."""
     st, m, n, space = structure_at(ws.structure), ws.m_act, ws.n, ev.rows_space
     size, wholes, reals = n + m + 1, ev.row_wholes, ev.row_reals
     values, slots = vec(ws.values, ws.n_values), ivec(st.jacobian_slot, st.n_jacobian)
@@ -72,18 +85,12 @@ def _choose_partition(ev: Any, ws: Any) -> int:
         wanted[i] = -1
     starts[0] = f_starts[0] = 0
     if st.n_jacobian > space:
-        return WANT_ROOM
+        return -1
     for e in range(st.n_jacobian):
         data[e] = values[slots[e]]
-    rank = eliminate(
+    return int(eliminate(
         m, n, ivec(st.jacobian_start, m + 1), ivec(st.jacobian_col, st.n_jacobian), data, vec(ws.scale, n),
-        RANK_TOLERANCE, wanted, owner, mark, column, pending, x,
+        tolerance, wanted, owner, mark, column, pending, x,
         starts, ivec(wholes + 48 * size, space), vec(reals + 8 * (space + size), space),
         f_starts, ivec(wholes + 48 * size + 8 * space, space), vec(reals + 8 * (2 * space + size), space),
-    )  # fmt: skip
-    if rank < 0:
-        return WANT_ROOM
-    if rank < m:
-        return REPEATED_ROWS
-    partition_wanted(ws)
-    return SETTLED
+    ))  # fmt: skip
