@@ -25,7 +25,7 @@ Grow = Callable[[], None]
 # compiles the symbolic analysis on a first run.
 DENSE_LIMIT = 8
 _PLACES = words_of_record(LU)
-_NO_PIVOTS = np.empty(0, np.int64)
+_NO_PIVOTS, _NO_FACTORS = np.empty(0, np.int64), np.empty(0)
 
 
 class Matrix:
@@ -46,6 +46,7 @@ class Matrix:
     def __init__(self, table: NDArray, view: View, grow: Grow, like: "Matrix | None" = None) -> None:
         self._table, self._view, self._grow, self._like = table, view, grow, like
         self._seen: dict[str, tuple[int, int, NDArray]] = {}
+        self._known, self._parts = b"", (_NO_PIVOTS, _NO_PIVOTS, _NO_FACTORS, _NO_PIVOTS)
         self.record = Record(table)
         """What to hand to a compiled function."""
 
@@ -79,18 +80,35 @@ class Matrix:
         """Address of the record, to be stored in another record."""
         return self.record.address
 
+    def parts(self) -> tuple[Ints, Ints, Floats, Ints]:
+        """What decides its solutions, for who copies it: place of each row and each column in the pivot sequence,
+        factors with the limits on the growth of L, pivots of a dense one. Views until the next analysis."""
+        facts = self.record.data.tobytes()  # one comparison in place of a dozen questions
+        if facts != self._known:
+            self._known, self._parts = facts, self._find_parts()
+        return self._parts
+
+    def _find_parts(self) -> tuple[Ints, Ints, Floats, Ints]:
+        n = self.n
+        if self.dense:
+            return _NO_PIVOTS, _NO_PIVOTS, self._at("values", n * (n + 1), np.float64), self._at("pivots", n)
+        if not self._word("ready"):
+            return _NO_PIVOTS, _NO_PIVOTS, _NO_FACTORS, _NO_PIVOTS
+        ordered = self if self._word("ordered") or self._like is None else self._like
+        perm_c = np.argsort(ordered._at("order", n))
+        perm_c.flags.writeable = False
+        size = self._word("nl") + self._word("nu") + 2 * n
+        return self._at("perm_r", n), perm_c, self._at("values", size, np.float64), _NO_PIVOTS
+
     @property
     def lu_values(self) -> Floats:
         """The numeric factors and the limits on the growth of L as one array, to be copied out and back."""
-        if self.dense:
-            return self._at("values", self.n * (self.n + 1), np.float64)
-        size = self._word("nl") + self._word("nu") + 2 * self.n if self._word("ready") else 0
-        return self._at("values", size, np.float64)
+        return self.parts()[2]
 
     @property
     def pivots(self) -> Ints:
         """Dense: (n,) row of the matrix at each pivot; belongs to the numeric state. Sparse: empty."""
-        return self._at("pivots", self.n) if self.dense else _NO_PIVOTS
+        return self.parts()[3]
 
     @property
     def fill(self) -> int:
@@ -105,10 +123,8 @@ class Matrix:
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense, or before the
         first analysis."""
-        if self.dense or not self._word("ready"):
-            return _NO_PIVOTS, _NO_PIVOTS
-        ordered = self if self._word("ordered") or self._like is None else self._like
-        return self._at("perm_r", self.n).copy(), np.argsort(ordered._at("order", self.n))
+        perm_r, perm_c, _, _ = self.parts()
+        return perm_r.copy(), perm_c
 
     def analyze(self, values: Floats) -> None:
         """Choose pivots that fit the source array `values`, and factor with them.

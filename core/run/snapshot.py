@@ -93,11 +93,13 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         workspace.state_bytes.copy(),
         workspace.state.dtype,
         tuple([
-            Factors(*lu.analysis(), lu.lu_values.copy(), lu.pivots.copy())
-            for lu in (structure.kkt, structure.kkt_query, *partition.factorizations)
+            Factors(rows.copy(), columns, values.copy(), pivots.copy())
+            for rows, columns, values, pivots in (lu.parts() for lu in (
+                structure.kkt, structure.kkt_query, *partition.factorizations
+            ))
         ]),
         partition.dependent,
-        structure.probe.copy(),
+        structure.arrays["probe"].copy(),
         workspace.key,
         workspace.dropped,
         sim.t,

@@ -381,7 +381,7 @@ class Workspace:
 
     def set_probe(self, probe: NDArray[np.float64]) -> None:
         """Right-hand side (m_act,) with which the condition of the constraints is measured."""
-        self.structure.probe[:] = probe
+        self.structure.arrays["probe"][:] = probe
 
     def set_partition(self, dependent: NDArray[np.int64]) -> None:
         """Choose the dependent coordinates of the present structure."""

@@ -11,12 +11,16 @@ from browser import probe
 from runs import run
 from tlismni.core import (
     Box3D,
+    Cable2D,
     Cable3D,
     CableClamp3D,
     Capsule3D,
+    Clamp2D,
     ContactGroup3D,
     HalfSpace3D,
+    Marker2D,
     Marker3D,
+    MaterialPoint2D,
     Model,
     ModelError,
     NewtonImpact,
@@ -28,6 +32,7 @@ from tlismni.core import (
     SpringDamper3D,
     simulate,
 )
+from tlismni.core.flexible.section_loads import section
 from tlismni.models import load, names
 from tlismni.viewer import animate, show
 from tlismni.viewer.scene import Scene
@@ -194,6 +199,32 @@ def test_a_cable_bends_through_its_nodes() -> None:
         nodes = np.stack([result[f"cable.{c}{k}"] for c in "xyz"], axis=1)
         assert band.points[-1, 4 * k] == pytest.approx(nodes[-1], abs=1e-12)
     assert "cable 0" in {node.get("name") for node in Glb(to_glb(scene)).json["nodes"]}
+
+
+def test_a_cable_in_space_is_coloured_as_the_planar_one() -> None:
+    """The same cable by both elements, in one plane: axial force and bending moment along it."""
+    numbers: dict[str, Any] = {
+        "name": "cable", "elements": 3, "length": 1.0, "mass_per_length": 0.3, "axial_stiffness": 400.0,
+        "bending_stiffness": 0.7,
+    }  # fmt: skip
+    times = np.linspace(0.0, 0.2, 11)
+    root = CableClamp3D(name="root", cable="cable", s=0.0, marker=Marker3D())
+    space = Model(gravity=(0.0, -9.81, 0.0), bodies=[Cable3D(**numbers)], joints=[root])
+    point = MaterialPoint2D(name="end", body="cable", point=(0.0, 0.0))
+    weld = Clamp2D(name="root", a=Marker2D(), b=Marker2D(body="end"))
+    plane = Model(bodies=[Cable2D(**numbers), point], joints=[weld])
+    found = simulate(space, 0.2, rtol=1e-9, t_eval=times)
+    swung = simulate(plane, 0.2, rtol=1e-9, t_eval=times)
+    like = section(swung, plane.bodies[0], np.linspace(0.0, 1.0, 13), times=times)
+    scene = animate(found).scene
+    (band,) = scene.bands
+    fields = {field.name: field for field in band.fields}
+    frames = [int(np.argmin(np.abs(scene.t - t))) for t in times[1:]]
+    force, moment = fields["axial force"].values, fields["bending moment"].values
+    assert fields["bending moment"].limit > 0.5
+    assert moment.shape == band.points.shape[:2]
+    assert np.abs(moment[frames][:, ::4] - np.abs(like.bending_moment[1:, ::4])).max() < 1e-4
+    assert np.abs(force[frames][:, ::4] - like.axial_force[1:, ::4]).max() < 1e-2
 
 
 def test_every_scenario_in_space_has_a_scene_and_a_file() -> None:
