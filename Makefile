@@ -67,11 +67,13 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.installed-all: $(BIN)/python $(SOURCES)
+	@echo "Packages are installed into $(VENV), once: some minutes without a word"
 	$(BIN)/pip install --disable-pip-version-check --quiet -e ".[all]"
 	@touch $@
 
 # the extra dev holds all
 $(VENV)/.installed-dev: $(BIN)/python $(SOURCES)
+	@echo "Packages are installed into $(VENV), once: some minutes without a word"
 	$(BIN)/pip install --disable-pip-version-check --quiet -e ".[dev]"
 	@touch $(VENV)/.installed-all $@
 

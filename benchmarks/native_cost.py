@@ -6,18 +6,21 @@ Needs a C compiler, fmpy (for the standard's headers) and the library of machine
 import argparse
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
 from typing import Any
 
 import fmpy
+from fmpy.fmi2 import FMU2Slave
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.errors import ExportError
 from tlismni.fmu_wrapper.export import fmi2_platform
 from tlismni.models import load, names
 
 HERE = Path(__file__).parent
+STEPS = 2000
 USUAL = ("bouncing_ball", "chain", "slider_crank_stop", "rod_rod")
 
 
@@ -42,7 +45,9 @@ def measure(program: Path, path: Path) -> dict[str, float]:
     arguments = [library, (folder / "resources").as_uri(), description.guid, description.defaultExperiment.stopTime]
     arguments += [inputs[0] if inputs else 0, *outputs[:2]]
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True)
-    return {line.split()[0]: float(line.split()[1]) for line in done.stdout.splitlines()}
+    fmpy_us = under_fmpy(library, folder / "resources", description.guid, inputs[:1], outputs[:2], 1e-12)
+    found = {line.split()[0]: float(line.split()[1]) for line in done.stdout.splitlines()}
+    return {**found, "under_fmpy_us": fmpy_us}
 
 
 def costs(scenarios: list[str]) -> None:
@@ -57,6 +62,59 @@ def costs(scenarios: list[str]) -> None:
                 exported = time.perf_counter() - began
                 found = {"bytes": path.stat().st_size, "export_s": exported, **measure(program, path)}
                 print(name, "native" if native else "python", *(f"{k}={v:.4g}" for k, v in found.items()), flush=True)
+
+
+def peer() -> None:
+    """The same of an FMU written in C by hand."""
+    with tempfile.TemporaryDirectory() as folder:
+        program, library = host(Path(folder)), Path(folder, "ball.so")
+        headers = Path(fmpy.__file__).parent / "c-code"
+        sources = [str(HERE / "fmu_peers" / name) for name in ("ball.c", "ball_absent.c")]
+        subprocess.run(["cc", "-O2", "-shared", "-fPIC", f"-I{headers}", "-o", str(library), *sources], check=True)
+        arguments = [library, "file:///", "guid", 3.0, 0, 1, 2]
+        done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True)
+        share = under_fmpy(library, Path(folder, "resources"), "guid", [], [1, 2], 1e-12)
+        print(f"under fmpy, of which this is fmpy's own share: {share:.1f} us a step", flush=True)
+        print("by hand in C:", *("=".join(line.split()) for line in done.stdout.splitlines()), flush=True)
+
+
+def under_fmpy(library: Path, resources: Path, guid: str, inputs: list[int], outputs: list[int], h: float) -> float:
+    """CPU time, us, of set + doStep + get through fmpy, of steps of h (s)."""
+    fmu = FMU2Slave(guid=guid, unzipDirectory=str(resources.parent), modelIdentifier="x", libraryPath=str(library))
+    fmu.instantiate()
+    fmu.setupExperiment(startTime=0.0)
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    t, best = 0.0, float("inf")
+    fmu.doStep(t, 0.01)
+    t += 0.01
+    for _ in range(5):
+        began = time.process_time()
+        for _ in range(STEPS):
+            if inputs:
+                fmu.setReal(inputs, [0.0])
+            fmu.doStep(t, h)
+            fmu.getReal(outputs)
+            t += h
+        best = min(best, time.process_time() - began)
+    return 1e6 * best / STEPS
+
+
+def first_result() -> None:
+    """Wall and CPU time of a process from its start to the first result of `bouncing_ball`, with no caches, and of a C
+    host from the image to the same."""
+    code = (
+        "from tlismni.models import load; from tlismni.core import simulate; s = load('bouncing_ball'); "
+        "print(simulate(s.model, s.t_end, method=s.method, rtol=s.rtol, atol=s.atol, **s.options)['ball.y'][-1])"
+    )
+    for attempt in ("first", "again"):
+        with tempfile.TemporaryDirectory() as home:
+            environment = {**os.environ, "HOME": home, "XDG_CACHE_HOME": home, "PYTHONDONTWRITEBYTECODE": "1"}
+            began, before = time.perf_counter(), os.times()
+            subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True)
+            after = os.times()
+            cpu = after.children_user + after.children_system - before.children_user - before.children_system
+            print(f"first result in Python, new home, {attempt}: {time.perf_counter() - began:.3f} s, CPU {cpu:.3f} s")
 
 
 def share() -> None:
@@ -84,6 +142,8 @@ def main() -> None:
     if given.share:
         share()
     else:
+        first_result()
+        peer()
         costs(given.scenarios)
 
 

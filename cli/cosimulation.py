@@ -34,6 +34,7 @@ class Comparison:
     fmu, slave : all outputs at these points, by name.
     different : names of the outputs that are not bit for bit the same; `first` the time and name of the first.
     uninterrupted : outputs of one run without communication points, at the same times; by name.
+    units : of the channels, by name.
     """
 
     times: NDArray[np.float64]
@@ -42,6 +43,7 @@ class Comparison:
     different: tuple[str, ...]
     first: tuple[float, str] | None
     uninterrupted: Columns
+    units: dict[str, str]
 
     @property
     def identical(self) -> bool:
@@ -79,7 +81,8 @@ def compare(
     different = tuple(name for name, places in unequal.items() if places.any())
     first = min(((float(times[np.argmax(unequal[name])]), name) for name in different), default=None)
     uninterrupted = {name: free[name] for name in scenario.compare if name in outer}
-    return Comparison(times, outer, inner, different, first, uninterrupted)
+    units = {channel.name: channel.unit for channel in free.channel_records}
+    return Comparison(times, outer, inner, different, first, uninterrupted, units)
 
 
 def _unequal(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -57,7 +57,7 @@ def plot_cosimulation(scenario: Scenario, found: Comparison, path: Path) -> Path
             axis.plot(found.times, found.uninterrupted[name], lw=1.0, color="0.6", label="uninterrupted run")
         axis.plot(found.times, found.slave[name], lw=0.8, label="slave in process")
         axis.plot(found.times, found.fmu[name], ".", ms=2.5, label="FMU under fmpy")
-        axis.set_ylabel(name)
+        axis.set_ylabel(f"{name}\n{found.units[name]}" if name in found.units else name)
     axes[0].legend(fontsize=7, ncols=3)
     for name, values in found.uninterrupted.items():
         axes[-1].semilogy(found.times, np.maximum(np.abs(found.fmu[name] - values), FLOOR), lw=0.8, label=name)

@@ -30,9 +30,6 @@ CAPABILITIES = {
     "canSerializeFMUstate": "true",
 }
 
-WITHOUT_PYTHON = {"canInterpolateInputs": "false"}
-"""Where an FMU without Python differs."""
-
 _TYPES = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "string": "String"}
 
 
@@ -42,7 +39,7 @@ def fmi2_description(table: VariableTable, settings: Settings, about: About, kno
     derivatives = {"providesDirectionalDerivative": about.derivatives}
     add(
         root, "CoSimulation", modelIdentifier=about.identifier, needsExecutionTool=about.needs_tool,
-        **(CAPABILITIES | (WITHOUT_PYTHON if about.native else {})), **derivatives,
+        **CAPABILITIES, **derivatives,
     )  # fmt: skip
     add_units(root, table)
     if types := enumerations(table):

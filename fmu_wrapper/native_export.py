@@ -13,6 +13,7 @@ from pathlib import Path
 from ..core.compiled.library import LIBRARY, core_digest
 from ..core.description import Model
 from ..core.native import NativeError
+from ..core.native.c_sources import c_digest
 from ..core.native.export import image_and_parameters
 from ..core.native.parameters import Parameter, Setting
 from .effective import effective
@@ -90,9 +91,10 @@ class NativeRun:
 def _setting(v: Variable, model: Model, settings: Settings, table: VariableTable, origin: Origin | None) -> Setting:
     """A parameter as the image is to have it: what the FMU with Python would build with another value."""
 
-    def changed(value: float) -> Model:
+    def changed(given: Mapping[str, float]) -> Model:
         values = Values(table)
-        values[v] = value
+        for name, value in given.items():
+            values[table.by_name[name]] = value
         found = effective(model, settings, values, origin)
         if found.following or found.settings != settings:
             raise FmuValueError("other parameters or the solver's settings follow from it")
@@ -147,7 +149,7 @@ def _other_library(name: str) -> bytes:
     target, given = _TARGETS[name], os.environ.get(LIBRARIES)
     path = Path(given or "build", target, f"tlismni_core{PLATFORMS[name].suffix}")
     content = path.read_bytes() if path.is_file() else b""
-    if core_digest().encode() not in content:
+    if core_digest().encode() not in content or c_digest().encode() not in content:
         what = "is of other sources" if content else "is not there"
         raise ExportError(
             f"the library of machine code for {name}, '{path}', {what}: make it with `python -m tlismni.core.ahead "

@@ -26,6 +26,10 @@ PARAMETERS = (
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, against z", 0.0, exclusive=True),
     *law_parameters(restitution=0.4, stiffness=1e6),
 )
+COLUMN_MASS = 40.0
+"""kg; with the height it only says what the column looks like, a solid cylinder with the inertia that is asked for."""
+COLUMN_HEIGHT = 0.2
+"""m"""
 
 
 @scenario("arm_stop", "an arm on a turning column falls on a table", PARAMETERS)
@@ -45,8 +49,9 @@ def arm_stop(
         relaxation_time=relaxation_time, mass=lower_mass / 3.0,
     )  # fmt: skip
     # all turn about the vertical at the start
+    across = 0.5 * column_inertia + COLUMN_MASS * COLUMN_HEIGHT**2 / 12.0
     column = RigidBody3D(
-        name="column", mass=5.0, inertia=(column_inertia, column_inertia, column_inertia),
+        name="column", mass=COLUMN_MASS, inertia=(across, across, column_inertia),
         angular_velocity=(0.0, 0.0, turn_rate),
     )  # fmt: skip
     links, start = [], 0.0

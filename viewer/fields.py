@@ -44,19 +44,21 @@ def fields_of(motion: Motion, body: FlexibleBody, s: Floats, section: CrossSecti
     found = motion.section(body, s) if motion.moves else None
     if found is None:
         return []
-    forces = []
-    for name, unit, values, strain in (
-        ("axial force", "N", found.axial_force, found.axial_strain),
-        ("bending moment", "N.m", found.bending_moment, found.curvature),
-    ):
-        field = _field(name, unit, values)
-        if field is not None:
-            forces.append((float(np.sum(np.abs(values * strain))), field))
-    fields = [field for _, field in sorted(forces, key=lambda pair: -pair[0])]
+    fields = loads(found.axial_force, found.axial_strain, found.bending_moment, found.curvature)
     if section is not None:
         stress = _field("stress", "Pa", _stress(found.axial_force, found.bending_moment, section))
         fields = [*([stress] if stress is not None else []), *fields]
     return fields
+
+
+def loads(axial: Floats, strain: Floats, bending: Floats, curvature: Floats) -> list[Field]:
+    """Axial force and bending moment (F, P), the one that does more work first."""
+    found = []
+    for name, unit, values, way in (("axial force", "N", axial, strain), ("bending moment", "N.m", bending, curvature)):
+        field = _field(name, unit, values)
+        if field is not None:
+            found.append((float(np.sum(np.abs(values * way))), field))
+    return [field for _, field in sorted(found, key=lambda pair: -pair[0])]
 
 
 def _field(name: str, unit: str, values: Floats) -> Field | None:

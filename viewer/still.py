@@ -99,11 +99,11 @@ def _band(drawing: Drawing, band: Band, frame: int) -> None:
     values = field.values[frame] / field.limit
     for k in range(len(points) - 1):
         corners = [(x, y) for x, y in (left[k], left[k + 1], right[k + 1], right[k])]
-        colour = _colour(float(0.5 * (values[k] + values[k + 1])))
+        colour = band_colour(float(0.5 * (values[k] + values[k + 1])))
         drawing.shapes.append(Path(corners, None, colour, closed=True))
 
 
-def _colour(part: float) -> str:
+def band_colour(part: float) -> str:
     """Blue where negative, red where positive."""
     end, w = (BLUE if part < 0.0 else RED), min(abs(part), 1.0) ** 0.7
     return "#" + "".join(f"{round(g + w * (e - g)):02x}" for g, e in zip(GREY, end, strict=True))

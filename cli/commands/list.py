@@ -6,7 +6,7 @@ import typer
 
 from ..errors import one_line_errors
 from ..options import Debug, Json
-from ..screen import number, print_json, print_table, stdout
+from ..screen import number, print_json, print_table, say, stdout
 
 EXAMPLES = "Examples:\n\n  tlismni list\n\n  tlismni list pendulum_stop\n\n  tlismni list --json"
 
@@ -17,7 +17,7 @@ def list_scenarios(
     json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """List the scenarios with their parameters, defaults and units."""
+    """List the scenarios; with a name, the parameters of that one with defaults and units."""
     from ...models import catalogue, load
 
     if name is not None:
@@ -25,6 +25,10 @@ def list_scenarios(
     entries = [entry for entry in catalogue() if name in (None, entry.name)]
     if json:
         print_json({"scenarios": [_data(entry) for entry in entries]})
+        return
+    if name is None:
+        print_table("", ("scenario", "what happens"), [(entry.name, entry.description) for entry in entries], left=2)
+        say("Parameters of one: tlismni list SCENARIO. See it: tlismni run SCENARIO --animate FILE.html")
         return
     for entry in entries:
         rows = [

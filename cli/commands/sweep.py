@@ -56,6 +56,9 @@ Plot = Annotated[
 Over = Annotated[str | None, typer.Option("--over", metavar="COLUMN", help="Draw it over this column.")]
 Colour = Annotated[str | None, typer.Option("--colour", metavar="COLUMN", help="And colour it by this one.")]
 
+MOST_COLUMNS = 8
+"""Parameters and channels up to which a sweep is shown on the screen."""
+
 
 @one_line_errors
 def sweep(
@@ -123,6 +126,8 @@ def sweep(
             }
         )  # fmt: skip
         return
+    if channels and len(shown := [*found.names, *(name for name in found.columns if name in channels)]) <= MOST_COLUMNS:
+        print_table("", shown, shortened(list(zip(*(found[name].tolist() for name in shown), strict=True))))
     print_table("", ("what", "count"), [("runs", len(found)), ("failed", len(found.failures))])
     if causes:
         rows = sorted(((number(count), cause) for cause, count in causes.items()), key=lambda row: -int(row[0]))

@@ -35,27 +35,28 @@ from ..elements import (
 from ..events import instant
 from ..laws.base import LAW_SIGNATURE, ForceLaw
 from ..laws.friction.base import FRICTION_SIGNATURE, FrictionLaw
-from ..linalg import dense, record, row_pivoting, small, sparse, symbolic
-from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, follow, use_analysis
+from ..linalg import dense, record, row_pivoting, small, sparse
+from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, analyze_sparse, follow, lay_out_now, use_pivots
 from ..linalg.solve import _no_solution, _not_analysed, factor, solve
 from ..location import dense_output, watch
 from ..loop import drive, loop, sample
 from ..methods import adams, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..repair import mend
-from ..run import exchange, slopes
+from ..run import begin_now, exchange, slopes
+from ..run.begin_record import BEGIN
 from ..shapes.support3d import SUPPORT_SIGNATURE, SmoothShape3D
 from ..stage import accelerations, joints
 from ..state import run_records as run_records
 from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
-from ..state.workspace_records import EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
-from ..tables import evaluate, levels, measure, projection, switch
+from ..state.workspace_records import ENGAGE_SIGNATURE, EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
+from ..tables import building, evaluate, levels, measure, partition_building, probe, projection
 from .formed import forms
 
 _WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE
 _LU = record.LU_TYPE
 _REAL, _WHOLE, _FLAG = types.float64, types.int64, types.boolean
-_REALS, _WHOLES, _PLACES = (types.Array(kind, 1, "C") for kind in (_REAL, _WHOLE, types.uint32))
+_REALS, _WHOLES = (types.Array(kind, 1, "C") for kind in (_REAL, _WHOLE))
 _MATRIX, _BLOCKS = types.Array(_REAL, 2, "C"), types.Array(_REAL, 3, "C")
 
 
@@ -78,6 +79,8 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     """Functions whose addresses stand in records."""
     yield evaluate.all_kernels, EVALUATE_SIGNATURE
     yield analyze, ANALYZE_SIGNATURE
+    yield analyze_sparse, ANALYZE_SIGNATURE
+    yield building.engage_wanted, ENGAGE_SIGNATURE
     yield drive.settle_pending, run_records.SETTLE_SIGNATURE
     yield drive.pass_breakpoint, run_records.SETTLE_SIGNATURE
     yield drive.locate_now, run_records.LOCATE_SIGNATURE
@@ -121,6 +124,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
         yield function, (_DR,)
     for function in (exchange.exchange, exchange.tell, exchange.read):
         yield function, (types.from_dtype(exchange.EXCHANGE),)
+    yield begin_now.begin_now, (types.from_dtype(BEGIN),)
     yield slopes.along_inputs, slopes.ALONG_ARGUMENTS
     yield slopes.in_time, slopes.SLOPES_ARGUMENTS
     yield dense_output.interpolate, (_WS, _MS, _REAL)
@@ -142,11 +146,12 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield measure.measure_rows, (_WS, _REALS, _REALS)
     yield measure.measure_motion, (_WS, _REALS, _REALS, _REALS, _WHOLE, _REALS, _REALS)
     yield projection.meet, (_WS, _FLAG)
-    for function in (switch.use_structure, switch.use_partition):
-        yield function, (_WS, _WHOLE)
+    yield partition_building.partition_wanted, (_WS,)
+    yield probe.set_probe, (_WS,)
     yield factor, record.FACTOR_SIGNATURE.args
     yield solve, record.SOLVE_SIGNATURE.args
-    yield use_analysis, (_LU, _WHOLE)
+    yield use_pivots, (_LU,)
+    yield lay_out_now, (_LU, *(_WHOLE,) * 5, _FLAG, _WHOLE, _WHOLE)
     yield follow, (_LU, _LU)
     yield cones.solve_cones, (cones.CONES_TYPE,)
     yield lcp._find, (_WHOLE, _WHOLE, _MATRIX, _REALS, _REALS, _REALS)
@@ -155,12 +160,6 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     matrix = (_WHOLE, _WHOLE, _WHOLES, _WHOLES, _REALS, _REALS, _REAL)
     factors = (_REALS, _WHOLES, _WHOLES, _REALS, _WHOLES, _WHOLES, _REALS)
     yield row_pivoting.eliminate, (*matrix, *(_WHOLES,) * 5, *factors)
-    yield symbolic._search, (_WHOLE, *(_WHOLES,) * 9)
-    tables = types.Array(types.uint32, 2, "C")
-    yield (
-        symbolic._write_operations,
-        (_WHOLE, *(_WHOLES,) * 4, _PLACES, tables, _PLACES, tables, _WHOLES),
-    )
     yield adams.adams_coefficients, (_REALS, _WHOLE, _REALS, _REALS, _REALS)
     yield park.park_coefficients, (_REALS, _REALS, _REALS)
     yield (

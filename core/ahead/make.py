@@ -10,6 +10,7 @@ from typing import Any
 
 from ..compiled.library import USUAL_PLACE, core_digest
 from ..errors import TlismniError
+from ..native.c_sources import c_sources
 from .entries import entries, forms
 from .libm import BESIDE, FUNCTIONS, PREFIX, SEEN, libm_texts
 from .module import DIGEST, MANIFEST, TARGETS, Target, link, manifest_text, optimised, undefined
@@ -22,11 +23,6 @@ MEMORY = frozenset("memcpy memmove memset tlismni_give tlismni_take".split())
 """What compiled code may take from elsewhere; `native/pieces.c` has the last two."""
 ALLOWED = MEMORY | set(FUNCTIONS) | set(BESIDE)
 """The same without ziglang, where functions of numbers are the system's."""
-
-
-def c_sources() -> list[Path]:
-    """C sources that belong in the library too: those in a folder `native` of any part of the package."""
-    return sorted(Path(__file__).resolve().parents[2].glob("*/native/*.c"))
 
 
 class UndefinedError(TlismniError):

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import TlismniError
+from ..native.c_sources import c_digest
 from .module import Target
 
 LINKERS = ("cc", "gcc", "clang")
@@ -37,7 +38,7 @@ def _command(target: Target, native: bool) -> list[str]:
 
 
 def symbol_table(symbols: Iterable[str]) -> str:
-    """C source of the table by which `native/image.c` finds functions."""
+    """C source of the table by which `native/image.c` finds functions, and of the digest of the C sources."""
     names = sorted(set(symbols))
     return "\n".join(
         (
@@ -46,7 +47,8 @@ def symbol_table(symbols: Iterable[str]) -> str:
             "typedef struct { const char *symbol; void (*function)(void); } Symbol;",
             "const Symbol tlismni_symbols[] = {",
             *(f'    {{"{name}", {name}}},' for name in names),
-            f"}};\nconst size_t tlismni_symbol_count = {len(names)};\n",
+            f"}};\nconst size_t tlismni_symbol_count = {len(names)};",
+            f'const char tlismni_sources[] = "{c_digest()}";\n',
         )
     )
 

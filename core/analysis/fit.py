@@ -2,9 +2,12 @@
 
 What is measured is y_k = channel(t_k; p) + noise. The parameters minimise the sum of ((y_k - channel)/sigma)^2 (scipy's
 trust region, with bounds); their covariance is (J^T J)^-1 times the variance of what is left, intervals are those of
-Student's distribution. J comes from central differences of runs at tight tolerances. Positions answer smoothly to
-parameters through impacts; velocities jump there, and a sample beside a jump says little: give positions, or times of
-impacts.
+Student's distribution. Each holds its own parameter with the probability `level`; that all hold theirs at once is less
+likely, and so `simultaneous` are wider: Bonferroni's, each at 1 - (1 - level)/p (Dunn, Journal of the American
+Statistical Association 56, 1961, 52). J comes from central differences of runs at tight tolerances.
+
+Positions answer smoothly to parameters through impacts; velocities jump there, and a sample beside a jump says little:
+give positions, or times of impacts.
 """
 
 from collections.abc import Mapping
@@ -54,7 +57,8 @@ class Fit:
     ----------
     names, values : of the parameters (p,).
     errors : their standard deviations (p,). covariance : (p, p).
-    intervals : confidence intervals (p, 2) at `level`.
+    intervals : confidence intervals (p, 2) at `level`, of each parameter by itself.
+    simultaneous : wider ones (p, 2), which hold all parameters at once with the probability `level` at least.
     residuals : what is left, in parts of sigma, (r,). noise : its standard deviation: about 1 where all sigma were
         given and the model is right.
     runs : of the model that it took.
@@ -65,6 +69,7 @@ class Fit:
     errors: Floats
     covariance: Floats
     intervals: Floats
+    simultaneous: Floats
     level: float
     residuals: Floats
     noise: float
@@ -149,10 +154,15 @@ def fit(
     noise = float(np.sqrt(np.sum(found.fun**2) / free))
     covariance = noise**2 * np.linalg.inv(scaled.T @ scaled) / np.outer(slopes, slopes)
     errors = np.sqrt(np.diag(covariance))
-    reach = float(student.ppf(0.5 + 0.5 * level, free)) * errors
-    intervals = np.stack([found.x - reach, found.x + reach], axis=1)
+
+    def around(missed: float) -> Floats:
+        """Intervals that a parameter is beside with this probability."""
+        reach = float(student.isf(0.5 * missed, free)) * errors
+        return np.stack([found.x - reach, found.x + reach], axis=1)
+
+    each, all_at_once = around(1.0 - level), around((1.0 - level) / len(names))
     fitted = compiled.variant(dict(zip(names, found.x.tolist(), strict=True)))
-    return Fit(names, found.x, errors, covariance, intervals, level, found.fun, noise, problem.runs, fitted)
+    return Fit(names, found.x, errors, covariance, each, all_at_once, level, found.fun, noise, problem.runs, fitted)
 
 
 def _parameters(given: Mapping[str, Any]) -> tuple[tuple[str, ...], Floats, Floats, Floats]:

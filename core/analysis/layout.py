@@ -45,7 +45,9 @@ class Layout:
             raise RuntimeError("a simulation always has a partition once it is built")
         independent = np.setdiff1d(np.arange(n), dependent)
         colours = colour_columns(n, structure.rows, structure.cols)
-        return cls(structure.active, structure.rows, structure.cols, colours, dependent, independent)
+        # another structure may take its place in memory
+        own = (structure.active, structure.rows, structure.cols, colours, dependent, independent)
+        return cls(*(x.copy() for x in own))
 
     @property
     def n(self) -> int:
@@ -69,15 +71,16 @@ class Layouts:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
-        self._known: dict[int, Layout] = {}
+        self._known: dict[tuple[Any, ...], Layout] = {}
 
     def now(self) -> Layout:
         """The layout of the present structure."""
-        structure = self._sim.workspace.structure
-        # structures live as long as the run's workspace, so that an id stays one structure's
-        found = self._known.get(id(structure))
-        if found is None or found.dependent is not structure.dependent:
-            found = self._known[id(structure)] = Layout.of(self._sim)
+        workspace = self._sim.workspace
+        dependent = workspace.structure.dependent
+        key = (workspace.key, workspace.dropped, b"" if dependent is None else dependent.tobytes())
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = Layout.of(self._sim)
         return found
 
 

@@ -11,11 +11,10 @@ from ..compiled.views import ivec, vec
 from ..methods.history import recall
 from ..rounding import CONTINUOUS
 from ..state.run_records import COUNTS_SIZE, EVENTS, GOALS_SIZE, JUMPS, PASSED, call_accelerations
-from ..state.workspace_records import OK, structure_at
+from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_energy, evaluate_residuals
 from ..tables.levels import rate_level
 from ..tables.projection import meet
-from ..tables.switch import take_partition
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report, room_for
 
@@ -24,11 +23,10 @@ from .report import report, room_for
 def pass_breakpoint(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Bring the current point to the breakpoint `PASSED` of the goals, just after the newest row, with accelerations
     that hold behind it: a status; with any but SETTLED nothing has happened."""
-    partition, events = structure_at(ws.structure).partition, ivec(dr.counts, COUNTS_SIZE)[EVENTS]
+    events = ivec(dr.counts, COUNTS_SIZE)[EVENTS]
     status = _pass(ev, dr, ws, ms, vec(dr.goals, GOALS_SIZE)[PASSED])
     if status != SETTLED:
         ivec(dr.counts, COUNTS_SIZE)[EVENTS] = events
-        take_partition(ws, partition)
         recall(ws, ms, 0)
         evaluate_residuals(ws)
     return status

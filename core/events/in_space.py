@@ -14,7 +14,7 @@ from ..compiled.views import ivec, mat, vec
 from ..cones.directions import call_independent
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
-from ..linalg.record import WANT_ANALYSIS
+from ..linalg.record import WANT_ROOM
 from ..linalg.small import call_least_norm
 from ..rounding import (
     IMMOVABLE,
@@ -109,8 +109,7 @@ from .records import (
     W_N,
     W_S,
     W_T,
-    WANT_PIVOTS,
-    WANT_STRUCTURE,
+    WANT_MEMORY,
     WAS,
     WHO,
     WITHOUT,
@@ -151,8 +150,8 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         memory[k, MODE], memory[k, SLIDE], memory[k, RATIO] = OPEN, STUCK, 0.0
         # directions and rates are to speak of the same tangents
         memory[k, AXIS] = 0.0
-    if not engage_modes(ws):
-        return WANT_STRUCTURE
+    if engage_modes(ws) != OK:
+        return WANT_MEMORY
     # the rows of those that slid or stuck now tell both velocities
     evaluate_residuals(ws)
     for i in range(count):
@@ -173,7 +172,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     evaluate_tangent(ws, 0.0, 0.0)
     code = call_analyze(ws.analyze, lu_at(ws.kkt_query), ws.values)
     if code != OK:
-        return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_JOINTS
+        return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
     _respond(ev, ws, count)
     read_rates_in_space(ev, ws)
     # (`shapes/gripping3d.py`: what an open contact says of its tangents)

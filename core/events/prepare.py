@@ -5,13 +5,11 @@ What it does is `tables/partition.prepare`; the elimination is that of `linalg/r
 
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import follow, lu_at
 from ..linalg.analyze import call_analyze
-from ..linalg.record import WANT_ANALYSIS
+from ..linalg.record import WANT_ROOM as NO_MEMORY
 from ..linalg.row_pivoting import eliminate
 from ..rounding import RANK_TOLERANCE
 from ..state.workspace_records import (
@@ -23,20 +21,20 @@ from ..state.workspace_records import (
     PARTITIONS,
     RATE_SIZE,
     SENSITIVITY,
-    partition_at,
     structure_at,
 )
 from ..tables.evaluate import evaluate_tangent
-from ..tables.partition import GOLDEN, SILVER
-from ..tables.switch import engage_modes, take_partition
-from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_PARTITION, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
+from ..tables.partition_building import partition_wanted
+from ..tables.probe import set_probe
+from ..tables.switch import engage_modes
+from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANT_ROOM
 
 
 @internal
 def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Take the structure of the present modes, with a partition and pivots for the current point."""
-    if not engage_modes(ws):
-        return WANT_STRUCTURE
+    if engage_modes(ws) != OK:
+        return WANT_MEMORY
     evaluate_tangent(ws, 0.0, 0.0)
     status = _choose_partition(ev, ws)
     if status != SETTLED:
@@ -50,16 +48,29 @@ def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     if code == OK and 0 < ws.m_held < ws.m_act:
         code = call_analyze(ws.analyze, lu_at(ws.lu_p), ws.values)
     if code != OK:
-        return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_MATRIX
-    if not follow(lu_at(ws.kkt_query), lu_at(ws.kkt)):
-        return WANT_PIVOTS
-    _set_probe(ws)
+        return WANT_MEMORY if code == NO_MEMORY else SINGULAR_MATRIX
+    if follow(lu_at(ws.kkt_query), lu_at(ws.kkt)) != OK:
+        return WANT_MEMORY
+    set_probe(ws)
     rate[FACTOR_AGE], rate[SENSITIVITY], rate[FIRST_SENSITIVITY] = -1.0, 0.0, -1.0
     return SETTLED
 
 
 @internal
 def _choose_partition(ev: Any, ws: Any) -> int:
+    rank = rank_of(ev, ws, RANK_TOLERANCE)
+    if rank < 0:
+        return WANT_ROOM
+    if rank < ws.m_act:
+        return REPEATED_ROWS
+    partition_wanted(ws)
+    return SETTLED
+
+
+@internal
+def rank_of(ev: Any, ws: Any, tolerance: float) -> int:
+    """Rank of Phi_q as last evaluated, of whose rows less than `tolerance` is left when they repeat others; the
+    coordinates that depend to `wanted_dependent`. -1 where there is too little room."""
     st, m, n, space = structure_at(ws.structure), ws.m_act, ws.n, ev.rows_space
     size, wholes, reals = n + m + 1, ev.row_wholes, ev.row_reals
     values, slots = vec(ws.values, ws.n_values), ivec(st.jacobian_slot, st.n_jacobian)
@@ -74,56 +85,12 @@ def _choose_partition(ev: Any, ws: Any) -> int:
         wanted[i] = -1
     starts[0] = f_starts[0] = 0
     if st.n_jacobian > space:
-        return WANT_ROOM
+        return -1
     for e in range(st.n_jacobian):
         data[e] = values[slots[e]]
-    rank = eliminate(
+    return int(eliminate(
         m, n, ivec(st.jacobian_start, m + 1), ivec(st.jacobian_col, st.n_jacobian), data, vec(ws.scale, n),
-        RANK_TOLERANCE, wanted, owner, mark, column, pending, x,
+        tolerance, wanted, owner, mark, column, pending, x,
         starts, ivec(wholes + 48 * size, space), vec(reals + 8 * (space + size), space),
         f_starts, ivec(wholes + 48 * size + 8 * space, space), vec(reals + 8 * (2 * space + size), space),
-    )  # fmt: skip
-    if rank < 0:
-        return WANT_ROOM
-    if rank < m:
-        return REPEATED_ROWS
-    return _find_partition(ws, st, wanted)
-
-
-@internal
-def _find_partition(ws: Any, st: Any, wanted: Any) -> int:
-    """Take the partition with the dependent coordinates `wanted`."""
-    if st.partition != 0 and _same(partition_at(st.partition).dependent, wanted):
-        take_partition(ws, st.partition)
-        return SETTLED
-    known = ivec(st.partitions, st.n_partitions)
-    for i in range(st.n_partitions):
-        if _same(partition_at(known[i]).dependent, wanted):
-            take_partition(ws, known[i])
-            return SETTLED
-    return WANT_PARTITION
-
-
-@internal
-def _same(address: int, wanted: Any) -> bool:
-    own = ivec(address, len(wanted))
-    for i in range(len(wanted)):
-        if own[i] != wanted[i]:
-            return False
-    return True
-
-
-@internal
-def _set_probe(ws: Any) -> None:
-    """See `tables/partition._probe`."""
-    st = structure_at(ws.structure)
-    starts, columns = ivec(st.jacobian_start, ws.m_act + 1), ivec(st.jacobian_col, st.n_jacobian)
-    slots, values = ivec(st.jacobian_slot, st.n_jacobian), vec(ws.values, ws.n_values)
-    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
-    for i in range(ws.m_act):
-        size = 0.0
-        for e in range(starts[i], starts[i + 1]):
-            size = max(size, abs(values[slots[e]]) * scale[columns[e]])
-        golden, silver = GOLDEN * i, SILVER * i
-        sign = 1.0 if silver - np.floor(silver) < 0.5 else -1.0
-        probe[i] = size * (0.5 + golden - np.floor(golden)) * sign
+    ))  # fmt: skip

@@ -101,10 +101,8 @@ WHOLES = 7
 # what settling an instant returns
 SETTLED = 0
 DECLINED = 1  # nothing has happened: Python settles it
-WANT_STRUCTURE = 2  # nothing has happened; Python builds what is asked for, and it is settled anew
-WANT_PARTITION = 3
-WANT_ROOM = 4
-WANT_PIVOTS = 5
+WANT_ROOM = 2  # nothing has happened; Python gives more room for what touches, and it is settled anew
+WANT_MEMORY = 3  # the same, for structures and the factors of their matrices
 SINGULAR_JOINTS = 10
 IMMOVABLE_CONTACT = 11
 NO_IMPACT = 12

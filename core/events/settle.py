@@ -49,10 +49,10 @@ from ..state.run_records import (
     call_accelerations,
     call_sample,
 )
-from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, structure_at
+from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE
 from ..tables.evaluate import evaluate_power, evaluate_residuals
 from ..tables.levels import position_level
-from ..tables.switch import take_partition, take_structure
+from ..tables.switch import take_structure
 from .blow import impact
 from .breakpoint import pass_breakpoint
 from .crowding import count_instant
@@ -140,8 +140,9 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     modes = vec(ev.modes, ws.n_contacts)
     for k in range(ws.n_contacts):
         modes[k] = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
+    # structures are not given up as long as this may be the one to come back to
     structure = ws.structure
-    partition = structure_at(structure).partition
+    ws.kept = structure
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
@@ -152,9 +153,10 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         status = _decide(ev, dr, ws, ms, lc)
     if status == SETTLED:
         status = find_pending(ev, dr, ws, ms, lc)
+    ws.kept = 0
     if status != SETTLED:
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
-        _put_back(ev, ws, ms, structure, partition)
+        _put_back(ev, ws, ms, structure)
         vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = step
         return status
     begin_anew(ws, ms, lc)
@@ -171,12 +173,14 @@ def begin_pending_forces(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     nothing has happened."""
     _keep(ev, ws, False)
     events, step = ivec(dr.counts, COUNTS_SIZE)[EVENTS], vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
-    structure, partition = ws.structure, structure_at(ws.structure).partition
+    structure = ws.structure
+    ws.kept = structure
     status = int(call_part(ev.settle_forces, ev, dr, ws, ms))
+    ws.kept = 0
     if status == SETTLED:
         begin_anew(ws, ms, lc)
         return status
-    _put_back(ev, ws, ms, structure, partition)
+    _put_back(ev, ws, ms, structure)
     ivec(dr.counts, COUNTS_SIZE)[EVENTS], vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = events, step
     return status
 
@@ -194,11 +198,10 @@ def go_on_behind(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
 
 
 @internal
-def _put_back(ev: Any, ws: Any, ms: Any, structure: int, partition: int) -> None:
+def _put_back(ev: Any, ws: Any, ms: Any, structure: int) -> None:
     """As it was before the instant."""
     if ws.structure != structure:
         take_structure(ws, structure)
-    take_partition(ws, partition)
     recall(ws, ms, 0)
     evaluate_residuals(ws)
     _keep(ev, ws, True)

@@ -11,7 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
-from ..linalg.record import WANT_ANALYSIS
+from ..linalg.record import WANT_ROOM
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
 from ..state.run_records import COUNTS_SIZE, HERE, call_accelerations
@@ -32,8 +32,7 @@ from .records import (
     SLIDE_VALUE,
     STOP_IMPULSE,
     STOP_LOSS,
-    WANT_PIVOTS,
-    WANT_STRUCTURE,
+    WANT_MEMORY,
     WHO,
     clear,
     col,
@@ -80,8 +79,8 @@ def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     for i in range(count):
         k = contacts[i]
         memory[k, MODE], memory[k, SLIDE], memory[k, RATIO] = OPEN, STICKS, 0.0
-    if not engage_modes(ws):
-        return WANT_STRUCTURE
+    if engage_modes(ws) != OK:
+        return WANT_MEMORY
     # as constraints that stick, the contacts say their gradients; no matrix holds them
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
@@ -100,7 +99,7 @@ def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     # pivots of an earlier visit to this structure would be a state that no State holds
     code = call_analyze(ws.analyze, lu_at(ws.kkt_query), ws.values)
     if code != OK:
-        return WANT_PIVOTS if code >= WANT_ANALYSIS else SINGULAR_JOINTS
+        return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
     _respond(ev, ws, count, slides)
     return refuse_immovable(ev, ws, count)
 

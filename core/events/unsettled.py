@@ -19,8 +19,7 @@ from .records import (
     NO_ACCELERATIONS,
     SETTLED,
     SPARE,
-    WANT_PIVOTS,
-    WANT_STRUCTURE,
+    WANT_MEMORY,
     call_part,
     col,
     whole,
@@ -88,7 +87,7 @@ def _returns_at_once(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int
         status = free_accelerations(ev, dr, ws, motion, col(ev, B_T), 0.0)
         free_jerks(ev, ws, jerks)
     memory[MODE], memory[SLIDE], memory[RATIO], memory[AXIS] = mode, slide, ratio, axis
-    if status == WANT_STRUCTURE or status == WANT_PIVOTS:
+    if status == WANT_MEMORY:
         return status
     back = call_part(ev.use_modes, ev, dr, ws, ms)
     if back == SETTLED and call_accelerations(dr.accelerations, ws) != OK:

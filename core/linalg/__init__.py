@@ -2,7 +2,7 @@
 
 from .analyze import analyze, follow
 from .errors import SingularMatrixError
-from .factorization import DENSE_LIMIT, Factorization
+from .factorization import DENSE_LIMIT, Factorization, Matrix
 from .record import LU, LU_TYPE, NO_PIVOT, OK, REANALYSE, lu_at
 from .row_pivoting import RowPivots, independent_columns, pivot_rows
 from .solve import factor, solve
@@ -15,6 +15,7 @@ __all__ = [
     "OK",
     "REANALYSE",
     "Factorization",
+    "Matrix",
     "RowPivots",
     "SingularMatrixError",
     "analyze",

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from .record import NO_PIVOT, OK, WANT_ROOM
+from .record import NO_PIVOT, OK, SCRATCH, WANT_ROOM
 
 DIAGONAL_PREFERENCE = 0.1
 SWEEPS = 4
@@ -21,7 +21,8 @@ NEGLIGIBLE = 1e-6
 _LARGEST = float(np.finfo(np.float64).max)
 
 
-def work_size(n: int, nnz: int, room: int) -> int:
+@internal
+def choice_size(n: int, nnz: int, room: int) -> int:
     """Numbers (of 8 bytes) in the scratch of `choose_rows`, for `room` entries of L."""
     return 12 * n + 2 + 2 * nnz + 2 * room
 
@@ -29,11 +30,14 @@ def work_size(n: int, nnz: int, room: int) -> int:
 @internal
 def choose_rows(lu: Any, values_address: int) -> int:
     """Place of each row of the matrix in the pivot sequence, to `wanted` (n,): OK; NO_PIVOT for a singular matrix or a
-    value that is not finite; WANT_ROOM. The balancing scales of the rows are the first n numbers of `choice_work`."""
-    n, nnz, room = lu.n, lu.nnz, lu.choice_room
+    value that is not finite; WANT_ROOM. The balancing scales of the rows are the first n numbers of the scratch."""
+    n, nnz, scratch = lu.n, lu.nnz, ivec(lu.scratch, 2)
+    work, room = scratch[0], (scratch[1] - choice_size(n, nnz, 0)) // 2
+    if room < nnz + n:
+        ivec(lu.needs, 3)[SCRATCH] = choice_size(n, nnz, 2 * (nnz + n))
+        return WANT_ROOM
     source, slots = vec(values_address, 1), ivec(lu.column_slot, nnz)
     rows, columns = ivec(lu.column_row, nnz), ivec(lu.column_of, nnz)
-    work = lu.choice_work
     entries, logs = vec(work + 8 * 4 * n, nnz), vec(work + 8 * (4 * n + nnz), nnz)
     row_unit, col_unit = vec(lu.row_unit, n), vec(lu.col_unit, n)
     for e in range(nnz):
@@ -107,6 +111,7 @@ def _eliminate(lu: Any, entries: Any, work: int, room: int) -> int:
     for k in range(n):
         top, end = n, l_start[k]
         if end + n - k > room:
+            ivec(lu.needs, 3)[SCRATCH] = choice_size(n, lu.nnz, 4 * room)
             return WANT_ROOM
         for e in range(starts[k], starts[k + 1]):
             if mark[rows[e]] != k:

@@ -48,6 +48,8 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
                 near[k] = EQUATIONS, 0, 0  # in pieces here and there
                 continue
             probes[k] = workspace.batch_table(number)
+            for name in ("slot_s", "slot_j", "slot_jt", "values"):
+                probes[k][name] = 0  # of the present structure: probes have no tangent
             probes[k]["count"] = len(elements)
             for name, table in (("par", batch.par), ("coord", batch.coord), ("row", batch.row), ("extra", batch.extra)):
                 probes[k][name] = table[elements[0]].ctypes.data

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled.jit import compiled, compiled_unlocked, internal, record_view
 from ..compiled.views import ivec, vec
-from ..events.records import DECLINED, SETTLED, WANT_PIVOTS, call_part, instant_at
+from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at
 from ..events.settle import begin_pending_forces, go_on_behind, settle
 from ..events.unsettled import find_unsettled
 from ..location.asleep import wake_all
@@ -104,7 +104,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
             status = call_settle(dr.settle, dr)
             if status != SETTLED:
                 counts[STATUS] = status
-                return SETTLE if status == DECLINED else (WANTED if status <= WANT_PIVOTS else FAILED)
+                return SETTLE if status == DECLINED else (WANTED if status <= WANT_MEMORY else FAILED)
             continue
         code = _aim(dr, ms, lc)
         if code == DUE and ws.n_redundant == 0:
@@ -113,7 +113,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
             status = call_settle(dr.pass_breakpoint, dr)
             if status != SETTLED:
                 counts[STATUS] = status
-                return WANTED if status <= WANT_PIVOTS else FAILED
+                return WANTED if status <= WANT_MEMORY else FAILED
             continue
         if code != OK:
             return code

@@ -40,10 +40,10 @@ tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
         }
         double computed = tlismni_computed(run);
         if (!way_any_pending(run) || computed > t) {
-            run->beside.now = t;
+            way_arrive(run, t);
             return TLISMNI_OK;
         }
-        run->beside.now = computed;
+        way_arrive(run, computed);
         if (computed > start) {
             *event = true;
             return TLISMNI_OK;

@@ -1,4 +1,4 @@
-/* Codes that compiled code returns, and columns of its arrays. `tests/core/test_native_image.py` holds them against the
+/* Codes that compiled code returns, and columns of its arrays (`control`: workspace_records.py, `begin_numbers`: begin_record.py; `rates`: exchange_record.py). `tests/core/test_native_image.py` holds them against the
  * Python sources. */
 #ifndef TLISMNI_CODES_H
 #define TLISMNI_CODES_H
@@ -9,6 +9,9 @@ enum { GOAL, LAST_STOP };
 enum { BUDGET, HANDLED, HERE, EVENTS, STATUS };
 enum { STEP_SIZE = 0, TRIAL_STEP = 4 };
 enum { STEPS = 0 };
+enum { RATE_SCALE = 15 };
+enum { T0 = 0 };
+enum { FIRST, SECOND, SINCE, RATES_SIZE };
 enum { EVENT_SIZE = 9, GAINS = 7 };
 
 /* failures of steps (state/workspace_records.py) */
@@ -26,7 +29,7 @@ enum { SETTLED = 0, NOT_SETTLED = 1 };
 /* beyond those: statuses of this code, and those of settling behind SETTLING */
 enum {
     SETTLING = 300, RAISED = 400, NEEDS_EVENT, NEEDS_ROWS, TOO_MANY_STEPS, HAS_FAILED, WRONG_TIME, WRONG_INPUT,
-    INPUT_REFUSED, NOT_READ, NOT_PACKED, NO_PARAMETER, OUT_OF_RANGE, HAS_BEGUN, NO_DERIVATIVES,
+    INPUT_REFUSED, NOT_READ, NOT_PACKED, NO_PARAMETER, OUT_OF_RANGE, HAS_BEGUN, NO_DERIVATIVES, NO_BEGINNING, EXCLUDED,
     DONE
 };
 

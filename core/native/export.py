@@ -6,14 +6,19 @@ from typing import Any
 
 import numpy as np
 
+from ..compiled.library import Library
 from ..description import Model
 from ..errors import SimulationError
 from ..run.simulation import Simulation
+from .beginning import Beginning
+from .beginnings import as_far_as_it_begins, prove_beginning, prove_together
 from .errors import NativeError
+from .follows import parameter_of
 from .image_file import native_image, own_library, refuse_motions
 from .in_process import NativeModel, NativeRun
-from .parameters import Parameter, Setting, apart, parameter_of, settings_of, startable
+from .parameters import Parameter, Setting, Tried, settings_of, startable
 from .prepare import points, rehearse, start_inputs
+from .together import together
 
 logger = logging.getLogger(__name__)
 
@@ -47,32 +52,60 @@ def image_and_parameters(
     sim = Simulation(model, **full)
     if isinstance(model, Model):
         refuse_motions(sim)
+        sim.beginning = Beginning(sim, full)  # type: ignore[attr-defined]
     most = sim.settings.max_steps or MOST_STEPS
     wanted = _wanted(model, parameters)
-    good, fixed = {}, {}
+    # which redundant rows are left out is found in Python
+    begins = not sim.workspace.dropped
+    tried: dict[str, Tried] = {}
+    fixed: dict[str, str] = {}
     for setting in wanted:
         try:
-            good[setting.name] = startable(sim, setting, lambda other: Simulation(other, **full))
+            tried[setting.name] = startable(sim, setting, lambda other: Simulation(other, **full), begins)
         except NativeError as error:
             fixed[setting.name] = str(error)
     rehearse(sim, t_end)
     found = []
     for setting in wanted:
-        if setting.name in good:
+        if setting.name in tried:
             try:
-                found.append(parameter_of(sim, setting, good[setting.name]))
+                found.append(parameter_of(sim, setting, tried[setting.name]))
             except NativeError as error:
                 fixed[setting.name] = str(error)
-    found, shared = apart(found)
-    fixed |= shared
+    found = together(sim, found, {setting.name: setting for setting in wanted})
+    found, refused = _that_begin(sim, most, library, found, tried, begins)
+    fixed |= refused
     for name, why in fixed.items():
         logger.info("parameter '%s' is fixed at its value: %s", name, why)
-    image = native_image(sim, most, found)
+    for p in found:
+        for name in sorted(p.excludes):
+            logger.info("parameters '%s' and '%s' exclude each other: one of them keeps its value", p.name, name)
+    image = native_image(sim, most, found, begins)
     native = NativeModel(image, library)
+    if begins:
+        prove_beginning(sim, native)
     _prove(sim, NativeRun(native), t_end)
+    prove_together(native, found, {setting.name: setting for setting in wanted}, lambda x: Simulation(x, **full))
     for k, p in enumerate(found):
-        _prove_parameter(full, native, k, good[p.name], t_end)
+        _prove_parameter(full, native, k, p, tried[p.name], t_end)
     return image, found, fixed
+
+
+def _that_begin(
+    sim: Any, most: int, library: Library, found: list[Parameter], tried: dict[str, Tried], begins: bool
+) -> tuple[list[Parameter], dict[str, str]]:
+    """The parameters with which runs begin without Python as they do with it, between the values for which that is so;
+    and why the others do not count."""
+    if not any(p.begins for p in found):
+        return found, {}
+    native = NativeModel(native_image(sim, most, found, begins), library)
+    kept, refused = [], {}
+    for k, p in enumerate(found):
+        try:
+            kept.append(as_far_as_it_begins(native, k, p, tried[p.name].starts or {}) if p.begins else p)
+        except NativeError as error:
+            refused[p.name] = str(error)
+    return kept, refused
 
 
 def _wanted(model: Any, parameters: Iterable[str | Setting] | None) -> list[Setting]:
@@ -84,20 +117,27 @@ def _wanted(model: Any, parameters: Iterable[str | Setting] | None) -> list[Sett
 
 
 def _prove_parameter(
-    settings: dict[str, Any], native: NativeModel, number: int, good: list[tuple[float, Model]], t_end: float
+    settings: dict[str, Any], native: NativeModel, number: int, p: Parameter, tried: Tried, t_end: float
 ) -> None:
-    """A run with the least value of a parameter that was tried (or the largest, where that is the present one) has the
-    bits of Python's, as far as it meets only what the image was prepared for."""
+    """A run with another value of a parameter has the bits of Python's, as far as it meets only what the image was
+    prepared for. The value: the least that was tried (or the largest, where that is the present one); of those that the
+    start follows from the least that is not below half of it. Words that are exact to rounding only are compared at the
+    start alone (`beginnings.py`): from there on rounding grows as the motion lets it."""
+    values = [(x, model) for x, model in tried.values if p.least <= x <= p.largest]
+    if p.begins:
+        values = [pair for pair in values if abs(pair[0]) >= 0.5 * abs(p.value)]
+    if len(values) < 2 or not p.exact:
+        return
     run = NativeRun(native)
-    value, variant = good[0] if good[0][0] != run.parameters[number] else good[-1]
+    value, variant = values[0] if values[0][0] != p.value else values[-1]
     run.set_parameter(number, value)
     sim = Simulation(variant, **settings)
     try:
         _prove(sim, run, t_end)
     except SimulationError as error:
-        logger.info("with %s = %r the run ends in Python too: %s", run.model.names(3)[number], value, error)
+        logger.info("with %s = %r the run ends in Python too: %s", p.name, value, error)
     except Unprepared as error:
-        logger.info("with %s = %r: %s", run.model.names(3)[number], value, error)
+        logger.info("with %s = %r: %s", p.name, value, error)
 
 
 class Unprepared(NativeError):

@@ -14,6 +14,7 @@ typedef struct {
 /* Written when the library is made: in the order of their names. */
 extern const Symbol tlismni_symbols[];
 extern const size_t tlismni_symbol_count;
+extern const char tlismni_sources[];
 
 Function image_function(const char *symbol) {
     size_t low = 0, high = tlismni_symbol_count;
@@ -123,7 +124,16 @@ static bool parameters_inside(const tlismni_model *m) {
         }
     }
     for (int64_t k = 0; k < m->head.words; k++) {
-        if (m->words[k].place < m->head.tables || m->words[k].place > m->head.decisive - 8 || m->words[k].place % 8) {
+        const Word *w = m->words + k;
+        if (w->place < m->head.tables || w->place > m->head.decisive - 8 || w->place % 8 || w->first < 0 || w->count < 0 ||
+            (w->form == SERIES && w->count < 3) ||
+            w->first > m->head.coefficients || w->count > m->head.coefficients - w->first) {
+            return false;
+        }
+    }
+    for (int64_t k = 0; k < m->head.exclusions; k++) {
+        const Exclusion *e = m->exclusions + k;
+        if (e->one < 0 || e->one >= m->head.parameters || e->other < 0 || e->other >= m->head.parameters) {
             return false;
         }
     }
@@ -148,7 +158,10 @@ static bool read_body(tlismni_model *m, const char *at, const char *end) {
     }
     if (h->parameters < 0 || h->parameters > h->size || h->words < 0 || h->words > h->size ||
         !(m->parameters = part(&at, end, h->parameters * (int64_t)sizeof *m->parameters)) ||
-        !(m->words = part(&at, end, h->words * (int64_t)sizeof *m->words))) {
+        !(m->words = part(&at, end, h->words * (int64_t)sizeof *m->words)) || h->coefficients < 0 ||
+        h->coefficients > h->size || !(m->coefficients = part(&at, end, h->coefficients * (int64_t)sizeof(double))) ||
+        h->exclusions < 0 || h->exclusions > h->size ||
+        !(m->exclusions = part(&at, end, h->exclusions * (int64_t)sizeof *m->exclusions))) {
         return false;
     }
     const char *function_text = part(&at, end, h->function_text), *text = part(&at, end, h->text_size);
@@ -192,8 +205,12 @@ static bool read_body(tlismni_model *m, const char *at, const char *end) {
     return true;
 }
 
+const char *tlismni_c_digest(void) {
+    return tlismni_sources;
+}
+
 tlismni_model *tlismni_read_image(const void *bytes, size_t size, char *why, size_t room) {
-    const size_t start = sizeof IMAGE_MAGIC - 1 + DIGEST_BYTES;
+    const size_t start = sizeof IMAGE_MAGIC - 1 + DIGEST_BYTES + SOURCES_BYTES;
     tlismni_model *m = calloc(1, sizeof *m);
     if (!m || !(m->bytes = malloc(size ? size : 1))) {
         return refuse(m, why, room, "there is no memory left for the image");
@@ -202,7 +219,8 @@ tlismni_model *tlismni_read_image(const void *bytes, size_t size, char *why, siz
     if (size < start + sizeof m->head || memcmp(m->bytes, IMAGE_MAGIC, sizeof IMAGE_MAGIC - 1) != 0) {
         return refuse(m, why, room, "these bytes are no image of a model (tlismni.core.native.native_image makes one)");
     }
-    if (strncmp(m->bytes + sizeof IMAGE_MAGIC - 1, tlismni_digest, DIGEST_BYTES) != 0) {
+    const char *digest = m->bytes + sizeof IMAGE_MAGIC - 1;
+    if (strncmp(digest, tlismni_digest, DIGEST_BYTES) != 0 || strncmp(digest + DIGEST_BYTES, tlismni_sources, SOURCES_BYTES) != 0) {
         return refuse(m, why, room, "the image was made with another version of this library: make it anew, or use that "
                                     "library (an FMU carries its own)");
     }

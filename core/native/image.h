@@ -6,7 +6,8 @@
 
 #define IMAGE_MAGIC "TLISMNI\x01"
 #define IMAGE_VERSION 1
-#define DIGEST_BYTES 32
+#define DIGEST_BYTES 32 /* of what compiled code is made of, then that of the C sources */
+#define SOURCES_BYTES 16
 #define ALIGNED 64
 
 /* The head, behind magic and digest. */
@@ -14,33 +15,42 @@ typedef struct {
     int64_t version, size, checksum;
     int64_t shared, tables, decisive, own;
     int64_t functions, function_text, texts, text_size;
-    int64_t parameters, words;
+    int64_t parameters, words, coefficients, exclusions;
     int64_t shared_shared, shared_function, own_own, own_shared, own_function;
 } Head;
 
 typedef struct {
-    int64_t inputs, channels, contacts, n, event_rows, most_steps, chunk, fixed_step, redundant, events;
-    double start, shortest, brief, punctual;
+    int64_t inputs, channels, contacts, n, event_rows, most_steps, chunk, fixed_step, redundant, events, begins;
+    double start, shortest, punctual;
 } Numbers;
 
 typedef struct {
     int64_t exchange, drive, reads, budget, times, inputs, channels, goals, counts, events, pending, clock, counters,
-        method_times, ring, parameters;
+        method_times, ring, parameters, control, begin, begin_numbers, rates;
 } Places;
 
-/* A parameter, and a word of a run's memory that follows from it: `form` says how (parameters.c). */
+/* A parameter, and a word of a run's memory that follows from it: `form` says how (parameters.c). `begins`: the run begins
+ * anew with another value. `first`, `count`: of a parameter its words, of a word its coefficients.
+ * `mode`: how it follows from several parameters. */
 typedef struct {
-    int64_t first, count;
+    int64_t first, count, begins;
     double value, least, largest;
 } Parameter;
 
 typedef struct {
-    int64_t place, form;
+    int64_t place, form, mode, first, count;
     double constant;
 } Word;
+enum { SERIES = 64 };            /* of `form` */
+enum { ALONE, PRODUCT, SUM };    /* of `mode` */
+
+/* Two parameters of which one at most has another value than that of the image. */
+typedef struct {
+    int64_t one, other;
+} Exclusion;
 
 /* The functions that the C code calls: the first ones of the image's list. */
-enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, ALONG, IN_TIME, CALLED };
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, ALONG, IN_TIME, BEGIN, CALLED };
 
 typedef void (*Function)(void);
 
@@ -51,6 +61,8 @@ struct tlismni_model {
     const int64_t *own_own, *own_shared, *own_function; /* words of a run's memory that are addresses */
     const Parameter *parameters;
     const Word *words;
+    const double *coefficients;
+    const Exclusion *exclusions;
     Function *functions;
     const char **texts;     /* names of inputs, channels, contacts, parameters */
     const char *own_bytes;  /* a run's memory at the start, with places for addresses */
@@ -63,6 +75,7 @@ struct tlismni_model {
 typedef struct {
     double now;
     int64_t events, failed, begun; /* since the start */
+    int64_t stale;                 /* 1: the run has to begin anew before anything else */
 } Beside;
 
 struct tlismni_run {

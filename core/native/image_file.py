@@ -1,5 +1,6 @@
 """A run as a file: all its memory, with addresses as places, so that a program without Python can go on from it."""
 
+import ctypes
 import struct
 import zlib
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..compiled.library import LIBRARY, Library
 from ..run.exchange import possible
+from .c_sources import c_digest
 from .errors import NativeError
 from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
 from .parameters import Parameter
@@ -26,7 +28,21 @@ def own_library() -> Library:
             "a run without Python needs the library of machine code, and this process has none: make it with "
             "`python -m tlismni.core.ahead`, or use a wheel that carries it"
         )
+    function = getattr(ctypes.CDLL(str(LIBRARY.path)), "tlismni_c_digest", None)
+    if function is not None:
+        function.restype = ctypes.c_char_p
+    found = function().decode() if function is not None else "none"
+    if found != c_digest():
+        raise NativeError(
+            f"the C code in the library of machine code, '{LIBRARY.path}', is of other sources ({found}) than these "
+            f"({c_digest()}): make it anew with `python -m tlismni.core.ahead`"
+        )
     return LIBRARY
+
+
+def _has_none(x: NDArray[Any]) -> bool:
+    """Whether an array has no addresses, though its words may look like some."""
+    return holds_reals(x) or x.dtype.itemsize % 8 != 0
 
 
 def refuse_motions(sim: Any) -> None:
@@ -45,7 +61,7 @@ class _Segment:
         """Those that lie in `last` come at the end, as room without content."""
         blank = {id(x) for x in arrays if last is not None and int(last.owner(np.array([x.ctypes.data]))[0]) >= 0}
         self.arrays = [x for x in arrays if id(x) not in blank]
-        self.arrays.sort(key=holds_reals)  # what may have addresses comes first
+        self.arrays.sort(key=_has_none)  # what may have addresses comes first
         self.start: dict[int, int] = {}
         self.tables = self.copied = self.size = 0
         for x in (*self.arrays, *(x for x in arrays if id(x) in blank)):
@@ -53,20 +69,21 @@ class _Segment:
             self.size += -(-x.nbytes // _ALIGNED) * _ALIGNED
             if id(x) not in blank:
                 self.copied = self.size
-                self.tables = self.tables if holds_reals(x) else self.size
+                self.tables = self.tables if _has_none(x) else self.size
         self.data = np.zeros(self.copied, dtype=np.uint8)
         for x in self.arrays:
             begin = self.start[x.ctypes.data]
             self.data[begin : begin + x.nbytes] = x.reshape(-1).view(np.uint8)
 
 
-def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()) -> bytes:
+def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = (), begins: bool = False) -> bytes:
     """The image of a simulation of a Model: it goes on from the present point.
 
     Parameters
     ----------
     most_steps : of the solver between two times that are asked for; more are an error of the run.
     parameters : of the present memory of the simulation (`parameters.py`).
+    begins : a run may begin anew, with other parameters or at another time.
 
     Raises
     ------
@@ -79,7 +96,7 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
     sim.crossing.wanted[:] = sim.workspace.arrays["inputs"][: len(sim.crossing.wanted), 0]
     arrays = list(held_by(sim))
     held, empty = without_parts(arrays), frozenset(x.ctypes.data for x in arrays if not x.nbytes)
-    found = reached(sim.crossing._record.table, held)
+    found = reached((sim.crossing._record.table, sim.beginning.record.table), held)
     own = without_parts(own_of(sim))
     scratch = without_parts(scratch_of(sim))
     set_by_others = [begin_of(word.array) for p in parameters for word in p.words]
@@ -108,7 +125,7 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
     places = [_place(x, found, mine) for x in arrays_in_places(sim, values)]
     order = ((0, 0), (0, 2), (1, 1), (1, 0), (1, 2))
     relocations = [np.concatenate(lists.get(key, [np.zeros(0, dtype=np.int64)])) for key in order]
-    numbers = numbers_of(sim, most_steps)
+    numbers = numbers_of(sim, most_steps, begins)
     return _file(library, numbers, places, relocations, symbols, names, (shared, mine), parameters)
 
 
@@ -165,7 +182,7 @@ def _file(
     names: list[str], segments: tuple[_Segment, _Segment], parameters: Sequence[Parameter],
 ) -> bytes:  # fmt: skip
     shared, own = segments
-    heads, words = _parameter_parts(parameters, own)
+    heads, words, coefficients, exclusions = _parameter_parts(parameters, own)
     function_text = _padded(b"".join(name.encode() + b"\0" for name in symbols))
     text = _padded(b"".join(name.encode() + b"\0" for name in names))
     body = b"".join(
@@ -173,32 +190,45 @@ def _file(
             numbers,
             struct.pack(f"<{len(places)}q", *places),
             *(x.astype("<i8").tobytes() for x in relocations),
-            b"".join(heads), b"".join(words),
+            b"".join(heads), b"".join(words), struct.pack(f"<{len(coefficients)}d", *coefficients),
+            struct.pack(f"<{len(exclusions)}q", *exclusions),
             function_text, text, shared.data.tobytes(), own.data.tobytes(),
         )
     )  # fmt: skip
     head = {
         "version": VERSION, "size": 0, "checksum": zlib.crc32(body),
         "shared": len(shared.data), "tables": own.tables, "decisive": own.copied, "own": own.size,
-        "parameters": len(heads), "words": len(words),
+        "parameters": len(heads), "words": len(words), "coefficients": len(coefficients),
+        "exclusions": len(exclusions) // 2,
         "functions": len(symbols), "function_text": len(function_text), "texts": len(names), "text_size": len(text),
         **dict(zip(HEAD[-5:], map(len, relocations), strict=True)),
     }  # fmt: skip
-    start = MAGIC + library.digest.encode().ljust(32, b"\0")[:32]
+    start = MAGIC + library.digest.encode().ljust(32, b"\0")[:32] + c_digest().encode()
     head["size"] = len(start) + 8 * len(HEAD) + len(body)
     return start + struct.pack(f"<{len(HEAD)}q", *(head[name] for name in HEAD)) + body
 
 
-def _parameter_parts(parameters: Sequence[Parameter], own: _Segment) -> tuple[list[bytes], list[bytes]]:
-    """What `parameters.c` reads: of each parameter its words' first number and count, value and limits; of each word
-    its place, form and constant."""
+def _parameter_parts(
+    parameters: Sequence[Parameter], own: _Segment
+) -> tuple[list[bytes], list[bytes], list[float], list[int]]:
+    """What `parameters.c` reads: of each parameter its words' first number and count, whether runs begin anew with it,
+    value and limits; of each word its place, form, mode, first coefficient and their count, and constant; the
+    coefficients; pairs that exclude each other."""
     heads: list[bytes] = []
     words: list[bytes] = []
+    coefficients: list[float] = []
     for p in parameters:
-        heads.append(struct.pack("<2q3d", len(words), len(p.words), p.value, p.least, p.largest))
-        for array, offset, form in p.words:
-            words.append(struct.pack("<2qd", own.start[begin_of(array)] + offset, form.code, form.constant))
-    return heads, words
+        heads.append(struct.pack("<3q3d", len(words), len(p.words), int(p.begins), p.value, p.least, p.largest))
+        placed = sorted(((own.start[begin_of(word.array)] + word.offset, word) for word in p.words), key=lambda x: x[0])
+        for place, (_, _, form, mode) in placed:
+            series = form.series
+            words.append(struct.pack("<5qd", place, form.code, mode, len(coefficients), len(series), form.constant))
+            coefficients += series
+    names = {p.name: k for k, p in enumerate(parameters)}
+    exclusions = [
+        x for k, p in enumerate(parameters) for name in sorted(p.excludes & set(names)) for x in (k, names[name])
+    ]
+    return heads, words, coefficients, exclusions
 
 
 def _padded(data: bytes) -> bytes:

@@ -27,6 +27,8 @@ _SIGNATURES = {
     "tlismni_happen": (ctypes.c_int, _POINTER, _POINTER),
     "tlismni_parameter": (ctypes.c_double, _POINTER, _SIZE),
     "tlismni_set_parameter": (ctypes.c_int, _POINTER, _SIZE, ctypes.c_double),
+    "tlismni_start_at": (ctypes.c_int, _POINTER, ctypes.c_double),
+    "tlismni_set_rates": (ctypes.c_int, _POINTER, _SIZE, ctypes.c_double, ctypes.c_double),
     "tlismni_next_point": (ctypes.c_int, _POINTER, ctypes.c_double, _POINTER),
     "tlismni_derivatives": (ctypes.c_int, _POINTER, _POINTER, _POINTER, _POINTER),
     "tlismni_rates": (ctypes.c_int, _POINTER, _POINTER, _POINTER),
@@ -112,6 +114,14 @@ class NativeRun:
     def set_parameter(self, number: int, value: float) -> None:
         """Give a parameter another value; before the run goes on. Raises SimulationError."""
         self._check(self._library.tlismni_set_parameter(self.address, number, value))
+
+    def start_at(self, t: float) -> None:
+        """Begin at time `t` (s); before the run goes on. Raises SimulationError."""
+        self._check(self._library.tlismni_start_at(self.address, t))
+
+    def set_rates(self, number: int, first: float, second: float = 0.0) -> None:
+        """Let an input go on with these time derivatives. Raises SimulationError."""
+        self._check(self._library.tlismni_set_rates(self.address, number, first, second))
 
     def limit_steps(self, steps: int) -> None:
         """Most steps in one call; 0: no bound."""

@@ -1,13 +1,14 @@
 """Parameters of an image: what a run's memory takes from them, and for which values.
 
 Nobody lists where a parameter goes. The model is built with other values of it, the run's memory takes the numbers of
-each, and the words that change are those that follow from it (`forms.py`). A parameter is one of the image if all of
-them do, and if a run with the other value starts with no other difference: then setting these words is all that there
-is to do, and gives the run of the model with that value, bit for bit.
+each, and the words that change are those that follow from it (`forms.py`). Where a run with the other value starts with
+no other difference, setting these words is all that there is to do. Where more follows (masses, lengths, what the start
+is), the run begins anew from these words (`run/begin_now.py`). Either gives the run of the model with that value, bit
+for bit if all words have a form that is exact.
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,44 +18,74 @@ from ..description import Model
 from ..errors import TlismniError
 from ..run.blueprint import take_numbers, what_differs
 from .errors import NativeError
-from .forms import Form, form_of
-from .reach import begin_of, content, held_by, holds_reals, reached, without_parts
+from .forms import Form
+from .reach import begin_of, content, held_by, without_parts
 from .scratch import scratch_of
 
+ALONE, PRODUCT, SUM = range(3)
+"""A word follows from one parameter; from several, as a product or as a sum of what each makes of it."""
 PARTS = (1.0, 1.0 + 2.0**-10, 0.9, 1.137, 0.7311, 1.5, 0.5, 2.0, 0.2, 5.0, 0.1, 10.0, 0.01, 100.0)
 """Of the present value: other values that are tried, near ones first; and ABOUT of one that is 0."""
 ABOUT = (0.0, 1e-3, 0.1, 0.37, 1.0, 3.0)
-MORE = 60
 INSIDE = (0.25, 0.5, 0.618, 0.75, 0.875)
 """Parts of the way between two limits that are tried too."""
 
 
 class Setting(NamedTuple):
-    """A number of a model that shall be a parameter: its value, its limits, the model with another one."""
+    """A number of a model that shall be a parameter: its value, its limits, and the model with other values of it, and
+    of others by name."""
 
     name: str
     value: float
     least: float
     largest: float
-    model: Callable[[float], Model]
+    with_values: Callable[[Mapping[str, float]], Model]
+
+    def model(self, value: float) -> Model:
+        """The model with another value."""
+        return self.with_values({self.name: value})
 
 
 class Word(NamedTuple):
-    """A word that follows from a parameter: number of bytes behind the beginning of `array`."""
+    """A word that follows from a parameter: number of bytes behind the beginning of `array`. `mode`: how it follows
+    from others too (`together.py`)."""
 
     array: NDArray[Any]
     offset: int
     form: Form
+    mode: int = ALONE
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """What no other word has."""
+        return begin_of(self.array), self.offset
 
 
 class Parameter(NamedTuple):
-    """A parameter of an image; `least` and `largest` are within the limits and were tried."""
+    """A parameter of an image; `least` and `largest` are within the limits and were tried. `begins`: the start follows
+    from it."""
 
     name: str
     value: float
     least: float
     largest: float
     words: tuple[Word, ...]
+    begins: bool = False
+    excludes: frozenset[str] = frozenset()
+    """Parameters that have the value of the image where this one has another."""
+
+    @property
+    def exact(self) -> bool:
+        """Whether a run with another value has the bits of the model with that value."""
+        return all(word.form.exact for word in self.words)
+
+
+class Tried(NamedTuple):
+    """Values of a parameter with which runs start, with their models, and the channels at these starts if they follow
+    from it."""
+
+    values: list[tuple[float, Model]]
+    starts: dict[float, NDArray[np.float64]] | None
 
 
 def settings_of(model: Model, names: Iterable[str] | None = None) -> list[Setting]:
@@ -67,7 +98,7 @@ def settings_of(model: Model, names: Iterable[str] | None = None) -> list[Settin
         value = float(model._value_at(name) if "." in name and p is None else model.parameter_value(name))
         return Setting(
             name, value, -math.inf if least is None else least, math.inf if largest is None else largest,
-            lambda x: model.with_parameters({name: x}),
+            lambda values: model.with_parameters(dict(values)),
         )  # fmt: skip
 
     return [setting(name) for name in (own if names is None else names)]
@@ -99,30 +130,51 @@ def take(sim: Any, model: Model) -> None:
     if differs := what_differs(sim.assembly, assembly):
         raise NativeError(f"another value changes more than numbers ({differs})")
     take_numbers(sim, model, assembly)
+    sim.beginning.take_numbers(assembly)
+    sim.crossing._record.arrays["derived_numbers"][:] = sim.table.index_arrays()["derived_numbers"]
 
 
-def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any]) -> list[tuple[float, Model]]:
-    """The values, with the models of them, with which a run starts as `sim` does but for the words that follow from
-    them: the present value and those around it.
+def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any], begins: bool) -> Tried:
+    """The values, with the models of them, that can be set: the present value and those around it.
 
     Parameters
     ----------
-    sim : a run that has just begun. begun : a run of a model at its start.
+    sim : a run that has just begun. begun : a run of a model at its start. begins : runs may begin anew.
 
     Raises
     ------
     NativeError : if there are none, with the reason.
     """
+    models = variants(setting)
+    plain, why = _around(sim, setting, models, begun)
+    if len(plain) < len(models) and begins:
+        starts: dict[float, NDArray[np.float64]] = {}
+        wide, why = _around(sim, setting, models, begun, starts)
+        if len(wide) > len(plain):
+            return Tried(wide, starts)
+    if len(plain) == 1:
+        raise NativeError(why)
+    return Tried(plain, None)
+
+
+def _around(
+    sim: Any, setting: Setting, models: Sequence[tuple[float, Model]], begun: Callable[[Model], Any],
+    starts: dict[float, NDArray[np.float64]] | None = None,
+) -> tuple[list[tuple[float, Model]], str]:  # fmt: skip
+    """Values around the present one with which runs start, and why not others: as `sim` does but for the words that
+    follow from them; or in any way, and then the `starts` are added."""
     model, good = sim.system, [(setting.value, sim.system)]
     low, high, why = -math.inf, math.inf, "all other values that were tried are refused by the model"
-    for x, variant in variants(setting):
+    for x, variant in models:
         if x == setting.value or not low < x < high:
             continue
         try:
             other = begun(variant)
             take(sim, variant)
-            fits = _content(other) == _content(sim)
-            why = "the start follows from it: accelerations, scales and tolerances are those of the export"
+            fits = starts is not None or _content(other) == _content(sim)
+            why = "the start follows from it, and runs of this model begin as it was exported only"
+            if starts is not None:
+                starts[x] = other.values()
         except NativeError as error:
             fits, why = False, str(error)
         except TlismniError as error:
@@ -137,46 +189,7 @@ def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any]) -> list
             high = x
         if len(good) == 1 and math.isfinite(low) and math.isfinite(high):
             break
-    if len(good) == 1:
-        raise NativeError(why)
-    return sorted(good, key=lambda pair: pair[0])
-
-
-def parameter_of(sim: Any, setting: Setting, good: Sequence[tuple[float, Model]]) -> Parameter:
-    """Where the run's memory takes the parameter. Raises NativeError for words that follow in no known way."""
-    model, arrays, good = sim.system, _memory(sim), [*good, *_between(setting, good)]
-    before = [x.tobytes() for x in arrays]
-    changed: dict[tuple[int, int], list[float]] = {}
-    copies = []
-    for _, variant in good:
-        take(sim, variant)
-        copies.append([x.tobytes() for x in arrays])
-    take(sim, model)
-    if [x.tobytes() for x in arrays] != before:
-        raise NativeError("numbers of the model that were taken back are not what they were")
-    for k, old in enumerate(before):
-        if any(copy[k] != old for copy in copies):
-            if arrays[k].dtype.itemsize % 8 or not holds_reals(arrays[k]):
-                raise NativeError("another value changes more than real numbers")
-            rows = np.array([np.frombuffer(copy[k], dtype=np.int64) for copy in copies])
-            for at in np.flatnonzero((rows != rows[0]).any(axis=0)).tolist():
-                changed[k, 8 * at] = rows[:, at].view(np.float64).tolist()
-    if not changed:
-        raise NativeError("nothing in the run follows from it")
-    p = np.array([x for x, _ in good])
-    words: list[Word] = []
-    for (k, offset), values in changed.items():
-        form = form_of(p, np.array(values))
-        if form is None:
-            raise NativeError("a number of the run follows from it by more than one operation")
-        words.append(Word(arrays[k], offset, form))
-    return Parameter(setting.name, setting.value, float(p.min()), float(p.max()), tuple(words))
-
-
-def _between(setting: Setting, good: Sequence[tuple[float, Model]]) -> list[tuple[float, Model]]:
-    """More values between those: neighbouring constants of a form give other bits for some of many only."""
-    drawn = np.random.default_rng(0).uniform(good[0][0], good[-1][0], MORE)
-    return [(float(x), setting.model(float(x))) for x in drawn]
+    return sorted(good, key=lambda pair: pair[0]), why
 
 
 def _content(sim: Any) -> list[bytes]:
@@ -186,25 +199,3 @@ def _content(sim: Any) -> list[bytes]:
     empty = frozenset(begin_of(x) for x in arrays if not x.nbytes)
     start = [np.array([sim.t, sim.table.initial_energy]).tobytes()]
     return start + content(first, without_parts(arrays), without_parts(scratch_of(sim)), empty)
-
-
-def _memory(sim: Any) -> list[NDArray[Any]]:
-    """All arrays of numbers that a run reaches."""
-    first = sim.crossing._record.table
-    return reached(first, without_parts(list(held_by(sim)))).arrays
-
-
-def apart(found: Iterable[Parameter]) -> tuple[list[Parameter], dict[str, str]]:
-    """The parameters that share no word with one before; why the others do not count, by name."""
-    kept: list[Parameter] = []
-    owner: dict[tuple[int, int], str] = {}
-    refused = {}
-    for p in found:
-        places = [(begin_of(word.array), word.offset) for word in p.words]
-        shared = {owner[place] for place in places if place in owner}
-        if shared:
-            refused[p.name] = f"a number of the run follows from '{sorted(shared)[0]}' too"
-        else:
-            kept.append(p)
-            owner |= dict.fromkeys(places, p.name)
-    return kept, refused

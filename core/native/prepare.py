@@ -1,32 +1,30 @@
-"""What a run without Python has to find ready: structures, partitions and analyses of matrices.
+"""What a run without Python has to find ready: memory.
 
-Compiled code chooses from what Python has built (`docs/architecture.md`). So the run is made once before it is written
-down: with all that it meets on its way, and with the structures of all states of contacts where these are few, at the
-positions that it goes through, and at others (`wander.py`). None of this changes a bit of the run.
+Compiled code builds structures, partitions and the factors of matrices into memory that Python has given
+(`docs/architecture.md`). So the run is made once before it is written down, to see how much that takes; then there is
+twice as much. None of this changes a bit of the run.
 """
 
-from collections.abc import Iterator
-from itertools import product
 from typing import Any
-
-import numpy as np
 
 from ..compiled.jit import address_of
 from ..description import Model
+from ..errors import ConsistencyError
 from ..events.instant import PART_SIGNATURE, Instant
 from ..events.prepare import use_modes
 from ..laws import ForceLaw
+from ..linalg import SingularMatrixError
 from ..run.drive_record import Drive
-from ..tables.patterns import MOST_STRUCTURES
-from ..tables.switch import APART, ENGAGED, HELD, STUCK, STUCK_TWICE, key_of
+from ..tables.partition import prepare
+from ..tables.workspace import all_tangents
 from .errors import NativeError
-from .scratch import factorizations_of
-from .wander import Key, know, nearly_full, wander
 
 POINTS = 32
-"""Positions of the rehearsal at which other states of contacts are looked at."""
-ROOMS = 4
-"""How much more room than they had at first the eliminations get."""
+"""Times at which the rehearsal stops."""
+PLACES = 4
+"""For structures at most: the present one, the one to come back to, and two to build. A state holds them all."""
+ROOMS = 2
+"""How much more room there is than was needed."""
 
 
 def points(began: float, t_end: float) -> list[float]:
@@ -40,28 +38,21 @@ def start_inputs(sim: Any) -> list[float]:
 
 
 def rehearse(sim: Any, t_end: float) -> None:
-    """Let `sim`, which has just begun, know what its run to `t_end` (s) meets; then it is where it was.
+    """Give `sim`, which has just begun, the memory for a run to `t_end` (s), and more; then it is where it was.
 
     Raises
     ------
     NativeError : for a model that takes Python at any event. SimulationError : if the run fails.
     """
     _refuse(sim)
-    start, states = sim.state(), [sim.state()]
-    began, events = sim.t, list(sim.events)
-    keys = list(_keys(sim))
+    start, began, events = sim.state(), sim.t, list(sim.events)
     for t in points(began, t_end):
         sim.exchange(start_inputs(sim), t, False)
-        states.append(sim.state())
-    for state in states:
-        if not nearly_full(sim):
-            sim.restore(state)
-            know(sim, keys)
     sim.restore(start)
-    wander(sim, keys)
+    _close_all(sim)
+    _make_room(sim)
     sim.restore(start)
     sim.events[:] = events
-    _make_room(sim)
     _as_at_first(sim)
 
 
@@ -86,26 +77,17 @@ def _refuse(sim: Any) -> None:
         )
 
 
-def _keys(sim: Any) -> Iterator[Key]:
-    """Closed, engaged and sticking contacts, in all states that they can be in; none where there are too many."""
-    contacts = sim.assembly.contacts
-    states = [_codes(contact) for contact in contacts]
-    most = 1
-    for state in states:
-        most *= len(state)
-        if most > MOST_STRUCTURES:
-            return
-    for codes in product(*states):
-        yield key_of(np.array(codes, dtype=np.int64))
-
-
-def _codes(contact: Any) -> tuple[int, ...]:
-    """What a contact can be."""
-    if isinstance(contact.law, ForceLaw):
-        return APART, ENGAGED
-    if contact.slide_row < 0:
-        return APART, HELD
-    return (APART, HELD, STUCK) if contact.tangents == 1 else (APART, HELD, STUCK, STUCK_TWICE)
+def _close_all(sim: Any) -> None:
+    """Meet the largest structure: that of all contacts at once, with pivots if it has any here."""
+    contacts, workspace = sim.assembly.contacts, sim.workspace
+    acting = frozenset(k for k, contact in enumerate(contacts) if isinstance(contact.law, ForceLaw))
+    closed = frozenset(range(len(contacts))) - acting
+    tangents = all_tangents(sim.assembly)
+    workspace.engage(closed, acting, frozenset(k for k in tangents if k % len(contacts) in closed))
+    try:
+        prepare(workspace)
+    except (ConsistencyError, SingularMatrixError):
+        pass  # not all of them can be closed here
 
 
 def _make_room(sim: Any) -> None:
@@ -117,14 +99,10 @@ def _make_room(sim: Any) -> None:
         drive.record.set_size("instant", drive.instant.address)
     # `repair_now` takes it from there, with contacts or without
     drive.instant.tables()[0]["use_modes"] = address_of(use_modes, PART_SIGNATURE)
-    for structure in sim.workspace.patterns:
-        structure.order_columns()
-        for factorization in factorizations_of(structure):
-            if not factorization.dense:
-                factorization.order_columns()
-                size = min(factorization.n**2, ROOMS * factorization.record["choice_room"])
-                factorization._make_room(max(size, factorization.record["choice_room"]))
-                factorization.have_room()
+    workspace, slots = sim.workspace, sim.workspace.slots
+    slots.ask(ROOMS)
+    workspace.give_room()
+    workspace.keep_slots(min(PLACES, len(slots.structures)))
 
 
 def _as_at_first(sim: Any) -> None:

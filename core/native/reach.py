@@ -5,7 +5,7 @@ or is that of a function of the library. What looks like an address and is neith
 process that is gone.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -89,10 +89,10 @@ def words_of(array: Array) -> Whole:
     return array.reshape(-1).view(np.int64)
 
 
-def reached(first: Array, held: Found) -> Found:
-    """What `first` points to, and all that this points to, and so on."""
-    start = int(held.owner(np.array([begin_of(first)]))[0])
-    seen, left = {start}, [start]
+def reached(first: Sequence[Array], held: Found) -> Found:
+    """What the arrays `first` point to, and all that this points to, and so on."""
+    left = held.owner(np.array([begin_of(x) for x in first])).tolist()
+    seen = set(left)
     while left:
         owners = held.owner(words_of(held.arrays[left.pop()]))
         new = {int(k) for k in np.unique(owners[owners >= 0])} - seen

@@ -2,6 +2,7 @@
 
 #include "image.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,7 +33,7 @@ tlismni_run *tlismni_start_in(const tlismni_model *m, void *memory, size_t size)
 void tlismni_restart(tlismni_run *run) {
     const tlismni_model *m = run->model;
     pieces_touch();
-    run->beside = (Beside){m->numbers.start, m->numbers.events, 0, 0};
+    run->beside = (Beside){m->numbers.start, m->numbers.events, 0, 0, 0};
     memcpy(run->own, m->own_bytes, (size_t)m->head.decisive);
     memset(run->own + m->head.decisive, 0, (size_t)(m->head.own - m->head.decisive));
     int64_t *words = (int64_t *)run->own;
@@ -75,6 +76,24 @@ double tlismni_computed(const tlismni_run *run) {
 
 double *tlismni_inputs(tlismni_run *run) {
     return REALS(run, inputs);
+}
+
+tlismni_status tlismni_set_rates(tlismni_run *run, size_t number, double first, double second) {
+    if (number >= (size_t)run->model->numbers.inputs || !isfinite(first) || !isfinite(second)) {
+        return WRONG_INPUT;
+    }
+    double *rates = REALS(run, rates) + RATES_SIZE * number;
+    rates[FIRST] = first;
+    rates[SECOND] = second;
+    rates[SINCE] = run->beside.now;
+    return TLISMNI_OK;
+}
+
+void tlismni_rates_of(const tlismni_run *run, size_t number, double *first, double *second, double *since) {
+    const double *rates = REALS(run, rates) + RATES_SIZE * number;
+    *first = rates[FIRST];
+    *second = rates[SECOND];
+    *since = rates[SINCE];
 }
 
 const double *tlismni_channels(const tlismni_run *run) {

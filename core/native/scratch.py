@@ -26,18 +26,9 @@ def scratch_of(sim: Any) -> list[NDArray[Any]]:
         (sim.crossing._record.arrays, _OF_EXCHANGE),
     ):
         found += [arrays[name] for name in names]
-    found += sim.drive.instant.scratch()
-    for structure in sim.workspace.patterns:
-        found.append(structure.values)
-        for factorization in factorizations_of(structure):
-            found += [factorization.arrays[name] for name in ("choice_work",) if name in factorization.arrays]
+    found += [*sim.drive.instant.scratch(), *(sim.beginning.scratch if hasattr(sim, "beginning") else ())]
+    found.append(sim.workspace.slots.scratch.numbers)
     return found
-
-
-def factorizations_of(structure: Any) -> list[Any]:
-    """All factorisations of a structure."""
-    of_partitions = [lu for partition in structure.known.values() for lu in partition.factorizations]
-    return [structure.kkt, structure.kkt_query, *of_partitions]
 
 
 def own_of(sim: Any) -> list[NDArray[Any]]:
@@ -46,10 +37,7 @@ def own_of(sim: Any) -> list[NDArray[Any]]:
     own = [*arrays, *tables, *sim.drive.instant.tables(), *sim.drive.instant.scratch()]
     for record in (sim._method, sim._loop, sim.drive.record, sim.crossing._record):
         own += [record.table, *(x for name, x in record.arrays.items() if name not in _CONSTANT)]
-    for structure in sim.workspace.patterns:
-        for part in (structure, *structure.known.values()):
-            arrays, tables = part.memory()
-            own += [*arrays, *tables]
+    own += [*sim.workspace.blank(), *sim.beginning.own()]
     return own
 
 

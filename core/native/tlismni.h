@@ -76,11 +76,17 @@ TLISMNI_API void tlismni_restart(tlismni_run *run);
 
 /* A parameter's value: that of the image, unless another one is set. Between the start of a run (or its restart) and the
  * first call that goes on or looks, a parameter takes any value from `least` to `largest`: the run is then that of the
- * model with this value. It keeps it until it is restarted; a state has it too. */
+ * model with this value. Where the start follows from it, the first call has the start: that may fail, for a value with which
+ * the model cannot start. It keeps it until it is restarted; a state has it too. */
 TLISMNI_API double tlismni_parameter(const tlismni_run *run, size_t number);
 TLISMNI_API tlismni_status tlismni_set_parameter(tlismni_run *run, size_t number, double value);
 TLISMNI_API tlismni_status tlismni_parameter_range(const tlismni_model *model, size_t number, double *least,
                                                    double *largest);
+
+/* Let the run begin at time `t` (s) instead: forces, drivers and events are then those of that time. Between the start of a
+ * run and the first call that goes on or looks. */
+TLISMNI_API tlismni_status tlismni_start_at(tlismni_run *run, double t);
+TLISMNI_API double tlismni_start_time(const tlismni_run *run);
 
 /* Present time, s; and the time up to which the run is computed already. */
 TLISMNI_API double tlismni_time(const tlismni_run *run);
@@ -88,6 +94,11 @@ TLISMNI_API double tlismni_computed(const tlismni_run *run);
 
 /* The inputs: what is written here counts from the next call on. */
 TLISMNI_API double *tlismni_inputs(tlismni_run *run);
+
+/* First and second time derivative with which an input goes on from the present time: its value, and the first one, move along
+ * with the time until other derivatives are given. `tlismni_rates_of` gives them, and the time at which they were given. */
+TLISMNI_API tlismni_status tlismni_set_rates(tlismni_run *run, size_t number, double first, double second);
+TLISMNI_API void tlismni_rates_of(const tlismni_run *run, size_t number, double *first, double *second, double *since);
 
 /* The channels, as the last `tlismni_step` with `read` or `tlismni_look` has left them. */
 TLISMNI_API const double *tlismni_channels(const tlismni_run *run);
@@ -144,8 +155,9 @@ TLISMNI_API size_t tlismni_packed_size(const tlismni_model *model);
 TLISMNI_API tlismni_status tlismni_pack(const tlismni_run *run, const void *saved, void *bytes);
 TLISMNI_API tlismni_status tlismni_unpack(const tlismni_run *run, const void *bytes, size_t size, void *saved);
 
-/* Digest of the sources of this library: an image is of one library. */
+/* Digests of the sources of this library, and of its C sources: an image is of one library. */
 extern TLISMNI_API const char tlismni_digest[];
+TLISMNI_API const char *tlismni_c_digest(void);
 
 #ifdef __cplusplus
 }

@@ -62,15 +62,15 @@ int64_t way_used(const tlismni_run *run) {
 /* A smaller step after a failure; false if it cannot be smaller (`advance.py`). */
 static bool shrink(tlismni_run *run) {
     double *clock = REALS(run, clock), h = 0.25 * clock[TRIAL_STEP];
-    const Numbers *n = &run->model->numbers;
-    double least = n->shortest * fmax(fabs(tlismni_computed(run)), n->brief);
+    double brief = 1e-6 * (1.0 / REALS(run, control)[RATE_SCALE]);
+    double least = run->model->numbers.shortest * fmax(fabs(tlismni_computed(run)), brief);
     clock[STEP_SIZE] = h;
     return h > least;
 }
 
-/* New partition and pivots. */
+/* New partition and pivots. Redundant rows that are left out stay so: those of the image, all along. */
 static tlismni_status repair(tlismni_run *run) {
-    int64_t status = run->model->numbers.redundant ? NEEDS_ROWS : call(run, REPAIR, run->model->places.drive);
+    int64_t status = call(run, REPAIR, run->model->places.drive);
     return status == SETTLED ? TLISMNI_OK : (tlismni_status)(status < RAISED ? SETTLING + status : status);
 }
 
@@ -155,6 +155,18 @@ tlismni_status way_go_on(tlismni_run *run, int64_t code, bool hold, int64_t firs
     }
 }
 
+/* Begin anew, with parameters or a start time that are not those of the image. */
+static tlismni_status begin_anew(tlismni_run *run) {
+    int64_t status = call(run, BEGIN, run->model->places.begin);
+    if (status != SETTLED) {
+        return (tlismni_status)(status < RAISED ? SETTLING + status : status);
+    }
+    run->beside.events = 0;
+    count_events(run, 0);
+    run->beside.stale = 0;
+    return TLISMNI_OK;
+}
+
 tlismni_status way_begin(tlismni_run *run, double t) {
     double *times = REALS(run, times);
     if (run->beside.failed) {
@@ -169,11 +181,28 @@ tlismni_status way_begin(tlismni_run *run, double t) {
         }
     }
     run->beside.begun = 1;
+    if (run->beside.stale) {
+        tlismni_status status = begin_anew(run);
+        if (status != TLISMNI_OK) {
+            return status;
+        }
+    }
     WHOLES(run, counts)[EVENTS] = 0;
     times[NOW] = run->beside.now;
     times[TO] = t;
     bool told = !run->model->numbers.inputs || call(run, TELL, run->model->places.exchange) == 1;
     return told ? TLISMNI_OK : INPUT_REFUSED;
+}
+
+void way_arrive(tlismni_run *run, double t) {
+    double duration = t - run->beside.now, *inputs = REALS(run, inputs), *rates = REALS(run, rates);
+    for (int64_t k = 0; k < run->model->numbers.inputs; k++, rates += RATES_SIZE) {
+        if (rates[FIRST] != 0.0 || rates[SECOND] != 0.0) {
+            inputs[k] += duration * (rates[FIRST] + 0.5 * duration * rates[SECOND]);
+            rates[FIRST] += duration * rates[SECOND];
+        }
+    }
+    run->beside.now = t;
 }
 
 tlismni_status way_end(tlismni_run *run, tlismni_status status) {
@@ -199,7 +228,7 @@ tlismni_status tlismni_step(tlismni_run *run, double t, bool read) {
     int64_t code = call(run, EXCHANGE, run->model->places.exchange);
     status = way_go_on(run, code, false, first, 0);
     if (status == TLISMNI_OK) {
-        run->beside.now = t;
+        way_arrive(run, t);
         if (read && code != WAS_READ) {
             status = way_read(run, t);
         }

@@ -23,6 +23,9 @@ tlismni_status way_go_on(tlismni_run *run, int64_t code, bool hold, int64_t firs
 /* Let the pending events of the present time happen. */
 tlismni_status way_settle(tlismni_run *run);
 
+/* The present time is `t`: inputs with derivatives have gone on. */
+void way_arrive(tlismni_run *run, double t);
+
 /* What a call answers with: a failed run can only be restored. */
 tlismni_status way_end(tlismni_run *run, tlismni_status status);
 

@@ -9,14 +9,10 @@
 static const char *of_settling(int status) {
     switch (status) {
     case 2:
-        return "contacts have come together in a way that the image was not prepared for: prepare it with a run that "
-               "meets it" WITH_PYTHON;
-    case 3:
-    case 5:
-        return "the mechanism has come to a position whose pivots the image was not prepared for: prepare it with a run "
-               "that goes there" WITH_PYTHON;
-    case 4:
         return "more contacts touch at once than the image has room for" WITH_PYTHON;
+    case 3:
+        return "the equations of the contacts that are closed now are larger than the image has room for: prepare it with "
+               "a run that meets them" WITH_PYTHON;
     case 10:
         return "the joints depend on one another where contacts strike: start elsewhere, or look at the mechanism in "
                "Python, which names them";
@@ -31,6 +27,20 @@ static const char *of_settling(int status) {
         return "no forces satisfy the contacts that touch: simulate it in Python, which says what they ask for";
     case 16:
         return "a sliding contact jams (Painleve): use a smaller coefficient of friction, or a force law";
+    case 40:
+        return "the run cannot begin: with these parameters the positions at the start violate the constraints beyond repair; "
+               "set those that belong together";
+    case 41:
+        return "the run cannot begin: with these parameters the velocities at the start violate the constraints beyond repair; "
+               "set those that belong together";
+    case 42:
+        return "the run cannot begin: with these parameters shapes of a contact overlap at the start";
+    case 43:
+        return "the run cannot begin: with these parameters the constraints depend on one another at the start, which is a "
+               "singular position";
+    case 44:
+        return "the run cannot begin: with these parameters there are no accelerations at the start, or the image has no room "
+               "for the equations";
     default:
         return "what happens at contacts at this instant cannot be settled: simulate it in Python, which says why";
     }
@@ -75,6 +85,12 @@ const char *tlismni_why(tlismni_status status) {
                "yet" WITH_PYTHON;
     case NEEDS_ROWS:
         return "the model has redundant constraints, of which only Python chooses those to leave out as yet" WITH_PYTHON;
+    case EXCLUDED:
+        return "a parameter excludes this one: numbers follow from both of them in a way that the image has only for one of them "
+               "with another value than its own; let the other one have the value of the image, or make an image with both" WITH_PYTHON;
+    case NO_BEGINNING:
+        return "a run of this image begins at the time of the image only: it has redundant constraints, of which only Python "
+               "chooses those to leave out as yet" WITH_PYTHON;
     case TOO_MANY_STEPS:
         return "the way takes more steps of the solver than it may: ask for a shorter one, allow more, or look for an "
                "input that is out of proportion";
@@ -83,7 +99,7 @@ const char *tlismni_why(tlismni_status status) {
     case WRONG_TIME:
         return "the time is not finite, or before the present one";
     case WRONG_INPUT:
-        return "an input is not finite: check what feeds it";
+        return "an input is not finite, nor is its derivative, or there is no such input: check what feeds it";
     case INPUT_REFUSED:
         return "no state meets constraints and equations of motion with these inputs: they ask for a position out of "
                "reach, or make a force that is not finite";

@@ -107,7 +107,7 @@ class Collocation:
         self.workspace, self.start, self.trusted, self.noise = sim.workspace, start, trusted, noise
         self.n, self.n_ext = sim.assembly.n, sim.assembly.n_extended
         self.n_work = len(sim.assembly.work_names)
-        self.active = self.workspace.structure.active
+        self.active = self.workspace.structure.active.copy()
         self.t0 = float(start.times[0])
         scale, rtol = sim.assembly.coordinate_scale, sim.settings.rtol
         # to see whether the iteration converges: rounding moves coordinates that stand still as much as large ones

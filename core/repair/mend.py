@@ -7,10 +7,10 @@ from typing import Any
 
 from ..compiled.jit import compiled
 from ..compiled.views import vec
-from ..events.records import SETTLED, SINGULAR_MATRIX, WANT_PIVOTS, call_part, instant_at
+from ..events.records import SETTLED, SINGULAR_MATRIX, WANT_MEMORY, call_part, instant_at
 from ..linalg import lu_at
 from ..linalg.analyze import call_analyze
-from ..linalg.record import WANT_ANALYSIS
+from ..linalg.record import WANT_ROOM
 from ..loop.drive import method_at, workspace_at
 from ..methods.history import recall
 from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV, OK, RATE_SIZE
@@ -32,9 +32,9 @@ def repair_now(dr: Any) -> int:
     # pivots of the stages' matrix, which may be others than those of the mass matrix alone
     evaluate_tangent(ws, c_v * c_v, c_v)
     code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
-    if code != OK and code < WANT_ANALYSIS:
+    if code != OK and code != WANT_ROOM:
         evaluate_tangent(ws, 0.0, 0.0)
         code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
-    if code >= WANT_ANALYSIS:
-        return WANT_PIVOTS
+    if code == WANT_ROOM:
+        return WANT_MEMORY
     return SETTLED if code == OK else SINGULAR_MATRIX

@@ -41,15 +41,13 @@ class Blueprint:
             raise ModelError(f"a run of a {type(sim.system).__name__} cannot be copied: build another one")
         sim.flush()
         self._sim = sim
-        if not sim.workspace.patterns.shares:
-            sim.workspace.patterns.share(sim.workspace.structure)
         arrays, tables = sim.workspace.memory()
         for record in _records(sim):
             arrays += [x for name, x in record.arrays.items() if name not in (*_BLANK, "probes")]
             tables.append(record.table)
         tables += [sim._loop.arrays["probes"], *sim.drive.instant.tables()]
         blank = [record.arrays[name] for record in _records(sim) for name in _BLANK if name in record.arrays]
-        blank += sim.drive.instant.scratch()
+        blank += [*sim.drive.instant.scratch(), *sim.workspace.blank()]
         self._image = Image(arrays, tables, blank)
 
     def simulation(self) -> Simulation:

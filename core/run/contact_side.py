@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
 from ..events import Event
-from ..events.records import SETTLED, WANT_PIVOTS, WANT_ROOM, WANT_STRUCTURE
+from ..events.records import SETTLED, WANT_MEMORY, WANT_ROOM
 from ..methods.registry import Formula
 from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
@@ -75,7 +75,7 @@ class ContactSide:
         try:
             while (status := self.drive.open(contacts)) != SETTLED:
                 self.memory[:] = kept
-                if status > WANT_PIVOTS:
+                if status > WANT_MEMORY:
                     raise failure_of(self, status)
                 self.build_wanted(status)
             return self.drive.instant.inverse_masses
@@ -95,12 +95,8 @@ class ContactSide:
         """What compiled code needs to settle pending events."""
         if status == WANT_ROOM:
             self.drive.give_room()
-        elif status == WANT_STRUCTURE:
-            self.workspace.engage_wanted()
-        elif status == WANT_PIVOTS:
-            self.workspace.pivots_wanted()
         else:
-            self.workspace.partition_wanted()
+            self.workspace.give_room()
 
     def add_event(self, event: Event) -> None:
         """Record an event."""

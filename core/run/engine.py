@@ -16,7 +16,7 @@ from ..equations.system import EquationSystem
 from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
 from ..events import Event, Fallback
 from ..events.progress import Progress
-from ..events.records import DECLINED, SETTLED, WANT_PIVOTS
+from ..events.records import DECLINED, SETTLED, WANT_MEMORY
 from ..laws import ForceLaw
 from ..linalg import SingularMatrixError
 from ..location.dense_output import query
@@ -276,7 +276,7 @@ class Engine(ContactSide):
             if status == DECLINED:
                 self._note_instant(self.drive.take_pending())
                 raise RuntimeError("compiled code declines only what the guard against endless events stops")
-            elif status > WANT_PIVOTS:
+            elif status > WANT_MEMORY:
                 raise failure_of(self, status)
             else:
                 self.build_wanted(status)

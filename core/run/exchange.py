@@ -26,7 +26,7 @@ from ..location.dense_output import query
 from ..loop.drive import drive_on, loop_at, method_at, workspace_at
 from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
-from ..rounding import PUNCTUAL
+from ..rounding import PUNCTUAL, SAME_INPUT
 from ..stage.accelerations import solve_accelerations
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
@@ -44,6 +44,7 @@ from ..state.workspace_records import COUNTERS_SIZE, OK, STEPS
 from . import advance
 from .exchange_record import (
     EXCHANGE,
+    FIRST,
     FIRST_STEP,
     GOAL,
     INITIAL_ENERGY,
@@ -51,6 +52,8 @@ from .exchange_record import (
     LAST_CHANGE,
     NOW,
     QUERY_SIGNATURE,
+    RATES_SIZE,
+    SECOND,
     TIMES_SIZE,
     call_query,
 )
@@ -71,15 +74,31 @@ drive_at = record_view(DRIVE_TYPE)
 
 @internal
 def _input_changes(ex: Any, ws: Any) -> int:
-    """How many inputs are to change; -1 if one is not a number that stays."""
-    wanted, rows = vec(ex.inputs, ex.n_inputs), mat(ws.inputs, ex.n_inputs, INPUT_SIZE)
-    count = 0
+    """How many inputs are to change; -1 if one is no finite number."""
+    wanted, count, t = vec(ex.inputs, ex.n_inputs), 0, vec(ex.times, TIMES_SIZE)[NOW]
     for k in range(ex.n_inputs):
-        if not np.isfinite(wanted[k]) or rows[k, 1] != 0.0 or rows[k, 2] != 0.0:
+        if not np.isfinite(wanted[k]):
             return -1
-        if wanted[k] != rows[k, 0]:
+        if not _goes_on(ex, ws, k, t):
             count += 1
     return count
+
+
+@internal
+def _goes_on(ex: Any, ws: Any, k: int, t: float) -> bool:
+    """Whether input k does at time t what is wanted, anyway (`inputs.py`)."""
+    row, rates = mat(ws.inputs, ex.n_inputs, INPUT_SIZE)[k], mat(ex.rates, ex.n_inputs, RATES_SIZE)[k]
+    value, first, second = vec(ex.inputs, ex.n_inputs)[k], rates[FIRST], rates[SECOND]
+    if row[1] == 0.0 and row[2] == 0.0:
+        return value == row[0] and first == 0.0 and second == 0.0
+    x = t - row[3]
+    size = abs(row[0]) + abs(x * row[1]) + abs(0.5 * x * x * row[2]) + abs(row[1] * t) + abs(0.5 * row[2] * t * t)
+    if abs(value - (row[0] + x * (row[1] + 0.5 * x * row[2]))) > SAME_INPUT * size:
+        return False
+    size = abs(row[1]) + abs(x * row[2]) + abs(row[2] * t)
+    if abs(first - (row[1] + x * row[2])) > SAME_INPUT * size:
+        return False
+    return bool(abs(second - row[2]) <= SAME_INPUT * abs(row[2]))
 
 
 @internal
@@ -91,12 +110,14 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
     times = vec(ex.times, TIMES_SIZE)
     wanted, n = vec(ex.inputs, ex.n_inputs), ex.n_inputs
     rows, before = mat(ws.inputs, n, INPUT_SIZE), mat(ex.before, n, INPUT_SIZE)
+    rates = mat(ex.rates, n, RATES_SIZE)
     t, newest = times[NOW], history_time(ms, 0)
     for k in range(n):
         for j in range(INPUT_SIZE):
             before[k, j] = rows[k, j]
-        if wanted[k] != rows[k, 0]:
+        if not _goes_on(ex, ws, k, t):
             rows[k, 0], rows[k, INPUT_SIZE - 1] = wanted[k], t
+            rows[k, 1], rows[k, 2] = rates[k, FIRST], rates[k, SECOND]
     if t == newest:
         recall(ws, ms, 0)
         status = OK
@@ -176,6 +197,7 @@ class Exchange:
             EXCHANGE,
             {
                 "times": self.times, "inputs": self.wanted, "before": np.zeros((inputs, INPUT_SIZE)),
+                "rates": np.zeros((inputs, RATES_SIZE)),
                 "sample": self.sample, "channels": self.channels, **formulas,
             },
             {

@@ -16,6 +16,7 @@ EXCHANGE = np.dtype(
             "query", "accelerations",                              # addresses of functions
             "times",                                               # (TIMES_SIZE,) float64
             "inputs", "before", "n_inputs",                        # wanted; (n_inputs, INPUT_SIZE): what they were
+            "rates",                                               # (n_inputs, RATES_SIZE): derivatives that are wanted
             "chunk", "read",
             "sample", "sample_length", "channels", "n_channels",   # one row, and what it gives
             "places", "summed", "n_sums", "number", "column", "signs", "n_terms", "flags", "flag_columns", "n_flags",
@@ -36,6 +37,10 @@ LAST_CHANGE, INTERVAL = 2, 3  # of inputs
 INITIAL_ENERGY = 4  # J
 FIRST_STEP = 5  # steps made, and instants with events, before
 TIMES_SIZE = 6
+# columns of `rates`
+FIRST, SECOND = 0, 1
+SINCE = 2  # when they were given: for whoever sets them
+RATES_SIZE = 3
 
 QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
 call_query = caller(QUERY_SIGNATURE)

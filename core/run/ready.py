@@ -11,11 +11,10 @@ from ..compiled import types
 from ..compiled.jit import address_of
 from ..cones.cones import CONES_TYPE, Cones, solve_cones
 from ..cones.directions import farthest_directions, independent_directions
-from ..linalg import DENSE_LIMIT
-from ..linalg.factorization import make_sparse_ready
-from ..linalg.record import FACTOR_SIGNATURE, SOLVE_SIGNATURE
+from ..linalg.analyze import follow
+from ..linalg.record import FACTOR_SIGNATURE, LU_TYPE, SOLVE_SIGNATURE
 from ..linalg.row_pivoting import FEW_ENTRIES, make_elimination_ready
-from ..linalg.solve import factor, functions_of, solve
+from ..linalg.solve import factor, solve
 from ..location.dense_output import interpolate, query
 from ..location.watch import find_events, friction_margin, remember
 from ..loop.drive import aim_now, drive, settle_pending
@@ -37,6 +36,8 @@ from ..tables.evaluate import (
 )
 from ..tables.levels import force_level, position_level, rate_level
 from ..tables.measure import measure_motion, measure_rows
+from ..tables.partition_building import partition_wanted
+from ..tables.probe import set_probe
 from ..tables.projection import meet
 
 if TYPE_CHECKING:
@@ -75,6 +76,9 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (evaluate_joints, (_WORKSPACE,)),
     (factor_joints, (_WORKSPACE,)),
     (solve_joints, (_WORKSPACE,)),
+    (partition_wanted, (_WORKSPACE,)),
+    (set_probe, (_WORKSPACE,)),
+    (follow, (LU_TYPE, LU_TYPE)),
     (factor, FACTOR_SIGNATURE.args),
     (solve, SOLVE_SIGNATURE.args),
 )
@@ -88,7 +92,7 @@ def _compile_called() -> None:
 
 
 @cache
-def _compile_for_contacts(sparse: bool, many_entries: bool) -> None:
+def _compile_for_contacts(many_entries: bool) -> None:
     friction_margin.compile((_WORKSPACE, _WHOLE))
     settle_pending.compile((DRIVE_TYPE,))
     # its record holds the addresses of all that it calls
@@ -96,10 +100,6 @@ def _compile_for_contacts(sparse: bool, many_entries: bool) -> None:
     solve_cones.compile((CONES_TYPE,))
     independent_directions.compile((_MATRIX, _MATRIX, _NUMBERS, _REAL, _NUMBERS, _VECTOR))
     farthest_directions.compile((_MATRIX, _NUMBERS, _NUMBERS, _VECTOR))
-    # closed contacts make the matrices larger, and open ones make them smaller than they are now
-    functions_of("dense")
-    if sparse:
-        make_sparse_ready()
     if many_entries:
         make_elimination_ready()
 
@@ -113,6 +113,5 @@ def make_ready(sim: "Engine") -> None:
     if not assembly.contacts:
         return
     _compile_for_contacts(
-        assembly.n + assembly.m > DENSE_LIMIT,
         sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches) > FEW_ENTRIES,
     )

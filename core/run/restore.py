@@ -78,13 +78,14 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
         raise RuntimeError("a structure has a partition once one was chosen")
     factorizations = (structure.kkt, structure.kkt_query, *present.factorizations)
     for factorization, factors in zip(factorizations, parts.factors, strict=True):
-        perm_r, perm_c = factorization.analysis()
-        if not (_same(perm_r, factors.perm_r) and _same(perm_c, factors.perm_c)):
+        own = factorization.parts()
+        if not (_same(own[0], factors.perm_r) and _same(own[1], factors.perm_c)):
             factorization.analyze_with(factors.perm_r, factors.perm_c)
-        for own, stored in ((factorization.lu_values, factors.values), (factorization.pivots, factors.pivots)):
-            if own.shape != stored.shape:
-                raise ModelError(f"the factors of the solver state are not {len(own)} numbers but {len(stored)}")
-            own[:] = stored
+            own = factorization.parts()
+        for mine, stored in ((own[2], factors.values), (own[3], factors.pivots)):
+            if mine.shape != stored.shape:
+                raise ModelError(f"the factors of the solver state are not {len(mine)} numbers but {len(stored)}")
+            mine[:] = stored
     workspace.state_bytes[:] = parts.buffer
     sim.t, sim.pending = parts.t, list(parts.pending)
     sim.start_open, sim.input_times = parts.start_open, parts.input_times
@@ -95,7 +96,8 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
 
 
 def _same(a: NDArray[np.int64], b: NDArray[np.int64]) -> bool:
-    return a is b or np.array_equal(a, b)
+    # of one type as a rule; a tenth of the time of numpy's comparison
+    return a is b or a.tobytes() == b.tobytes()
 
 
 def restart_here(sim: "Simulation") -> None:

@@ -35,6 +35,8 @@ REDUNDANT = ("drop", "refuse")
 CONSTRAINT_SHARE = 0.002
 """Of the finest absolute tolerance: what a violation of the constraints may be. The solution of the constraints and the
 level of the coordinates (`position_level`) enlarge it by ten and more."""
+LEAST_EXACTNESS = 1e-2
+"""Rounding allows no more (`EXACTNESS`)."""
 KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
 SINGULAR_NOISE = 2.5e13
@@ -160,7 +162,7 @@ def set_control(
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     # differences over several steps see what the constraints leave open: it has to be small against the tolerances
     finest = (settings.newton_tolerance or 1.0) if fixed else float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0))
-    control[EXACTNESS] = min(1.0, max(1e-2, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
+    control[EXACTNESS] = min(1.0, max(LEAST_EXACTNESS, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
     control[MAX_INNER] = 13.0

@@ -1,7 +1,7 @@
 """Snapshot: what decides the future of a run, copied as it lies in memory.
 
 Its bulk is the state's buffer (`tables/state_fields.py`). The rest are the factors of the matrices, whose size changes
-with the structure, and what Python keeps. Index arrays and permutations are never written into, so they are not copied.
+with the structure, and what Python keeps.
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -93,11 +93,13 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         workspace.state_bytes.copy(),
         workspace.state.dtype,
         tuple([
-            Factors(*lu.analysis(), lu.lu_values.copy(), lu.pivots.copy())
-            for lu in (structure.kkt, structure.kkt_query, *partition.factorizations)
+            Factors(rows.copy(), columns, values.copy(), pivots.copy())
+            for rows, columns, values, pivots in (lu.parts() for lu in (
+                structure.kkt, structure.kkt_query, *partition.factorizations
+            ))
         ]),
         partition.dependent,
-        structure.probe.copy(),
+        structure.arrays["probe"].copy(),
         workspace.key,
         workspace.dropped,
         sim.t,

@@ -55,14 +55,13 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     ModelError : says what is wrong with which part.
     """
     _check_facts(sim, state)
-    closed, engaged, sticking = (frozenset(state.facts[name]) for name in ("closed", "engaged", "sticking"))
-    structure = sim.workspace.structure_of(closed, engaged, sticking, frozenset(state.facts["dropped"]))
-    _check_arrays(state, own, len(structure.active))
+    closed, sticking = (frozenset(state.facts[name]) for name in ("closed", "sticking"))
+    active, held = sim.assembly.count_active(closed, sticking, frozenset(state.facts["dropped"]))
+    _check_arrays(state, own, active)
     arrays = state.arrays
     _need("dependent", len(set(arrays["dependent"].tolist())) == len(arrays["dependent"]), "names a coordinate twice")
     _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
-    sizes = {"lu_d": len(structure.active), "lu_p": structure.m_held}
-    _check_factorizations(arrays, sizes, len(structure.active) + sim.assembly.n)
+    _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + sim.assembly.n)
     _need_range("counters", arrays["counters"], 0, _LARGEST_COUNT)
     _check_memory(sim, state)
     _check_method(sim, arrays, own.arrays)

@@ -19,9 +19,11 @@ WORKSPACE = np.dtype(
             "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_sticking",
             "asleep",  # (contacts,) int64: 1 where a contact is not evaluated (`location/asleep.py`)
-            # (contacts,) codes of `switch.py`; the present structure, all that are kept, and how many
-            "wanted", "structure", "known", "n_known",
-            "wanted_dependent",  # (m_act,) int64: the partition that compiled code has chosen
+            # (contacts,) codes of `switch.py`; the present structure, and one that is not to be given up (0: none)
+            "wanted", "structure", "kept",
+            "wanted_dependent",  # (m_act,) int64: the partition that has been chosen
+            # the BUILDING record of `tables/building.py`, and the function that takes the wanted structure
+            "building", "engage",
             # structure (changes with the set of engaged contacts)
             "active", "redundant", "n_redundant", "probe",
             "dependent", "free_row", "free_col", "free_slot", "n_free", "kkt", "lu_d", "lu_p", "kkt_query",
@@ -52,18 +54,66 @@ STRUCTURE = np.dtype(
             "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "n_mass", "mass_slot",
             "kkt", "kkt_query",
             "codes",                                  # (contacts,) int64: which it is for (`switch.py`)
+            "dropped",                                # and for which set of rows that are left out (a number)
             "slots",                                  # (3 n_kernels,) int64: addresses of the batches' slot tables
-            "n_jacobian", "jacobian_start", "jacobian_col", "jacobian_slot",  # Phi_q by rows, of the active ones
-            "partition", "partitions", "n_partitions",  # the present one (0: none), all that are kept, how many
+            "nnz",                                    # entries of the matrix
+            # Phi_q by rows, of the active ones
+            "n_jacobian", "jacobian_start", "jacobian_row", "jacobian_col", "jacobian_slot",
+            "partition",                              # address of its PARTITION record
+            "built", "serial", "used",                # 1: it is one; a number that no other has; when it was taken last
+            # memory for its integers and its numbers, and how many there is room for
+            "words", "words_room", "reals", "reals_room",
         )
     ]
 )  # fmt: skip
 STRUCTURE_TYPE = types.from_dtype(STRUCTURE)
 
 PARTITION = np.dtype(
-    [(name, np.int64) for name in ("dependent", "n_free", "free_row", "free_col", "free_slot", "lu_d", "lu_p")]
-)
+    [
+        (name, np.int64)
+        for name in (
+            "dependent", "n_free", "free_row", "free_col", "free_slot", "lu_d", "lu_p",
+            "used_p",           # of lu_d and lu_p the one for positions
+            "ready", "serial",  # 1: it is one; a number that no other has
+            "words", "reals",   # memory that is enough for any
+        )
+    ]
+)  # fmt: skip
 PARTITION_TYPE = types.from_dtype(PARTITION)
+
+BUILDING = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "n", "m", "m_joints", "m_ext", "n_contacts", "n_kernels",
+            # entries of S and of Phi_q as the batches list them: coordinates or rows, the contact that they belong to
+            # (-1: none), and their places in the block of slot tables (those of Phi_q^T too)
+            "n_s", "s_row", "s_col", "s_contact", "s_place",
+            "n_j", "j_row", "j_col", "j_place", "j_place_t",
+            "table_size", "table_start",                # of the block, and where each of the 3 n_kernels tables begins
+            "n_replaced", "replaced_row", "replaced_contact",  # rows that closed contacts take the place of
+            "left_out", "dropped",                      # (m_ext,) int64: 1 for redundant rows; number of this set
+            "contact_rows", "contact_slide_rows", "contact_second_rows",  # (contacts,) int64; -1: none
+            "rate_rows", "two_partitions",              # (m_ext,) int64: 1 for velocity-level rows; 1: there are some
+            "units",                                    # (n + m_ext,) what brings coordinates and rows to one unit
+            "dense_limit",
+            "scratch",                                  # as in LU
+            "needs",                                    # (NEEDS,) int64: room that there must be
+            "n_slots", "structures",                    # addresses (n_slots,) of STRUCTURE records
+            "serial",                                   # the last number that was given
+        )
+    ]
+)  # fmt: skip
+BUILDING_TYPE = types.from_dtype(BUILDING)
+OF_KKT, OF_D, WORDS, REALS = 0, 3, 6, 7
+"""Entries of `needs`: three of the matrices of the equations and three of Phi_qd (`linalg/record.py`), and two of the
+structures themselves."""
+NEEDS = 8
+WANT_ROOM = 3
+"""What building a structure returns where there is too little memory, as `linalg` does."""
+ENGAGE_SIGNATURE = types.int64(WORKSPACE_TYPE)
+call_engage = caller(ENGAGE_SIGNATURE)
+building_at = record_view(BUILDING_TYPE)
 structure_at, partition_at = record_view(STRUCTURE_TYPE), record_view(PARTITION_TYPE)
 
 # Called by address, so that their code is compiled once and not again inside each caller.

@@ -9,10 +9,8 @@ from ..rounding import CONTRADICTION, RANK_TOLERANCE
 from ..state.workspace_records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level
+from .probe import set_probe
 from .workspace import Workspace
-
-GOLDEN, SILVER = 0.6180339887498949, 0.4142135623730950
-"""Whose multiples have fractions in no simple order."""
 
 
 def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPivots:
@@ -97,20 +95,7 @@ def prepare(workspace: Workspace) -> None:
                 "nor a constraint, or a value is not finite"
             ) from error
     structure.kkt_query.follow(structure.kkt)
-    workspace.set_probe(_probe(workspace))
+    set_probe(workspace.record)
     workspace.arrays["rate"][FACTOR_AGE] = -1.0
     workspace.arrays["rate"][SENSITIVITY] = 0.0
     workspace.arrays["rate"][FIRST_SENSITIVITY] = -1.0
-
-
-def _probe(workspace: Workspace) -> NDArray[np.float64]:
-    """A violation of every row (m_act,) that a coordinate moved by its scale would cause, with weights from 1/2 to 3/2
-    and signs in no simple order."""
-    if not len(workspace.structure.active):
-        return np.zeros(0)
-    rows, cols, values = workspace.jacobian()
-    size = np.zeros(len(workspace.structure.active))
-    np.maximum.at(size, rows, np.abs(values) * workspace.assembly.coordinate_scale[cols])
-    golden = np.modf(GOLDEN * np.arange(len(size)))[0]
-    silver = np.modf(SILVER * np.arange(len(size)))[0]
-    return np.asarray(size * (0.5 + golden) * np.where(silver < 0.5, 1.0, -1.0))

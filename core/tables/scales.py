@@ -103,7 +103,7 @@ def _rate_and_energy(workspace: Workspace) -> tuple[float, float, float, float]:
     # all at rest without loads: what vibrates gives the time
     rate = math.sqrt(square or stiffest) or 1.0
     heaviest = heaviest or 1.0
-    return rate, work or heaviest * rate**2, heaviest, stiffest
+    return rate, work or heaviest * (rate * rate), heaviest, stiffest
 
 
 def _later_times(workspace: Workspace, t: float) -> list[float]:

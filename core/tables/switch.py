@@ -1,7 +1,7 @@
 """Compiled code takes another structure when contacts close, open, begin to slide or to stick.
 
-A run keeps the structures that it has met (`patterns.py`), as records whose addresses the workspace knows. Which one
-fits the modes of the contacts is found by comparing codes; one that is not there yet Python builds.
+A run keeps the structures that it has met last (`slots.py`), as records whose addresses the workspace knows. Which one
+fits the modes of the contacts is found by comparing codes; one that is not there is built (`building.py`).
 """
 
 from collections.abc import Collection
@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from ..compiled.kernels import batch_at
 from ..compiled.views import ivec, mat, vec
 from ..state.modes import ACTIVE, ALONG, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
-from ..state.workspace_records import CONDITION, FACTOR_AGE, RATE_SIZE, partition_at, structure_at
+from ..state.workspace_records import CONDITION, FACTOR_AGE, OK, RATE_SIZE, call_engage, partition_at, structure_at
 
 APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
 """A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too; in
@@ -57,21 +57,6 @@ def want(ws: Any) -> None:
 
 
 @internal
-def find_wanted(ws: Any) -> int:
-    """Address of the structure that is wanted; 0 if there is none."""
-    known, wanted = ivec(ws.known, ws.n_known), ivec(ws.wanted, ws.n_contacts)
-    for i in range(ws.n_known):
-        codes, same = ivec(structure_at(known[i]).codes, ws.n_contacts), True
-        for k in range(ws.n_contacts):
-            if codes[k] != wanted[k]:
-                same = False
-                break
-        if same:
-            return int(known[i])
-    return 0
-
-
-@internal
 def take_structure(ws: Any, address: int) -> None:
     """Let the structure at `address` be the present one."""
     st = structure_at(address)
@@ -95,7 +80,7 @@ def take_structure(ws: Any, address: int) -> None:
     rate[FACTOR_AGE] = -1.0
     for i in range(CONDITION, RATE_SIZE):
         rate[i] = 0.0
-    if st.partition != 0:
+    if partition_at(st.partition).ready != 0:
         take_partition(ws, st.partition)
 
 
@@ -103,34 +88,16 @@ def take_structure(ws: Any, address: int) -> None:
 def take_partition(ws: Any, address: int) -> None:
     """Let the partition at `address` be that of the present structure."""
     pt = partition_at(address)
-    structure_at(ws.structure).partition = address
-    ws.dependent, ws.lu_d, ws.lu_p = pt.dependent, pt.lu_d, pt.lu_p
+    ws.dependent, ws.lu_d, ws.lu_p = pt.dependent, pt.lu_d, pt.used_p
     ws.n_free, ws.free_row, ws.free_col, ws.free_slot = pt.n_free, pt.free_row, pt.free_col, pt.free_slot
     vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
 
 
 @internal
-def engage_modes(ws: Any) -> bool:
-    """Take the structure of the contacts' present modes; False, with nothing changed, if it is not known."""
+def engage_modes(ws: Any) -> int:
+    """Take the structure of the contacts' present modes: OK, or WANT_ROOM with nothing changed."""
     want(ws)
     codes, wanted, same = ivec(structure_at(ws.structure).codes, ws.n_contacts), ivec(ws.wanted, ws.n_contacts), True
     for k in range(ws.n_contacts):
         same = same and codes[k] == wanted[k]
-    if same:
-        return True
-    address = find_wanted(ws)
-    if address != 0:
-        take_structure(ws, address)
-    return address != 0
-
-
-@compiled
-def use_structure(ws: Any, address: int) -> None:
-    """`take_structure`, for Python."""
-    take_structure(ws, address)
-
-
-@compiled
-def use_partition(ws: Any, address: int) -> None:
-    """`take_partition`, for Python."""
-    take_partition(ws, address)
+    return OK if same else int(call_engage(ws.engage, ws))

@@ -10,42 +10,70 @@ from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record, words_of
+from ..linalg import DENSE_LIMIT
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
+from ..linalg.memory import addresses
+from ..linalg.record import PROGRAM_LIMIT
 from ..state.workspace_records import (
+    BUILDING,
     CONDITIONS,
     CONTROL_SIZE,
     COUPLED_STAGES,
+    ENGAGE_SIGNATURE,
     EVALUATE_SIGNATURE,
     FACTOR_AGE,
+    OK,
+    STRUCTURE,
     WORKSPACE,
 )
 from .assembly import Assembly
+from .building import engage_wanted
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
-from .partitions import Partition
-from .patterns import MOST_STRUCTURES, Patterns
+from .partition_building import partition_wanted
+from .raw_entries import raw_entries
+from .slots import MOST_STRUCTURES, Slots
 from .state_fields import STATE, Field, row_length, state_fields
-from .structure import Structure
-from .switch import key_of, use_partition, use_structure
+from .structure import OF_STRUCTURE, Partition, Structure
+from .switch import codes_of
 
 _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
     "asleep",
 )  # fmt: skip
 
-_OF_STRUCTURE = (
-    "values", "probe", "active", "redundant", "gradient_start", "gradient_col", "gradient_slot", "mass_slot",
-)  # fmt: skip
 _OF_PARTITION = ("dependent", "free_row", "free_col", "free_slot")
 _NEVER_CHANGES = (
-    *_OF_STRUCTURE, *_OF_PARTITION, "entry_row", "entry_col", "kernels", "contact_rows", "contact_slide_rows", "known",
+    *OF_STRUCTURE, *_OF_PARTITION, "kernels", "contact_rows", "contact_slide_rows",
 )  # fmt: skip
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
-_STRUCTURE = words_of(WORKSPACE)["structure"]
+_STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["serial"]
 _CONDITIONS = [*CONDITIONS]
+_OTHERS = ("signals", "units", "left_out")
+"""Arrays that the record of the workspace does not have."""
+FEW_CONTACTS = 8
+"""Contacts up to which there is room from the start for the structure of all of them."""
+MOST_WORDS = 200_000
+"""About so many numbers all places together have."""
 MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
+
+
+def most_places(assembly: Assembly, tables: dict[str, NDArray[np.int64]]) -> int:
+    """How many structures there are places for."""
+    states, size = 1, sum(len(x) for x in tables.values())
+    for contact in assembly.contacts:
+        states = min(states * (2 + contact.tangents), MOST_STRUCTURES)
+    # the present one, the one to come back to, and one to build
+    return max(min(states + 1, MOST_STRUCTURES, MOST_WORDS // max(size, 1)), 3)
+
+
+def all_tangents(assembly: Assembly) -> frozenset[int]:
+    """What `engage` takes for contacts that all stick."""
+    slides = [k for k, contact in enumerate(assembly.contacts) if contact.slide_row >= 0]
+    both = [k + len(assembly.contacts) for k in slides if assembly.contacts[k].tangents > 1]
+    return frozenset([*slides, *both])
 
 
 class Workspace:
@@ -91,12 +119,11 @@ class Workspace:
             "probe": np.zeros(0),
             **{
                 name: np.zeros(0, dtype=np.int64)
-                for name in (*_OF_PARTITION, *_OF_STRUCTURE, "entry_row", "entry_col")
+                for name in (*_OF_PARTITION, *OF_STRUCTURE)
                 if name not in ("values", "probe")
             },
             "wanted": np.zeros(max(contacts, 1), dtype=np.int64),
             "wanted_dependent": np.zeros(a.n + m_ext, dtype=np.int64),
-            "known": np.zeros(MOST_STRUCTURES, dtype=np.int64),
             "stage_v": np.zeros(MOST_STAGES * n_ext),
             "stage_a": np.zeros(MOST_STAGES * n_ext + m_ext),
             "stage_rows": np.zeros(COUPLED_STAGES * row_length(a)),
@@ -113,14 +140,19 @@ class Workspace:
         }
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
-        self.patterns = Patterns()
-        self.units = np.ones(a.n + m_ext)
-        """What brings coordinates (with forces) and rows of Phi (with multipliers) to one unit."""
+        tables, self._shapes = raw_entries(a)
+        sparse = addresses(a.n + a.m > DENSE_LIMIT)
+        self.slots = Slots(most_places(a, tables), sparse, PROGRAM_LIMIT, len(self._shapes))
+        arrays["units"] = np.ones(a.n + m_ext)  # of coordinates (with forces) and rows of Phi (with multipliers)
+        arrays["left_out"] = np.zeros(m_ext, dtype=np.int64)
+        self._building = self._make_building(arrays, tables)
+        self._dropped_before: dict[frozenset[int], int] = {frozenset(): 0}
+        self._views: dict[int, Structure] = {}
         self.dropped: frozenset[int] = frozenset()
         self.arrays = arrays
         self._batches = [self._batch(k) for k in range(len(a.batches))]
         arrays["batches"][:] = [batch.address for batch in self._batches]
-        record_arrays = {k: v for k, v in arrays.items() if k != "signals"}
+        record_arrays = {k: v for k, v in arrays.items() if k not in ("signals", "units", "left_out")}
         self._record = ArrayRecord(
             WORKSPACE,
             record_arrays,
@@ -128,7 +160,8 @@ class Workspace:
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "m_held": 0,
                 "n_redundant": 0, "n_free": 0, "n_mass": 0, "n_kernels": len(a.batches), "n_values": 1,
                 "n_basis": 1, "n_contacts": contacts, "tangents": a.tangents,
-                "n_work": len(a.work_names), "structure": 0, "n_known": 0,
+                "n_work": len(a.work_names), "structure": 0, "kept": 0,
+                "building": self._building.address, "engage": address_of(engage_wanted, ENGAGE_SIGNATURE),
                 "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
                 "stage_function": 0, "analyze": address_of(analyze, ANALYZE_SIGNATURE),
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE),
@@ -136,6 +169,9 @@ class Workspace:
             },
         )  # fmt: skip
         self.structure: Structure
+        if 0 < contacts <= FEW_CONTACTS:
+            # the largest structure first: from then on there is room for all
+            self.engage(frozenset(range(contacts)), frozenset(), all_tangents(a))
         self.engage(frozenset(), frozenset())
         if assembly.bind is not None:
             assembly.bind(self)
@@ -149,11 +185,15 @@ class Workspace:
         ]
         for batch in self._batches:
             own.append(batch.arrays["par"])
-        arrays, tables = self.structure.memory()
+        arrays, tables, _ = self.slots.memory()
         records = [
-            self._record.table, *(batch.table for batch in self._batches), self.arrays["batches"], self.arrays["known"]
+            self._record.table, self._building.table, *(batch.table for batch in self._batches), self.arrays["batches"],
         ]  # fmt: skip
         return [*own, *arrays], [*records, *tables]
+
+    def blank(self) -> list[NDArray[Any]]:
+        """Own memory whose content a copy need not have."""
+        return self.slots.memory()[2]
 
     def moved(self, take: Take) -> "Workspace":
         """The same workspace in a copy of its memory (`compiled/image.py`)."""
@@ -161,11 +201,11 @@ class Workspace:
         new.state, new.state_bytes = take(self.state), take(self.state_bytes)
         new._record = self._record.moved(take)
         new._batches = [batch.moved(take) for batch in self._batches]
-        new.arrays = {**new._record.arrays, "signals": take(self.arrays["signals"])}
-        new.structure = self.structure.moved(take)
-        new.patterns = self.patterns.of_copy((*self.key, self.dropped), new.structure)
-        new._list_structures()
-        new._use(new.structure)
+        new._building = self._building.moved(take)
+        new.arrays = {**new._record.arrays, **{name: take(self.arrays[name]) for name in _OTHERS}}
+        new.slots = self.slots.moved(take)
+        new._dropped_before, new._views = dict(self._dropped_before), {}
+        new._see_structure()
         return new
 
     def take_numbers(self, assembly: Assembly) -> None:
@@ -198,6 +238,31 @@ class Workspace:
         """Room for `count` vectors of an accelerated or Krylov outer loop."""
         self._set("basis", np.zeros((count, self.assembly.n_extended)), n_basis=count)
 
+    def _make_building(self, arrays: dict[str, NDArray[Any]], tables: dict[str, NDArray[np.int64]]) -> ArrayRecord:
+        a, slots = self.assembly, self.slots
+        replaced = [(row, k) for row, contacts in a.replaced_rows.items() for k in sorted(contacts)]
+        rows, contacts = (np.array([pair[x] for pair in replaced], dtype=np.int64) for x in (0, 1))
+        return ArrayRecord(
+            BUILDING,
+            {
+                **tables, "replaced_row": rows, "replaced_contact": contacts,
+                **{name: arrays[name] for name in ("left_out", "units", "contact_rows", "contact_slide_rows")},
+                "contact_second_rows": np.array(
+                    [c.slide_row + 1 if c.tangents > 1 else -1 for c in a.contacts], dtype=np.int64
+                ),
+                "rate_rows": np.array([int(row in a.rate_rows) for row in range(a.m + 1)], dtype=np.int64),
+                "needs": slots.needs, "structures": slots.addresses,
+            },
+            {
+                "n": a.n, "m": a.m, "m_joints": a.m_joints, "m_ext": a.m + 1, "n_contacts": len(a.contacts),
+                "n_kernels": len(a.batches), "n_s": len(tables["s_row"]), "n_j": len(tables["j_row"]),
+                "table_size": sum(count * width for count, width in self._shapes), "n_replaced": len(rows),
+                "two_partitions": int(bool(a.rate_rows)),
+                "dropped": 0, "dense_limit": DENSE_LIMIT, "scratch": slots.scratch.cell.ctypes.data,
+                "n_slots": len(slots.structures), "serial": 0,
+            },
+        )  # fmt: skip
+
     def _batch(self, k: int) -> ArrayRecord:
         batch, a = self.assembly.batches[k], self.arrays
         count, width = batch.coord.shape
@@ -228,15 +293,42 @@ class Workspace:
     def engage(self, closed: frozenset[int], engaged: frozenset[int], sticking: frozenset[int] = frozenset()) -> None:
         """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
         a place in the matrix."""
-        structure = self.structure_of(closed, closed | engaged, sticking, self.dropped)
-        use_structure(self.record, structure.record.address)
-        self._use(structure)
+        self.arrays["wanted"][:] = codes_of(len(self.assembly.contacts), closed, closed | engaged, sticking)
+        self.engage_wanted()
 
-    def _use(self, structure: Structure) -> None:
+    def engage_wanted(self) -> None:
+        """Take the structure that compiled code has asked for last (`switch.py`)."""
+        while int(engage_wanted(self.record)) != OK:
+            self.give_room()
+        self._see_structure()
+
+    def give_room(self) -> None:
+        """More memory for structures, as compiled code has asked for it."""
+        records = [self._record.table.view(np.int64), *(batch.table.view(np.int64) for batch in self._batches)]
+        if self.slots.grow(records):
+            self._views.clear()
+            if self.record.word(_STRUCTURE):
+                self._see_structure()
+
+    def keep_slots(self, count: int) -> None:
+        """Have so few places for structures from now on, of which one is that of the present structure."""
+        self.slots.keep(count, self.record.word(_STRUCTURE))
+        self._building.set_array("structures", self.slots.addresses)
+        self._building.set_size("n_slots", count)
+        self._views.clear()
+        self._record.set_size("structure", 0)
+        self.engage(*self.key)
+
+    def _see_structure(self) -> None:
         """Name the arrays of the structure that the record has now."""
-        self.structure, self.key = structure, key_of(structure.codes[: len(self.assembly.contacts)])
-        named = {name: getattr(structure, name) for name in _OF_STRUCTURE}
-        self.arrays |= {**named, "entry_row": structure.rows, "entry_col": structure.cols}
+        address = self.record.word(_STRUCTURE)
+        seen = self._views.get(address)
+        if seen is None or seen.serial != seen.record.word(_SERIAL):
+            two = bool(self.assembly.rate_rows)
+            seen = self._views[address] = Structure(self.slots, address, self._shapes, two, self.give_room)
+        structure = self.structure = seen
+        self.key = structure.key
+        self.arrays |= structure.arrays
         present = structure.present
         if present is not None:
             self._use_partition(present)
@@ -247,26 +339,11 @@ class Workspace:
 
     def sync(self) -> None:
         """Take over what compiled code has chosen: structure and partition."""
-        address = self.record.word(_STRUCTURE)
-        if address != self.structure.record.address:
-            self._use(self.patterns.at(address))
-        elif (present := self.structure.present) is not None and present.dependent is not self.arrays["dependent"]:
+        structure = self.structure
+        if self.record.word(_STRUCTURE) != structure.address or structure.record.word(_SERIAL) != structure.serial:
+            self._see_structure()
+        elif (present := structure.present) is not None and present.dependent is not self.arrays["dependent"]:
             self._use_partition(present)
-
-    def engage_wanted(self) -> None:
-        """Build the structure that compiled code has asked for (`switch.py`) and does not know."""
-        self.structure_of(*key_of(self.arrays["wanted"][: len(self.assembly.contacts)]), self.dropped).order_columns()
-
-    def partition_wanted(self) -> None:
-        """Build the partition that compiled code has asked for, of the structure that it wanted."""
-        key = key_of(self.arrays["wanted"][: len(self.assembly.contacts)])
-        structure = self.structure_of(*key, self.dropped)
-        structure.know_partition(self.arrays["wanted_dependent"][: len(structure.active)].copy())
-
-    def pivots_wanted(self) -> None:
-        """Make what compiled code has asked for to choose pivots."""
-        for structure in self.patterns:
-            structure.make_wanted()
 
     def _forget(self) -> None:
         """What is known of the matrices' factors and conditions holds no more."""
@@ -275,48 +352,44 @@ class Workspace:
 
     def use_units(self, units: NDArray[np.float64]) -> None:
         """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
-        self.units = units
-        for structure in self.patterns:
-            structure.use_units(units, self.assembly.n)
+        self.arrays["units"][:] = units
+        structure, n = self.structure, self.assembly.n
+        built, present = self.slots.structures["built"], self.slots.index(structure.address)
+        built[:present], built[present + 1 :] = 0, 0
+        both = np.concatenate([units[:n], units[n + structure.active]])
+        for factorization in (structure.kkt, structure.kkt_query):
+            factorization.use_units(both, both)
+        partition = structure.present
+        if partition is not None:
+            for factorization in partition.factorizations:
+                m = factorization.n
+                factorization.use_units(units[n + structure.active[:m]], units[partition.dependent[:m]])
         self.arrays["values"][:] = 0.0
         self._forget()
-
-    def structure_of(self, *key: frozenset[int]) -> Structure:
-        """The structure with contacts closed, engaged and sticking, and with rows dropped: kept, or built."""
-        present = self.structure if self.record.word(_STRUCTURE) else None
-        structure, new = self.patterns.get(self.assembly, key, present)
-        if structure.units is not self.units:
-            structure.use_units(self.units, self.assembly.n)
-        if new:
-            self._list_structures()
-        return structure
-
-    def _list_structures(self) -> None:
-        """Say which structures compiled code may choose from: those with the rows that are dropped now."""
-        addresses = [structure.record.address for structure in self.patterns.with_dropped(self.dropped)]
-        self.arrays["known"][: len(addresses)] = addresses
-        self._record.set_size("n_known", len(addresses))
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
         if rows == self.dropped:
             return
         self.dropped = rows
-        self._list_structures()
+        flags = self.arrays["left_out"]
+        flags[:] = 0
+        flags[sorted(rows)] = 1
+        self._building.set_size("dropped", self._dropped_before.setdefault(rows, len(self._dropped_before)))
         self.arrays["lam"][sorted(rows)] = 0.0
         self.engage(*self.key)
 
     def set_probe(self, probe: NDArray[np.float64]) -> None:
         """Right-hand side (m_act,) with which the condition of the constraints is measured."""
-        self.structure.probe[:] = probe
+        self.structure.arrays["probe"][:] = probe
 
     def set_partition(self, dependent: NDArray[np.int64]) -> None:
         """Choose the dependent coordinates of the present structure."""
-        self.structure.partition(dependent)
+        self.arrays["wanted_dependent"][: len(dependent)] = dependent
+        partition_wanted(self.record)
         partition = self.structure.present
         if partition is None:
             raise RuntimeError("a structure has a partition once one was chosen")
-        use_partition(self.record, partition.record.address)
         self._use_partition(partition)
 
     def _set(self, name: str, array: NDArray[Any], **sizes: int) -> None:

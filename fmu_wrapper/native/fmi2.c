@@ -257,8 +257,7 @@ EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueR
 
 EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const int order[],
                                               const double value[]) {
-    (void)vr, (void)n, (void)order, (void)value;
-    return slave_refuses(c, "fmi2SetRealInputDerivatives");
+    return slave_set_rates(c, "fmi2SetRealInputDerivatives", vr, n, order, value);
 }
 
 EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t n, const int order[],

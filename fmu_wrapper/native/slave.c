@@ -78,7 +78,7 @@ Slave *slave_new(const Slave *given, const char *function, const char *name, con
         }
     }
     if (self->name && (self->intermediate || !given->intermediates) && load(self, function, token ? token : "", resources)) {
-        size_t numbers = tlismni_count(self->model, TLISMNI_PARAMETER) + tlismni_count(self->model, TLISMNI_INPUT);
+        size_t numbers = 2 * tlismni_count(self->model, TLISMNI_PARAMETER) + 3 * tlismni_count(self->model, TLISMNI_INPUT);
         self->run = tlismni_start(self->model);
         self->parameters = malloc((numbers + 1) * sizeof *self->parameters);
         if (!self->run || !self->parameters) {
@@ -122,8 +122,12 @@ int slave_set_up(Slave *self, const char *function, bool tolerance_defined, doub
                            tolerance_defined ? tolerance : self->rtol);
     }
     if (start != tlismni_time(self->run)) {
-        return slave_error(self, function, "the start time is %g s, and this FMU, which needs no Python, starts at %g s: "
-                           "shift the time, or export it with Python", start, tlismni_time(self->run));
+        int status = tlismni_start_at(self->run, start);
+        if (status) {
+            return slave_run_error(self, function, status);
+        }
+        self->start = start;
+        self->fresh = false;
     }
     if (tolerance_defined && tolerance != self->rtol) {
         slave_say(self, STATUS_WARNING, LOG_WARNING, "%s: the tolerance is %g, as exported, not %g: an FMU that needs no "

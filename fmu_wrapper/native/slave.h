@@ -60,12 +60,12 @@ struct Slave {
     unsigned heard; /* bits of the log categories */
     bool event_mode, early_return;
     Phase phase;
-    double stop; /* s; infinity: none */
+    double start, stop; /* s; no stop is infinity */
     bool fresh;  /* the channels are those of the present time and inputs */
     bool asked;  /* outputs have been asked for since the last step */
     tlismni_model *model;
     tlismni_run *run;
-    double *parameters; /* values, behind them room for the inputs */
+    double *parameters; /* values, behind them room for those before, for the inputs and their derivatives */
     double *room;       /* for derivatives; NULL until they are asked for */
     void *file; /* the variables' */
     const Variable *variables;
@@ -103,7 +103,10 @@ int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size
 int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerations, const uint32_t vr[], size_t n,
                      int64_t value[]);
 int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]);
-/* The parameters as the run has them, after it has been restarted or restored. */
+/* Derivatives in time, of first or second order, with which inputs go on. */
+int slave_set_rates(Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
+                    const double value[]);
+/* Parameters and start time as the run has them, after it has been restarted or restored. */
 void slave_take_parameters(Slave *self);
 /* None but reals can be set: says so. */
 int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n);

@@ -142,22 +142,46 @@ void slave_take_parameters(Slave *self) {
     for (size_t k = 0; k < count; k++) {
         self->parameters[k] = tlismni_parameter(self->run, k);
     }
+    self->start = tlismni_start_time(self->run);
 }
 
-/* The run from its start with the parameters as they are now, and the inputs as they were. */
+/* The run from its start with parameters and start time as they are now, and the inputs as they were. */
 static int start_anew(Slave *self, const char *function) {
     size_t count = tlismni_count(self->model, TLISMNI_PARAMETER), inputs = tlismni_count(self->model, TLISMNI_INPUT);
-    double *kept = self->parameters + count;
+    double *kept = self->parameters + 2 * count, *rates = kept + inputs, since;
     memcpy(kept, tlismni_inputs(self->run), inputs * sizeof *kept);
+    for (size_t k = 0; k < inputs; k++) {
+        tlismni_rates_of(self->run, k, rates + 2 * k, rates + 2 * k + 1, &since);
+    }
     tlismni_restart(self->run);
     memcpy(tlismni_inputs(self->run), kept, inputs * sizeof *kept);
+    int at = self->start == tlismni_time(self->run) ? TLISMNI_OK : tlismni_start_at(self->run, self->start);
+    if (at) {
+        return slave_run_error(self, function, at);
+    }
     for (size_t k = 0; k < count; k++) {
         int status = tlismni_set_parameter(self->run, k, self->parameters[k]);
         if (status) {
             return slave_run_error(self, function, status);
         }
     }
+    for (size_t k = 0; k < inputs; k++) { /* which all count as of now: nothing has moved yet */
+        if (rates[2 * k] != 0.0 || rates[2 * k + 1] != 0.0) {
+            tlismni_set_rates(self->run, k, rates[2 * k], rates[2 * k + 1]);
+        }
+    }
     return STATUS_OK;
+}
+
+/* The same; if these parameters cannot be together, with those before (which stand behind them). */
+static int start_or_go_back(Slave *self, const char *function) {
+    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER);
+    int status = start_anew(self, function);
+    if (status != STATUS_OK) {
+        memcpy(self->parameters, self->parameters + count, count * sizeof *self->parameters);
+        start_anew(self, function);
+    }
+    return status;
 }
 
 int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]) {
@@ -171,15 +195,56 @@ int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size
             return STATUS_ERROR;
         }
     }
-    double *inputs = tlismni_inputs(self->run);
+    double *inputs = tlismni_inputs(self->run), now = tlismni_time(self->run), first, second, since;
     bool changed = false;
+    memcpy(self->parameters + tlismni_count(self->model, TLISMNI_PARAMETER), self->parameters,
+           tlismni_count(self->model, TLISMNI_PARAMETER) * sizeof *self->parameters);
     for (size_t k = 0; k < n; k++) {
         const Variable *v = &self->variables[vr[k] - 1];
         changed = changed || v->source == PARAMETER;
         (v->source == INPUT ? inputs : self->parameters)[v->number] = value[k];
+        if (v->source == INPUT) { /* derivatives end, unless they are of this time */
+            tlismni_rates_of(self->run, (size_t)v->number, &first, &second, &since);
+            if (since != now && (first != 0.0 || second != 0.0)) {
+                tlismni_set_rates(self->run, (size_t)v->number, 0.0, 0.0);
+            }
+        }
     }
     self->fresh = self->fresh && !n;
-    return changed ? start_anew(self, function) : STATUS_OK;
+    return changed ? start_or_go_back(self, function) : STATUS_OK;
+}
+
+int slave_set_rates(Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
+                    const double value[]) {
+    if (!slave_may(self, function, SETTABLE) || !slave_has_room(self, function, vr, n) ||
+        !slave_has_room(self, function, order, n) || !slave_has_room(self, function, value, n)) {
+        return STATUS_ERROR;
+    }
+    for (size_t k = 0; k < n; k++) { /* all of them or none */
+        const Variable *v = slave_variable(self, function, vr[k], REAL);
+        if (!v) {
+            return STATUS_ERROR;
+        }
+        if (v->source != INPUT || order[k] < 1 || order[k] > 2 || !isfinite(value[k])) {
+            return slave_error(self, function, "a derivative %g of order %ld of value reference %lu was given: only inputs take "
+                               "derivatives, finite ones of orders 1 and 2", value[k], (long)order[k], (unsigned long)vr[k]);
+        }
+        if (!may_set(self, function, v, vr[k], v->start)) {
+            return STATUS_ERROR;
+        }
+    }
+    double now = tlismni_time(self->run), first, second, since;
+    for (size_t k = 0; k < n; k++) {
+        size_t number = (size_t)self->variables[vr[k] - 1].number;
+        tlismni_rates_of(self->run, number, &first, &second, &since);
+        if (since != now) { /* other orders end */
+            first = second = 0.0;
+        }
+        *(order[k] == 1 ? &first : &second) = value[k];
+        tlismni_set_rates(self->run, number, first, second);
+    }
+    self->fresh = self->fresh && !n;
+    return STATUS_OK;
 }
 
 int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n) {

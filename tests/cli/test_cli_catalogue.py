@@ -32,6 +32,13 @@ def test_list_shows_all_scenarios(tlismni: Command) -> None:
     done = tlismni("list")
     assert done.code == 0
     assert all(name in done.out for name in names())
+    # one screen, not the parameters of all
+    assert len(done.out.splitlines()) < 2 * len(names())
+
+
+def test_list_of_one_shows_its_parameters(tlismni: Command) -> None:
+    done = tlismni("list", "pendulum_stop")
+    assert all(word in done.out for word in ("restitution", "length", "kg"))
 
 
 def test_list_json_is_the_catalogue(tlismni: Command) -> None:

@@ -34,6 +34,10 @@ def test_a_grid_with_a_figure_and_once_more(tlismni: Command, tmp_path: Path) ->
     times = {path: path.stat().st_mtime_ns for path in (out / "parts").iterdir()}
     again = tlismni(*asked, "--channel", "ball.vy")
     assert again.code == 0 and "causes" in again.out
+    shown = [line.split() for line in again.out.splitlines() if line.split()[:1] == ["0.5"]]
+    assert [float(word) for (_, word) in shown] == pytest.approx(
+        found["ball.vy"][found["restitution"] == 0.5], rel=1e-5
+    )
     assert times == {path: path.stat().st_mtime_ns for path in (out / "parts").iterdir()}
 
 

@@ -14,7 +14,7 @@ from tlismni.core.ahead.module import TARGETS, undefined
 from tlismni.core.compiled.library import LIBRARY, PLACE
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
 
-PART = ("tsuji_formula", "position_level", "symbolic", "directions")
+PART = ("tsuji_formula", "position_level", "eliminate", "directions")
 """Functions that take seconds to make a library of: numbers, a record, arrays."""
 
 
@@ -85,16 +85,15 @@ import json, sys
 import numpy as np
 from tlismni.core.cones.directions import farthest_directions
 from tlismni.core.laws.viscoelastic import tsuji_formula
-from tlismni.core.linalg.symbolic import fill_pattern, operation_list
+from tlismni.core.linalg.row_pivoting import pivot_rows
 
 force = tsuji_formula(0.003, -0.7, 1.1, 2e5, 30.0, 1.5, 0.0)
-row, col = np.array([0, 2, 1, 2, 0, 1, 3, 3]), np.array([0, 0, 1, 1, 2, 2, 3, 0])
-l, u = fill_pattern(4, row, col)
-steps = operation_list(4, l, u)
+start, col = np.array([0, 3, 5, 8]), np.array([0, 1, 3, 1, 2, 0, 2, 3])
+pivots = pivot_rows(3, 4, start, col, np.array([0.7, -2.0, 0.3, 1.0, 5.0, 0.1, 1.7, -3.0]))
 matrix = np.array([[4.0, 1.0, 0.5], [1.0, 3.0, 0.2], [0.5, 0.2, 1e-9]])
 kept, work = np.zeros(3, np.int64), np.zeros(64)
 found = farthest_directions(matrix, np.arange(3), kept, work)
-print(json.dumps([[x.hex() for x in force], l.row.tolist(), u.row.tolist(), steps.steps.tolist(), found, kept.tolist(),
+print(json.dumps([[x.hex() for x in force], pivots.pivot_column.tolist(), pivots.rank, found, kept.tolist(),
                   "numba" in sys.modules]))
 """
 

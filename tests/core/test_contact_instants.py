@@ -185,7 +185,7 @@ def test_ten_thousand_elastic_bounces():
     """Bounce n at (2 n - 1) sqrt(2 h/g): errors grow as sums of rounding do; memory with the list of events only."""
     sim = Simulation(ball_over_floor(NewtonImpact(restitution=1.0)), "irk", rtol=1e-8)
     sim.advance(200.0 * FALL)
-    structures = len(sim.workspace.patterns)
+    structures = len(sim.workspace.slots)
     tracemalloc.start()
     sim.advance(400.0 * FALL)
     before, _ = tracemalloc.get_traced_memory()
@@ -201,5 +201,5 @@ def test_ten_thousand_elastic_bounces():
     errors = np.abs(times / FALL - (2.0 * n - 1.0))
     assert np.all(errors <= 5e-15 * n**1.5)
     assert np.ptp([e.separation_speed for e in sim.events]) < 1e-13 * math.sqrt(2.0 * G)
-    assert len(sim.workspace.patterns) == structures <= 3
+    assert len(sim.workspace.slots) == structures <= 3
     assert not sim.samples

@@ -12,15 +12,14 @@ from tlismni.core.linalg import (
     REANALYSE,
     Factorization,
     SingularMatrixError,
-    analysis,
     factor,
+    factorization,
     independent_columns,
     lu_at,
     pivot_rows,
     solve,
 )
-from tlismni.core.linalg.record import MOST_ANALYSES
-from tlismni.core.linalg.symbolic import fill_pattern
+from tlismni.core.linalg.record import IN_INDEX
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -64,7 +63,7 @@ def backward_error(a, x, b):
 @pytest.fixture(params=["program", "columns"])
 def sparse_kind(request, monkeypatch):
     """Both ways of the sparse refactorisation, whatever the operation count."""
-    monkeypatch.setattr(analysis, "PROGRAM_LIMIT", np.inf if request.param == "program" else 0)
+    monkeypatch.setattr(factorization, "PROGRAM_LIMIT", 10**9 if request.param == "program" else 0)
     return request.param
 
 
@@ -126,11 +125,11 @@ def test_pivots_follow_from_the_values_alone(seed):
         assert np.allclose(worn.solve(full(5 * links, rows, cols, values) @ x), x, rtol=1e-7, atol=1e-7)
 
 
-def test_more_analyses_than_are_kept_make_no_difference():
+def test_many_analyses_one_after_the_other():
     n, rng = 12, np.random.default_rng(7)
     rows, cols = (x.ravel() for x in np.indices((n, n)))
     lu = Factorization(n, rows, cols, np.arange(n * n), dense=False)
-    for _ in range(2 * MOST_ANALYSES + 10):
+    for _ in range(140):
         values = np.zeros((n, n))
         values[rng.permutation(n), np.arange(n)] = 10.0
         values += rng.uniform(-0.1, 0.1, (n, n))
@@ -147,7 +146,7 @@ def test_dense_program_and_columns_agree(links, monkeypatch):
     b = rng.normal(size=n)
     solutions, kinds = [], []
     for dense, limit in ((False, 16), (False, 0), (True, 16)):
-        monkeypatch.setattr(analysis, "PROGRAM_LIMIT", limit)
+        monkeypatch.setattr(factorization, "PROGRAM_LIMIT", limit)
         if dense and n > 500:
             continue
         lu = Factorization(n, rows, cols, np.arange(len(rows)), dense=dense)
@@ -273,14 +272,11 @@ def test_stored_analysis_restores_every_bit(dense, sparse_kind):
     values, pivots = one.lu_values.copy(), one.pivots.copy()
     other = Factorization(n, rows, cols, np.arange(len(rows)), dense=dense)
     other.analyze_with(*one.analysis())
-    if not dense:
-        here, there = one._present(), other._present()
-        assert here is not there
-        for name, array in here.arrays.items():
-            assert np.array_equal(array, there.arrays[name]), name
-    for name, array in one.arrays.items():
-        if name not in ("values", "work", "pivots", "wanted", "choice_work"):
-            assert np.array_equal(array, other.arrays[name]), name
+    for name in IN_INDEX if not dense else ("entry_to", "entry_from"):
+        places = [lu.record[name] - lu.record["index"] for lu in (one, other)]
+        assert places[0] == places[1], name
+    used = 2 * len(rows) if dense else (one.record["sum_right"] - one.record["index"]) // 4 + one.record["n_sums"]
+    assert np.array_equal(one._at("index", used, np.uint32), other._at("index", used, np.uint32))
     assert other.factor(then) == OK
     assert np.array_equal(other.solve(b), x)
     other.factor(first)
@@ -324,14 +320,20 @@ def test_fill_pattern_is_that_of_elimination(seed, n, density):
     pattern = (rng.random((n, n)) < density) | np.eye(n, dtype=bool)
     row, col = np.nonzero(pattern)
     mixed = rng.permutation(len(row))
-    lower, upper = fill_pattern(n, row[mixed], col[mixed])
+    lu = Factorization(n, row[mixed], col[mixed], np.arange(len(row)), dense=False)
+    lu.analyze(np.where(row[mixed] == col[mixed], 10.0 * n, 1.0))
+    place_c = lu.analysis()[1]
+    place_r = rng.permutation(n)
+    lu.analyze_with(place_r, place_c)
+    pattern = pattern[np.argsort(place_r)][:, np.argsort(place_c)]
     for k in range(n):
         pattern[k + 1 :, k + 1 :] |= np.outer(pattern[k + 1 :, k], pattern[k, k + 1 :])
-    for triangle, expected in ((lower, np.tril(pattern, -1)), (upper, np.triu(pattern, 1))):
+    for name, expected in (("l", np.tril(pattern, -1)), ("u", np.triu(pattern, 1))):
         col, row = np.nonzero(expected.T)
-        assert np.array_equal(triangle.row, row)
-        assert np.array_equal(triangle.col, col)
-        assert np.array_equal(np.diff(triangle.start), expected.sum(axis=0))
+        count = lu.record[f"n{name}"]
+        assert np.array_equal(lu._at(f"{name}_row", count, np.uint32), row)
+        assert np.array_equal(lu._at(f"{name}_col", count, np.uint32), col)
+        assert np.array_equal(np.diff(lu._at(f"{name}_start", n + 1, np.uint32)), expected.sum(axis=0))
 
 
 def test_empty_matrix():

@@ -184,7 +184,6 @@ def test_images_that_are_none():
     [
         ("split_wall", "motion of a driver"),
         ("four_bar", "singular position"),
-        ("bricard", "redundant"),
         ("spinning_sphere", "singular position"),
     ],
 )
@@ -216,7 +215,7 @@ def test_wrong_times_and_inputs_and_too_many_steps():
 
 def test_numbers_of_c_are_those_of_python():
     from tlismni.core.events import records as events
-    from tlismni.core.run import exchange
+    from tlismni.core.run import begin_record, exchange, exchange_record
     from tlismni.core.state import run_records as records
     from tlismni.core.state import workspace_records as system
 
@@ -236,7 +235,10 @@ def test_numbers_of_c_are_those_of_python():
         (records, ("GOAL", "LAST_STOP", "BUDGET", "HANDLED", "HERE", "EVENTS", "STATUS", "STEP_SIZE", "TRIAL_STEP",
                    "EVENT_SIZE", "GAINS", "REACHED", "EVENT", "FULL", "CHUNK", "STEP_TOO_SMALL", "REPARTITION",
                    "NEAR_SINGULAR", "VIOLATED", "UNLOCATED", "DUE", "SETTLE_IT", "JAM", "WANTED", "EVENT_FAILED")),
-        (system, ("OUTER_DIVERGED", "INNER_DIVERGED", "SINGULAR", "REANALYZE", "NOT_FINITE", "OUTER_SLOW", "STEPS")),
+        (system, ("OUTER_DIVERGED", "INNER_DIVERGED", "SINGULAR", "REANALYZE", "NOT_FINITE", "OUTER_SLOW", "STEPS",
+                  "RATE_SCALE")),
+        (begin_record, ("T0",)),
+        (exchange_record, ("FIRST", "SECOND", "SINCE", "RATES_SIZE")),
         (events, ("SETTLED", "NOT_SETTLED")),
     ):  # fmt: skip
         for name in names:

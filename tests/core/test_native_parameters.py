@@ -60,9 +60,16 @@ def test_the_same_bits_as_with_the_number_in_the_model(value):
 
 @needs_library
 def test_numbers_by_their_place_and_why_others_are_fixed():
-    run, found, fixed, _, _ = build("bouncing_ball", "restitution", "ball.mass")
-    assert [p.name for p in found] == list(run.model.names(3)) == ["restitution"]
-    assert "the start follows from it" in fixed["ball.mass"]
+    run, found, fixed, begun, model = build("bouncing_ball", "restitution", "ball.mass")
+    assert [p.name for p in found] == list(run.model.names(3)) == ["restitution", "ball.mass"]
+    assert [p.begins for p in found] == [False, True] and not fixed
+    run.set_parameter(1, 0.3)
+    sim = begun(model.with_parameters({"ball.mass": 0.3}))
+    assert run.look().tobytes() == sim.values().tobytes()
+    sim.advance(1.4)
+    assert run.step(1.4).tobytes() == sim.values().tobytes()
+    _, found, fixed, _, _ = build("bricard", "rod1.mass")
+    assert not found and "begin as it was exported only" in fixed["rod1.mass"]
 
 
 @needs_library

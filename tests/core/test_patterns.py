@@ -1,11 +1,10 @@
-"""Structures, partitions and analyses are kept, a certain number of each: how many makes no difference."""
+"""Structures are kept, a certain number of them: how many makes no difference."""
 
 import numpy as np
 import pytest
 from test_heap import heap
 from tlismni.core import Simulation
-from tlismni.core.linalg import analysis
-from tlismni.core.tables import partitions, patterns, structure, workspace
+from tlismni.core.tables import workspace
 from tlismni.models import load
 
 
@@ -21,14 +20,10 @@ from tlismni.models import load
 def test_few_kept_patterns_change_no_bit(build, t_end, monkeypatch):
     plenty = Simulation(build())
     plenty.advance(t_end)
-    for module, name, few in (
-        (patterns, "MOST_STRUCTURES", 3), (workspace, "MOST_STRUCTURES", 3), (partitions, "MOST_PARTITIONS", 2),
-        (structure, "MOST_PARTITIONS", 2), (analysis, "MOST_ANALYSES", 2),
-    ):  # fmt: skip
-        monkeypatch.setattr(module, name, few)
+    monkeypatch.setattr(workspace, "MOST_STRUCTURES", 3)
     short = Simulation(build())
     short.advance(t_end)
-    assert len(short.workspace.patterns) <= 3
-    assert len(plenty.workspace.patterns) > 3 or t_end == 0.4
+    assert len(short.workspace.slots) <= 3
+    assert len(plenty.workspace.slots) > 3 or t_end == 0.4
     assert short.events == plenty.events
     assert np.array_equal(short.values(), plenty.values())

@@ -50,10 +50,7 @@ def spoil(sim):
             arrays[name][...] = np.nan
     for scratch in sim.drive.instant.scratch():
         scratch[:] = np.nan
-    for structure in sim.workspace.patterns:
-        for factorization in (structure.kkt, structure.kkt_query, structure.lu_d):
-            if factorization is not None and "choice_work" in factorization.arrays:
-                factorization.arrays["choice_work"][:] = np.nan
+    sim.workspace.slots.scratch.numbers[:] = np.nan
 
 
 def run(name, end, method, between):

@@ -1,5 +1,6 @@
 """The pages as a site: tutorials do what they say, messages exist, the site builds without a warning."""
 
+import math
 import os
 import re
 import shlex
@@ -119,6 +120,18 @@ def test_the_page_on_space_runs() -> None:
             part = 1e-4 if '"hht"' in text else 1e-5
             assert abs(found["energy.balance"]).max() < part * found["energy.kinetic"].max(), text
     assert runs >= 3
+
+
+def test_the_page_on_contact_in_space_runs() -> None:
+    """Its ball rolls after 2 v/(7 mu g) with 5/7 of its speed, to the run's rtol."""
+    names: dict[str, Any] = {}
+    for language, _, text in blocks(DOCS / "space-contact.md"):
+        if language == "python":
+            exec(text, names)
+    result, speed = names["result"], math.hypot(1.0, 0.5)
+    (rolls,) = [event for event in result.events if event.kind == "stick"]
+    assert rolls.t == pytest.approx(2.0 * speed / (7.0 * 0.3 * 9.81), rel=1e-6)
+    assert math.hypot(result["ball.vx"][-1], result["ball.vy"][-1]) == pytest.approx(5.0 / 7.0 * speed, rel=1e-6)
 
 
 def test_the_page_on_the_cross_check_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

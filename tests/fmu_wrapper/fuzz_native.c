@@ -10,6 +10,8 @@
 
 #include "fmi3Functions.h"
 
+extern int fmi2SetRealInputDerivatives(void *c, const unsigned vr[], size_t n, const int order[], const double value[]);
+
 enum { INSTANCES = 3, STATES = 4, MOST = 12 };
 #define END 0.4 /* s: a step beyond it is refused, and so none takes long */
 
@@ -153,7 +155,10 @@ static void derivatives(Held *h) {
         order[k] = any(20) ? 1 : 2;
     }
     fmi3Status s;
-    switch (any(3)) {
+    switch (any(4)) {
+    case 3: /* FMI 2.0 has what 3.0 has not, and instances are the same */
+        s = (fmi3Status)fmi2SetRealInputDerivatives(h->fmu, known, m, any(60) ? order : NULL, seeds);
+        break;
     case 0: s = fmi3GetDirectionalDerivative(h->fmu, unknown, n, known, m, any(60) ? seeds : NULL, m, found, room); break;
     case 1: s = fmi3GetAdjointDerivative(h->fmu, unknown, m, known, n, seeds, m, any(60) ? found : NULL, room); break;
     default: s = fmi3GetOutputDerivatives(h->fmu, unknown, n, any(60) ? order : NULL, found, room);

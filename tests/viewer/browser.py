@@ -27,6 +27,8 @@ ERRORS = (
     "<script>window.failures = []; window.addEventListener('error', (e) => window.failures.push(e.message));</script>"
 )
 
+SOFTWARE = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+
 
 def browser() -> str:
     """The command of a browser; the test is skipped where there is none."""
@@ -37,10 +39,12 @@ def browser() -> str:
     return found
 
 
-def probe(page: Path, script: str, size: tuple[int, int] = (1280, 800)) -> dict[str, Any]:
+def probe(
+    page: Path, script: str, size: tuple[int, int] = (1280, 800), flags: tuple[str, ...] = SOFTWARE
+) -> dict[str, Any]:
     """Open `page` and run `script`, which puts what it finds into `found`; errors of the page are in found["failures"].
 
-    The page is opened with its time stopped at the start (#t=0).
+    The page is opened with its time stopped at the start (#t=0). `flags` say how the browser draws in space.
     """
     text = page.read_text(encoding="utf-8").replace("<head>", f"<head>{ERRORS}", 1)
     body = f"{script}\n    found.failures = window.failures;"
@@ -48,8 +52,7 @@ def probe(page: Path, script: str, size: tuple[int, int] = (1280, 800)) -> dict[
     probed.write_text(text.replace("</body>", f"{PROBE % body}</body>"), encoding="utf-8")
     done = subprocess.run(
         [
-            browser(), "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-            "--disable-background-networking",
+            browser(), "--headless", "--no-sandbox", *flags, "--disable-background-networking",
             f"--user-data-dir={page.parent / 'profile'}", f"--window-size={size[0]},{size[1]}",
             "--virtual-time-budget=6000", "--dump-dom", f"{probed.as_uri()}#t=0",
         ],

@@ -11,12 +11,16 @@ from browser import probe
 from runs import run
 from tlismni.core import (
     Box3D,
+    Cable2D,
     Cable3D,
     CableClamp3D,
     Capsule3D,
+    Clamp2D,
     ContactGroup3D,
     HalfSpace3D,
+    Marker2D,
     Marker3D,
+    MaterialPoint2D,
     Model,
     ModelError,
     NewtonImpact,
@@ -28,6 +32,7 @@ from tlismni.core import (
     SpringDamper3D,
     simulate,
 )
+from tlismni.core.flexible.section_loads import section
 from tlismni.models import load, names
 from tlismni.viewer import animate, show
 from tlismni.viewer.scene import Scene
@@ -196,6 +201,32 @@ def test_a_cable_bends_through_its_nodes() -> None:
     assert "cable 0" in {node.get("name") for node in Glb(to_glb(scene)).json["nodes"]}
 
 
+def test_a_cable_in_space_is_coloured_as_the_planar_one() -> None:
+    """The same cable by both elements, in one plane: axial force and bending moment along it."""
+    numbers: dict[str, Any] = {
+        "name": "cable", "elements": 3, "length": 1.0, "mass_per_length": 0.3, "axial_stiffness": 400.0,
+        "bending_stiffness": 0.7,
+    }  # fmt: skip
+    times = np.linspace(0.0, 0.2, 11)
+    root = CableClamp3D(name="root", cable="cable", s=0.0, marker=Marker3D())
+    space = Model(gravity=(0.0, -9.81, 0.0), bodies=[Cable3D(**numbers)], joints=[root])
+    point = MaterialPoint2D(name="end", body="cable", point=(0.0, 0.0))
+    weld = Clamp2D(name="root", a=Marker2D(), b=Marker2D(body="end"))
+    plane = Model(bodies=[Cable2D(**numbers), point], joints=[weld])
+    found = simulate(space, 0.2, rtol=1e-9, t_eval=times)
+    swung = simulate(plane, 0.2, rtol=1e-9, t_eval=times)
+    like = section(swung, plane.bodies[0], np.linspace(0.0, 1.0, 13), times=times)
+    scene = animate(found).scene
+    (band,) = scene.bands
+    fields = {field.name: field for field in band.fields}
+    frames = [int(np.argmin(np.abs(scene.t - t))) for t in times[1:]]
+    force, moment = fields["axial force"].values, fields["bending moment"].values
+    assert fields["bending moment"].limit > 0.5
+    assert moment.shape == band.points.shape[:2]
+    assert np.abs(moment[frames][:, ::4] - np.abs(like.bending_moment[1:, ::4])).max() < 1e-4
+    assert np.abs(force[frames][:, ::4] - like.axial_force[1:, ::4]).max() < 1e-2
+
+
 def test_every_scenario_in_space_has_a_scene_and_a_file() -> None:
     found = [name for name in names() if is_spatial(load(name).model)]
     assert len(found) >= 8
@@ -274,3 +305,21 @@ def test_in_a_browser_solids_are_drawn_where_the_result_says(tmp_path: Path, siz
     assert np.hypot(xx, xy) == pytest.approx(1.0) and xx * yx + xy * yy == pytest.approx(0.0, abs=1e-9)
     assert xx * yy - xy * yx == pytest.approx(1.0) and z == pytest.approx([0.0, 0.0], abs=1e-9)
     assert found["loaded"] == 0 and found["wide"] <= 0
+
+
+def test_a_browser_that_cannot_draw_in_space_says_so_and_shows_the_rest(tmp_path: Path) -> None:
+    simulate(bodies_in_space(), 0.1).animate(tmp_path / "x.html")
+    found = probe(
+        tmp_path / "x.html",
+        """
+    const told = document.getElementById("missing");
+    found.told = told.textContent;
+    found.height = told.getBoundingClientRect().height;
+    window.tlismni.seek(0.05);
+    window.tlismni.paint(0);
+    found.cards = document.querySelectorAll(".card").length;
+    """,
+        flags=("--disable-gpu", "--disable-3d-apis"),
+    )
+    assert "WebGL" in found["told"] and ".gif" in found["told"] and found["height"] > 10.0
+    assert found["cards"] > 0 and found["failures"] == []

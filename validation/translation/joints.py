@@ -6,18 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ...core.elements import Clamp2D, CoordinateDriver, Distance2D, Gear2D, Prismatic2D, Revolute2D
+from ...core.elements import Clamp2D, CoordinateDriver, Distance2D, Prismatic2D, Revolute2D
 from ...core.elements.base import Element
 from ...core.model.markers import GROUND
 from ..errors import NotTranslatable
 from .bodies import add_motion
-from .registry import Build, Column, Derived, no_equal, translates
+from .registry import Build, Column, Derived, translates
 from .signals import time_function
-
-no_equal(
-    "where the centres stand still, an ObjectConnectorCoordinate between the two angles, with the ratio as its factor",
-    Gear2D,
-)
 
 
 def _force_columns(record: Element, build: Build, item: Any, output: str, factors: tuple[float, ...]) -> None:

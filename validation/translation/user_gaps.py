@@ -15,6 +15,7 @@ from ...core.elements import Cable2D, MaterialPoint2D
 from ...core.model.markers import GROUND, Marker2D
 from ...core.shapes.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
 from ...core.shapes.coordinate_contact import CoordinateContact, CoordinateTerm
+from ..errors import NotTranslatable
 from .registry import Build
 
 Numbers = Sequence[float]
@@ -59,6 +60,15 @@ class Nodes:
     def indices(self, nodes: Sequence[int]) -> list[int]:
         """Where the coordinates of these nodes stand."""
         return [k for n in nodes for k in range(self.slices[n].start, self.slices[n].stop)]
+
+    def place(self, build: Build, body: str, coordinate: str) -> int:
+        """Where a coordinate of a body stands. Raises NotTranslatable if the body has no such one of its own."""
+        record = next(b for b in build.model.bodies if b.name == body)
+        items = build.bodies[body]
+        if coordinate not in record.coordinate_names or not items.reference:
+            raise NotTranslatable(f"'{coordinate}' of '{body}' is no coordinate there")
+        k, each = record.coordinate_names.index(coordinate), items.coordinates_each or len(items.reference)
+        return self.slices[items.all_nodes[k // each]].start + k % each
 
 
 def _carrier(build: Build, name: str) -> str:
@@ -127,21 +137,32 @@ def _cable_frame(cable: Cable2D, point: float, at: list[int], size: int) -> Fram
     return frame
 
 
+GapMaker = Callable[[Any, Build, Nodes], Gap]
+_MAKERS: dict[type, GapMaker] = {}
+
+
+def gap_of(record: type) -> Callable[[GapMaker], GapMaker]:
+    """Decorator: the function makes the gap of contacts of this type; it takes record, build and nodes."""
+
+    def register(function: GapMaker) -> GapMaker:
+        _MAKERS[record] = function
+        return function
+
+    return register
+
+
 def user_gap(record: Any, build: Build) -> UserGap:
     """The gap of a contact between planar shapes, or of coordinates."""
     if isinstance(record, CoordinateContact):
         return _coordinate_gap(record, build)
-    a, b = record.markers()
-    nodes = Nodes(build, (a.body, b.body))
-    first, second = (_point(build, marker, nodes) for marker in (a, b))
-    shape = _half_plane_gap if isinstance(record, DiskOnHalfPlane2D) else _disk_gap
-    return UserGap(tuple(nodes.nodes), nodes.reference, shape(record, first, second, len(nodes.reference)))
+    nodes = Nodes(build, [marker.body for marker in record.markers()])
+    return UserGap(tuple(nodes.nodes), nodes.reference, _MAKERS[type(record)](record, build, nodes))
 
 
 Point = Callable[[Numbers], tuple[float, float, float, float, float, Add]]
 
 
-def _point(build: Build, marker: Marker2D, nodes: Nodes) -> Point:
+def point_of(build: Build, marker: Marker2D, nodes: Nodes) -> Point:
     """(x, y, angle of the frame, the point's arm in the directions of space, how the frame's gradients are added)."""
     frame, (u, w) = frame_of(build, marker.body, nodes), marker.point
 
@@ -156,10 +177,12 @@ def _point(build: Build, marker: Marker2D, nodes: Nodes) -> Point:
     return point
 
 
-def _half_plane_gap(record: DiskOnHalfPlane2D, first: Point, second: Point, size: int) -> Gap:
+@gap_of(DiskOnHalfPlane2D)
+def _half_plane_gap(record: DiskOnHalfPlane2D, build: Build, nodes: Nodes) -> Gap:
     """Height of the centre over the line; what slides past each other are the disk's rim and the point of the line's
     body that is there while they touch."""
-    angle, radius = record.plane.marker.angle, record.disk.radius
+    first, second = (point_of(build, shape.marker, nodes) for shape in (record.plane, record.disk))
+    angle, radius, size = record.plane.marker.angle, record.disk.radius, len(nodes.reference)
 
     def gap(x: Numbers) -> tuple[float, list[float], list[float]]:
         ax, ay, turn, aox, aoy, add_a = first(x)
@@ -178,9 +201,11 @@ def _half_plane_gap(record: DiskOnHalfPlane2D, first: Point, second: Point, size
     return gap
 
 
-def _disk_gap(record: DiskOnDisk2D, first: Point, second: Point, size: int) -> Gap:
+@gap_of(DiskOnDisk2D)
+def _disk_gap(record: DiskOnDisk2D, build: Build, nodes: Nodes) -> Gap:
     """Distance of the centres; the rims slide past each other, along the normal turned by -90 degrees."""
-    ra, rb = record.a.radius, record.b.radius
+    first, second = (point_of(build, disk.marker, nodes) for disk in (record.a, record.b))
+    ra, rb, size = record.a.radius, record.b.radius, len(nodes.reference)
 
     def gap(x: Numbers) -> tuple[float, list[float], list[float]]:
         ax, ay, _, aox, aoy, add_a = first(x)

@@ -3,7 +3,7 @@
 const EDGES = "#1f3a5f", SIDES = 10, TRIAD = ["#c0392b", "#2e7d32", "#1f5fbf"];
 const solid = document.getElementById("solid");
 const world = new THREE.Scene(), lens = new THREE.OrthographicCamera(), sun = new THREE.DirectionalLight(0xffffff, 1.9);
-const tubes = scene.bands.map((band) => new THREE.Mesh(tubeGeometry(band), new THREE.MeshStandardMaterial({ color: FLEX, roughness: 0.7 })));
+const tubes = scene.bands.map((band) => new THREE.Mesh(tubeGeometry(band), new THREE.MeshStandardMaterial({ roughness: 0.7, vertexColors: true })));
 let renderer = null, mixer = null, span = 0;
 
 lens.matrixAutoUpdate = false;
@@ -19,7 +19,7 @@ try {
   renderer.shadowMap.enabled = true;
   renderer.shadowMap.type = THREE.PCFShadowMap;
 } catch (error) {
-  document.getElementById("notes").textContent = "This browser draws nothing in space (no WebGL): switch its hardware acceleration on, or make a film (.gif) of the run.";
+  document.getElementById("missing").textContent = "This browser cannot draw in space: it has no WebGL. Switch its hardware acceleration on, try another browser, or make a film of the run (a name that ends with .gif). Time line and plots work.";
 }
 
 const bytes = Uint8Array.from(atob(scene.solids), (letter) => letter.charCodeAt(0));
@@ -48,7 +48,7 @@ const ready = new THREE.GLTFLoader().parseAsync(bytes.buffer, "").then((loaded) 
 // A tube along a cable; its places are filled in for each picture.
 function tubeGeometry(band) {
   const count = band.points.shape[1], geometry = new THREE.BufferGeometry(), index = [];
-  for (const name of ["position", "normal"]) geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * SIDES * count), 3));
+  for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * SIDES * count), 3));
   for (let k = 0; k + 1 < count; k++) {
     for (let i = 0; i < SIDES; i++) {
       const a = k * SIDES + i, b = k * SIDES + ((i + 1) % SIDES);
@@ -62,8 +62,10 @@ function tubeGeometry(band) {
 function bend(tube, band, where) {
   const count = band.points.shape[1], place = tube.geometry.attributes.position, normal = tube.geometry.attributes.normal;
   const radius = 0.005 * band.width * scene.size, points = Array.from({ length: count }, (_, k) => bandPoint(band, where, k));
+  const field = band.fields[chosen.get(band)], shade = new THREE.Color(), tint = tube.geometry.attributes.color;
   let across = null;
   for (let k = 0; k < count; k++) {
+    shade.set(field ? colour(at(field.values, where, count, k) / field.limit) : FLEX);
     const ahead = unit(sum(points[Math.min(k + 1, count - 1)], points[Math.max(k - 1, 0)], -1));
     across = across || (Math.abs(ahead[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]);
     across = unit(sum(across, ahead, -dot(across, ahead)));
@@ -71,10 +73,11 @@ function bend(tube, band, where) {
     for (let i = 0; i < SIDES; i++) {
       const angle = (2 * Math.PI * i) / SIDES, out = across.map((x, j) => Math.cos(angle) * x + Math.sin(angle) * third[j]);
       normal.setXYZ(k * SIDES + i, ...out);
+      tint.setXYZ(k * SIDES + i, shade.r, shade.g, shade.b);
       place.setXYZ(k * SIDES + i, ...sum(points[k], out, radius));
     }
   }
-  place.needsUpdate = normal.needsUpdate = true;
+  place.needsUpdate = normal.needsUpdate = tint.needsUpdate = true;
   tube.frustumCulled = false;
 }
 
@@ -140,9 +143,10 @@ function placed(name) {
   return [12, 0, 4, 8].flatMap((k) => modelled([e[k], e[k + 1], e[k + 2]]));
 }
 
-// The model's axes, in the corner.
+// The model's axes, in the corner, above the legend of the colours.
 function drawTriad(g) {
-  const [right, up, towards] = eyeAxes(), x = camera.width - 46, y = camera.height - 44;
+  const legend = document.getElementById("legend"), above = legend.hidden ? 0 : legend.offsetHeight + 8;
+  const [right, up, towards] = eyeAxes(), x = camera.width - 46, y = camera.height - 44 - above;
   const ends = [0, 1, 2].map((k) => upright([0, 1, 2].map((i) => (i === k ? 1 : 0))));
   const order = [0, 1, 2].sort((a, b) => dot(towards, ends[a]) - dot(towards, ends[b]));
   for (const k of order) {

@@ -11,8 +11,9 @@ from ...core.model.base import in_space
 from ...core.model.markers import GROUND, Marker3D
 from ...core.model.outputs import MarkerOutput3D
 from ..drawing.shapes import PORT
+from ..fields import loads
 from ..motion import Motion
-from ..scene import SPACE, Band, Floats, Frame, Gauge, Scene
+from ..scene import SPACE, Band, Field, Floats, Frame, Gauge, Scene
 from ..tracks import Tracks
 from . import meshes
 from .fixtures import add_planes, place
@@ -58,7 +59,7 @@ def spatial_scene(
         elif isinstance(body, PlanarFrame):
             stage.solid(Marker3D(body=body.name), meshes.ball(), (0.02 * stage.size,) * 3)
         elif isinstance(body, Cable3D):
-            scene.bands.append(Band(body.name, cable_points(motion, body), 2.0 * CABLE))
+            scene.bands.append(Band(body.name, cable_points(motion, body), 2.0 * CABLE, cable_fields(motion, body)))
         elif isinstance(body, LinearSystem):
             units = {record.name: record.unit for record in body.coordinate_records()}
             names = body.coordinates[:MOST_GAUGES]
@@ -92,16 +93,27 @@ def eye_of(model: Model) -> tuple[tuple[float, float, float], ...]:
     return right_axis, up_axis, towards_axis
 
 
-def cable_points(motion: Motion, body: Cable3D) -> Floats:
-    """Places (F, P, 3) along a cable."""
+def cable_points(motion: Motion, body: Cable3D, order: int = 0) -> Floats:
+    """Places (F, P, 3) along a cable, or their derivatives of this order by its length."""
     q = motion.table(body.name)[0].reshape(len(motion.t), body.elements + 1, 2, 3)
     length, found = body.length / body.elements, []
     for e in range(body.elements):
         nodes = q[:, e : e + 2].reshape(len(q), 4, 3)
         for x in np.linspace(0.0, 1.0, BETWEEN, endpoint=False):
-            found.append(np.einsum("i,fij->fj", weights(float(x), length, 0), nodes))
-    found.append(q[:, -1, 0])
+            found.append(np.einsum("i,fij->fj", weights(float(x), length, order), nodes))
+    found.append(np.einsum("i,fij->fj", weights(1.0, length, order), q[:, -2:].reshape(len(q), 4, 3)))
     return np.stack(found, axis=1)
+
+
+def cable_fields(motion: Motion, body: Cable3D) -> tuple[Field, ...]:
+    """Axial force EA (|r'| - 1 - eps_0) and the size of the bending moment, EI |r' x r''|/|r'|^2, along a cable."""
+    if not motion.moves:
+        return ()
+    slope, bend = cable_points(motion, body, 1), cable_points(motion, body, 2)
+    stretch = np.linalg.norm(slope, axis=2)
+    strain = stretch - 1.0 - body.reference_strain
+    curvature = np.linalg.norm(np.cross(slope, bend), axis=2) / stretch**2
+    return tuple(loads(body.axial_stiffness * strain, strain, body.bending_stiffness * curvature, curvature))
 
 
 def _add_frame(stage: Stage3D, body: BodyElement) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from ..drawing import symbols
 from ..drawing.shapes import Drawing, Path
 from ..scene import Floats, Scene, Solid
+from ..still import band_colour
 from . import meshes
 from .build import paper
 from .colours import CABLE, JOINT, WIRE
@@ -35,7 +36,11 @@ def still_in_space(scene: Scene, frame: int) -> Drawing:
         for k in range(band.points.shape[1] - 1):
             a, b = band.points[frame, k], band.points[frame, k + 1]
             r = 0.005 * band.width * scene.size
-            faces += list(_stretched(scene, meshes.cylinder(), a, b, (r, r), CABLE, 0.5))
+            colour = CABLE
+            if band.fields:
+                values = band.fields[0].values[frame] / band.fields[0].limit
+                colour = band_colour(float(0.5 * (values[k] + values[k + 1])))
+            faces += list(_stretched(scene, meshes.cylinder(), a, b, (r, r), colour, 0.5))
     for _, corners, colour, _ in sorted(faces, key=lambda face: -face[0]):
         points = [(float(x), float(y)) for x, y in corners]
         drawing.shapes.append(Path(points, None, colour, closed=True))

@@ -1,0 +1,138 @@
+"""The tables of a structure, written into its place (`building.py`)."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..linalg import lu_at
+from ..linalg.analyze import lay_out, words_of
+
+
+@internal
+def write_structure(
+    ws: Any, b: Any, st: Any, pt: Any, m_act: int, m_held: int, left_out: int, nnz: int, total: int, n_mass: int,
+    n_jacobian: int, kept: int, active: Any, row: Any, col: Any, order: Any, slot: Any,
+) -> None:  # fmt: skip
+    """Write the structure of the codes that are wanted: `active` are its rows, of the `kept` entries (`row`, `col`)
+    each has a number in `order`, ascending, and a `slot`."""
+    full, at = b.n + m_act, st.words
+    st.n_values, st.m_act, st.n_redundant, st.nnz = total + 1, m_act, left_out, nnz
+    st.m_held, st.n_mass, st.n_jacobian, st.dropped = m_held, n_mass, n_jacobian, b.dropped
+    st.codes, st.active, st.redundant = at, at + 8 * b.n_contacts, at + 8 * (b.n_contacts + m_act)
+    at += 8 * (b.n_contacts + m_act + left_out)
+    st.entry_row, st.entry_col, everything = at, at + 8 * nnz, at + 16 * nnz
+    at += 24 * nnz
+    st.gradient_start, st.gradient_col = at, at + 8 * b.m_ext
+    st.gradient_slot = st.gradient_col + 8 * (total - nnz)
+    at = st.gradient_slot + 8 * (total - nnz)
+    st.mass_slot, st.jacobian_start = at, at + 8 * n_mass
+    at += 8 * (n_mass + m_act + 1)
+    st.jacobian_row, st.jacobian_col = at, at + 8 * n_jacobian
+    st.jacobian_slot, tables = at + 16 * n_jacobian, at + 24 * n_jacobian
+    at = tables + 8 * b.table_size
+    codes, wanted = ivec(st.codes, b.n_contacts), ivec(ws.wanted, b.n_contacts)
+    for k in range(b.n_contacts):
+        codes[k] = wanted[k]
+    own, redundant, out, count = ivec(st.active, m_act), ivec(st.redundant, left_out), ivec(b.left_out, b.m_ext), 0
+    for i in range(m_act):
+        own[i] = active[i]
+    for i in range(b.m):
+        if out[i] != 0:
+            redundant[count] = i
+            count += 1
+    _write_entries(b, st, full, kept, row, col, order, slot)
+    identity = ivec(everything, nnz)
+    for e in range(nnz):
+        identity[e] = e
+    _write_tables(b, st, tables, total, row, slot)
+    reals, many = st.reals, words_of(full, nnz)
+    st.values, st.probe = reals, reals + 8 * (total + 1)
+    reals += 8 * (total + 1 + m_act)
+    probe = vec(st.probe, m_act)
+    for i in range(m_act):
+        probe[i] = 0.0
+    dense = full <= b.dense_limit
+    lay_out(lu_at(st.kkt), full, nnz, st.entry_row, st.entry_col, everything, dense, at, reals)
+    at += 8 * many
+    lay_out(lu_at(st.kkt_query), full, nnz, st.entry_row, st.entry_col, everything, dense, at, reals + 24 * full)
+    at += 8 * many
+    _give_units(b, st)
+    pt.ready, pt.words, pt.reals = 0, at, reals + 48 * full
+
+
+@internal
+def _write_entries(b: Any, st: Any, full: int, kept: int, row: Any, col: Any, order: Any, slot: Any) -> None:
+    n, nnz, m_act = b.n, st.nnz, st.m_act
+    rows, cols = ivec(st.entry_row, nnz), ivec(st.entry_col, nnz)
+    beyond = st.n_values - 1 - nnz
+    g_start, g_col, g_slot = (
+        ivec(st.gradient_start, b.m_ext),
+        ivec(st.gradient_col, beyond),
+        ivec(st.gradient_slot, beyond),
+    )
+    mass, start = ivec(st.mass_slot, st.n_mass), ivec(st.jacobian_start, m_act + 1)
+    j_row, j_col = ivec(st.jacobian_row, st.n_jacobian), ivec(st.jacobian_col, st.n_jacobian)
+    j_slot = ivec(st.jacobian_slot, st.n_jacobian)
+    for i in range(b.m_ext):
+        g_start[i] = 0
+    for i in range(m_act + 1):
+        start[i] = 0
+    masses, jacobian, last = 0, 0, -1
+    for p in range(kept):
+        e = order[p]
+        k, i, j = slot[e], row[e], col[e]
+        if k == last:
+            continue
+        last = k
+        if i >= full:
+            g_col[k - nnz], g_slot[k - nnz] = j, k
+            g_start[i - full + 1] += 1
+            continue
+        rows[k], cols[k] = i, j
+        if i < n and j < n:
+            mass[masses] = k
+            masses += 1
+        elif j < n:
+            j_row[jacobian], j_col[jacobian], j_slot[jacobian] = i - n, j, k
+            jacobian += 1
+            start[i - n + 1] += 1
+    for i in range(b.m):
+        g_start[i + 1] += g_start[i]
+    for i in range(m_act):
+        start[i + 1] += start[i]
+
+
+@internal
+def _write_tables(b: Any, st: Any, tables: int, nowhere: int, row: Any, slot: Any) -> None:
+    """Where each entry of each element goes."""
+    block, starts, addresses = (
+        ivec(tables, b.table_size),
+        ivec(b.table_start, 3 * b.n_kernels),
+        ivec(st.slots, 3 * b.n_kernels),
+    )
+    for i in range(3 * b.n_kernels):
+        addresses[i] = tables + 8 * starts[i]
+    for i in range(b.table_size):
+        block[i] = nowhere
+    first = b.n
+    place = ivec(b.s_place, b.n_s)
+    for e in range(b.n_s):
+        if row[first + e] >= 0:
+            block[place[e]] = slot[first + e]
+    first += b.n_s
+    place, other = ivec(b.j_place, b.n_j), ivec(b.j_place_t, b.n_j)
+    for e in range(b.n_j):
+        if row[first + e] >= 0:
+            block[place[e]] = slot[first + e]
+        if row[first + b.n_j + e] >= 0:
+            block[other[e]] = slot[first + b.n_j + e]
+
+
+@internal
+def _give_units(b: Any, st: Any) -> None:
+    n, m_act, units, active = b.n, st.m_act, vec(b.units, b.n + b.m_ext), ivec(st.active, st.m_act)
+    for address in (st.kkt, st.kkt_query):
+        lu = lu_at(address)
+        rows, cols = vec(lu.row_unit, n + m_act), vec(lu.col_unit, n + m_act)
+        for i in range(n + m_act):
+            rows[i] = cols[i] = units[i] if i < n else units[n + active[i - n]]
