@@ -5,7 +5,8 @@
 Ours: contacts as constraints (e = 0.3, mu = 0.4), `ebdf`, one group for all pairs. exudyn's: `GeneralContact`, a spring
 and a damper that give the same restitution to two spheres of the mean mass, friction proportional to the speed below
 1 mm/s; explicit, at a hundredth of the contact's period. MuJoCo's: its soft constraints with default softness, steps of
-1 ms, elliptic cones; it knows no restitution, so that its heap bounces less. All hand out positions every 10 ms.
+1 ms, elliptic cones; it knows no restitution, so that its heap bounces less (pip install mujoco, or leave it out with
+--only). All hand out positions every 10 ms.
 """
 
 import argparse

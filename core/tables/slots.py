@@ -178,4 +178,4 @@ class Slots:
 
 
 def _begin(x: Array) -> int:
-    return int(x.__array_interface__["data"][0])
+    return int(x.view(np.uint8).__array_interface__["data"][0])  # that of a structured array describes its type

@@ -13,6 +13,7 @@ from . import (  # noqa: F401
     scalar_forces,
     scalar_joints,
     space,
+    space_contacts,
 )
 from .registry import Build, Column, ContactColumns, find_translator, translate, translates
 

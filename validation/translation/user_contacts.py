@@ -47,10 +47,10 @@ class Memory:
         self.gap, self.rate = gap, rate
 
 
-def add_user_contact(record: Any, build: Build) -> None:
-    """Contact, friction and their recording."""
-    gap = user_gap(record, build)
-    force, kinds = Force(record, gap), build.exudyn.core.OutputVariableType
+def add_user_contact(record: Any, build: Build, own: "Force | None" = None) -> None:
+    """Contact, friction and their recording; `own` in place of the force of a contact in the plane."""
+    force = Force(record, user_gap(record, build)) if own is None else own
+    gap, kinds = force.gap, build.exudyn.core.OutputVariableType
     build.add(
         "ObjectGenericODE2",
         nodeNumbers=list(gap.nodes),
