@@ -51,13 +51,19 @@ for name in ("formula", "by_module", "with_list", "with_set"):
     return [line.split("|") for line in done.stdout.splitlines()]
 
 
-def test_keys_are_equal_in_all_processes(tmp_path):
-    assert contents(tmp_path) == contents(tmp_path, seed="2")
+@pytest.fixture(scope="module")
+def before(tmp_path_factory):
+    """What the keys say of the modules as they stand above."""
+    return contents(tmp_path_factory.mktemp("formulas"))
+
+
+def test_keys_are_equal_in_all_processes(tmp_path, before):
+    assert contents(tmp_path, seed="2") == before
 
 
 @pytest.mark.parametrize("change", [("2.0", "2.5"), ("FACTOR = 3.0", "FACTOR = 4.0")])
-def test_what_a_formula_reaches_in_other_files_changes_its_key(tmp_path, change):
-    before, after = contents(tmp_path), contents(tmp_path, helper=HELPER.replace(*change))
+def test_what_a_formula_reaches_in_other_files_changes_its_key(tmp_path, before, change):
+    after = contents(tmp_path, helper=HELPER.replace(*change))
     assert [x != y for x, y in zip(before, after, strict=True)] == [True, True, False, False]
 
 
@@ -72,8 +78,8 @@ def test_a_module_s_function_is_followed_to_what_it_calls(tmp_path):
     assert [x != y for x, y in zip(*found, strict=True)] == [True, True, False, False]
 
 
-def test_its_own_file_changes_the_key(tmp_path):
-    before, after = contents(tmp_path), contents(tmp_path, MODULE.replace("math.sin", "math.cos"))
+def test_its_own_file_changes_the_key(tmp_path, before):
+    after = contents(tmp_path, MODULE.replace("math.sin", "math.cos"))
     assert before[0] != after[0]
 
 

@@ -20,6 +20,15 @@ def bench(monkeypatch_module):
     import accuracy_problems
     import peer_equations
 
+    # each is compiled for its model
+    equations, kept = peer_equations.equations, {}
+
+    def once(model, index):
+        if (model.name, index) not in kept:
+            kept[model.name, index] = equations(model, index)
+        return kept[model.name, index]
+
+    monkeypatch_module.setattr(peer_equations, "equations", once)
     yield accuracy_problems, peer_equations
     for name in ("accuracy_problems", "peer_equations", "reference"):
         sys.modules.pop(name, None)
