@@ -255,7 +255,10 @@ def test_a_rigid_stop_is_the_limit_of_stiff_ones() -> None:
         forces=(hook,),
         contacts=(stop,),
     )
-    assert crosscheck(model, t_end=1.0).ok
+    found = crosscheck(model, t_end=1.0)
+    assert found.ok
+    units = {row.quantity.partition(": ")[2]: row.unit for row in found.rows if row.quantity.startswith("stop: ")}
+    assert units["approach speed"] == units["separation speed"] == "rad/s" and units["impulse"] == "N.m s"
 
 
 @pytest.mark.parametrize("follower", [False, True])

@@ -266,6 +266,21 @@ def unit_of(result: Result, channel: str) -> str:
     return next((c.unit for c in result.channel_records if c.name == channel), "")
 
 
+@dataclass(frozen=True)
+class ContactUnits:
+    """Units of what is compared of a contact: of a stop of an angle they are rad/s, N.m and N.m s."""
+
+    speed: str
+    force: str
+    impulse: str
+
+
+def contact_units(result: Result, contact: str) -> ContactUnits:
+    """Units of the contact's speeds, forces and impulses."""
+    force = unit_of(result, f"{contact}.normal_force")
+    return ContactUnits(unit_of(result, f"{contact}.gap_rate"), force, f"{force} s")
+
+
 def course_scale(result: Result, channel: str, own: float) -> float | None:
     """What relative differences of a course in `result`, ours, refer to: its `own` scale, but at least STILL of the
     largest value in that unit, since what stays at rest differs by rounding. None if all are zero."""

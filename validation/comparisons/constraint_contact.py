@@ -21,6 +21,7 @@ from .common import (
     Task,
     Touch,
     at_times,
+    contact_units,
     course_scale,
     energy_panel,
     is_contact_channel,
@@ -170,11 +171,12 @@ def _impact_rows(sides: Sides) -> list[Row]:
     again = next((x for x in touches(sides.loose.events) if x.contact == first.contact), first)
     *values, doubled = (impact_quantities(run, first.contact) for run in (*sides.runs, sides.doubled))
     limit, bar = sides.limit(values, doubled)
+    units = contact_units(sides.ours, first.contact)
     names = (
         ("time of the first impact", "s", first.start, again.start),
-        ("approach speed", "m/s", first.approach_speed, again.approach_speed),
-        ("impulse", "N s", first.impulse, again.impulse),
-        ("separation speed", "m/s", first.separation_speed, again.separation_speed),
+        ("approach speed", units.speed, first.approach_speed, again.approach_speed),
+        ("impulse", units.impulse, first.impulse, again.impulse),
+        ("separation speed", units.speed, first.separation_speed, again.separation_speed),
     )
     return [
         Row(f"{first.contact}: {name}", unit, ours, float(limit[k]), RELATIVE, "relative", float(bar[k]),

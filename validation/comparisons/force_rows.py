@@ -9,7 +9,18 @@ from ...core import ForceLaw, Result
 from ...core.description import Model
 from ..exudyn_run import ExudynResult
 from ..metrics import contact_intervals, impulse, peak, released, speeds, trajectory_difference
-from .common import Row, Task, Touch, at_times, course_scale, is_contact_channel, own_bar, touches, unit_of
+from .common import (
+    Row,
+    Task,
+    Touch,
+    at_times,
+    contact_units,
+    course_scale,
+    is_contact_channel,
+    own_bar,
+    touches,
+    unit_of,
+)
 from .contact_count import contact_count
 
 RELATIVE = 1e-4
@@ -118,8 +129,9 @@ def _contact_rows(sides: Sides, contact: str) -> list[Row]:
         return []
     if any(q is None for q in theirs):
         return []
-    units = {"start": "s", "approach_speed": "m/s", "duration": "s", "peak_force": "N", "impulse": "N s",
-             "separation_speed": "m/s"}  # fmt: skip
+    own = contact_units(sides.ours, contact)
+    units = {"start": "s", "approach_speed": own.speed, "duration": "s", "peak_force": own.force,
+             "impulse": own.impulse, "separation_speed": own.speed}  # fmt: skip
     rows = []
     for field in fields(Quantities)[:-1]:
         values = [np.asarray(getattr(q, field.name)) for q in theirs]

@@ -61,7 +61,7 @@ def moved_by(row: Row, ours: Result, touch: Touch) -> float:
     """How much a row's value changes for each unit of relative error of the speed after the touch: with its own size,
     and a place with the distance flown since then."""
     own = row.scale or abs(row.exudyn)
-    if row.at is None and row.unit == "m/s":
+    if row.at is None and row.unit in ("m/s", "rad/s"):
         own = max(own, touch.approach_speed)  # what is missed is a part of the speed that comes
     body, _, name = row.channel.rpartition(".")
     rate = f"{body}.{RATES.get(name, '')}"

@@ -15,7 +15,7 @@ from ...core.elements import PointMass2D, RigidBody2D
 from ..exudyn_model import build_exudyn_model
 from ..exudyn_run import ExudynSettings, solve
 from ..translation.user_gaps import user_gap
-from .common import Row, Task, Touch
+from .common import Row, Task, Touch, contact_units
 
 STEP = 1e-8
 """s: what forces and motion add in it does not count."""
@@ -42,7 +42,7 @@ def toggled_rows(task: Task, first: Touch, ours: Result) -> list[Row]:
         return []
     name = f"{first.contact}: momentum that exudyn's constraint takes when switched on (index 2), times 1 + e"
     theirs = (1.0 + contact.law.restitution) * impulse
-    return [Row(name, "N s", first.impulse, theirs, TOLERANCE, "relative")]
+    return [Row(name, contact_units(ours, first.contact).impulse, first.impulse, theirs, TOLERANCE, "relative")]
 
 
 def plastic_impulse(model: Model, contact: Any) -> float | None:
