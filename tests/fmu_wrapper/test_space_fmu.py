@@ -31,7 +31,7 @@ from tlismni.models import load, names
 from tlismni.viewer.space.build import is_spatial
 
 SPATIAL = [name for name in names() if is_spatial(load(name).model)]
-NOT_NATIVE = {"spinning_sphere": "singular position", "tippe_top": "jammed"}
+NOT_NATIVE = {"spinning_sphere": "singular position"}
 """What takes Python, and why."""
 STEPS = 12
 

@@ -24,9 +24,10 @@ def bench(monkeypatch_module):
     equations, kept = peer_equations.equations, {}
 
     def once(model, index):
-        if (model.name, index) not in kept:
-            kept[model.name, index] = equations(model, index)
-        return kept[model.name, index]
+        key = model.model_dump_json(), index
+        if key not in kept:
+            kept[key] = equations(model, index)
+        return kept[key]
 
     monkeypatch_module.setattr(peer_equations, "equations", once)
     yield accuracy_problems, peer_equations

@@ -43,7 +43,7 @@ def sphere_contact(record: SphereOnHalfSpace3D | SphereOnSphere3D, build: Build)
             )
     a, b = record.markers()
     nodes = Nodes(build, (a.body, b.body))
-    ends = [_End(build, marker, nodes) for marker in (a, b)]
+    ends = _End(build, a, nodes), _End(build, b, nodes)
     if isinstance(record, SphereOnHalfSpace3D):
         touch = _on_plane(*ends, _vector(record.plane.marker.axes()[:, 2]), record.sphere.radius)
     else:
