@@ -50,7 +50,7 @@ from ..stage import accelerations, joints
 from ..state import run_records as run_records
 from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
 from ..state.workspace_records import ENGAGE_SIGNATURE, EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
-from ..tables import building, evaluate, levels, measure, partition_building, probe, projection
+from ..tables import building, evaluate, levels, partition_building, probe, projection
 from .formed import forms
 
 _WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE
@@ -118,13 +118,14 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield drive.drive, (_DR, _FLAG)
     yield drive.locate_now, (_DR, _FLAG)
     for function in (
-        drive.aim_now, drive.wake_now, drive.settle_pending, drive.pass_breakpoint, drive.begin_forces,
+        drive.aim_now, drive.wake_now, drive.settle_pending, drive.pass_breakpoint,
         drive.unsettled_now, drive.open_now, mend.repair_now,
     ):  # fmt: skip
         yield function, (_DR,)
     for function in (exchange.exchange, exchange.tell, exchange.read):
         yield function, (types.from_dtype(exchange.EXCHANGE),)
-    yield begin_now.begin_now, (types.from_dtype(BEGIN),)
+    for function in (begin_now.begin_now, begin_now.measure_now, begin_now.place_now, begin_now.start_now):
+        yield function, (types.from_dtype(BEGIN),)
     yield slopes.along_inputs, slopes.ALONG_ARGUMENTS
     yield slopes.in_time, slopes.SLOPES_ARGUMENTS
     yield dense_output.interpolate, (_WS, _MS, _REAL)
@@ -143,8 +144,6 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
         yield function, (_WS,)
     yield evaluate.evaluate_tangent, (_WS, _REAL, _REAL)
     yield evaluate.constraint_norm, (_WS, _WHOLE)
-    yield measure.measure_rows, (_WS, _REALS, _REALS)
-    yield measure.measure_motion, (_WS, _REALS, _REALS, _REALS, _WHOLE, _REALS, _REALS)
     yield projection.meet, (_WS, _FLAG)
     yield partition_building.partition_wanted, (_WS,)
     yield probe.set_probe, (_WS,)

@@ -55,7 +55,7 @@ def _functions(assembly: Assembly) -> dict[str, int]:
         parts = [(name, IN_SPACE.get(name, part), signature) for name, part, signature in parts]
     needed = {name: bool(assembly.contacts) for name, _, _ in (*parts, *_OTHERS)}
     needed["settle_forces"] = any(isinstance(contact.law, ForceLaw) for contact in assembly.contacts)
-    needed["use_modes"] = needed["use_modes"] or bool(assembly.breakpoints)
+    needed["use_modes"] = True  # runs start with it
     return {name: address_of(f, signature) if needed[name] else 0 for name, f, signature in (*parts, *_OTHERS)}
 
 

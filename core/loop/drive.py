@@ -12,7 +12,7 @@ import numpy as np
 from ..compiled.jit import compiled, compiled_unlocked, internal, record_view
 from ..compiled.views import ivec, vec
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at
-from ..events.settle import begin_pending_forces, go_on_behind, settle
+from ..events.settle import go_on_behind, settle
 from ..events.unsettled import find_unsettled
 from ..location.asleep import wake_all
 from ..location.search import locate
@@ -25,6 +25,7 @@ from ..state.run_records import (
     CHUNK,
     CLOCK_SIZE,
     COUNTS_SIZE,
+    DRIVE_TYPE,
     DUE,
     EVENT,
     FAILED,
@@ -56,7 +57,7 @@ from .sliding import any_slides, may_have_jammed
 MANY = 6
 """Contacts from which on it pays to let those sleep that are far from touching."""
 
-workspace_at, method_at, loop_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE))
+workspace_at, method_at, loop_at, drive_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, DRIVE_TYPE))
 
 
 @internal
@@ -97,7 +98,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
     counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
     last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
     while True:
-        if _is_due(dr, ws):
+        if is_due(dr, ws):
             # which redundant rows are left out is for Python to look at, at every instant
             if hold or ws.n_redundant > 0 or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
                 return SETTLE
@@ -136,7 +137,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
 
 
 @internal
-def _is_due(dr: Any, ws: Any) -> bool:
+def is_due(dr: Any, ws: Any) -> bool:
     """True if events are pending."""
     pending = ivec(dr.pending, ws.n_contacts)
     for k in range(ws.n_contacts):
@@ -175,13 +176,6 @@ def pass_breakpoint(dr: Any) -> int:
     """Go on behind the breakpoint `PASSED` of the goals: a status of `events/records.py`."""
     ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
     return go_on_behind(dr, instant_at(dr.instant), ws, ms, lc)
-
-
-@compiled
-def begin_forces(dr: Any) -> int:
-    """`begin_pending_forces`, for Python."""
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    return begin_pending_forces(dr, instant_at(dr.instant), ws, ms, lc)
 
 
 @compiled

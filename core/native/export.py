@@ -10,7 +10,7 @@ from ..compiled.library import Library
 from ..description import Model
 from ..errors import SimulationError
 from ..run.simulation import Simulation
-from .beginning import Beginning
+from .beginning import let_begin
 from .beginnings import as_far_as_it_begins, prove_beginning, prove_together
 from .errors import NativeError
 from .follows import parameter_of
@@ -52,7 +52,7 @@ def image_and_parameters(
     sim = Simulation(model, **full)
     if isinstance(model, Model):
         refuse_motions(sim)
-        sim.beginning = Beginning(sim, full)  # type: ignore[attr-defined]
+        let_begin(sim, full)
     most = sim.settings.max_steps or MOST_STEPS
     wanted = _wanted(model, parameters)
     # which redundant rows are left out is found in Python

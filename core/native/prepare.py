@@ -7,11 +7,9 @@ twice as much. None of this changes a bit of the run.
 
 from typing import Any
 
-from ..compiled.jit import address_of
 from ..description import Model
 from ..errors import ConsistencyError
-from ..events.instant import PART_SIGNATURE, Instant
-from ..events.prepare import use_modes
+from ..events.instant import Instant
 from ..laws import ForceLaw
 from ..linalg import SingularMatrixError
 from ..run.drive_record import Drive
@@ -97,8 +95,6 @@ def _make_room(sim: Any) -> None:
         rows_space = ROOMS * drive.instant.rows_space
         drive.instant = Instant(sim.assembly, max(len(sim.assembly.contacts), drive.instant.most), rows_space)
         drive.record.set_size("instant", drive.instant.address)
-    # `repair_now` takes it from there, with contacts or without
-    drive.instant.tables()[0]["use_modes"] = address_of(use_modes, PART_SIGNATURE)
     workspace, slots = sim.workspace, sim.workspace.slots
     slots.ask(ROOMS)
     workspace.give_room()

@@ -26,7 +26,7 @@ def scratch_of(sim: Any) -> list[NDArray[Any]]:
         (sim.crossing._record.arrays, _OF_EXCHANGE),
     ):
         found += [arrays[name] for name in names]
-    found += [*sim.drive.instant.scratch(), *(sim.beginning.scratch if hasattr(sim, "beginning") else ())]
+    found += [*sim.drive.instant.scratch(), *sim.beginning.scratch]
     found.append(sim.workspace.slots.scratch.numbers)
     return found
 
@@ -37,8 +37,13 @@ def own_of(sim: Any) -> list[NDArray[Any]]:
     own = [*arrays, *tables, *sim.drive.instant.tables(), *sim.drive.instant.scratch()]
     for record in (sim._method, sim._loop, sim.drive.record, sim.crossing._record):
         own += [record.table, *(x for name, x in record.arrays.items() if name not in _CONSTANT)]
-    own += [*sim.workspace.blank(), *sim.beginning.own()]
+    own += [*sim.workspace.blank(), *_of_beginning(sim)]
     return own
+
+
+def _of_beginning(sim: Any) -> list[NDArray[Any]]:
+    """Of the start: `numbers` is set where runs begin at another time; all else are numbers of the model."""
+    return [sim.beginning.record.table, sim.beginning.numbers, *sim.beginning.scratch]
 
 
 _CONSTANT = (

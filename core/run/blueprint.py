@@ -46,6 +46,7 @@ class Blueprint:
             arrays += [x for name, x in record.arrays.items() if name not in (*_BLANK, "probes")]
             tables.append(record.table)
         tables += [sim._loop.arrays["probes"], *sim.drive.instant.tables()]
+        arrays, tables = [*arrays, *sim.beginning.memory()[0]], [*tables, *sim.beginning.memory()[1]]
         blank = [record.arrays[name] for record in _records(sim) for name in _BLANK if name in record.arrays]
         blank += [*sim.drive.instant.scratch(), *sim.workspace.blank()]
         self._image = Image(arrays, tables, blank)
@@ -61,7 +62,7 @@ class Blueprint:
             attributes[name] = list(attributes[name])
         new.workspace = old.workspace.moved(take)
         new._method, new._loop, new.drive = old._method.moved(take), old._loop.moved(take), old.drive.moved(take)
-        new.guard = old.guard.moved(take)
+        new.guard, new.beginning = old.guard.moved(take), old.beginning.moved(take)
         new.table = old.table.moved(old.assembly)
         new.name_arrays()
         return new

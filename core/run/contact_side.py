@@ -18,7 +18,7 @@ from ..state.run_records import HANDLED, HERE
 from ..state.workspace_records import OK
 from ..tables.assembly import Assembly
 from ..tables.evaluate import evaluate_power
-from ..tables.levels import position_level, rate_level
+from ..tables.levels import rate_level
 from ..tables.partition import prepare
 from ..tables.redundancy import RedundantRow, choose_rows, describe
 from ..tables.scales import Scales
@@ -134,13 +134,16 @@ class ContactSide:
 
     def solve_accelerations(self) -> None:
         """Accelerations, multipliers and the rates of the work accounts at the workspace's point."""
-        arrays = self.workspace.arrays
         if solve_accelerations(self.workspace.record) != OK:
-            raise ConsistencyError(
-                f"no accelerations and multipliers at t = {arrays['t'][0]:.9g} s: the augmented system "
-                "[M Phi_q^T; Phi_q 0] is singular or a force is not finite there"
-            )
+            raise self.no_accelerations()
         self.begin_rates()
+
+    def no_accelerations(self) -> ConsistencyError:
+        """The refusal of the workspace's point."""
+        return ConsistencyError(
+            f"no accelerations and multipliers at t = {self.workspace.arrays['t'][0]:.9g} s: the augmented system "
+            "[M Phi_q^T; Phi_q 0] is singular or a force is not finite there"
+        )
 
     def begin_rates(self) -> None:
         """Rates of the work accounts at the workspace's point, and what Newmark's formula starts from."""
@@ -148,10 +151,6 @@ class ContactSide:
         evaluate_power(self.workspace.record)
         # with the rates of the work accounts: Newmark's formula integrates them from here
         arrays["aux"][:] = arrays["a"]
-
-    def gap_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
-        """What the gaps of these contacts are small or large against at the workspace's point, (contacts,), m."""
-        return position_level(self.workspace.record) * self._row_scale(contacts)
 
     def rate_size(self, contacts: Sequence[int]) -> NDArray[np.float64]:
         """The same of the rates of their gaps and sliding distances, (contacts,), m/s."""
@@ -186,8 +185,3 @@ class ContactSide:
         """Closed contacts whose mode does not fit the forces at the workspace's point: they pull, or are held beyond
         their friction."""
         return self.drive.unsettled()
-
-    def presses(self, k: int) -> bool:
-        """True if the gap of contact k, with a force law, would close from rest (not just by rounding)."""
-        self.solve_accelerations()
-        return bool(self.workspace.arrays["phidd"][self.assembly.contacts[k].row] < 0.0)

@@ -20,7 +20,6 @@ from ..laws.friction import LuGreFriction
 from ..location.search import NEAREST
 from ..loop.drive import (
     aim_now,
-    begin_forces,
     drive,
     locate_now,
     open_now,
@@ -226,15 +225,6 @@ class Drive:
         """Go on behind the breakpoint t (s), just after the newest row: a status, as `settle`."""
         self.goals[PASSED] = t
         return int(pass_breakpoint(self._record.record))
-
-    def begin_forces(self, contacts: list[int]) -> int:
-        """Let the force laws of these contacts act from the current point on: a status, as `settle`."""
-        self.pending[:] = 0
-        self.pending[contacts] = 1
-        try:
-            return int(begin_forces(self._record.record))
-        finally:
-            self.pending[:] = 0
 
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the current point: they pull, or are held beyond their

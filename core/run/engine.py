@@ -13,11 +13,10 @@ from ..compiled.jit import address_of
 from ..compiled.notices import compile_notices
 from ..description import Model
 from ..equations.system import EquationSystem
-from ..errors import CallbackError, ConsistencyError, ModelError, SimulationError
+from ..errors import CallbackError, ModelError, SimulationError
 from ..events import Event, Fallback
 from ..events.progress import Progress
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
-from ..laws import ForceLaw
 from ..linalg import SingularMatrixError
 from ..location.dense_output import query
 from ..location.watch import remember
@@ -25,10 +24,9 @@ from ..loop.sample import write_sample
 from ..methods.history import recall, restart
 from ..methods.registry import FINE_STARTER, Formula, get_formula
 from ..repair.near_singular import smooth_query, strained
-from ..rounding import START_OVERLAP
 from ..stage import OUTER_LOOPS
 from ..state.method_records import step_address
-from ..state.run_records import HANDLED, HANDLED_AT, HERE, MAX_STEP, STEP_SIZE
+from ..state.run_records import HANDLED, HANDLED_AT, HERE
 from ..state.workspace_records import (
     FACTOR_AGE,
     MAX_OUTER,
@@ -39,20 +37,20 @@ from ..state.workspace_records import (
     STAGE_SIGNATURE,
 )
 from ..tables.assembly import Assembly
-from ..tables.consistent import START_TOLERANCE, make_consistent
 from ..tables.evaluate import evaluate_residuals
 from ..tables.redundancy import RedundantRow, choose_rows
-from ..tables.scales import Scales, measure_scales
+from ..tables.scales import Scales
 from ..tables.workspace import Workspace
 from ..tolerances import DEFAULT_ATOL
-from . import motions
+from .beginning import Beginning
 from .contact_side import ContactSide
 from .drive_record import Drive
 from .failures import failure_of
 from .output import ChannelTable
 from .ready import make_ready
-from .settings import Settings, set_control
+from .settings import START_TOLERANCE, Settings, set_control
 from .setup import build_loop, build_method, state_fields
+from .start import begin
 
 logger = logging.getLogger(__name__)
 
@@ -128,6 +126,8 @@ class Engine(ContactSide):
         self.fine_starter = step_address(FINE_STARTER)
         self.guard = Progress(float(t0))
         self.drive = Drive(self, self.guard)
+        self.beginning = Beginning(self)
+        set_control(self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays["control"])
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
         self.scales: Scales
@@ -141,12 +141,7 @@ class Engine(ContactSide):
     def begin(self) -> None:
         """Measure the model's scales and make a consistent start."""
         with user_errors(self.assembly):
-            self._given_start()
-            self.scales = measure_scales(self.workspace)
-            set_control(
-                self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays, self.scales.rate
-            )
-            self._start()
+            begin(self)
 
     def name_arrays(self) -> None:
         """Names for arrays of the records."""
@@ -178,60 +173,6 @@ class Engine(ContactSide):
         control = self.workspace.arrays["control"]
         control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, float(name == "simple")
         self.workspace.arrays["rate"][FACTOR_AGE] = -1.0
-
-    def _given_start(self) -> None:
-        """The workspace at the start as it is given, which may not meet the constraints yet."""
-        arrays, a = self.workspace.arrays, self.assembly
-        arrays["q"][: a.n] = a.q0
-        arrays["v"][: a.n] = a.v0
-        arrays["t"][0] = self.settings.t0
-        motions.place(self.workspace, self.settings.t0)
-
-    def _start(self) -> None:
-        a = self.assembly
-        self._given_start()
-        refuse = self.settings.redundant == "refuse"
-        self.redundant = make_consistent(self.workspace, self.settings.start_tolerance, refuse)
-        touching = []
-        for k, contact in enumerate(a.contacts):
-            gap, gap_tolerance = self.gap(k), START_OVERLAP * float(self.gap_size([k])[0])
-            if gap < -gap_tolerance and not isinstance(contact.law, ForceLaw):
-                raise ConsistencyError(
-                    f"contact '{contact.name}' starts with the shapes overlapping by {-gap:.3g} m; "
-                    "a constraint contact needs a gap >= 0 at the start"
-                )
-            if gap > gap_tolerance:
-                continue
-            rate, still = self.gap_rate(k), float(self.rate_rounding([k])[0])
-            if isinstance(contact.law, ForceLaw):
-                touches = gap < -gap_tolerance or rate < -still or (rate <= still and self.presses(k))
-            else:
-                touches = rate <= still
-            if touches:
-                touching.append(k)
-        self.use_modes()
-        self.clock[STEP_SIZE] = self.settings.first_step or self._first_step()
-        self._new_history()
-        # a force law that acts from the start holds energy from the start
-        forces = [k for k in touching if isinstance(a.contacts[k].law, ForceLaw)]
-        if forces:
-            self.settle(lambda: self.drive.begin_forces(forces))
-        self.table.initial_energy = self.table.total_energy(self.sample())
-        self._sample_now()
-        self.pending = [k for k in touching if k not in forces]
-        self._handle_pending()
-
-    def _first_step(self) -> float:
-        """A step in which nothing moves by more than a hundredth of its scale; error control takes it from there."""
-        arrays, n, scale = self.workspace.arrays, self.assembly.n, self.assembly.coordinate_scale
-        speed = float(np.max(np.abs(arrays["v"][:n]) / scale, initial=0.0))
-        acceleration = float(np.max(np.abs(arrays["a"][:n]) / scale, initial=0.0))
-        guess = 0.1 * self.scales.time
-        if speed > 0.0:
-            guess = min(guess, 0.01 / speed)
-        if acceleration > 0.0:
-            guess = min(guess, 0.1 / math.sqrt(acceleration))
-        return min(guess, float(self.clock[MAX_STEP]))
 
     # ---- at event rate ----------------------------------------
 

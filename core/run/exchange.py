@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import types
-from ..compiled.jit import address_of, compiled, compiled_unlocked, internal, record_view
+from ..compiled.jit import address_of, compiled, compiled_unlocked, internal
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
 from ..description import Model
@@ -23,7 +23,7 @@ from ..events.records import instant_at
 from ..events.settle import begin_anew
 from ..events.unsettled import find_unsettled
 from ..location.dense_output import query
-from ..loop.drive import drive_on, loop_at, method_at, workspace_at
+from ..loop.drive import drive_at, drive_on, loop_at, method_at, workspace_at
 from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
 from ..rounding import PUNCTUAL, SAME_INPUT
@@ -32,7 +32,6 @@ from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
     BUDGET,
     COUNTS_SIZE,
-    DRIVE_TYPE,
     GOALS_SIZE,
     HANDLED,
     LAST_STOP,
@@ -68,8 +67,6 @@ DECLINED = 200
 ARRIVED = 201
 """At the goal; the channels have not been asked for, or are not to be had in this way."""
 READ = 202
-
-drive_at = record_view(DRIVE_TYPE)
 
 
 @internal

@@ -76,10 +76,7 @@ def failure_of(sim: "ContactSide", status: int) -> SimulationError | Consistency
     if status in (REPEATED_ROWS, SINGULAR_MATRIX):
         return _inconsistent(sim)
     if status == NO_ACCELERATIONS:
-        return ConsistencyError(
-            f"no accelerations and multipliers at {where}: the augmented system [M Phi_q^T; Phi_q 0] is singular or a "
-            "force is not finite there"
-        )
+        return sim.no_accelerations()
     raise RuntimeError(f"status {status} of an instant is not known")
 
 

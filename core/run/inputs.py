@@ -10,6 +10,7 @@ from ..model.signals import MOST_DERIVATIVES
 from ..rounding import PUNCTUAL, SAME_INPUT
 from . import motions
 from .restore import restart_here
+from .start import start_again
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -33,13 +34,13 @@ def set_inputs(sim: "Simulation", values: Mapping[str, float], derivatives: Mapp
     motions.lead(sim, moved)
     try:
         if start:
-            motions.start_again(sim)
+            start_again(sim)
         else:
             restart_here(sim)
     except BaseException:
         rows[:], sim.pending = before, pending
         if start:
-            motions.start_again(sim)
+            start_again(sim)
         raise
     last, _ = sim.input_times
     if t > last:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from ..errors import SimulationError
 from ..model.motion import DURATION, JUMP, RATE_JUMP, SINCE, InputMotion
-from ..tables.evaluate import evaluate_residuals
 from ..tables.workspace import Workspace
 from .restore import restart_here
 
@@ -25,16 +24,10 @@ that no shape passes through would take for ever."""
 State = tuple[InputMotion, float, float]
 
 
-def place(workspace: Workspace, t0: float) -> None:
-    """Begin the motions of inputs at time `t0`, s, and put coordinates where the rows say that they start at."""
-    arrays, assembly = workspace.arrays, workspace.assembly
-    for motion in assembly.motions:
-        arrays["inputs"][motion.jumps] = (0.0, 0.0, t0, 0.0)
-    if assembly.placed:
-        evaluate_residuals(workspace.record)
-        coordinates, rows = (list(x) for x in zip(*assembly.placed, strict=True))
-        arrays["q"][coordinates] -= arrays["phi"][rows]
-        arrays["v"][coordinates] -= arrays["phid"][rows]
+def begin(workspace: Workspace, t0: float) -> None:
+    """Begin the motions of inputs at time `t0`, s."""
+    for motion in workspace.assembly.motions:
+        workspace.arrays["inputs"][motion.jumps] = (0.0, 0.0, t0, 0.0)
 
 
 def led_by(sim: "Simulation", channels: Collection[int]) -> list[State]:
@@ -57,25 +50,6 @@ def lead(sim: "Simulation", states: Iterable[State]) -> None:
 def at_start(sim: "Simulation") -> bool:
     """True as long as motions that are set make the start."""
     return sim.start_open and not sim.started and sim.t == sim.settings.t0
-
-
-def start_again(sim: "Simulation") -> None:
-    """Start anew with the present inputs, as if nothing had happened yet.
-
-    Raises
-    ------
-    ConsistencyError : if the start does not fit them.
-    """
-    arrays = sim.workspace.arrays
-    for name in ("memory", "q", "v", "a", "aux", "lam"):
-        arrays[name][...] = 0.0
-    sim.flush()
-    sim.events, sim.stored_events, sim.samples, sim.pending = [], (), [], []
-    sim.redundant = ()
-    sim.method_arrays["ring"][1] = 0
-    sim.workspace.drop(frozenset())
-    sim.workspace.engage(frozenset(), frozenset())
-    sim._start()
 
 
 def close_jumps(sim: "Simulation", t: float) -> None:

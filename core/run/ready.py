@@ -35,15 +35,16 @@ from ..tables.evaluate import (
     evaluate_tangent,
 )
 from ..tables.levels import force_level, position_level, rate_level
-from ..tables.measure import measure_motion, measure_rows
 from ..tables.partition_building import partition_wanted
 from ..tables.probe import set_probe
 from ..tables.projection import meet
+from .begin_now import measure_now, place_now, start_now
+from .begin_record import BEGIN
 
 if TYPE_CHECKING:
     from .engine import Engine
 
-_WORKSPACE, _METHOD, _LOOP = WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE
+_WORKSPACE, _METHOD, _LOOP, _BEGIN = WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.from_dtype(BEGIN)
 _REAL, _WHOLE = types.float64, types.int64
 _VECTOR, _MATRIX, _NUMBERS = types.Array(_REAL, 1, "C"), types.Array(_REAL, 2, "C"), types.Array(_WHOLE, 1, "C")
 
@@ -67,8 +68,9 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (evaluate_power, (_WORKSPACE,)),
     (evaluate_energy, (_WORKSPACE,)),
     (constraint_norm, (_WORKSPACE, _WHOLE)),
-    (measure_rows, (_WORKSPACE, _VECTOR, _VECTOR)),
-    (measure_motion, (_WORKSPACE, *(_VECTOR,) * 3, _WHOLE, _VECTOR, _VECTOR)),
+    (measure_now, (_BEGIN,)),
+    (place_now, (_BEGIN,)),
+    (start_now, (_BEGIN,)),
     (position_level, (_WORKSPACE,)),
     (rate_level, (_WORKSPACE,)),
     (force_level, (_WORKSPACE,)),

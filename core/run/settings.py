@@ -17,7 +17,6 @@ from ..state.workspace_records import (
     ACCELERATION,
     ACCELERATION_TOLERANCE,
     ATOL,
-    EXACTNESS,
     LINEAR,
     MAX_INNER,
     MOST_CONDITION,
@@ -27,9 +26,10 @@ from ..state.workspace_records import (
     VELOCITY_TOLERANCE,
 )
 from ..tables.assembly import Assembly
-from ..tolerances import DEFAULT_ATOL, OfScales
 
 ACCELERATIONS = ("none", "aitken", "anderson")
+START_TOLERANCE = 1e-3
+"""How far q0 (relative to the size of the mechanism) and v0 (relative to the speeds) may be moved, by default."""
 REDUNDANT = ("drop", "refuse")
 """What is done with constraints that repeat others."""
 CONSTRAINT_SHARE = 0.002
@@ -123,46 +123,19 @@ DEFAULT_NEWTON_TOLERANCE = 1e-10
 what rounding leaves in stiff bodies is not far below."""
 
 
-def set_control(
-    settings: Settings, newton_tolerance: float, assembly: Assembly, arrays: Mapping[str, NDArray[Any]], rate: float
-) -> None:
-    """Fill the workspace's absolute tolerances and its control numbers, but for those of the outer loop
-    (`Engine.use_outer_loop`) and the model's own scales; `newton_tolerance` is the formula's own, `rate` the inverse
-    of the model's time, 1/s."""
-    control, n = arrays["control"], assembly.n
-    # a tolerance as large as what it is for would let all pass
-    internal = assembly.is_internal
-    # the state is the velocity of such a coordinate, and a length
-    size_q = np.where(internal, assembly.length / rate, assembly.coordinate_scale)
-    size_v = np.where(internal, assembly.length, SPEEDS * assembly.coordinate_scale * rate)
-    fixed = settings.step is not None
-    if fixed:
+def set_control(settings: Settings, newton_tolerance: float, assembly: Assembly, control: NDArray[np.float64]) -> None:
+    """Fill the workspace's control numbers, but for those of the outer loop (`Engine.use_outer_loop`) and those that
+    the model's own scales are needed for (`begin_measure.py`); `newton_tolerance` is the formula's own."""
+    if settings.step is not None:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
-        tolerance = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
-        control[RTOL] = control[ATOL] = tolerance
+        control[RTOL] = control[ATOL] = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
         control[NEWTON_TOLERANCE] = 1.0
-        given = settings.newton_tolerance is not None
-        arrays["atol_q"][:n] = tolerance * (np.ones(n) if given else size_q)
-        arrays["atol_v"][:n] = tolerance * (np.ones(n) if given else np.where(internal, size_v, size_v / SPEEDS))
     else:
         control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
             newton_tolerance, min(0.01, FINEST / settings.rtol)
         )
-        angles = assembly.is_angle
-
-        def tolerances(kind: str, size: NDArray[np.float64]) -> NDArray[np.float64]:
-            atol = settings.atol.get(kind, DEFAULT_ATOL) if isinstance(settings.atol, Mapping) else settings.atol
-            return float(atol) * (size if isinstance(atol, OfScales) else np.ones(n))
-
-        arrays["atol_q"][:n] = np.where(angles, tolerances("angle", size_q), tolerances("length", size_q))
-        arrays["atol_v"][:n] = np.where(angles, tolerances("angular_speed", size_v), tolerances("speed", size_v))
-        arrays["atol_v"][:n][internal] = tolerances("length", size_v)[internal]
-        control[ATOL] = min(1.0, float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0)))
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
-    # differences over several steps see what the constraints leave open: it has to be small against the tolerances
-    finest = (settings.newton_tolerance or 1.0) if fixed else float(np.min(arrays["atol_q"][:n] / size_q, initial=1.0))
-    control[EXACTNESS] = min(1.0, max(LEAST_EXACTNESS, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
     control[MAX_INNER] = 13.0

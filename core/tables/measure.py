@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from ..compiled.jit import compiled, internal
+from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import NO_STIFFNESS
 from .evaluate import evaluate_residuals, evaluate_tangent
@@ -29,7 +29,7 @@ def _larger_number(largest: float, x: float) -> float:
     return x if math.isfinite(x) and x > largest else largest
 
 
-@compiled
+@internal
 def measure_rows(ws: Any, scale: Any, sizes: Any) -> None:
     """How far rows of Phi move when the coordinates move by their scales (n,), into `sizes` (m,).
 
@@ -71,7 +71,7 @@ def _diagonals(ws: Any, c_q: float, out: Any) -> None:
             out[rows[slot]] = abs(values[slot])
 
 
-@compiled
+@internal
 def measure_motion(ws: Any, scale: Any, v: Any, later: Any, m_joints: int, mass: Any, found: Any) -> None:
     """Rates, works, masses and stiffness (MEASURED,) at the current point, now and `later` (s), at rest and with the
     velocities v (n,); coordinates with `scale` 0 tell nothing. `mass` (n,) is overwritten."""

@@ -1,14 +1,13 @@
-"""The compiled start (`core/run/begin_now.py`) is that of Python, bit for bit, for other numbers and times too."""
+"""A run that begins anew without Python (`core/run/begin_now.py`) is a new run, bit for bit: with other numbers and at
+other times too."""
 
 import numpy as np
 import pytest
 from tlismni.core import Simulation
-from tlismni.core.compiled.jit import address_of
-from tlismni.core.events.instant import PART_SIGNATURE
-from tlismni.core.events.prepare import use_modes
 from tlismni.core.events.records import DECLINED, SETTLED, SINGULAR_JOINTS
-from tlismni.core.native.beginning import Beginning
-from tlismni.core.run import begin_now as starts
+from tlismni.core.native.beginning import let_begin
+from tlismni.core.run.begin import NO_POSITIONS, NO_VELOCITIES, OVERLAPS
+from tlismni.core.run.begin_now import begin_now
 from tlismni.core.run.blueprint import take_numbers
 from tlismni.core.run.exchange_record import INITIAL_ENERGY
 from tlismni.models import load
@@ -29,13 +28,13 @@ class Starts:
             **more,
         }
         self.sim = Simulation(scenario.model, **self.settings)
-        self.sim.drive.instant.tables()[0]["use_modes"] = address_of(use_modes, PART_SIGNATURE)
-        self.beginning = Beginning(self.sim, self.settings)
+        let_begin(self.sim, self.settings)
+        self.beginning = self.sim.beginning
 
     def begin(self, model):
         take_numbers(self.sim, model, model.assemble())
         self.beginning.take_numbers(self.sim.assembly)
-        while DECLINED < (code := int(starts.begin_now(self.beginning.record.record))) < SINGULAR_JOINTS:
+        while DECLINED < (code := int(begin_now(self.beginning.record.record))) < SINGULAR_JOINTS:
             self.sim.workspace.sync()
             self.sim.build_wanted(code)  # which runs without Python have before
         self.sim.workspace.sync()
@@ -105,13 +104,13 @@ def test_starts_that_are_none():
     model = load("pendulum_stop").model
     (rod,) = model.bodies
     far = model.model_copy(update={"bodies": (rod.model_copy(update={"position": (0.9, 0.3)}),)})
-    assert starts_here.begin(far) == starts.NO_POSITIONS
+    assert starts_here.begin(far) == NO_POSITIONS
     fast = model.model_copy(update={"bodies": (rod.model_copy(update={"velocity": (3.0, 3.0)}),)})
-    assert starts_here.begin(fast) == starts.NO_VELOCITIES
+    assert starts_here.begin(fast) == NO_VELOCITIES
     starts_here.check(model)
     below = Starts("bouncing_ball")
     ball = load("bouncing_ball").model
     sunk = ball.model_copy(
         update={"bodies": tuple(b.model_copy(update={"position": (0.0, -0.2)}) for b in ball.bodies)}
     )
-    assert below.begin(sunk) == starts.OVERLAPS
+    assert below.begin(sunk) == OVERLAPS

@@ -1,0 +1,159 @@
+"""The start of a run: compiled code makes it (`begin.py`).
+
+Memory, rows that repeat others, and sentences for what is no start are Python's."""
+
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ConsistencyError, SimulationError
+from ..events.records import DECLINED, SETTLED, WANT_MEMORY
+from ..rounding import START_MOVED
+from ..state.workspace_records import ENERGY_SCALE, RATE_SCALE
+from ..tables.evaluate import evaluate_residuals
+from ..tables.partition import prepare
+from ..tables.redundancy import check_rates, find_redundant
+from ..tables.scales import Scales
+from . import motions
+from .begin import NO_POSITIONS, NO_START, NO_VELOCITIES, OVERLAPS, SINGULAR_START
+from .begin_now import measure_now, place_now, start_now
+from .begin_record import LOOK_AT_RANK, MOVED, MOVED_RATES, WHO
+from .failures import failure_of
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+logger = logging.getLogger(__name__)
+
+_MAY_REPEAT = (NO_POSITIONS, NO_VELOCITIES, SINGULAR_START)
+"""What rows that repeat others may be the reason of."""
+
+
+def begin(sim: "Simulation") -> None:
+    """Measure the model's scales and make a consistent start.
+
+    Raises
+    ------
+    ConsistencyError, SimulationError : if there is none.
+    """
+    sim.beginning.take_numbers(sim.assembly, sim.workspace.assembly)
+    motions.begin(sim.workspace, sim.settings.t0)
+    status = _act(sim, measure_now)
+    if status != SETTLED:
+        raise RuntimeError(f"status {status} of a measurement is not known")
+    control = sim.workspace.arrays["control"]
+    sim.scales = Scales(sim.assembly.length, float(control[RATE_SCALE]), float(control[ENERGY_SCALE]))
+    start(sim)
+
+
+def start(sim: "Simulation") -> None:
+    """A consistent start, with the model's scales as they have been measured. Raises as `begin`."""
+    motions.begin(sim.workspace, sim.settings.t0)
+    numbers, before = sim.beginning.numbers, sim.workspace.state_bytes.copy()
+    sim.redundant = ()
+    numbers[LOOK_AT_RANK] = float(sim.settings.redundant != "refuse")
+    try:
+        status = _act(sim, start_now)
+        if status in _MAY_REPEAT and numbers[LOOK_AT_RANK]:
+            sim.workspace.state_bytes[:] = before
+            place_now(sim.beginning.record.record)
+            sim.redundant = find_redundant(sim.workspace)
+            numbers[LOOK_AT_RANK] = 0.0
+            sim.workspace.state_bytes[:] = before
+            status = _act(sim, start_now)
+        if status != SETTLED:
+            raise _failure(sim, status)
+    except BaseException:
+        sim.drive.take_pending()  # who goes on from an earlier state does not want them
+        raise
+    for level, place in (("positions q0", MOVED), ("velocities v0", MOVED_RATES)):
+        if numbers[place] > START_MOVED:
+            logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, numbers[place])
+    check_rates(sim.workspace, sim.redundant)
+    sim.take_events()
+    sim.table.initial_energy = sim.table.total_energy(sim.sample())
+    sim._sample_now()
+    sim.pending = sim.drive.take_pending()
+    sim._handle_pending()
+
+
+def start_again(sim: "Simulation") -> None:
+    """Start anew with the present inputs, as if nothing had happened yet.
+
+    Raises
+    ------
+    ConsistencyError : if the start does not fit them.
+    """
+    arrays = sim.workspace.arrays
+    for name in ("memory", "q", "v", "a", "aux", "lam"):
+        arrays[name][...] = 0.0
+    sim.flush()
+    sim.events, sim.stored_events, sim.samples, sim.pending = [], (), [], []
+    sim.method_arrays["ring"][1] = 0
+    sim.workspace.drop(frozenset())
+    sim.workspace.engage(frozenset(), frozenset())
+    start(sim)
+
+
+def _act(sim: "Simulation", act: Callable[[Any], Any]) -> int:
+    """Let compiled code do its part, from the state as it is, with the memory that it wants; its status."""
+    state, before = sim.workspace.state_bytes, sim.workspace.state_bytes.copy()
+    while DECLINED < (status := int(act(sim.beginning.record.record))) <= WANT_MEMORY:
+        sim.workspace.sync()
+        sim.build_wanted(status)
+        state[:] = before
+    sim.workspace.sync()
+    return status
+
+
+def _failure(sim: "Simulation", status: int) -> ConsistencyError | SimulationError:
+    """Why there is no start; the workspace is where that was seen."""
+    if status in (NO_POSITIONS, NO_VELOCITIES):
+        return _far_from_constraints(sim, status == NO_VELOCITIES)
+    if status == OVERLAPS:
+        k = int(sim.beginning.numbers[WHO])
+        return ConsistencyError(
+            f"contact '{sim.assembly.contacts[k].name}' starts with the shapes overlapping by {-sim.gap(k):.3g} m; "
+            "a constraint contact needs a gap >= 0 at the start"
+        )
+    if status == SINGULAR_START:
+        try:
+            prepare(sim.workspace)
+        except ConsistencyError as error:
+            return error
+    if status == NO_START:
+        return sim.no_accelerations()
+    return failure_of(sim, status)
+
+
+def _far_from_constraints(sim: "Simulation", rates: bool) -> ConsistencyError:
+    """The refusal of positions (or velocities) that violate the constraints beyond repair."""
+    assembly, arrays, numbers = sim.assembly, sim.workspace.arrays, sim.beginning.numbers
+    x, residual, level = ("v", "phid", "velocities v0") if rates else ("q", "phi", "positions q0")
+    moved, who = float(numbers[MOVED_RATES if rates else MOVED]), int(numbers[WHO])
+    given, now = sim.beginning.record.arrays["mass"][: assembly.n], arrays[x][: assembly.n].copy()
+    detail = "no consistent ones were found near by"
+    if moved != -1.0:
+        far = abs(now[who] - given[who])
+        detail = f"the nearest consistent ones differ by {far:.3g} in {assembly.coordinate_names[who]}"
+    arrays[x][: assembly.n] = given
+    evaluate_residuals(sim.workspace.record)
+    violated = _violations(sim, arrays[residual])
+    return ConsistencyError(
+        f"the given {level} violate the constraints beyond repair: {violated}; {detail}, and "
+        f"start_tolerance = {sim.settings.start_tolerance:g} (relative) is allowed. Give consistent values, or raise "
+        "start_tolerance."
+    )
+
+
+def _violations(sim: "Simulation", residual: NDArray[np.float64]) -> str:
+    """The worst violated constraints by name."""
+    worst: dict[str, float] = {}
+    for row in sim.workspace.structure.active:
+        name = sim.assembly.row_names[row]
+        worst[name] = max(worst.get(name, 0.0), abs(float(residual[row])))
+    ordered = sorted(worst.items(), key=lambda item: -item[1])[:5]
+    return ", ".join(f"'{name}' by {value:.3g}" for name, value in ordered if value > 0.0) or "none"
