@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from numbers import Real
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,7 @@ class CompiledModel:
         self.start_names = tuple(self._places)
         self._bare = Blueprint(bare) if can_be_copied(bare.assembly) else None
         self._begun: Blueprint | None = None
+        self._lock = Lock()
 
     def variant(self, parameters: Numbers | None = None, inputs: Numbers | None = None) -> Any:
         """The system with other parameters and start values of inputs.
@@ -110,6 +112,7 @@ class CompiledModel:
             if self._begun is None:
                 begun = self._bare.simulation()
                 begun.begin()
+                self._give_room(begun)
                 self._begun = Blueprint(begun)
             return self._begun.simulation()
         sim = self._bare.simulation()
@@ -121,7 +124,14 @@ class CompiledModel:
             take_numbers(sim, system, assembly)
         sim.assembly = self._with_start(sim.assembly, start or {})
         sim.begin()
+        self._give_room(sim)
         return sim
+
+    def _give_room(self, sim: Simulation) -> None:
+        """Runs after this one have the memory for structures from the start that it had to ask for."""
+        with self._lock:
+            if self._bare is not None:
+                self._bare = self._bare.with_room(sim)
 
     def _built_anew(self, system: Any, start: Numbers) -> Simulation:
         sim = Unstarted(system, *self._arguments, **self._settings)

@@ -4,7 +4,7 @@ A new block is a copy of the bytes in which addresses of what is in the block ar
 else (index arrays, compiled functions) stay, so that all blocks share that.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, ItemsView, Iterable, Iterator, KeysView, ValuesView
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,61 @@ def twin(x: Any) -> Any:
     return new
 
 
+class Arrays(dict[str, Array]):
+    """Arrays by name, each made when it is first asked for: most of a run's are only for compiled code.
+
+    Parameters
+    ----------
+    names : all that there are. find : makes the array of a name.
+    """
+
+    def __init__(self, names: Iterable[str], find: Callable[[str], Array]) -> None:
+        super().__init__()
+        self.names, self._find = frozenset(names), find
+
+    def __missing__(self, name: str) -> Array:
+        if name not in self.names:
+            raise KeyError(name)
+        array = self[name] = self._find(name)
+        return array
+
+    def _all(self) -> None:
+        for name in self.names - super().keys():
+            self[name] = self._find(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names or super().__contains__(name)
+
+    def __len__(self) -> int:
+        self._all()
+        return super().__len__()
+
+    def __iter__(self) -> Iterator[str]:
+        self._all()
+        return super().__iter__()
+
+    def keys(self) -> KeysView[str]:
+        self._all()
+        return super().keys()
+
+    def values(self) -> ValuesView[Array]:
+        self._all()
+        return super().values()
+
+    def items(self) -> ItemsView[str, Array]:
+        self._all()
+        return super().items()
+
+    def copy(self) -> "Arrays":
+        """Another with what has been made so far."""
+        new = Arrays(self.names, self._find)
+        new.update(dict.items(self))
+        return new
+
+    def get(self, name: str, other: Any = None) -> Any:
+        return self[name] if name in self else other
+
+
 class Image:
     """The memory of one run.
 
@@ -39,16 +94,18 @@ class Image:
         empty = {id(x) for x in blank}
         # larger ones first: parts come after what they are parts of
         own = sorted((x for x in self._kept.values() if x.nbytes), key=lambda x: (id(x) in empty, -x.nbytes))
-        self._places: list[tuple[int, tuple[int, ...], np.dtype, int]] = []
+        self._places: dict[int, tuple[tuple[int, ...], np.dtype, int]] = {}
         whole: list[tuple[Array, int]] = []
+        known: list[tuple[int, int, int]] = []
         at, copied = 0, 0
         for x in own:
-            outer = next(((y, start) for y, start in whole if _begin(y) <= _begin(x) < _begin(y) + y.nbytes), None)
+            begin = begin_of(x)
+            outer = next((start + begin - first for first, size, start in known if first <= begin < first + size), None)
+            self._places[id(x)] = x.shape, x.dtype, at if outer is None else outer
             if outer is not None:
-                self._places.append((id(x), x.shape, x.dtype, outer[1] + _begin(x) - _begin(outer[0])))
                 continue
-            self._places.append((id(x), x.shape, x.dtype, at))
             whole.append((x, at))
+            known.append((begin, x.nbytes, at))
             at += -(-x.nbytes // _ALIGNED) * _ALIGNED
             if id(x) not in empty:
                 copied = at
@@ -61,12 +118,12 @@ class Image:
 
     def _relative(self, whole: list[tuple[Array, int]], tables: list[Array]) -> NDArray[np.intp]:
         """Make the addresses in `tables` relative to the block; returns where in the image they are, in words."""
-        begin = np.array([_begin(x) for x, _ in whole], dtype=np.int64)
+        begin = np.array([begin_of(x) for x, _ in whole], dtype=np.int64)
         end = begin + [x.nbytes for x, _ in whole]
         offset = np.array([start for _, start in whole], dtype=np.int64)
         order = np.argsort(begin)
         begin, end, offset = begin[order], end[order], offset[order]
-        words, where = self._bytes.view(np.int64), {key: start for key, _, _, start in self._places}
+        words, where = self._bytes.view(np.int64), {key: start for key, (_, _, start) in self._places.items()}
         found = []
         for table in tables:
             first = where[id(table)] // 8
@@ -82,11 +139,15 @@ class Image:
         block = np.empty(self._size, dtype=np.uint8)
         block[: len(self._bytes)] = self._bytes
         block[: len(self._bytes)].view(np.int64)[self._pointers] += block.ctypes.data
-        views: dict[int, Array] = {
-            key: np.ndarray(shape, dtype, block, start) for key, shape, dtype, start in self._places
-        }
-        return lambda array: views.get(id(array), array)
+        places, make = self._places, np.ndarray
+
+        def take(array: Array) -> Array:
+            place = places.get(id(array))
+            return array if place is None else make(place[0], place[1], block, place[2])
+
+        return take
 
 
-def _begin(array: Array) -> int:
+def begin_of(array: Array) -> int:
+    """Address of the first number."""
     return int(array.__array_interface__["data"][0])

@@ -1,13 +1,13 @@
 """Records of addresses and sizes, and the arrays that they point to."""
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .image import Take
+from .image import Arrays, Take, begin_of
 from .library import LIBRARY
 from .types import from_dtype
 
@@ -27,30 +27,30 @@ def _type_of(dtype: np.dtype) -> Any:
 
 
 class Record:
-    """What compiled functions take for the one record in `table`, whose memory it shares.
+    """What compiled functions take for the one record of type `dtype` in `words`, whose memory it shares.
 
     Numba asks a numpy record for its type and its buffer, which describes itself field by field: 7 us at every call
     with a record of 70 fields. Of this it asks the same questions by the same names, and has the answers at once.
     """
 
-    __slots__ = ("_numba_type_", "_table", "_words", "address", "data")
+    __slots__ = ("_dtype", "_numba_type_", "_words", "address", "data")
 
-    def __init__(self, table: NDArray[Any]) -> None:
-        self._table, self._words = table, table.view(np.int64)
-        self.data = table.view(np.uint8)
-        self.address = int(self._words.__array_interface__["data"][0])  # that of a structured array describes its type
+    def __init__(self, words: NDArray[np.int64], dtype: np.dtype) -> None:
+        self._dtype, self._words = dtype, words
+        self.data = words.view(np.uint8)
+        self.address = begin_of(words)
         if LIBRARY is None:
-            self._numba_type_ = _type_of(table.dtype)
+            self._numba_type_ = _type_of(dtype)
 
     def __getattr__(self, name: str) -> Any:
         # with a library numba is asked only if a function is compiled in this process after all
         if name != "_numba_type_":
             raise AttributeError(name)
-        self._numba_type_ = _type_of(self._table.dtype)
+        self._numba_type_ = _type_of(self._dtype)
         return self._numba_type_
 
     def __getitem__(self, field: str) -> int:
-        return int(self._table[field][0])
+        return self._words.item(words_of(self._dtype)[field])
 
     def word(self, place: int) -> int:
         """The field at this place (`words_of`), in a tenth of the time."""
@@ -73,8 +73,7 @@ class ArrayRecord:
     """
 
     def __init__(self, dtype: np.dtype, arrays: Mapping[str, NDArray], sizes: Mapping[str, int]) -> None:
-        self.arrays = dict(arrays)
-        table = np.zeros(1, dtype)
+        self.arrays: dict[str, NDArray[Any]] = dict(arrays)
         names = set(dtype.names or ())
         given = set(self.arrays) | set(sizes)
         if names != given:
@@ -82,38 +81,49 @@ class ArrayRecord:
                 f"the fields of the record are {sorted(names)}: missing {sorted(names - given)}, "
                 f"unknown {sorted(given - names)}"
             )
-        self._use(table)
+        self._use(np.zeros(len(names), dtype=np.int64), dtype)
         for name, array in arrays.items():
-            self.set_array(name, array)
+            self._point(name, array)
         for name, size in sizes.items():
-            table[name] = size
+            self.set_size(name, size)
 
-    def _use(self, table: NDArray[Any]) -> None:
-        self.table, self._words, self._place = table, table.view(np.int64), words_of(table.dtype)
-        self.record = Record(table)
+    def _use(self, words: NDArray[np.int64], dtype: np.dtype) -> None:
+        self.words, self._dtype, self._place = words, dtype, words_of(dtype)
+        """The record as numbers, (fields,)."""
+        self.record = Record(words, dtype)
         """What to hand to a compiled function."""
         self.address = self.record.address
         """Address of the record itself, to be stored in another record."""
 
+    @cached_property
+    def table(self) -> NDArray[Any]:
+        """The record as a structured array, (1,)."""
+        return self.words.view(self._dtype)
+
     def set_array(self, name: str, array: NDArray) -> None:
         """Let field `name` point to `array`."""
+        self._point(name, array)
+        # copies of this record may look for arrays later, in what was here when they were made
+        self.arrays = {**self.arrays, name: array}
+
+    def _point(self, name: str, array: NDArray) -> None:
         if not isinstance(array, np.ndarray) or array.dtype.char not in _KINDS:
             raise TypeError(f"array '{name}' must be float64 or int64, not {getattr(array, 'dtype', type(array))}")
         if not array.flags.c_contiguous:
             raise TypeError(f"array '{name}' must be C-contiguous")
-        self.arrays[name] = array
         # a word takes a tenth of the time of a field, this a third of that of `array.ctypes.data`
-        self._words[self._place[name]] = array.__array_interface__["data"][0]
+        self.words[self._place[name]] = begin_of(array)
 
     def set_size(self, name: str, size: int) -> None:
         """Let field `name` be `size`."""
-        self._words[self._place[name]] = size
+        self.words[self._place[name]] = size
 
     def moved(self, take: Take) -> "ArrayRecord":
         """The same record in a copy of its memory (`image.py`)."""
         new = object.__new__(ArrayRecord)
-        new._use(take(self.table))
-        new.arrays = {name: take(array) for name, array in self.arrays.items()}
+        new._use(take(self.words), self._dtype)
+        arrays = self.arrays
+        new.arrays = Arrays(arrays, lambda name: take(arrays[name]))
         return new
 
 

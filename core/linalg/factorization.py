@@ -47,7 +47,7 @@ class Matrix:
         self._table, self._view, self._grow, self._like = table, view, grow, like
         self._seen: dict[str, tuple[int, int, NDArray]] = {}
         self._known, self._parts = b"", (_NO_PIVOTS, _NO_PIVOTS, _NO_FACTORS, _NO_PIVOTS)
-        self.record = Record(table)
+        self.record = Record(table.view(np.int64).reshape(-1), table.dtype)
         """What to hand to a compiled function."""
 
     def _at(self, field: str, count: int, dtype: type = np.int64) -> NDArray:
@@ -114,11 +114,6 @@ class Matrix:
     def fill(self) -> int:
         """Number of stored entries of L and U, diagonal included."""
         return self.n * self.n if self.dense else self.record["nl"] + self.record["nu"] + self.n
-
-    def use_units(self, rows: Floats, columns: Floats) -> None:
-        """Choose pivots as if the rows were multiplied by `rows` (n,) and the columns by `columns` (n,)."""
-        self._at("row_unit", self.n, np.float64)[:] = rows
-        self._at("col_unit", self.n, np.float64)[:] = columns
 
     def analysis(self) -> tuple[Ints, Ints]:
         """Place of each row and each column in the pivot sequence: perm_r, perm_c (n,); empty if dense, or before the

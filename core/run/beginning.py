@@ -86,7 +86,7 @@ class Beginning:
 
     def memory(self) -> tuple[list[NDArray[Any]], list[NDArray[Any]]]:
         """Memory that a run has for itself: arrays, and records of addresses."""
-        return [self.record.arrays[name] for name in _OWN], [self.record.table]
+        return [self.record.arrays[name] for name in _OWN], [self.record.words]
 
     def moved(self, take: Take) -> "Beginning":
         """The same in a copy of its memory (`compiled/image.py`)."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.image import Image
+from ..compiled.image import Image, twin
 from ..compiled.records import ArrayRecord
 from ..errors import ModelError
 from ..state.run_records import MAX_STEP
@@ -44,12 +44,20 @@ class Blueprint:
         arrays, tables = sim.workspace.memory()
         for record in _records(sim):
             arrays += [x for name, x in record.arrays.items() if name not in (*_BLANK, "probes")]
-            tables.append(record.table)
+            tables.append(record.words)
         tables += [sim._loop.arrays["probes"], *sim.drive.instant.tables()]
         arrays, tables = [*arrays, *sim.beginning.memory()[0]], [*tables, *sim.beginning.memory()[1]]
         blank = [record.arrays[name] for record in _records(sim) for name in _BLANK if name in record.arrays]
         blank += [*sim.drive.instant.scratch(), *sim.workspace.blank()]
         self._image = Image(arrays, tables, blank)
+
+    def with_room(self, other: Simulation) -> "Blueprint":
+        """The same runs with as much memory for structures as `other` had to ask for; this one, if they have."""
+        workspace = self._sim.workspace
+        if not workspace.slots.ask_like(other.workspace.slots):
+            return self
+        workspace.give_room()
+        return Blueprint(self._sim)
 
     def simulation(self) -> Simulation:
         """One more run, independent of all others."""
@@ -63,7 +71,7 @@ class Blueprint:
         new.workspace = old.workspace.moved(take)
         new._method, new._loop, new.drive = old._method.moved(take), old._loop.moved(take), old.drive.moved(take)
         new.guard, new.beginning = old.guard.moved(take), old.beginning.moved(take)
-        new.table = old.table.moved(old.assembly)
+        new.table = twin(old.table)
         new.name_arrays()
         return new
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.image import Take, twin
+from ..compiled.image import Take, begin_of, twin
+from ..compiled.records import Record
 from ..linalg import LU
 from ..linalg.memory import Scratch
 from ..linalg.record import INDEX, SCRATCH, VALUES
@@ -24,7 +25,8 @@ SLACK = 1.5
 MATRICES = ("kkt", "kkt_query", "lu_d", "lu_p")
 _OF = (OF_KKT, OF_KKT, OF_D, OF_D)
 """Where in `needs` the sizes of each of them begin."""
-_OWN = ("structures", "partitions", "lus", "tables", "addresses")
+_RECORDS = {"structures": (STRUCTURE, 1), "partitions": (PARTITION, 1), "lus": (LU, len(MATRICES))}
+"""Records of each place: their type, and how many."""
 
 
 class Slots:
@@ -37,7 +39,7 @@ class Slots:
 
     Attributes
     ----------
-    structures, partitions : (count,) records; lus : (count, 4) records, in the order of MATRICES.
+    words : the records of all places by name, as numbers, (count, fields).
     tables : (count, batches), the addresses of the slot tables.
     pool : all their other memory; as numbers of 4 bytes, so that nobody takes its content for addresses.
     rooms : (NEEDS,) sizes that each place has room for, by kind as in `needs`.
@@ -47,29 +49,61 @@ class Slots:
         self.scratch, self.needs = Scratch(), np.zeros(NEEDS, dtype=np.int64)
         self.rooms = np.zeros(NEEDS, dtype=np.int64)
         self._functions = functions
-        self.structures, self.partitions = np.zeros(count, STRUCTURE), np.zeros(count, PARTITION)
-        self.lus, self.tables = np.zeros((count, len(MATRICES)), LU), np.zeros((count, batches), dtype=np.int64)
-        self.addresses, self.pool = np.zeros(count, dtype=np.int64), np.zeros(0, dtype=np.uint32)
+        self.words = {
+            name: np.zeros((count, each * kind.itemsize // 8), dtype=np.int64)
+            for name, (kind, each) in _RECORDS.items()
+        }
+        self._records: dict[str, Array] = {}
+        self.tables, self.addresses = np.zeros((count, batches), dtype=np.int64), np.zeros(count, dtype=np.int64)
+        self._use(np.zeros(0, dtype=np.uint32))
         self.lus["program_limit"] = program_limit
         self._connect()
         self._place()
 
+    def _use(self, pool: NDArray[np.uint32]) -> None:
+        self.pool, self._pool_begin = pool, begin_of(pool)
+
+    def _table(self, name: str) -> Array:
+        if name not in self._records:
+            found = self.words[name].view(_RECORDS[name][0])
+            self._records[name] = found if found.shape[1] > 1 else found[:, 0]
+        return self._records[name]
+
+    @property
+    def structures(self) -> Array:
+        """(count,) records."""
+        return self._table("structures")
+
+    @property
+    def partitions(self) -> Array:
+        """(count,) records."""
+        return self._table("partitions")
+
+    @property
+    def lus(self) -> Array:
+        """(count, 4) records, in the order of MATRICES."""
+        return self._table("lus")
+
+    def record(self, name: str, number: int) -> Record:
+        """That of the place with this number among "structures" or "partitions"."""
+        return Record(self.words[name][number], _RECORDS[name][0])
+
     def _connect(self) -> None:
         """Write down where records and what they share are."""
         count = len(self.structures)
-        self.addresses[:] = _begin(self.structures) + STRUCTURE.itemsize * np.arange(count)
-        self.structures["partition"] = _begin(self.partitions) + PARTITION.itemsize * np.arange(count)
-        self.structures["slots"] = _begin(self.tables) + 8 * self.tables.shape[1] * np.arange(count)
+        self.addresses[:] = begin_of(self.structures) + STRUCTURE.itemsize * np.arange(count)
+        self.structures["partition"] = begin_of(self.partitions) + PARTITION.itemsize * np.arange(count)
+        self.structures["slots"] = begin_of(self.tables) + 8 * self.tables.shape[1] * np.arange(count)
         positions = self.partitions["used_p"].copy()
         of_both = positions == self.partitions["lu_d"]
-        matrices = _begin(self.lus) + LU.itemsize * np.arange(self.lus.size).reshape(self.lus.shape)
+        matrices = begin_of(self.lus) + LU.itemsize * np.arange(self.lus.size).reshape(self.lus.shape)
         for k, name in enumerate(MATRICES):
             (self.structures if k < 2 else self.partitions)[name] = matrices[:, k]
-            self.lus["needs"][:, k] = _begin(self.needs) + 8 * _OF[k]
+            self.lus["needs"][:, k] = begin_of(self.needs) + 8 * _OF[k]
         # built ones know which of their two matrices serves for positions
         follows = np.where(of_both, self.partitions["lu_d"], self.partitions["lu_p"])
         self.partitions["used_p"] = np.where(positions == 0, 0, follows)
-        self.lus["functions"], self.lus["scratch"] = _begin(self._functions), _begin(self.scratch.cell)
+        self.lus["functions"], self.lus["scratch"] = begin_of(self._functions), begin_of(self.scratch.cell)
 
     def _sizes(self) -> NDArray[np.int64]:
         """Bytes of each part of a place: one word more than is used, since addresses may be those of its end."""
@@ -83,7 +117,7 @@ class Slots:
         """Write down where each place has its memory, and how much."""
         sizes = self._sizes()
         starts = np.cumsum(sizes) - sizes
-        begin = _begin(self.pool) + int(sizes.sum()) * np.arange(len(self.structures))
+        begin = begin_of(self.pool) + int(sizes.sum()) * np.arange(len(self.structures))
         for k, (name, of) in enumerate((("words", WORDS), ("reals", REALS))):
             self.structures[name], self.structures[f"{name}_room"] = begin + starts[k], self.rooms[of]
         for k, of in enumerate(_OF):
@@ -95,28 +129,26 @@ class Slots:
 
     def index(self, address: int) -> int:
         """Number of the place whose structure has its record at `address`."""
-        return (address - _begin(self.structures)) // STRUCTURE.itemsize
+        return (address - self.addresses.item(0)) // STRUCTURE.itemsize
 
     def view(self, address: int, count: int, dtype: Any) -> Array:
         """`count` numbers at an address within the pool."""
-        at = address - _begin(self.pool)
+        at = address - self._pool_begin
         if not count or not 0 <= at < self.pool.nbytes:
             return np.zeros(0, dtype)
-        kind = np.dtype(dtype)
-        return self.pool[at // 4 : at // 4 + count * kind.itemsize // 4].view(kind)
+        return np.ndarray(count, dtype, self.pool, at)
 
     def keep(self, count: int, present: int) -> None:
         """Have so few places from now on, of which the first is that of the structure at the address `present`. Whoever
         knows addresses has to be told `where` it is."""
         chosen = [self.index(present), *(k for k in range(len(self.structures)) if k != self.index(present))][:count]
-        old, stride = _begin(self.pool), int(self._sizes().sum())
+        old, stride = begin_of(self.pool), int(self._sizes().sum())
         pool = np.concatenate([self.pool[k * stride // 4 : (k + 1) * stride // 4] for k in chosen])
-        from_tables = self.tables[chosen]
-        for name in ("structures", "partitions", "lus"):
-            setattr(self, name, getattr(self, name)[chosen])
-        self.pool, self.tables, self.addresses = pool, from_tables, np.zeros(count, dtype=np.int64)
+        self.words, self._records = {name: x[chosen] for name, x in self.words.items()}, {}
+        self._use(pool)
+        self.tables, self.addresses = self.tables[chosen], np.zeros(count, dtype=np.int64)
         for number, place in enumerate(chosen):
-            offset = _begin(pool) + number * stride - old - place * stride
+            offset = begin_of(pool) + number * stride - old - place * stride
             for words in self._words(number):
                 inside = (words >= old + place * stride) & (words < old + (place + 1) * stride)
                 words[inside] += offset
@@ -126,9 +158,14 @@ class Slots:
 
     def _words(self, number: int) -> list[NDArray[np.int64]]:
         """The records of a place as words, and its table of addresses."""
-        one = slice(number, number + 1)
-        records = (self.structures[one], self.partitions[one], self.lus[one].reshape(-1), self.tables[one].reshape(-1))
-        return [x.view(np.int64) for x in records]
+        return [*(x[number] for x in self.words.values()), self.tables[number]]
+
+    def ask_like(self, other: "Slots") -> bool:
+        """Need as much as others have; False if there is as much."""
+        if np.all(other.rooms <= self.rooms):
+            return False
+        self.needs[:] = np.ceil(np.maximum(self.rooms, other.rooms) / SLACK).astype(np.int64)
+        return True
 
     def ask(self, times: float) -> None:
         """Need so many times what there is."""
@@ -149,33 +186,30 @@ class Slots:
         new_sizes = self._sizes()
         stride, new_stride = int(sizes.sum()), int(new_sizes.sum())
         starts, new_starts = np.cumsum(sizes) - sizes, np.cumsum(new_sizes) - new_sizes
-        self.pool = np.zeros(count * new_stride // 4, dtype=np.uint32)
+        self._use(np.zeros(count * new_stride // 4, dtype=np.uint32))
         if len(old):
             rows, new_rows = old.reshape(count, -1), self.pool.reshape(count, -1)
             for start, new_start, size in zip(starts // 4, new_starts // 4, sizes // 4, strict=True):
                 new_rows[:, new_start : new_start + size] = rows[:, start : start + size]
             words = [x for k in range(count) for x in self._words(k)]
             for x in (*words, *others):
-                inside = np.flatnonzero((x >= _begin(old)) & (x < _begin(old) + old.nbytes))
-                place, within = np.divmod(x[inside] - _begin(old), stride)
+                inside = np.flatnonzero((x >= begin_of(old)) & (x < begin_of(old) + old.nbytes))
+                place, within = np.divmod(x[inside] - begin_of(old), stride)
                 part = np.searchsorted(starts, within, side="right") - 1
-                x[inside] = _begin(self.pool) + place * new_stride + new_starts[part] + within - starts[part]
+                x[inside] = begin_of(self.pool) + place * new_stride + new_starts[part] + within - starts[part]
         self._place()
         return True
 
     def memory(self) -> tuple[list[Array], list[Array], list[Array]]:
         """Arrays, records and addresses, and what of it need not be copied."""
-        tables = [*(getattr(self, name) for name in _OWN), self.scratch.cell]
+        tables = [*self.words.values(), self.tables, self.addresses, self.scratch.cell]
         return [self.needs, self.pool], tables, [self.scratch.numbers]
 
     def moved(self, take: Take) -> "Slots":
         """The same in a copy of its memory (`compiled/image.py`)."""
         new = twin(self)
-        new.scratch, new.needs, new.pool = self.scratch.moved(take), take(self.needs), take(self.pool)
-        new.structures, new.partitions, new.lus = take(self.structures), take(self.partitions), take(self.lus)
+        new.scratch, new.needs = self.scratch.moved(take), take(self.needs)
+        new.words, new._records = {name: take(x) for name, x in self.words.items()}, {}
+        new._use(take(self.pool))
         new.tables, new.addresses, new.rooms = take(self.tables), take(self.addresses), self.rooms.copy()
         return new
-
-
-def _begin(x: Array) -> int:
-    return int(x.view(np.uint8).__array_interface__["data"][0])  # that of a structured array describes its type

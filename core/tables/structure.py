@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.records import Record, words_of
+from ..compiled.image import Arrays
+from ..compiled.records import words_of
 from ..linalg import Matrix
 from ..state.workspace_records import PARTITION, STRUCTURE
 from .slots import MATRICES, Slots
@@ -20,6 +21,9 @@ OF_STRUCTURE = (
     "entry_row", "entry_col",
 )  # fmt: skip
 """Arrays that the record of the workspace takes over."""
+OF_PARTITION = ("dependent", "free_row", "free_col", "free_slot")
+"""The same of its partition: dependent coordinates; row, column and slot of the entries of Phi_q in independent
+columns."""
 _NAMES = {"entry_row": "rows", "entry_col": "cols"}
 
 
@@ -32,17 +36,16 @@ class Partition:
 
     def __init__(self, structure: "Structure", number: int) -> None:
         self._structure = structure
-        self._record = Record(structure.slots.partitions[number : number + 1])
+        self._record = structure.slots.record("partitions", number)
         self.serial = self._record["serial"]
         self.dependent = structure.view(self._record["dependent"], structure.m_act, np.int64).copy()
         """(m_act,)."""
 
-    @property
-    def free(self) -> tuple[NDArray[np.int64], ...]:
-        """Row, column and slot of the entries of Phi_q in independent columns."""
-        count = self._record["n_free"]
-        names = ("free_row", "free_col", "free_slot")
-        return tuple(self._structure.view(self._record[name], count, np.int64) for name in names)
+    def array(self, name: str) -> NDArray[np.int64]:
+        """One of OF_PARTITION."""
+        return self.dependent if name == "dependent" else self._structure.view(
+            self._record[name], self._record["n_free"], np.int64
+        )  # fmt: skip
 
     @cached_property
     def lu_d(self) -> Matrix:
@@ -74,13 +77,14 @@ class Structure:
     def __init__(self, slots: Slots, address: int, shapes: list[tuple[int, int]], two: bool, give_room: Any) -> None:
         self.slots, self.two_partitions, self.address = slots, two, address
         self._shapes, self._give_room, self._number = shapes, give_room, slots.index(address)
-        self.record = Record(slots.structures[self._number : self._number + 1])
+        self.record = slots.record("structures", self._number)
         self.serial, self.m_act, self.m_held = self._word("serial"), self._word("m_act"), self._word("m_held")
         self.n_values, self.nnz = self._word("n_values"), self._word("nnz")
         # these are asked for while other structures may take the place of this one
         self.active = self._whole("active", self.m_act).copy()
         self.redundant = self._whole("redundant", self._word("n_redundant")).copy()
-        self._partition = slots.partitions.view(np.int64).reshape(len(slots.partitions), -1)[self._number]
+        self._codes = self.codes.copy()
+        self._partition = slots.words["partitions"][self._number]
         self._latest: Partition | None = None
 
     def _word(self, name: str) -> int:
@@ -96,12 +100,12 @@ class Structure:
     @cached_property
     def key(self) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
         """Contacts closed, engaged and sticking."""
-        return key_of(self.codes)
+        return key_of(self._codes)
 
     @cached_property
     def arrays(self) -> dict[str, Array]:
         """Its arrays under the names that they have in the record of the workspace, as long as they do not move."""
-        return {name: getattr(self, _NAMES.get(name, name)) for name in OF_STRUCTURE}
+        return Arrays(OF_STRUCTURE, lambda name: getattr(self, _NAMES.get(name, name)))
 
     @property
     def codes(self) -> NDArray[np.int64]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compiled.image import Take, twin
+from ..compiled.image import Arrays, Take, twin
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record, words_of
@@ -16,7 +16,6 @@ from ..linalg.memory import addresses
 from ..linalg.record import PROGRAM_LIMIT
 from ..state.workspace_records import (
     BUILDING,
-    CONDITIONS,
     CONTROL_SIZE,
     COUPLED_STAGES,
     ENGAGE_SIGNATURE,
@@ -34,7 +33,7 @@ from .partition_building import partition_wanted
 from .raw_entries import raw_entries
 from .slots import MOST_STRUCTURES, Slots
 from .state_fields import STATE, Field, row_length, state_fields
-from .structure import OF_STRUCTURE, Partition, Structure
+from .structure import OF_PARTITION, OF_STRUCTURE, Structure
 from .switch import codes_of
 
 _SHARED = (
@@ -42,16 +41,12 @@ _SHARED = (
     "asleep",
 )  # fmt: skip
 
-_OF_PARTITION = ("dependent", "free_row", "free_col", "free_slot")
-_NEVER_CHANGES = (
-    *OF_STRUCTURE, *_OF_PARTITION, "kernels", "contact_rows", "contact_slide_rows",
-)  # fmt: skip
+_OF_NOW = (*OF_STRUCTURE, *OF_PARTITION)
+"""Arrays of the present structure and partition."""
+_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows")
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
 _STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["serial"]
-_CONDITIONS = [*CONDITIONS]
-_OTHERS = ("signals", "units", "left_out")
-"""Arrays that the record of the workspace does not have."""
 FEW_CONTACTS = 8
 """Contacts up to which there is room from the start for the structure of all of them."""
 MOST_WORDS = 200_000
@@ -119,7 +114,7 @@ class Workspace:
             "probe": np.zeros(0),
             **{
                 name: np.zeros(0, dtype=np.int64)
-                for name in (*_OF_PARTITION, *OF_STRUCTURE)
+                for name in (*OF_PARTITION, *OF_STRUCTURE)
                 if name not in ("values", "probe")
             },
             "wanted": np.zeros(max(contacts, 1), dtype=np.int64),
@@ -150,7 +145,7 @@ class Workspace:
         self._views: dict[int, Structure] = {}
         self.dropped: frozenset[int] = frozenset()
         self.arrays = arrays
-        self._batches = [self._batch(k) for k in range(len(a.batches))]
+        self._made_batches: list[ArrayRecord] | None = [self._batch(k) for k in range(len(a.batches))]
         arrays["batches"][:] = [batch.address for batch in self._batches]
         record_arrays = {k: v for k, v in arrays.items() if k not in ("signals", "units", "left_out")}
         self._record = ArrayRecord(
@@ -168,7 +163,9 @@ class Workspace:
                 "kkt": 0, "lu_d": 0, "lu_p": 0, "kkt_query": 0,
             },
         )  # fmt: skip
-        self.structure: Structure
+        self.arrays = Arrays(arrays, self._of_now)
+        self.arrays.update({name: x for name, x in arrays.items() if name not in _OF_NOW})
+        self._structure: Structure | None = None
         if 0 < contacts <= FEW_CONTACTS:
             # the largest structure first: from then on there is room for all
             self.engage(frozenset(range(contacts)), frozenset(), all_tangents(a))
@@ -187,7 +184,7 @@ class Workspace:
             own.append(batch.arrays["par"])
         arrays, tables, _ = self.slots.memory()
         records = [
-            self._record.table, self._building.table, *(batch.table for batch in self._batches), self.arrays["batches"],
+            self._record.words, self._building.words, *(batch.words for batch in self._batches), self.arrays["batches"],
         ]  # fmt: skip
         return [*own, *arrays], [*records, *tables]
 
@@ -199,14 +196,26 @@ class Workspace:
         """The same workspace in a copy of its memory (`compiled/image.py`)."""
         new = twin(self)
         new.state, new.state_bytes = take(self.state), take(self.state_bytes)
-        new._record = self._record.moved(take)
-        new._batches = [batch.moved(take) for batch in self._batches]
-        new._building = self._building.moved(take)
-        new.arrays = {**new._record.arrays, **{name: take(self.arrays[name]) for name in _OTHERS}}
+        new._record, new._building = self._record.moved(take), self._building.moved(take)
+        batches, arrays, of_now = self._batches, self.arrays, new._of_now
+        new._made_batches, new._make_batches = None, lambda: [batch.moved(take) for batch in batches]
+        new.arrays = Arrays(arrays.names, lambda name: of_now(name) if name in _OF_NOW else take(arrays[name]))
         new.slots = self.slots.moved(take)
-        new._dropped_before, new._views = dict(self._dropped_before), {}
-        new._see_structure()
+        new._dropped_before, new._views, new._structure = dict(self._dropped_before), {}, None
         return new
+
+    @property
+    def _batches(self) -> list[ArrayRecord]:
+        if self._made_batches is None:
+            self._made_batches = self._make_batches()
+        return self._made_batches
+
+    def _of_now(self, name: str) -> NDArray[Any]:
+        """An array of the present structure or partition."""
+        if name in OF_STRUCTURE:
+            return self.structure.arrays[name]
+        present = self.structure.present
+        return np.zeros(0, dtype=np.int64) if present is None else present.array(name)
 
     def take_numbers(self, assembly: Assembly) -> None:
         """Go on with another assembly of the same tables but for their numbers; before the run starts."""
@@ -232,7 +241,7 @@ class Workspace:
 
     def use_stage(self, address: int) -> None:
         """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE)."""
-        self._record.table["stage_function"] = address
+        self._record.set_size("stage_function", address)
 
     def make_basis(self, count: int) -> None:
         """Room for `count` vectors of an accelerated or Krylov outer loop."""
@@ -304,7 +313,7 @@ class Workspace:
 
     def give_room(self) -> None:
         """More memory for structures, as compiled code has asked for it."""
-        records = [self._record.table.view(np.int64), *(batch.table.view(np.int64) for batch in self._batches)]
+        records = [self._record.words, *(batch.words for batch in self._batches)]
         if self.slots.grow(records):
             self._views.clear()
             if self.record.word(_STRUCTURE):
@@ -320,52 +329,41 @@ class Workspace:
         self.engage(*self.key)
 
     def _see_structure(self) -> None:
-        """Name the arrays of the structure that the record has now."""
+        """Look at the structure that the record has now."""
         address = self.record.word(_STRUCTURE)
         seen = self._views.get(address)
         if seen is None or seen.serial != seen.record.word(_SERIAL):
             two = bool(self.assembly.rate_rows)
             seen = self._views[address] = Structure(self.slots, address, self._shapes, two, self.give_room)
-        structure = self.structure = seen
-        self.key = structure.key
-        self.arrays |= structure.arrays
-        present = structure.present
-        if present is not None:
-            self._use_partition(present)
+        self._structure, self._partition = seen, seen.present
+        self._forget_arrays(_OF_NOW)
 
-    def _use_partition(self, partition: Partition) -> None:
-        row, col, slot = partition.free
-        self.arrays |= {"dependent": partition.dependent, "free_row": row, "free_col": col, "free_slot": slot}
+    def _forget_arrays(self, names: tuple[str, ...]) -> None:
+        for name in names:
+            self.arrays.pop(name, None)
+
+    @property
+    def structure(self) -> Structure:
+        """The present structure, as of the last `sync`."""
+        if self._structure is None:
+            self._see_structure()
+        return self._structure  # type: ignore[return-value]
+
+    @property
+    def key(self) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
+        """Its contacts: closed, engaged, sticking."""
+        return self.structure.key
 
     def sync(self) -> None:
         """Take over what compiled code has chosen: structure and partition."""
-        structure = self.structure
+        structure = self._structure
+        if structure is None:
+            return  # nobody has looked yet
         if self.record.word(_STRUCTURE) != structure.address or structure.record.word(_SERIAL) != structure.serial:
             self._see_structure()
-        elif (present := structure.present) is not None and present.dependent is not self.arrays["dependent"]:
-            self._use_partition(present)
-
-    def _forget(self) -> None:
-        """What is known of the matrices' factors and conditions holds no more."""
-        self.arrays["rate"][FACTOR_AGE] = -1.0
-        self.arrays["rate"][_CONDITIONS] = 0.0
-
-    def use_units(self, units: NDArray[np.float64]) -> None:
-        """Choose pivots with coordinates and rows of Phi brought to one unit by `units` (n + m + 1,)."""
-        self.arrays["units"][:] = units
-        structure, n = self.structure, self.assembly.n
-        built, present = self.slots.structures["built"], self.slots.index(structure.address)
-        built[:present], built[present + 1 :] = 0, 0
-        both = np.concatenate([units[:n], units[n + structure.active]])
-        for factorization in (structure.kkt, structure.kkt_query):
-            factorization.use_units(both, both)
-        partition = structure.present
-        if partition is not None:
-            for factorization in partition.factorizations:
-                m = factorization.n
-                factorization.use_units(units[n + structure.active[:m]], units[partition.dependent[:m]])
-        self.arrays["values"][:] = 0.0
-        self._forget()
+        elif (present := structure.present) is not self._partition:
+            self._partition = present
+            self._forget_arrays(OF_PARTITION)
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
@@ -390,10 +388,12 @@ class Workspace:
         partition = self.structure.present
         if partition is None:
             raise RuntimeError("a structure has a partition once one was chosen")
-        self._use_partition(partition)
+        self._partition = partition
+        self._forget_arrays(OF_PARTITION)
 
     def _set(self, name: str, array: NDArray[Any], **sizes: int) -> None:
-        self.arrays[name] = array
+        arrays = self.arrays = self.arrays.copy()  # in the old ones copies of this may look for arrays later
+        arrays[name] = array
         self._record.set_array(name, array)
         for size, value in sizes.items():
             self._record.set_size(size, value)
