@@ -72,7 +72,8 @@ def start(sim: "Simulation") -> None:
     for level, place in (("positions q0", MOVED), ("velocities v0", MOVED_RATES)):
         if numbers[place] > START_MOVED:
             logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, numbers[place])
-    check_rates(sim.workspace, sim.redundant)
+    if sim.redundant:
+        check_rates(sim.workspace, sim.redundant)
     sim.take_events()
     sim.table.initial_energy = sim.table.total_energy(sim.sample())
     sim._sample_now()
