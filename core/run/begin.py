@@ -26,6 +26,7 @@ from .begin_measure import place
 from .begin_record import (
     BEGIN_SIZE,
     FIRST_STEP,
+    FOUND_SIZE,
     LOOK_AT_RANK,
     MOVED,
     MOVED_RATES,
@@ -90,18 +91,18 @@ def _make_consistent(bg: Any, ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 def _meet(bg: Any, ws: Any, rates: bool, level: float) -> bool:
     """Bring q, or v, onto the constraints; False if that takes more than a start may be moved."""
     x, scale, before = vec(ws.v if rates else ws.q, ws.n), vec(ws.scale, ws.n), vec(bg.mass, ws.n)
-    numbers, place = vec(bg.numbers, BEGIN_SIZE), MOVED_RATES if rates else MOVED
+    found, place = vec(bg.found, FOUND_SIZE), MOVED_RATES if rates else MOVED
     for i in range(ws.n):
         before[i] = x[i]
-    numbers[place] = -1.0
+    found[place] = -1.0
     if not meet(ws, rates):
         return False
-    numbers[place], numbers[WHO] = 0.0, 0.0
+    found[place], found[WHO] = 0.0, 0.0
     for i in range(ws.n):
         moved = abs(x[i] - before[i]) / (scale[i] * level)
-        if not (moved <= numbers[place] or np.isnan(numbers[place])):
-            numbers[place], numbers[WHO] = moved, i
-    return bool(numbers[place] <= numbers[START_TOLERANCE])
+        if not (moved <= found[place] or np.isnan(found[place])):
+            found[place], found[WHO] = moved, i
+    return bool(found[place] <= vec(bg.numbers, BEGIN_SIZE)[START_TOLERANCE])
 
 
 @internal
@@ -126,7 +127,7 @@ def _find_touching(bg: Any, dr: Any, ws: Any) -> int:
         row, force = rows[k], ivec(law, ws.n_contacts)[k] == FORCE
         gap, most = phi[row], START_OVERLAP * (position_level(ws) * scale[row])
         if gap < -most and not force:
-            vec(bg.numbers, BEGIN_SIZE)[WHO] = k
+            vec(bg.found, FOUND_SIZE)[WHO] = k
             return OVERLAPS
         if gap > most:
             continue

@@ -18,6 +18,7 @@ BEGIN = np.dtype(
             "work_sizes",                       # (n_ext,) float64: of work accounts that are no energies; 0: none
             "m_joints",                         # rows of joints
             "later", "scale", "mass", "sizes",  # room: (LATER,), (n,), (n,), (m_ext,) float64
+            "found",                            # (FOUND_SIZE,) float64
             # for runs that begin anew without Python: address of the record of `exchange`; the state, and what it is
             # before a run begins, in words; column of a sample of the first of three energies
             "exchange", "state", "blank", "n_blank", "energies",
@@ -33,10 +34,12 @@ STEP, FIRST_STEP, NEWTON_TOLERANCE = 4, 5, 6  # settings; 0: not given
 LENGTHS, ANGLES, SPEEDS, ANGULAR_SPEEDS = 7, 8, 9, 10  # absolute tolerances
 OF_SCALES = 4  # so many columns behind each: 1 where it is a part of the model's own scales
 LOOK_AT_RANK = 15  # 1: rows that repeat others nearly are no start, as long as it is not known that they may
-# what has been found: how far positions and velocities were moved onto the constraints, as a part of their sizes, -1
+BEGIN_SIZE = 16
+
+# columns of `found`: how far positions and velocities were moved onto the constraints, as a part of their sizes, -1
 # where that did not succeed; and which coordinate moved most, or which contact overlaps
-MOVED, MOVED_RATES, WHO = 16, 17, 18
-BEGIN_SIZE = 19
+MOVED, MOVED_RATES, WHO = 0, 1, 2
+FOUND_SIZE = 3
 
 LATER = MOST_TIMES + 3
 """Now, later times of forces and drivers, and two more within the longest step."""

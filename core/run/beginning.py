@@ -10,13 +10,13 @@ from ..compiled.records import ArrayRecord
 from ..tables.assembly import Assembly
 from ..tolerances import DEFAULT_ATOL, OfScales
 from . import begin_record as places
-from .begin_record import BEGIN, BEGIN_SIZE, LATER
+from .begin_record import BEGIN, BEGIN_SIZE, FOUND_SIZE, LATER
 from .settings import KINDS, Settings
 
 if TYPE_CHECKING:
     from .engine import Engine
 
-_ROOM = ("later", "scale", "mass", "sizes")
+_ROOM = ("later", "scale", "mass", "sizes", "found")
 _OWN = ("numbers", "q0", "v0", "usual_v0", "row_sizes", "work_sizes", *_ROOM)
 """Arrays that a run writes; nobody writes into the others."""
 
@@ -32,7 +32,7 @@ class Beginning:
     def __init__(self, sim: "Engine") -> None:
         assembly = sim.assembly
         n, given = assembly.n, assembly.row_scale is not None
-        room = {"later": LATER, "scale": n, "mass": n, "sizes": assembly.m + 1}
+        room = {"later": LATER, "scale": n, "mass": n, "sizes": assembly.m + 1, "found": FOUND_SIZE}
         self.record = ArrayRecord(
             BEGIN,
             {
@@ -63,8 +63,13 @@ class Beginning:
 
     @property
     def numbers(self) -> NDArray[np.float64]:
-        """Settings, and what the start has found (`begin_record.py`)."""
+        """Settings and sizes (`begin_record.py`)."""
         return self.record.arrays["numbers"]
+
+    @property
+    def found(self) -> NDArray[np.float64]:
+        """What the last start has found (`begin_record.py`)."""
+        return self.record.arrays["found"]
 
     @property
     def scratch(self) -> list[NDArray[Any]]:

@@ -54,10 +54,16 @@ class Blueprint:
     def with_room(self, other: Simulation) -> "Blueprint":
         """The same runs with as much memory for structures as `other` had to ask for; this one, if they have."""
         workspace = self._sim.workspace
-        if not workspace.slots.ask_like(other.workspace.slots):
+        if np.all(other.workspace.slots.rooms <= workspace.slots.rooms):
             return self
+        workspace.slots.ask_for_as_much_as(other.workspace.slots)
         workspace.give_room()
         return Blueprint(self._sim)
+
+    @property
+    def size(self) -> int:
+        """Bytes of a run's memory that are copied; behind them is room without content."""
+        return self._image.copied
 
     def simulation(self) -> Simulation:
         """One more run, independent of all others."""

@@ -70,8 +70,8 @@ def start(sim: "Simulation") -> None:
         sim.drive.take_pending()  # who goes on from an earlier state does not want them
         raise
     for level, place in (("positions q0", MOVED), ("velocities v0", MOVED_RATES)):
-        if numbers[place] > START_MOVED:
-            logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, numbers[place])
+        if (moved := sim.beginning.found[place]) > START_MOVED:
+            logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, moved)
     if sim.redundant:
         check_rates(sim.workspace, sim.redundant)
     sim.take_events()
@@ -115,7 +115,7 @@ def _failure(sim: "Simulation", status: int) -> ConsistencyError | SimulationErr
     if status in (NO_POSITIONS, NO_VELOCITIES):
         return _far_from_constraints(sim, status == NO_VELOCITIES)
     if status == OVERLAPS:
-        k = int(sim.beginning.numbers[WHO])
+        k = int(sim.beginning.found[WHO])
         return ConsistencyError(
             f"contact '{sim.assembly.contacts[k].name}' starts with the shapes overlapping by {-sim.gap(k):.3g} m; "
             "a constraint contact needs a gap >= 0 at the start"
@@ -132,9 +132,9 @@ def _failure(sim: "Simulation", status: int) -> ConsistencyError | SimulationErr
 
 def _far_from_constraints(sim: "Simulation", rates: bool) -> ConsistencyError:
     """The refusal of positions (or velocities) that violate the constraints beyond repair."""
-    assembly, arrays, numbers = sim.assembly, sim.workspace.arrays, sim.beginning.numbers
+    assembly, arrays, found = sim.assembly, sim.workspace.arrays, sim.beginning.found
     x, residual, level = ("v", "phid", "velocities v0") if rates else ("q", "phi", "positions q0")
-    moved, who = float(numbers[MOVED_RATES if rates else MOVED]), int(numbers[WHO])
+    moved, who = float(found[MOVED_RATES if rates else MOVED]), int(found[WHO])
     given, now = sim.beginning.record.arrays["mass"][: assembly.n], arrays[x][: assembly.n].copy()
     detail = "no consistent ones were found near by"
     if moved != -1.0:

@@ -160,17 +160,15 @@ class Slots:
         """The records of a place as words, and its table of addresses."""
         return [*(x[number] for x in self.words.values()), self.tables[number]]
 
-    def ask_like(self, other: "Slots") -> bool:
-        """Need as much as others have; False if there is as much."""
-        if np.all(other.rooms <= self.rooms):
-            return False
-        self.needs[:] = np.ceil(np.maximum(self.rooms, other.rooms) / SLACK).astype(np.int64)
-        return True
-
     def ask(self, times: float) -> None:
         """Need so many times what there is."""
         self.needs[:] = np.maximum(self.needs, (times / SLACK * self.rooms).astype(np.int64))
         self.needs[OF_KKT + SCRATCH] = int(times / SLACK * len(self.scratch.numbers))
+
+    def ask_for_as_much_as(self, other: "Slots") -> None:
+        """Need what another run of the same model has."""
+        self.needs[:] = np.maximum(self.needs, (other.rooms / SLACK).astype(np.int64) + 1)
+        self.needs[OF_KKT + SCRATCH] = len(other.scratch.numbers) / SLACK + 1
 
     def grow(self, others: list[NDArray[np.int64]]) -> bool:
         """Give what is needed; True if places have moved. `others` are the words of records that know addresses of
