@@ -23,11 +23,11 @@ from ..rounding import (
     PERHAPS_REST,
     REACHES_LIMIT,
     REACHES_LIMIT_NOW,
-    STANDS,
     STICKS_STILL,
     UNSOLVED,
 )
 from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
+from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
@@ -125,6 +125,8 @@ from .touching import find_gradient, force_noise, refuse_immovable
 
 BEGINS = 2.0
 """In DIRECTION: sliding begins here."""
+ENDS_WITH = 2.0
+"""Of the sliding speed that has no direction: with less where sliding ends, the contact has stopped."""
 HOLDS = 1e-6
 """Of the largest free acceleration: how fast a gap may close that is left to other contacts to hold."""
 _FOUND = (
@@ -308,11 +310,13 @@ def _blow(ev: Any, dr: Any, ws: Any) -> int:
 @internal
 def _look(ev: Any, ws: Any) -> None:
     """Which contacts slide, and where to: 1 in KNOWN, with COS_WAY and SIN_WAY; 0 where friction decides."""
+    contacts = ivec(ev.contacts, ev.most)
     for i in range(whole(ev)[COUNT]):
         x, y, none = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i], max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
         speed, stands = math.sqrt(x * x + y * y), col(ev, STOPS)[i] != 0.0 and whole(ev)[STRUCK] == 0
         if stands:
-            none = max(none, STANDS * rate_size(ws, ivec(ev.contacts, ev.most)[i]))
+            # it has gone on in its direction to where error control does not resolve another
+            none = max(none, ENDS_WITH * mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], SLOW_SLIDING])
         slides = speed > none and col(ev, STATIC)[i] > 0.0
         col(ev, KNOWN)[i] = 1.0 if slides else 0.0
         col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (x / speed, y / speed) if slides else (1.0, 0.0)
