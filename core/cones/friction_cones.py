@@ -8,7 +8,8 @@ One contact is solved by itself: it separates, sticks, or slides with the angle 
 root of one scalar function (`one_cone`). Several: sweeps of that over all contacts, and Newton's method on the
 projections of Alart and Curnier (1991), P_N = max(base, P_N - r w_N), P_T = projection of P_T - r w_T on the disk
 mu P_N, which is semismooth and ends in few steps; where it does not get nearer, sweeps go on, in smaller steps, until
-nothing changes (Jourdan, Alart, Jean 1998).
+nothing changes (Jourdan, Alart, Jean 1998). What these do not find is followed from the forces without friction, while
+that grows.
 """
 
 import math
@@ -32,6 +33,8 @@ FAILED, FOUND = 0, 1
 SWEEPS, MOST_SWEEPS = 20, 5000
 NEWTON, HALVINGS = 60, 8
 LEAST_PART = 0.125
+GROWTH_SWEEPS, MOST_GROWTHS, FIRST_GROWTH, LEAST_GROWTH = 500, 100, 0.25, 1e-6
+"""Where sweeps come to no end: friction grows in such parts of its coefficients."""
 ANGLES = 48
 """Parts of a turn in which the angle of sliding is looked for."""
 TOUCHES_ZERO, SLIDES_BACK = 1e-13, 1e-10
@@ -343,6 +346,41 @@ def _newton(
 
 
 @internal
+def _grow(least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int) -> bool:
+    """True if p, the forces, are found by Newton's method while friction grows from nothing to its coefficients."""
+    less, before, grown, step = np.empty(n), np.empty(3 * n), 0.0, FIRST_GROWTH
+    for i in range(n):
+        less[i] = 0.0
+        p[i], p[n + i], p[2 * n + i] = base[i], 0.0, 0.0
+    for _ in range(GROWTH_SWEEPS):
+        found, change, largest = _sweep(n, a, b, less, base, known, way, p, 1.0)
+        if not found:
+            return False
+        if change <= FRICTION_ENOUGH * largest:
+            break
+    for _ in range(MOST_GROWTHS):
+        for i in range(3 * n):
+            before[i] = p[i]
+        reached = min(grown + step, 1.0)
+        for i in range(n):
+            less[i] = reached * mu[i]
+        _newton(least_norm, n, a, b, less, base, known, way, p, work)
+        for i in range(n):
+            p[i] = max(p[i], base[i])
+        if _motion_left(n, a, b, less, base, known, way, p) <= FRICTION_GOOD:
+            grown, step = reached, 2.0 * step
+            if grown == 1.0:
+                return True
+            continue
+        step *= 0.5
+        if step < LEAST_GROWTH:
+            break
+        for i in range(3 * n):
+            p[i] = before[i]
+    return False
+
+
+@internal
 def solve_friction_cones(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
 ) -> int:
@@ -377,6 +415,9 @@ def solve_friction_cones(
         for i in range(n):
             largest = max(largest, p[i])
         # directions that nearly repeat each other leave what they differ by
+        for i in range(n):
+            # less than the least by rounding would pull in the next problem
+            p[i] = max(p[i], base[i])
         near = left <= FRICTION_NEAR * largest or (left <= FRICTION_GOOD * largest and left > 0.5 * before)
         if near and _motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_MOTION:
             return FOUND
@@ -385,5 +426,12 @@ def solve_friction_cones(
             p[i] = kept[i]
         # sweeps that go round in circles come to rest with smaller steps
         wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
+    kept = vec(work + 8 * (9 * n * n + 12 * n), 3 * n)
+    for i in range(3 * n):
+        kept[i] = p[i]
+    if _grow(least_norm, n, a, b, mu, base, known, way, p, work):
+        return FOUND
+    for i in range(3 * n):
+        p[i] = kept[i]
     rough = change <= FRICTION_ROUGH * largest
     return FOUND if rough and _motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_ROUGH else FAILED

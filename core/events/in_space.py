@@ -32,12 +32,13 @@ from ..state.modes import STICKS as STUCK
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+from ..tables.levels import rate_size
 from ..tables.switch import engage_modes
 from .forces import cones_at
 from .laws import POISSON
 from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
 from .rates_in_space import masses, push_in_space, read_in_space, read_rates_in_space, solve_cones_in_space
-from .reading import largest_acceleration, rate_size, unresolved_speed
+from .reading import largest_acceleration, unresolved_speed
 from .records import (
     ACCELERATIONS,
     APART,
@@ -284,7 +285,7 @@ def _blow(ev: Any, dr: Any, ws: Any) -> int:
             e = 0.0 if low and col(ev, LOW)[i] != 0.0 else col(ev, RESTITUTION)[i]
             back = back or (part[i] != 0.0 and poisson and e > 0.0)
             if phase == 1:
-                base[i] = e * p_n[i] if poisson else 0.0
+                base[i] = e * max(p_n[i], 0.0) if poisson else 0.0
             clear_rate = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
             wanted = e * (col(ev, RATE_BEFORE)[i] if phase == 1 else clear_rate) if not poisson else 0.0
             b[i] = clear_rate + wanted

@@ -10,7 +10,7 @@ from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, REACHES
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.workspace_records import CONTROL_SIZE, RTOL
 from ..tables.held import held_friction, is_held
-from ..tables.levels import force_level, position_level, rate_level
+from ..tables.levels import force_level, position_level, rate_size
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
 
 
@@ -21,14 +21,6 @@ def largest_acceleration(ws: Any) -> float:
     for i in range(ws.n):
         largest = max(largest, abs(a[i]) / scale[i])
     return largest
-
-
-@internal
-def rate_size(ws: Any, k: int) -> float:
-    """What the rates of gap and sliding distance of contact k are small or large against, m/s."""
-    scale, slide = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    along = scale[slide] if slide >= 0 else 0.0
-    return rate_level(ws) * max(scale[ivec(ws.contact_rows, ws.n_contacts)[k]], along)
 
 
 @internal

@@ -52,7 +52,7 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE
 from ..tables.evaluate import evaluate_power, evaluate_residuals
-from ..tables.levels import position_level
+from ..tables.levels import position_level, rate_size
 from ..tables.switch import take_structure
 from .blow import impact
 from .breakpoint import pass_breakpoint
@@ -63,7 +63,7 @@ from .massless import settle_massless
 from .meeting import meet_constraints
 from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
 from .progress import COUNT as GUARDED
-from .reading import largest_acceleration, rate_size, read_before, slow_sliding
+from .reading import largest_acceleration, read_before, slow_sliding
 from .records import (
     ACCELERATIONS,
     AXIS_NOW,
