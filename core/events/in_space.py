@@ -78,6 +78,7 @@ from .records import (
     NO_FREE_ACCELERATIONS,
     NO_IMPACT,
     NONE,
+    OLD_RATIO,
     OTHER_N,
     OTHER_T,
     OTHER_WN,
@@ -97,6 +98,7 @@ from .records import (
     SIN_WAY,
     SINGULAR_JOINTS,
     SIZE,
+    SLID,
     SLIDE_BEFORE,
     SLIDE_RATE,
     SLIPS,
@@ -625,12 +627,25 @@ def _hand_over(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
 
 
 @internal
+def _gives_way(ev: Any, i: int, fastest: float) -> bool:
+    """True if contact i, which others hold along one tangent, has reached its limit with what it carries there, and
+    does not move: without that share it need not slide yet. A ball in a corner, on floor and wall, is held by both, and
+    its friction on the wall, upwards, may be anything with the normal forces that fit it."""
+    moves = math.sqrt(col(ev, W_T)[i] ** 2 + col(ev, W_S)[i] ** 2) > STICKS_STILL * fastest
+    shared = col(ev, SLID)[i] == ALONG and col(ev, OLD_RATIO)[i] != 0.0
+    return bool(col(ev, DIRECTION)[i] == BEGINS and shared and not moves)
+
+
+@internal
 def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """As `keep`: normals first, those that carry most before others; then tangents of those that stick. Where both of a
-    contact are left to others, or one, it carries its share of friction along with its normal force."""
+    contact are left to others, or one, it carries its share of friction along with its normal force; at the limit of
+    its friction it leaves all that it carries there to them, for it can only slide across that."""
     count, some, flag = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), col(ev, FLAG)
     f_n, f_t, f_s, order = col(ev, F_N), col(ev, F_T), col(ev, F_S), ivec(ev.order, 2 * ev.most)
-    rank, normals = real(ev)[RANK], 0
+    rank, normals, fastest = real(ev)[RANK], 0, 0.0
+    for i in range(count):
+        fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]), abs(col(ev, B_S)[i]))
     clear(flag, count)
     for i in range(count):
         if col(ev, CLOSES)[i] != 0.0:
@@ -653,6 +668,8 @@ def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         i = order[j]
         rubs = col(ev, STATIC)[i] > 0.0
         size = math.sqrt(f_t[i] ** 2 + f_s[i] ** 2)
+        if _gives_way(ev, i, fastest):
+            col(ev, DIRECTION)[i] = 0.0
         if col(ev, DIRECTION)[i] != 0.0 and rubs:
             col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = 1.0, -col(ev, KINETIC)[i]
             continue
@@ -662,4 +679,7 @@ def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (f_t[i] / size, f_s[i] / size) if size > 0.0 else (1.0, 0.0)
         if rubs:
             total += _hold(ev, total, i, rank)
+            full = size >= (1.0 - REACHES_LIMIT_NOW) * col(ev, STATIC)[i] * f_n[i]
+            if col(ev, NEW_SLIDE)[i] == ALONG and full:
+                col(ev, NEW_RATIO)[i] = 0.0
     return SETTLED

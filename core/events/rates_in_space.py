@@ -1,9 +1,6 @@
 """Rates of contacts with two tangents, what impulses do to them, and the problem of their friction cones."""
 
-import math
 from typing import Any
-
-import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
@@ -12,11 +9,6 @@ from ..linalg.small import call_least_norm
 from ..rounding import DIRECTION_RANK, STICKS_STILL
 from .forces import cones_at
 from .records import COS_WAY, COUNT, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, col, whole
-
-MOST_WEIGHTS, LEAST_WEIGHT, LESS = 30, 1e-6, 1e-6
-"""Of the search for the least largest part of a limit: turns, the least of the weights, and what a turn must bring."""
-SPARES = 1e-3
-"""Of its limit: where each contact that sticks has as much left, no other distribution is looked for."""
 
 
 @internal
@@ -62,36 +54,9 @@ def push_in_space(ev: Any, ws: Any, p: Any) -> None:
 
 
 @internal
-def _shares(
-    least_norm: int, n: int, a: Any, mu: Any, p: Any, sticking: Any, weight: Any, matrix: int, found: Any
-) -> float:
-    """Friction of the contacts `sticking`, in parts of their limits, that leaves the motion as p does, to found
-    (2 held, 1): the least by the sum of squares times weights. The square of the largest part."""
-    m, held = 3 * n, len(weight)
-    shares, effect = mat(matrix, m, 2 * held), mat(matrix + 8 * 2 * m * held, m, 1)
-    for i in range(m):
-        effect[i, 0] = 0.0
-        for k in range(held):
-            limit = mu[sticking[k]] * p[sticking[k]] / math.sqrt(weight[k])
-            for block in range(2):
-                j = (block + 1) * n + sticking[k]
-                shares[i, 2 * k + block] = a[i, j] * limit
-                effect[i, 0] += a[i, j] * p[j]
-    call_least_norm(least_norm, shares, effect, found, DIRECTION_RANK, matrix + 8 * (2 * m * held + m))
-    largest = 0.0
-    for k in range(held):
-        for block in range(2):
-            found[2 * k + block, 0] /= math.sqrt(weight[k])
-        largest = max(largest, found[2 * k, 0] ** 2 + found[2 * k + 1, 0] ** 2)
-    return largest
-
-
-@internal
 def _spread(least_norm: int, n: int, a: Any, b: Any, mu: Any, known: Any, p: Any, work: int) -> None:
     """Friction of contacts that stick is not unique where they hold each other: of all that leave the same motion take
-    the one that is farthest from its limits, by the sum of squares, if it is within them all. Where one is at its
-    limit that way though others could take more, the largest part is made least instead (Lawson 1961): a contact that
-    others hold across the way on which it may slide is to give them what it carries there."""
+    the one that is farthest from its limits, by the sum of squares, if it is within them all."""
     m, fastest, held, wanted = 3 * n, 0.0, 0, 0.0
     for i in range(m):
         fastest = max(fastest, abs(b[i]))
@@ -109,27 +74,24 @@ def _spread(least_norm: int, n: int, a: Any, b: Any, mu: Any, known: Any, p: Any
             wanted = max(wanted, (p[n + i] ** 2 + p[2 * n + i] ** 2) / (mu[i] * p[i]) ** 2)
     if held < 2:
         return
-    weight, found, best = np.ones(held), np.zeros((2 * held, 1)), np.zeros(2 * held)
-    largest = math.inf
-    for _ in range(MOST_WEIGHTS):
-        parts = _shares(least_norm, n, a, mu, p, sticking, weight, matrix, found)
-        if not parts < (1.0 - LESS) * largest:
-            break
-        largest, heaviest = parts, 0.0
+    shares, effect = mat(matrix, m, 2 * held), mat(matrix + 8 * 2 * m * held, m, 1)
+    found = mat(matrix + 8 * (2 * m * held + m), 2 * held, 1)
+    for i in range(m):
+        effect[i, 0] = 0.0
         for k in range(held):
-            best[2 * k], best[2 * k + 1] = found[2 * k, 0], found[2 * k + 1, 0]
-        if largest < (1.0 - SPARES) ** 2:
-            break
-        for k in range(held):
-            weight[k] *= math.sqrt(best[2 * k] ** 2 + best[2 * k + 1] ** 2)
-            heaviest = max(heaviest, weight[k])
-        for k in range(held):
-            weight[k] = max(weight[k] / heaviest, LEAST_WEIGHT)
+            for block in range(2):
+                j = (block + 1) * n + sticking[k]
+                shares[i, 2 * k + block] = a[i, j] * mu[sticking[k]] * p[sticking[k]]
+                effect[i, 0] += a[i, j] * p[j]
+    call_least_norm(least_norm, shares, effect, found, DIRECTION_RANK, matrix + 8 * (2 * m * held + m + 2 * held))
+    largest = 0.0
+    for k in range(held):
+        largest = max(largest, found[2 * k, 0] ** 2 + found[2 * k + 1, 0] ** 2)
     if largest >= max(wanted, 1.0):
         return
     for k in range(held):
         for block in range(2):
-            p[(block + 1) * n + sticking[k]] = best[2 * k + block] * mu[sticking[k]] * p[sticking[k]]
+            p[(block + 1) * n + sticking[k]] = found[2 * k + block, 0] * mu[sticking[k]] * p[sticking[k]]
 
 
 @internal
