@@ -36,6 +36,9 @@ def one_line_errors(command: Command) -> Command:
             # the reader (`head`, say) has what it wanted; Python must not fail once more when it flushes stdout
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(1) from None
+        except KeyboardInterrupt:
+            typer.echo("tlismni: stopped; there is nothing to keep yet", err=True)
+            raise typer.Exit(130) from None
         except Exception as error:
             if kwargs.get("debug"):
                 raise

@@ -24,6 +24,7 @@ def page(records: Mapping[str, type]) -> str:
             f"## {name}",
             "",
             words,
+            *names_of(name, record),
             "",
             "| field | takes | unit | default | what it is |",
             "|---|---|---|---|---|",
@@ -33,3 +34,12 @@ def page(records: Mapping[str, type]) -> str:
             row = (f"`{f.name}`", f.kind, f.unit, default, f.description)
             parts.append("| " + " | ".join(cell.replace("|", "\\|").replace("<", "&lt;") for cell in row) + " |")
     return "\n".join(parts) + "\n"
+
+
+def names_of(name: str, record: type) -> list[str]:
+    """What it is called in a file and in Python, where that is not `name`."""
+    kind = getattr(record, "model_fields", {}).get("type")
+    written = [] if kind is None or kind.default == name else [f'in a file `"type": "{kind.default}"`']
+    called = [] if record.__name__ == name else [f"in Python `{record.__name__}`"]
+    told = " and ".join([*written, *called])
+    return ["", f"It is called {told}."] if told else []

@@ -89,7 +89,8 @@ def compile_notice() -> Iterator[None]:
 
 @contextmanager
 def progress_bar(text: str, t_end: float) -> Iterator[Callable[[float], None]]:
-    """A bar over simulated time, on a terminal only; gives what is to be called with the time reached."""
+    """A bar over simulated time, or other work up to `t_end`, on a terminal only; gives what is called with how far it
+    is."""
     console = stderr()
     if not console.is_terminal:
         yield lambda t: None

@@ -37,7 +37,8 @@ class CompiledModel:
         self._arguments, self._settings = arguments, settings
         bare = Unstarted(system, *arguments, **settings)
         self.system, self._assembly = bare.system, bare.assembly
-        self.channels = tuple(channel.name for channel in bare.table.channels)
+        self.channel_records = tuple(bare.table.channels)
+        self.channels = tuple(channel.name for channel in self.channel_records)
         self.t0 = bare.settings.t0
         self._places = _start_places(bare)
         self.start_names = tuple(self._places)

@@ -2,24 +2,39 @@
 
 import hashlib
 import io
+import logging
 import zipfile
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
+from ..core.compiled.library import LIBRARY, USUAL_PLACE
 from .version import VERSION_FILE, package_version
 
 CARRIED = ("core", "fmu_wrapper", "models", "viewer")
 """What a slave needs; it is imported from its archive under another name than `tlismni`, by relative imports."""
 _ROOT = Path(__file__).resolve().parents[1]
+logger = logging.getLogger(__name__)
 
 
 def package_archive() -> tuple[bytes, str]:
-    """A zip archive of the package's sources, and the digest of its bytes. Equal sources give equal bytes."""
+    """A zip archive of the package's sources, and the digest of its bytes. Equal sources give equal bytes.
+
+    The library of machine code of this process is in it too, where the sources look for it: on this platform nothing is
+    compiled then. On others, and without one, what a model needs is compiled when the FMU is first used.
+    """
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for folder in CARRIED:
             for path in sorted((_ROOT / folder).rglob("*.py")):
                 _add(archive, path.relative_to(_ROOT).as_posix(), path.read_bytes())
+        if LIBRARY is None:
+            logger.warning(
+                "the FMU carries no machine code, since this process has none: what it needs is compiled when it is "
+                "first used on a machine, which takes a minute or two and numba; `python -m tlismni.core.ahead` makes "
+                "machine code of these sources"
+            )
+        else:
+            _add(archive, USUAL_PLACE.relative_to(_ROOT).as_posix(), LIBRARY.path.read_bytes())
         _add(archive, f"fmu_wrapper/{VERSION_FILE}", package_version().encode())
         for text in _licences():
             _add(archive, "LICENSE", text)

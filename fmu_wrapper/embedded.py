@@ -5,6 +5,7 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
+from ..core.compiled.library import REFUSED
 from ..core.description import Model
 from ..core.errors import TlismniError
 from ..core.model.open_union import meaning
@@ -66,6 +67,8 @@ def read_slave(resources: str | Path, *, token: str | None = None, token_name: s
     if data["tlismni"] != package_version():
         text = f"exported with tlismni {data['tlismni']}, running with {package_version()}: results may differ"
         slave.log.write(Status.WARNING, logs.WARNING, text)
+    if REFUSED:
+        slave.log.write(Status.WARNING, logs.COMPILATION, REFUSED)
     slave.prepare()
     return slave
 

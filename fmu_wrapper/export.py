@@ -56,6 +56,7 @@ def export_fmu(
     outputs: Sequence[str] = (),
     protect: bool = False,
     sources: bool = False,
+    progress: Callable[[float], None] | None = None,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
@@ -87,6 +88,7 @@ def export_fmu(
         what can be seen still). Only an FMU without Python (`native`) can do that: the other kind carries the model.
     sources : put the model's text, a page about its parts and pictures into an FMU without Python (`native`) too; the
         other kind has them in any case.
+    progress : is called with the part of the work that is done, 0 to 1, while parameters are tried (`native`).
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -138,7 +140,7 @@ def export_fmu(
     run = None
     if native:
         variables = without_secrets(variables) if protect else variables
-        run = NativeRun.of(slave.model, slave.settings, variables, slave.origin)
+        run = NativeRun.of(slave.model, slave.settings, variables, slave.origin, progress)
         variables = run.table(variables)
     slave = Slave(slave.model, variables=variables, origin=slave.origin, **solver_data)
     identifier, code = c_identifier(slave.model.name), OwnCode.of(slave.model)

@@ -6,7 +6,7 @@ It holds numbers, not the model: no JSON, no drawing, no page about the model's 
 import math
 import os
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -45,8 +45,16 @@ class NativeRun:
     fixed: Mapping[str, str]
 
     @classmethod
-    def of(cls, model: Model, settings: Settings, table: VariableTable, origin: Origin | None) -> "NativeRun":
+    def of(
+        cls,
+        model: Model,
+        settings: Settings,
+        table: VariableTable,
+        origin: Origin | None,
+        progress: Callable[[float], None] | None = None,
+    ) -> "NativeRun":
         """The run of the default experiment of `model` with `settings`; parameters are those of `table` that can be.
+        `progress` is called with the part of the work that is done.
 
         Raises
         ------
@@ -68,7 +76,7 @@ class NativeRun:
             else:
                 fixed[v.name] = "it is a setting of the solver" if v.block == "solver" else "it is no real number"
         try:
-            image, found, others = image_and_parameters(model, settings.t_end, wanted, **solver)
+            image, found, others = image_and_parameters(model, settings.t_end, wanted, progress=progress, **solver)
         except NativeError as error:
             raise ExportError(f"'{model.name}' cannot be an FMU without Python: {error}") from error
         return cls(image, tuple(found), {**fixed, **others})

@@ -13,7 +13,16 @@ from ..core.compiled_model import CompiledModel, compile_model
 from ..core.errors import ModelError
 from ..core.run.simulation import Simulation
 from ..core.simulate import check_times
-from ..core.sweeps.problem import KEPT_MODELS, Outcomes, answer, begin_at, group_of, settings_of, settings_text
+from ..core.sweeps.problem import (
+    KEPT_MODELS,
+    Outcomes,
+    answer,
+    begin_at,
+    group_of,
+    settings_of,
+    settings_text,
+    units_of,
+)
 from .registry import catalogue, load
 from .scenario import Scenario
 
@@ -70,6 +79,9 @@ class ScenarioProblem:
         for name in names:
             if name not in own:
                 group_of(compiled, name)
+
+    def units(self) -> dict[str, str]:
+        return {**units_of(self._base()[1]), **{name: parameter.unit for name, parameter in self._own().items()}}
 
     def run(self, points: Mapping[str, NDArray[np.float64]], threads: int | None) -> Outcomes:
         (base, compiled), own = self._base(), self._own()

@@ -45,6 +45,20 @@ class Outcome:
             return "undecided"
         return "agree" if "agree" in decisive else "not comparable"
 
+    @property
+    def doubt(self) -> str:
+        """Why there is no cross-check, or why it decides nothing: of the first quantity that is open."""
+        if self.reason or self.found is None or self.verdict not in ("undecided", "not comparable"):
+            return self.reason
+        told = [f"{row.quantity}: {row.why}" for row in self.found.rows if row.required and row.why]
+        more = f" (and {len(told) - 1} more)" if len(told) > 1 else ""
+        return f"{told[0]}{more}" if told else ""
+
+    @property
+    def remark(self) -> str:
+        """The doubt, if there is one, else what the case is for."""
+        return self.doubt or self.case.why
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
         return {
@@ -52,7 +66,7 @@ class Outcome:
             "case": self.case.name,
             "parameters": dict(self.case.parameters),
             "verdict": self.verdict,
-            "reason": self.reason,
+            "reason": self.doubt,
             "why": self.case.why,
             "seconds": round(self.seconds, 2),
             "cpu_seconds": round(self.cpu_seconds, 2),

@@ -90,7 +90,7 @@ def _everything(report: Path | None, coarse: bool, json: bool, workers: int) -> 
     else:
         rows = [
             (o.case.scenario, " ".join(f"{k}={v}" for k, v in o.case.parameters.items()), o.verdict,
-             number(o.seconds, 3), o.reason or o.case.why)
+             number(o.seconds, 3), o.remark)
             for o in found.outcomes
         ]  # fmt: skip
         print_table("", ("scenario", "with", "verdict", "s", "why"), rows, left=2)

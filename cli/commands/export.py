@@ -1,6 +1,7 @@
 """`tlismni export`: write an FMU."""
 
 import zipfile
+from contextlib import nullcontext
 from pathlib import Path
 
 import typer
@@ -33,7 +34,7 @@ from ..options import (
     Step,
     check_suffix,
 )
-from ..screen import compile_notice, print_json, say
+from ..screen import compile_notice, print_json, progress_bar, say
 from ..targets import check_file, is_system_file
 
 EXAMPLES = (
@@ -101,7 +102,8 @@ def export(
     fmi, platforms = known_version(fmi), choose(platform or ())
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     output.parent.mkdir(parents=True, exist_ok=True)
-    with compile_notice():
+    bar = progress_bar(f"trying the parameters of {scenario.name}", 1.0) if native else nullcontext()
+    with compile_notice(), bar as progress:
         path = export_fmu(
             scenario,
             output,
@@ -117,6 +119,7 @@ def export(
             author=author,
             version=model_version,
             needs_execution_tool=execution_tool,
+            progress=progress,
         )
     size = path.stat().st_size
     with zipfile.ZipFile(path) as archive:

@@ -22,6 +22,7 @@ def fields(
     from ...core import Model, ModelError
     from ...core.model.arithmetic import near
     from ...core.model.fields import fields_of, records
+    from ..fields_page import names_of
 
     known = records(Model)
     if kind is not None and kind not in known:
@@ -37,7 +38,8 @@ def fields(
         rows = [(name, _first_line(record)) for name, record in chosen.items()]
         print_table("types of a model file", ("type", "what it is"), rows, left=2)
     else:
-        stdout().print(_first_line(known[kind]), markup=False)
+        for line in (_first_line(known[kind]), *names_of(kind, known[kind])[1:]):
+            stdout().print(line, markup=False)
         rows = [(f.name, f.kind, f.unit, f.default or "must be given", f.description) for f in fields_of(known[kind])]
         print_table(kind, ("field", "takes", "unit", "default", "what it is"), rows, left=5)
 

@@ -43,14 +43,14 @@ from ..loop import drive, loop, sample
 from ..methods import adams, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..repair import mend
-from ..run import begin_now, exchange, slopes
+from ..run import begin_now, exchange, read_channels, slopes
 from ..run.begin_record import BEGIN
 from ..shapes.support3d import SUPPORT_SIGNATURE, SmoothShape3D
 from ..stage import accelerations, joints
 from ..state import run_records as run_records
 from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
 from ..state.workspace_records import ENGAGE_SIGNATURE, EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
-from ..tables import building, evaluate, levels, measure, partition_building, probe, projection
+from ..tables import building, evaluate, levels, matrix_words, measure, partition_building, probe, projection
 from .formed import forms
 
 _WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE
@@ -91,6 +91,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     yield accelerations.solve_accelerations, run_records.ACCELERATIONS_SIGNATURE
     yield watch.find_events, run_records.FIND_EVENTS_SIGNATURE
     yield dense_output.query, exchange.QUERY_SIGNATURE
+    yield dense_output.query_motion, exchange.QUERY_SIGNATURE
     for kernel in (
         marker_channels2d.marker_channels2d, marker_channels3d.marker_channels3d, angular_velocity.angular_velocity,
         joint_coordinates3d.joint_angle, joint_coordinates3d.joint_position, joint_load3d.joint_load,
@@ -124,6 +125,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
         yield function, (_DR,)
     for function in (exchange.exchange, exchange.tell, exchange.read):
         yield function, (types.from_dtype(exchange.EXCHANGE),)
+    yield read_channels.want, (types.from_dtype(exchange.EXCHANGE), _WHOLE)
     yield begin_now.begin_now, (types.from_dtype(BEGIN),)
     yield slopes.along_inputs, slopes.ALONG_ARGUMENTS
     yield slopes.in_time, slopes.SLOPES_ARGUMENTS
@@ -148,6 +150,9 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield projection.meet, (_WS, _FLAG)
     yield partition_building.partition_wanted, (_WS,)
     yield probe.set_probe, (_WS,)
+    yield matrix_words.matrix_words, (_WS,)
+    yield matrix_words.save_matrices, matrix_words.SAVE_ARGUMENTS
+    yield matrix_words.restore_matrices, matrix_words.RESTORE_ARGUMENTS
     yield factor, record.FACTOR_SIGNATURE.args
     yield solve, record.SOLVE_SIGNATURE.args
     yield use_pivots, (_LU,)

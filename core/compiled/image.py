@@ -77,6 +77,11 @@ class Image:
             found.append(first + inside)
         return np.concatenate(found) if found else np.zeros(0, dtype=np.intp)
 
+    @property
+    def copied(self) -> int:
+        """Bytes of a block that have content, at its beginning."""
+        return len(self._bytes)
+
     def take(self) -> Take:
         """A new block, as the function that gives its arrays for those of the original."""
         block = np.empty(self._size, dtype=np.uint8)

@@ -27,6 +27,14 @@ system's."""
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 USUAL_PLACE = Path(__file__).with_name(f"tlismni_core{SUFFIX}")
 _CORE = Path(__file__).resolve().parents[1]
+_PACKAGE = __name__.partition(".core.")[0]
+
+
+def known_as(module: str | None) -> str:
+    """Name of a module of this package in the library, which is made of one that is called `tlismni`; an FMU that
+    carries the package gives it another name. None: of a function that is made of a text."""
+    name = str(module)
+    return "tlismni" + name[len(_PACKAGE) :] if name.startswith(f"{_PACKAGE}.") else name
 
 
 @cache
@@ -93,32 +101,38 @@ class Library:
         return (self._releasing if unlocked else self._holding)[symbol]
 
 
-def _place() -> Path | None:
+def _find() -> tuple[Library | None, str]:
+    """The library of these sources; and, if there is one that cannot be used, why. Raises OSError if the one that PLACE
+    names cannot be loaded."""
     given = os.environ.get(PLACE)
-    if given is None:
-        return USUAL_PLACE if USUAL_PLACE.is_file() else None
-    return None if given.lower() == "none" else Path(given)
-
-
-def _find() -> Library | None:
-    """The library of these sources. Raises OSError if the one that PLACE names cannot be loaded."""
-    path = _place()
-    if path is None:
+    path = USUAL_PLACE if given is None else Path(given)
+    if (given or "").lower() == "none" or (given is None and not path.is_file()):
         logger.info("no library of machine code: functions are compiled when they are first used")
-        return None
-    found = Library(path)
+        others = [] if given is not None else sorted(path.parent.glob(f"{path.stem}.*"))
+        return None, _said(f"'{others[0]}' is for another system than this one ({sys.platform})") if others else ""
+    try:
+        found = Library(path)
+    except (OSError, ValueError) as error:  # of another processor or C library, damaged, or something else
+        if given is not None:
+            raise
+        return None, _said(f"'{path}' cannot be loaded here ({error})")
     if found.digest == core_digest():
-        return found
-    logger.warning(
-        "the machine code in '%s' is of other sources (%s) than these (%s): functions are compiled when they are first "
-        "used; `python -m tlismni.core.ahead` makes it anew",
-        path, found.digest, core_digest(),
-    )  # fmt: skip
-    return None
+        return found, ""
+    return None, _said(f"'{path}' is of other sources ({found.digest}) than these ({core_digest()})")
 
 
-LIBRARY = _find()
-"""The library of this process; None where functions are compiled when they are first used."""
+def _said(why: str) -> str:
+    text = (
+        f"the machine code in {why}: functions are compiled when they are first used, which takes a minute or two on a "
+        "machine's first run; where the sources are, `python -m tlismni.core.ahead` makes it"
+    )
+    logger.warning("%s", text)
+    return text
+
+
+LIBRARY, REFUSED = _find()
+"""The library of this process, None where functions are compiled when they are first used; and why one that is there is
+left alone, in words, empty if none is."""
 _OF_LIBM = Library(Path(os.environ[LIBM])) if LIBM in os.environ else LIBRARY
 if _OF_LIBM is not None:
     use_libm(_OF_LIBM.libm_addresses())

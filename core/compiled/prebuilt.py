@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import Any
 
 from .crossing import Unfit, crossing
-from .library import LIBRARY
+from .library import LIBRARY, known_as
 from .needed import compiler_module, numba_module
 from .plain_types import PlainSignature, PlainType
 from .signatures import signature_text, type_text
@@ -31,7 +31,7 @@ class Prebuilt:
 
     def __init__(self, function: Callable[..., Any], decorator: str, name: str | None = None) -> None:
         self.py_func, self._decorator = function, decorator
-        self.name = name or f"{function.__module__}.{function.__qualname__}"
+        self.name = name or f"{known_as(function.__module__)}.{function.__qualname__}"
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
         self._call: Callable[..., Any] | None = None
         # what numba asks of whatever is called, to inline it before it looks at types

@@ -15,7 +15,8 @@ from ..model.channels import Channel
 from ..model.markers import Marker3D
 from ..model.rotation3d import add_bend, columns_at, constant, dot, onto, turns
 from .base import BodyElement, JointElement, Numbering, Row
-from .material_point3d import cable_named
+from .cable3d import Cable3D
+from .named_body import body_named
 
 SIZE, NODES = 19, 7
 """Coordinates: seven of the marker's body, then the twelve of the cable's element."""
@@ -142,7 +143,7 @@ class CableClamp3D(JointElement):
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         """Refuse what is no cable, and points beyond it."""
-        cable_named(self.name, self.cable, bodies).point(self.s)
+        body_named(self.name, "at a point", self.cable, Cable3D, bodies).point(self.s)
 
     def markers(self) -> Sequence[Marker3D]:
         return (self.marker,)
@@ -151,7 +152,7 @@ class CableClamp3D(JointElement):
         return super().acts_on() | {self.cable}
 
     def row(self, numbering: Numbering) -> Row:
-        point = cable_named(self.name, self.cable, numbering.bodies).point(self.s)
+        point = body_named(self.name, "at a point", self.cable, Cable3D, numbering.bodies).point(self.s)
         axes = self.marker.axes()
         cable = [numbering.coordinate(self.cable, name) for name in point.names]
         parameters = (numbering.at_rest(self.marker)[3], *self.marker.point, *-axes[:, 1], *axes[:, 2])

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..compiled.jit import inlined
-from ..compiled.library import LIBRARY
+from ..compiled.library import LIBRARY, known_as
 from ..compiled.needed import compile_errors, numba_module
 from ..errors import ModelError
 from ..model.base import Record
@@ -210,7 +210,7 @@ def derivatives(formula: Callable[..., Any], arguments: Arguments) -> Any:
 
 def form_name(kind: str, formulas: Sequence[Callable[..., Any]], arguments: Arguments) -> str:
     """What the library of machine code calls the kernel of such formulas."""
-    names = "+".join(f"{formula.__module__}.{formula.__qualname__}" for formula in formulas)
+    names = "+".join(f"{known_as(formula.__module__)}.{formula.__qualname__}" for formula in formulas)
     return f"{kind}:{names}:{','.join(arguments.markers)};{','.join(arguments.numbers)}"
 
 

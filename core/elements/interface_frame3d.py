@@ -36,6 +36,7 @@ from ..model.rotation3d import (
 from .base import NO_INPUTS, BodyElement, Form, Numbering, Row
 from .coordinate import Coordinate
 from .interface_load3d import InterfaceLoad
+from .named_body import body_named
 from .reduced_body3d import ReducedBody3D
 from .spatial_body import EULER, SpatialFrame, X, Y, Z
 
@@ -152,17 +153,6 @@ def interface_frame3d_kernel(job: int, t: float, b: Any) -> None:
                     values[slot[BODY + 3 + i, LOCAL + j]] -= c_q * by[i]
 
 
-def reduced_body_named(user: str, name: str, bodies: Mapping[str, BodyElement]) -> ReducedBody3D:
-    """The reduced body that the element `user` means. Raises ValueError if there is none of this name."""
-    body = bodies.get(name)
-    if not isinstance(body, ReducedBody3D):
-        found = sorted(other for other, b in bodies.items() if isinstance(b, ReducedBody3D))
-        what = "does not exist" if body is None else f"is a {type(body).__name__}"
-        raise ValueError(f"'{user}' is an interface of '{name}', which {what}: name a ReducedBody3D "
-                         f"({found or 'there is none yet'}), or use a Marker3D on a rigid body")  # fmt: skip
-    return body
-
-
 class InterfaceFrame3D(SpatialFrame):
     """The frame of an interface of a ReducedBody3D: a massless frame that moves and turns with it.
 
@@ -188,7 +178,7 @@ class InterfaceFrame3D(SpatialFrame):
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         """Refuse what is no reduced body, and interfaces that it lacks."""
-        reduced_body_named(self.name, self.body, bodies).interface(self.interface)
+        body_named(self.name, "an interface", self.body, ReducedBody3D, bodies).interface(self.interface)
 
     def acts_on(self) -> frozenset[str]:
         return super().acts_on() | {self.body}
@@ -197,7 +187,7 @@ class InterfaceFrame3D(SpatialFrame):
         self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS
     ) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) that follow from the body's. Raises ModelError for a rotation beyond 2 rad."""
-        body = reduced_body_named(self.name, self.body, bodies)
+        body = body_named(self.name, "an interface", self.body, ReducedBody3D, bodies)
         place, (q, v) = body.interface(self.interface), (np.array(x) for x in body.start_in(bodies, inputs))
         shape = np.array(place.shape)
         rotation = np.zeros_like(shape) if place.rotation is None else np.array(place.rotation)
@@ -215,7 +205,7 @@ class InterfaceFrame3D(SpatialFrame):
         return (*point.tolist(), *product(p, turn)), (*moved.tolist(), *f_rate.tolist())
 
     def form_in(self, bodies: Mapping[str, BodyElement]) -> Form:
-        n = len(reduced_body_named(self.name, self.body, bodies).stiffness)
+        n = len(body_named(self.name, "an interface", self.body, ReducedBody3D, bodies).stiffness)
         own, turn, local = range(3, 7), range(BODY + 3, LOCAL), range(LOCAL, LOCAL + n)
         blocks = ((own, own), (own, turn), (turn, own), (turn, turn), (turn, local), (local, turn))
         pattern = tuple(sorted({(i, j) for rows, columns in blocks for i in rows for j in columns}))
@@ -227,7 +217,7 @@ class InterfaceFrame3D(SpatialFrame):
         return Form(type(self).kernel, ROWS, pattern, jacobian)
 
     def row(self, numbering: Numbering) -> Row:
-        body = reduced_body_named(self.name, self.body, numbering.bodies)
+        body = body_named(self.name, "an interface", self.body, ReducedBody3D, numbering.bodies)
         place = body.interface(self.interface)
         rotation = np.zeros((len(place.shape), 3)) if place.rotation is None else np.array(place.rotation)
         carried = [numbering.coordinate(self.body, name) for name in body.coordinate_names]

@@ -16,6 +16,7 @@ from ..model.markers import Marker
 from .base import NO_INPUTS, BodyElement, Numbering, Row
 from .cable3d import Cable3D
 from .coordinate import Coordinate
+from .named_body import body_named
 from .spatial_body import SpatialFrame, X, Y, Z
 
 SIZE = 15
@@ -51,17 +52,6 @@ def material_point3d_kernel(job: int, t: float, b: Any) -> None:
                         values[slot[e, c * SIZE + 3 + 3 * i + c]] -= par[e, i]
 
 
-def cable_named(user: str, name: str, bodies: Mapping[str, BodyElement]) -> Cable3D:
-    """The cable that the element `user` means. Raises ValueError if there is none of this name."""
-    body = bodies.get(name)
-    if not isinstance(body, Cable3D):
-        cables = sorted(other for other, b in bodies.items() if isinstance(b, Cable3D))
-        what = "does not exist" if body is None else f"is a {type(body).__name__}"
-        raise ValueError(f"'{user}' is at a point of '{name}', which {what}: name a Cable3D "
-                         f"({cables or 'there is none yet'}), or use a Marker3D on a rigid body")  # fmt: skip
-    return body
-
-
 class MaterialPoint3D(SpatialFrame):
     """A point of a Cable3D, s m along the undeformed cable, with coordinates x, y, z.
 
@@ -95,7 +85,7 @@ class MaterialPoint3D(SpatialFrame):
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         """Refuse what is no cable, and points beyond it."""
-        cable_named(self.name, self.body, bodies).point(self.s)
+        body_named(self.name, "at a point", self.body, Cable3D, bodies).point(self.s)
 
     def check_marker(self, user: str, marker: Marker) -> None:
         super().check_marker(user, marker)
@@ -112,7 +102,7 @@ class MaterialPoint3D(SpatialFrame):
         self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS
     ) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0) that follow from the cable's."""
-        cable = cable_named(self.name, self.body, bodies)
+        cable = body_named(self.name, "at a point", self.body, Cable3D, bodies)
         point, names = cable.point(self.s), cable.coordinate_names
         places = [names.index(name) for name in point.names]
         q, v = (
@@ -122,7 +112,7 @@ class MaterialPoint3D(SpatialFrame):
         return q, v
 
     def row(self, numbering: Numbering) -> Row:
-        point = cable_named(self.name, self.body, numbering.bodies).point(self.s)
+        point = body_named(self.name, "at a point", self.body, Cable3D, numbering.bodies).point(self.s)
         cable = [numbering.coordinate(self.body, name) for name in point.names]
         return Row(tuple(point.shape.tolist()), (*numbering.coordinates(self.name)[:3], *cable))
 

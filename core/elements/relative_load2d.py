@@ -12,10 +12,11 @@ from pydantic import model_validator
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
-from .base import ForceElement, Form, Numbering, PairElement2D, Row
-from .formula2d import Arguments, caller_of, derivatives, form_ahead
+from .base import ForceElement, Form, Numbering, Row
+from .formula2d import Arguments, caller_of
 from .geometry2d import add_hessian, along
-from .measures2d import MEASURES, Measure
+from .measured2d import MeasuredElement2D
+from .measures2d import MEASURES
 
 KIND = "relative_load2d"
 
@@ -51,7 +52,7 @@ def _kernel(measure: str, arguments: Arguments) -> Any:
     return formula_internal(relative_load2d_kernel, (formula, evaluate_signal), arguments)
 
 
-class RelativeLoad2D(ForceElement, PairElement2D):
+class RelativeLoad2D(ForceElement, MeasuredElement2D):
     """`load`(t) between markers `a` and `b`: a force or torque that makes a measure grow where it is positive.
 
     measure "angle": a torque on b's body, and against it on a's, N m, an ideal motor; "slide": a force on b along a's
@@ -62,8 +63,6 @@ class RelativeLoad2D(ForceElement, PairElement2D):
 
     load: Signal
     """Over time, N m or N; positive makes the measure grow."""
-    measure: Measure = "angle"
-    """What it makes grow: the angle of a joint, the slide along a's first axis, or the distance of the markers."""
 
     @model_validator(mode="after")
     def _two_bodies(self) -> "RelativeLoad2D":
@@ -74,18 +73,8 @@ class RelativeLoad2D(ForceElement, PairElement2D):
             )
         return self
 
-    def arguments(self) -> Arguments:
-        """What its formula takes."""
-        return Arguments.of(self, ("a", "b"))
-
     def form(self) -> Form:
-        formula, arguments = MEASURES[self.measure], self.arguments()
-        ahead = form_ahead(KIND, (formula,), arguments)
-        if ahead is not None:
-            return ahead
-        second = derivatives(formula, arguments).second
-        pattern = {*second, *((j, i) for i, j in second)}
-        return Form(_kernel(self.measure, arguments), 0, tuple(sorted(pattern)), ())
+        return self.form_of(KIND, _kernel)
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()

@@ -14,10 +14,11 @@ from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
 from ..model.motion import evaluate_motion
 from ..model.signals import INPUT_SIZE, Signal, Step
-from .base import Form, JointElement, Numbering, PairElement2D, Row
-from .formula2d import Arguments, caller_of, derivatives, form_ahead
+from .base import Form, JointElement, Numbering, Row
+from .formula2d import Arguments, caller_of
 from .geometry2d import constrain
-from .measures2d import EFFORTS, MEASURES, Measure
+from .measured2d import MeasuredElement2D
+from .measures2d import EFFORTS, MEASURES
 
 KIND = "relative_motor2d"
 
@@ -52,7 +53,7 @@ def _kernel(measure: str, arguments: Arguments) -> Any:
     return formula_internal(relative_motor2d_kernel, (formula, evaluate_motion), arguments)
 
 
-class RelativeMotor2D(JointElement, PairElement2D):
+class RelativeMotor2D(JointElement, MeasuredElement2D):
     """The angle, way or distance from marker `a` to marker `b` follows `motion`(t).
 
     measure "angle": from a's first axis to b's, rad, a motor on a revolute joint; "slide": of b along a's first axis,
@@ -64,8 +65,6 @@ class RelativeMotor2D(JointElement, PairElement2D):
 
     motion: Signal
     """What it follows, rad or m over s. The bodies must start where it says."""
-    measure: Measure = "angle"
-    """What it moves: the angle of a joint, the slide along a's first axis, or the distance of the markers."""
 
     @model_validator(mode="after")
     def _check(self) -> "RelativeMotor2D":
@@ -78,19 +77,8 @@ class RelativeMotor2D(JointElement, PairElement2D):
             raise ValueError(f"motor '{self.name}': both markers are on '{self.a.body}': give it two bodies")
         return self
 
-    def arguments(self) -> Arguments:
-        """What its formula takes."""
-        return Arguments.of(self, ("a", "b"))
-
     def form(self) -> Form:
-        formula, arguments = MEASURES[self.measure], self.arguments()
-        ahead = form_ahead(KIND, (formula,), arguments)
-        if ahead is not None:
-            return ahead
-        found = derivatives(formula, arguments)
-        tangent = {*found.second, *((j, i) for i, j in found.second)}
-        kernel = _kernel(self.measure, arguments)
-        return Form(kernel, 1, tuple(sorted(tangent)), tuple((0, j) for j in found.first))
+        return self.form_of(KIND, _kernel, rows=1)
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()

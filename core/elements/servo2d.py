@@ -19,10 +19,11 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import NonNegative, Positive
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
-from .base import ForceElement, Form, Numbering, PairElement2D, Row
-from .formula2d import MARKER_COLUMNS, Arguments, caller_of, derivatives, form_ahead
+from .base import ForceElement, Form, Numbering, Row
+from .formula2d import MARKER_COLUMNS, Arguments, caller_of
 from .geometry2d import add_hessian, add_product, along
-from .measures2d import MEASURES, Measure
+from .measured2d import MeasuredElement2D
+from .measures2d import MEASURES
 
 KIND = "servo2d"
 FULL = 1e4
@@ -82,7 +83,7 @@ def _kernel(measure: str, arguments: Arguments) -> Any:
     return formula_internal(servo2d_kernel, (formula, evaluate_signal, saturated), arguments)
 
 
-class Servo2D(ForceElement, PairElement2D):
+class Servo2D(ForceElement, MeasuredElement2D):
     """Drives the angle, way or distance from marker `a` to `b` (`measure`, as in `RelativeMotor2D`) to `target`(t).
 
     A position servo has a `gain` and a `rate_gain`; a velocity servo has `of_rate` and a `rate_gain` alone.
@@ -92,8 +93,6 @@ class Servo2D(ForceElement, PairElement2D):
 
     target: Signal
     """rad or m over s; with `of_rate` rad/s or m/s."""
-    measure: Measure = "angle"
-    """What it moves: the angle of a joint, the slide along a's first axis, or the distance of the markers."""
     gain: NonNegative = 0.0
     """N m/rad or N/m."""
     rate_gain: NonNegative = 0.0
@@ -113,20 +112,8 @@ class Servo2D(ForceElement, PairElement2D):
             raise ValueError(f"servo '{self.name}' has neither gain nor rate_gain, so it does nothing: give one")
         return self
 
-    def arguments(self) -> Arguments:
-        """What its formula takes."""
-        return Arguments.of(self, ("a", "b"))
-
     def form(self) -> Form:
-        formula, arguments = MEASURES[self.measure], self.arguments()
-        ahead = form_ahead(KIND, (formula,), arguments)
-        if ahead is not None:
-            return ahead
-        found = derivatives(formula, arguments)
-        bent = {k for pair in found.second for k in pair}
-        pattern = {(i, j) for i in found.first for j in {*found.first, *bent}}
-        pattern |= {*found.second, *((j, i) for i, j in found.second)}
-        return Form(_kernel(self.measure, arguments), 0, tuple(sorted(pattern)), ())
+        return self.form_of(KIND, _kernel, by_rates=True)
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()

@@ -12,10 +12,12 @@ from ..compiled.views import mat, vec
 from ..methods.history import bridge_rows, history_row, history_time, recall
 from ..methods.multistep import rows_available
 from ..rounding import NO_STEP
-from ..stage.project import project
+from ..stage.project import project, project_motion
 from ..state.workspace_records import OK, SINGULAR
 from ..tables.evaluate import evaluate_residuals
 
+BETWEEN = 100
+"""`_find`: the point has been interpolated, and is to be projected."""
 APART = 0.1
 """Of the newest step: rows nearer to one another than this make divided differences of rounding."""
 
@@ -134,9 +136,9 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     vec(ws.t, 1)[0] = t
 
 
-@compiled_unlocked
-def query(ws: Any, ms: Any, t: float) -> int:
-    """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point."""
+@internal
+def _find(ws: Any, ms: Any, t: float) -> int:
+    """The point at time t between the newest two rows, or at one of them: OK, BETWEEN or SINGULAR."""
     for back in range(min(rows_available(ms), 2)):
         if t == history_time(ms, back):
             recall(ws, ms, back)
@@ -153,4 +155,18 @@ def query(ws: Any, ms: Any, t: float) -> int:
     if ms.exact == 0:
         evaluate_residuals(ws)
         return OK
-    return project(ws)
+    return BETWEEN
+
+
+@compiled_unlocked
+def query(ws: Any, ms: Any, t: float) -> int:
+    """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point."""
+    status = _find(ws, ms, t)
+    return project(ws) if status == BETWEEN else status
+
+
+@compiled_unlocked
+def query_motion(ws: Any, ms: Any, t: float) -> int:
+    """The same without its accelerations, multipliers and forces: coordinates and velocities, bit for bit."""
+    status = _find(ws, ms, t)
+    return project_motion(ws) if status == BETWEEN else status

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import compiled
+from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, SLIDE
 from ..tables.evaluate import evaluate_energy, recorded_norm
@@ -23,6 +23,12 @@ def sample_length(n: int, m: int, contacts: int, work: int) -> int:
 @compiled
 def write_sample(ws: Any, out: Any) -> None:
     """Fill one row; the residuals of the current point must have been evaluated."""
+    write_row(ws, out, True)
+
+
+@internal
+def write_row(ws: Any, out: Any, energies: bool) -> None:
+    """The same; with the `energies`, or with what was known of them."""
     n, m, contacts = ws.n, ws.m_ext - 1, ws.n_contacts
     q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
     out[0] = vec(ws.t, 1)[0]
@@ -62,7 +68,8 @@ def write_sample(ws: Any, out: Any) -> None:
                 slides = mode == CLOSED and abs(memory[k, SLIDE]) == 1.0
                 out[at + 7 * contacts + k] = y if slides else np.sqrt(x * x + y * y)
         at += 8 * contacts
-    evaluate_energy(ws)
+    if energies:
+        evaluate_energy(ws)
     energy = vec(ws.energy, 3)
     for i in range(3):
         out[at + i] = energy[i]

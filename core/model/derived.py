@@ -33,11 +33,17 @@ HEAD_SIZE = 7
 def derive_row(row: Any, heads: Any, places: Any, numbers: Any, out: Any) -> None:
     """All channels of the groups `heads` (groups, HEAD_SIZE) from one row."""
     for k in range(len(heads)):
-        place, number, channel = heads[k, FIRST_PLACE], heads[k, FIRST_NUMBER], heads[k, FIRST_CHANNEL]
-        call_derive(
-            heads[k, KERNEL], row, places[place : place + heads[k, PLACES]],
-            numbers[number : number + heads[k, NUMBERS]], out[channel : channel + heads[k, CHANNELS]],
-        )  # fmt: skip
+        derive_group(row, heads, k, places, numbers, out)
+
+
+@internal
+def derive_group(row: Any, heads: Any, k: int, places: Any, numbers: Any, out: Any) -> None:
+    """The channels of group k."""
+    place, number, channel = heads[k, FIRST_PLACE], heads[k, FIRST_NUMBER], heads[k, FIRST_CHANNEL]
+    call_derive(
+        heads[k, KERNEL], row, places[place : place + heads[k, PLACES]],
+        numbers[number : number + heads[k, NUMBERS]], out[channel : channel + heads[k, CHANNELS]],
+    )  # fmt: skip
 
 
 @compiled

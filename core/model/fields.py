@@ -118,7 +118,10 @@ _PLAIN = {
 
 
 def records(root: type[BaseModel]) -> dict[str, type[BaseModel]]:
-    """All records of this library that data of `root` (a `Model`) may hold, by the name of their type; `root` first."""
+    """All records of this library that data of `root` (a `Model`) may hold, by the name of their type; `root` first.
+
+    Types of one name are told apart by their classes: a `Step` is a signal, and `StepFriction` a law of friction.
+    """
     home = __name__.rpartition(".model.")[0]
 
     def below(base: type[BaseModel]) -> Iterable[type[BaseModel]]:
@@ -130,7 +133,7 @@ def records(root: type[BaseModel]) -> dict[str, type[BaseModel]]:
     found = {root.__name__: root}
     for name in root.model_json_schema()["$defs"]:
         kind = classes[name].model_fields.get("type")
-        found[name if kind is None else str(kind.default)] = classes[name]
+        found[name if kind is None or kind.default in found else str(kind.default)] = classes[name]
     return found
 
 

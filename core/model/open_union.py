@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from difflib import get_close_matches
 from functools import reduce
 from inspect import get_annotations
 from operator import or_
@@ -87,6 +88,11 @@ class OpenUnion:
         own = {record.model_fields["type"].default: record for record in subclasses(self.base)}
         own |= {key: record for key, record in _meant.get().items() if issubclass(record, self.base)}
         if name not in own:
+            close = get_close_matches(name, self.names, 1)
+            if close:
+                raise ValueError(
+                    f"there is no type '{name}'; did you mean '{close[0]}'? (An own class must have been imported)"
+                )
             known = ", ".join(f"'{each}'" for each in self.names)
             raise ValueError(
                 f"type '{name}' is none of {known}, and no class of this name has been defined: "

@@ -1,7 +1,7 @@
 """From a model to its image: built, rehearsed, written, and proved."""
 
 import logging
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -13,15 +13,20 @@ from ..run.simulation import Simulation
 from .beginning import Beginning
 from .beginnings import as_far_as_it_begins, prove_beginning, prove_together
 from .errors import NativeError
-from .follows import parameter_of
+from .follows import Memory, parameter_of
 from .image_file import native_image, own_library, refuse_motions
 from .in_process import NativeModel, NativeRun
 from .parameters import Parameter, Setting, Tried, settings_of, startable
 from .prepare import points, rehearse, start_inputs
 from .together import together
+from .trials import Trials
 
 logger = logging.getLogger(__name__)
 
+FOR_PROOFS = 3
+"""Of the progress: the proofs count as so many parameters."""
+SHARE = 0.125
+"""Of the run: as far as it is compared for parameters after the first."""
 MOST_STEPS = 1_000_000
 """Steps of the solver within one call, unless settings say otherwise."""
 
@@ -44,37 +49,45 @@ def image_of(model: Any, t_end: float, *, parameters: Iterable[str | Setting] | 
 
 
 def image_and_parameters(
-    model: Any, t_end: float, parameters: Iterable[str | Setting] | None = None, **settings: Any
+    model: Any,
+    t_end: float,
+    parameters: Iterable[str | Setting] | None = None,
+    *,
+    progress: Callable[[float], None] | None = None,
+    **settings: Any,
 ) -> tuple[bytes, list[Parameter], dict[str, str]]:
-    """`image_of`; the parameters that it has; and why the others are fixed, by name."""
+    """`image_of`; the parameters that it has; and why the others are fixed, by name. `progress` is called with the part
+    of the work that is done."""
     library = own_library()
     full = {"max_steps": MOST_STEPS, **settings}
     sim = Simulation(model, **full)
     if isinstance(model, Model):
         refuse_motions(sim)
         sim.beginning = Beginning(sim, full)  # type: ignore[attr-defined]
+    done = progress or (lambda part: None)
     most = sim.settings.max_steps or MOST_STEPS
     wanted = _wanted(model, parameters)
     # which redundant rows are left out is found in Python
     begins = not sim.workspace.dropped
     tried: dict[str, Tried] = {}
     fixed: dict[str, str] = {}
-    for setting in wanted:
-        try:
-            tried[setting.name] = startable(sim, setting, lambda other: Simulation(other, **full), begins)
-        except NativeError as error:
-            fixed[setting.name] = str(error)
+    found: list[Parameter] = []
     rehearse(sim, t_end)
-    found = []
-    for setting in wanted:
-        if setting.name in tried:
+    if wanted:
+        trials = Trials(model, full)
+        memory = Memory(sim, trials)
+        for k, setting in enumerate(wanted):
+            logger.info("parameter %d of %d: what follows from '%s'", k + 1, len(wanted), setting.name)
             try:
-                found.append(parameter_of(sim, setting, tried[setting.name]))
+                tried[setting.name] = startable(trials, setting, begins)
+                found.append(parameter_of(memory, setting, tried[setting.name]))
             except NativeError as error:
                 fixed[setting.name] = str(error)
-    found = together(sim, found, {setting.name: setting for setting in wanted})
-    found, refused = _that_begin(sim, most, library, found, tried, begins)
-    fixed |= refused
+            trials.forget()
+            done((k + 1) / (len(wanted) + FOR_PROOFS))
+        found = together(memory, found, {setting.name: setting for setting in wanted})
+        found, refused = _that_begin(sim, most, library, found, tried, begins)
+        fixed |= refused
     for name, why in fixed.items():
         logger.info("parameter '%s' is fixed at its value: %s", name, why)
     for p in found:
@@ -86,8 +99,13 @@ def image_and_parameters(
         prove_beginning(sim, native)
     _prove(sim, NativeRun(native), t_end)
     prove_together(native, found, {setting.name: setting for setting in wanted}, lambda x: Simulation(x, **full))
+    proved: set[bool] = set()
     for k, p in enumerate(found):
-        _prove_parameter(full, native, k, p, tried[p.name], t_end)
+        # from memory that is the same there is but one way on: one run of each kind to the end, the others a part of it
+        end = t_end if p.begins not in proved else sim.t + SHARE * (t_end - sim.t)
+        if _prove_parameter(full, native, k, p, tried[p.name], end):
+            proved.add(p.begins)
+        done((len(wanted) + FOR_PROOFS * (k + 1) / len(found)) / (len(wanted) + FOR_PROOFS))
     return image, found, fixed
 
 
@@ -118,26 +136,31 @@ def _wanted(model: Any, parameters: Iterable[str | Setting] | None) -> list[Sett
 
 def _prove_parameter(
     settings: dict[str, Any], native: NativeModel, number: int, p: Parameter, tried: Tried, t_end: float
-) -> None:
+) -> bool:
     """A run with another value of a parameter has the bits of Python's, as far as it meets only what the image was
-    prepared for. The value: the least that was tried (or the largest, where that is the present one); of those that the
-    start follows from the least that is not below half of it. Words that are exact to rounding only are compared at the
-    start alone (`beginnings.py`): from there on rounding grows as the motion lets it."""
+    prepared for: whether it has gone all the way to `t_end` (s).
+
+    The value: the least that was tried (or the largest, where that is the present one); of those that the start follows
+    from the least that is not below half of it. Words that are exact to rounding only are compared at the start alone
+    (`beginnings.py`): from there on rounding grows as the motion lets it.
+    """
     values = [(x, model) for x, model in tried.values if p.least <= x <= p.largest]
     if p.begins:
         values = [pair for pair in values if abs(pair[0]) >= 0.5 * abs(p.value)]
     if len(values) < 2 or not p.exact:
-        return
+        return False
     run = NativeRun(native)
     value, variant = values[0] if values[0][0] != p.value else values[-1]
     run.set_parameter(number, value)
     sim = Simulation(variant, **settings)
     try:
         _prove(sim, run, t_end)
+        return True
     except SimulationError as error:
         logger.info("with %s = %r the run ends in Python too: %s", p.name, value, error)
     except Unprepared as error:
         logger.info("with %s = %r: %s", p.name, value, error)
+    return False
 
 
 class Unprepared(NativeError):

@@ -102,6 +102,22 @@ def form_of(p: Floats, w: Floats) -> Form | None:
     return None
 
 
+def is_sure(p: Floats, w: Floats, form: Form) -> bool:
+    """Whether no neighbour of the form's constant makes the words `w` (k,) of `p` (k,) too."""
+    binary = form.code % 8
+    if binary == 0:
+        return True
+    with np.errstate(all="ignore"):
+        u, wanted = UNARY[form.code // 8](p), w.tobytes()
+        for toward in (-np.inf, np.inf):
+            constant = form.constant
+            for _ in range(2 * NEIGHBOURS):
+                constant = float(np.nextafter(constant, toward))
+                if BINARY[binary](u, constant).tobytes() == wanted:
+                    return False
+    return True
+
+
 def near_form(p: Floats, w: Floats) -> Form | None:
     """The form that makes `w` (k,) of `p` (k,) to rounding: a multiple or a quotient of a power; None without one."""
     if not (np.isfinite(w).all() and w.all()):

@@ -165,9 +165,9 @@ static bool read_body(tlismni_model *m, const char *at, const char *end) {
         return false;
     }
     const char *function_text = part(&at, end, h->function_text), *text = part(&at, end, h->text_size);
-    const char *shared = part(&at, end, h->shared), *own = part(&at, end, h->decisive);
+    const char *shared = part(&at, end, h->shared), *own = part(&at, end, h->copied);
     const Numbers *n = &m->numbers;
-    if (!function_text || !text || !shared || !own || at != end || h->own < h->decisive || h->tables > h->decisive ||
+    if (!function_text || !text || !shared || !own || at != end || h->own < h->copied || h->copied < h->decisive || h->tables > h->decisive ||
         h->tables < 0 || h->tables % 8 || h->functions < CALLED || h->functions > h->size || h->texts > h->size ||
         n->inputs < 0 || n->channels < 0 || n->contacts < 0 || n->inputs + n->channels + n->contacts + h->parameters != h->texts || !parameters_inside(m)) {
         return false;

@@ -13,20 +13,21 @@
 /* The head, behind magic and digest. */
 typedef struct {
     int64_t version, size, checksum;
-    int64_t shared, tables, decisive, own;
+    int64_t shared, tables, decisive, copied, own;
     int64_t functions, function_text, texts, text_size;
     int64_t parameters, words, coefficients, exclusions;
     int64_t shared_shared, shared_function, own_own, own_shared, own_function;
 } Head;
 
 typedef struct {
-    int64_t inputs, channels, contacts, n, event_rows, most_steps, chunk, fixed_step, redundant, events, begins;
+    int64_t inputs, channels, contacts, n, event_rows, most_steps, chunk, fixed_step, redundant, events, begins,
+        matrix_words;
     double start, shortest, punctual;
 } Numbers;
 
 typedef struct {
     int64_t exchange, drive, reads, budget, times, inputs, channels, goals, counts, events, pending, clock, counters,
-        method_times, ring, parameters, control, begin, begin_numbers, rates;
+        method_times, ring, parameters, control, begin, begin_numbers, rates, workspace;
 } Places;
 
 /* A parameter, and a word of a run's memory that follows from it: `form` says how (parameters.c). `begins`: the run begins
@@ -50,7 +51,8 @@ typedef struct {
 } Exclusion;
 
 /* The functions that the C code calls: the first ones of the image's list. */
-enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, ALONG, IN_TIME, BEGIN, CALLED };
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, ALONG, IN_TIME, BEGIN, MATRIX_WORDS,
+       SAVE_MATRICES, RESTORE_MATRICES, WANT, CALLED };
 
 typedef void (*Function)(void);
 
@@ -76,6 +78,7 @@ typedef struct {
     double now;
     int64_t events, failed, begun; /* since the start */
     int64_t stale;                 /* 1: the run has to begin anew before anything else */
+    int64_t beginning;             /* which start it goes on from: matrices of another one do not count */
 } Beside;
 
 struct tlismni_run {
@@ -83,6 +86,7 @@ struct tlismni_run {
     char *own;        /* its memory, aligned */
     void *allocated;  /* by `tlismni_start`; NULL if the memory is the caller's */
     int64_t limit;
+    int64_t beginnings; /* the last number that `beginning` had */
     Beside beside;
 };
 

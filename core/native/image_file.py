@@ -3,7 +3,7 @@
 import ctypes
 import struct
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..compiled.library import LIBRARY, Library
 from ..run.exchange import possible
+from ..tables.slots import Slots
 from .c_sources import c_digest
 from .errors import NativeError
 from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
@@ -40,9 +41,14 @@ def own_library() -> Library:
     return LIBRARY
 
 
-def _has_none(x: NDArray[Any]) -> bool:
-    """Whether an array has no addresses, though its words may look like some."""
-    return holds_reals(x) or x.dtype.itemsize % 8 != 0
+def _points(x: NDArray[Any], found: Found, addresses: Mapping[int, str]) -> bool:
+    """Whether an array is a record of addresses, or has any."""
+    if holds_reals(x) or x.dtype.itemsize % 8:
+        return False
+    words = words_of(x)
+    if x.dtype.names is not None or bool(np.any(found.owner(words) >= 0)):
+        return True
+    return not addresses.keys().isdisjoint(words.tolist())
 
 
 def refuse_motions(sim: Any) -> None:
@@ -54,26 +60,31 @@ def refuse_motions(sim: Any) -> None:
         )
 
 
-class _Segment:
-    """Arrays one after the other."""
+TABLES, NUMBERS, BUILT, ROOM = range(4)
+"""What arrays are: records and addresses; what decides; what is built of that; room without content."""
 
-    def __init__(self, arrays: Sequence[NDArray[Any]], last: Found | None = None) -> None:
-        """Those that lie in `last` come at the end, as room without content."""
-        blank = {id(x) for x in arrays if last is not None and int(last.owner(np.array([x.ctypes.data]))[0]) >= 0}
-        self.arrays = [x for x in arrays if id(x) not in blank]
-        self.arrays.sort(key=_has_none)  # what may have addresses comes first
+
+class _Segment:
+    """Arrays one after the other, by what they are."""
+
+    def __init__(self, arrays: Sequence[NDArray[Any]], kind: Callable[[NDArray[Any]], int], built: int = 0) -> None:
+        """`built` : bytes that have content of what is built."""
+        kinds = {id(x): kind(x) for x in arrays}
+        in_order = sorted(arrays, key=lambda x: kinds[id(x)])
+        self.arrays = [x for x in in_order if kinds[id(x)] != ROOM]
         self.start: dict[int, int] = {}
-        self.tables = self.copied = self.size = 0
-        for x in (*self.arrays, *(x for x in arrays if id(x) in blank)):
-            self.start[x.ctypes.data] = self.size
-            self.size += -(-x.nbytes // _ALIGNED) * _ALIGNED
-            if id(x) not in blank:
-                self.copied = self.size
-                self.tables = self.tables if _has_none(x) else self.size
+        ends = [0, 0, 0, 0]
+        for x in in_order:
+            self.start[x.ctypes.data] = ends[ROOM]
+            end = ends[ROOM] + -(-x.nbytes // _ALIGNED) * _ALIGNED
+            ends[kinds[id(x)] :] = [end] * (ROOM + 1 - kinds[id(x)])
+        self.tables, self.decisive, self.copied, self.size = ends
+        self.copied = min(self.copied, self.decisive + -(-built // _ALIGNED) * _ALIGNED)
         self.data = np.zeros(self.copied, dtype=np.uint8)
         for x in self.arrays:
             begin = self.start[x.ctypes.data]
-            self.data[begin : begin + x.nbytes] = x.reshape(-1).view(np.uint8)
+            content = x.reshape(-1).view(np.uint8)
+            self.data[begin : begin + x.nbytes] = content[: self.copied - begin]
 
 
 def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = (), begins: bool = False) -> bytes:
@@ -102,15 +113,25 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
     set_by_others = [begin_of(word.array) for p in parameters for word in p.words]
     is_own = (own.owner(found.begin) >= 0) | np.isin(found.begin, set_by_others)
     values = np.array([p.value for p in parameters])
-    shared = _Segment([x for x, mine in zip(found.arrays, is_own, strict=True) if not mine])
-    of_run = [x for x, mine in zip(found.arrays, is_own, strict=True) if mine]
-    mine = _Segment([*of_run, values] if len(values) else of_run, scratch)
     symbols = called_symbols(library)
     addresses: dict[int, str] = {}
     for key, symbol in library.entries.items():
         address = library.address(*key.rsplit(" ", 1))
         if address is not None:
             addresses[address] = symbol
+    pool = without_parts([sim.workspace.slots.pool])
+
+    def kind(x: NDArray[Any]) -> int:
+        begin = np.array([begin_of(x)])
+        if scratch.owner(begin)[0] >= 0:
+            return ROOM
+        if pool.owner(begin)[0] >= 0:
+            return BUILT
+        return TABLES if _points(x, found, addresses) else NUMBERS
+
+    shared = _Segment([x for x, own in zip(found.arrays, is_own, strict=True) if not own], lambda x: TABLES)
+    of_run = [x for x, own in zip(found.arrays, is_own, strict=True) if own]
+    mine = _Segment([*of_run, values] if len(values) else of_run, kind, _first_place(sim.workspace.slots))
     lists: dict[tuple[int, int], list[NDArray[np.int64]]] = {}
     for kind, segment in ((0, shared), (1, mine)):
         for x in segment.arrays:
@@ -127,6 +148,13 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
     relocations = [np.concatenate(lists.get(key, [np.zeros(0, dtype=np.int64)])) for key in order]
     numbers = numbers_of(sim, most_steps, begins)
     return _file(library, numbers, places, relocations, symbols, names, (shared, mine), parameters)
+
+
+def _first_place(slots: Slots) -> int:
+    """Bytes of the first place for a structure, the only one that is built. Raises NativeError if others are."""
+    if np.any(slots.structures["built"][1:]) or not slots.structures["built"][0]:
+        raise NativeError("of the structures of a run that is written down the first one alone is built")
+    return slots.pool.nbytes // len(slots.structures)
 
 
 def _place(x: NDArray[Any], found: Found, mine: _Segment) -> int:
@@ -197,7 +225,8 @@ def _file(
     )  # fmt: skip
     head = {
         "version": VERSION, "size": 0, "checksum": zlib.crc32(body),
-        "shared": len(shared.data), "tables": own.tables, "decisive": own.copied, "own": own.size,
+        "shared": len(shared.data), "tables": own.tables, "decisive": own.decisive, "copied": own.copied,
+        "own": own.size,
         "parameters": len(heads), "words": len(words), "coefficients": len(coefficients),
         "exclusions": len(exclusions) // 2,
         "functions": len(symbols), "function_text": len(function_text), "texts": len(names), "text_size": len(text),

@@ -33,14 +33,18 @@ _SIGNATURES = {
     "tlismni_derivatives": (ctypes.c_int, _POINTER, _POINTER, _POINTER, _POINTER),
     "tlismni_rates": (ctypes.c_int, _POINTER, _POINTER, _POINTER),
     "tlismni_look": (ctypes.c_int, _POINTER),
+    "tlismni_restart": (None, _POINTER),
+    "tlismni_want": (ctypes.c_bool, _POINTER, _SIZE),
+    "tlismni_want_none": (None, _POINTER),
     "tlismni_event_count": (ctypes.c_int64, _POINTER),
     "tlismni_steps": (ctypes.c_int64, _POINTER),
     "tlismni_limit_steps": (None, _POINTER, ctypes.c_int64),
     "tlismni_why": (_TEXT, ctypes.c_int),
     "tlismni_state_size": (_SIZE, _POINTER),
+    "tlismni_saved_size": (_SIZE, _POINTER),
     "tlismni_packed_size": (_SIZE, _POINTER),
     "tlismni_save": (None, _POINTER, _POINTER),
-    "tlismni_restore": (None, _POINTER, _POINTER),
+    "tlismni_restore": (ctypes.c_int, _POINTER, _POINTER),
     "tlismni_pack": (ctypes.c_int, _POINTER, _POINTER, _POINTER),
     "tlismni_unpack": (ctypes.c_int, _POINTER, _POINTER, _SIZE, _POINTER),
 }
@@ -157,6 +161,16 @@ class NativeRun:
         self._check(self._library.tlismni_look(self.address))
         return self._channels.copy()
 
+    def want(self, channels: Sequence[int]) -> None:
+        """Read these channels alone from now on."""
+        self._library.tlismni_want_none(self.address)
+        for k in channels:
+            self._library.tlismni_want(self.address, k)
+
+    def restart(self) -> None:
+        """Back to the point at which the image was made."""
+        self._library.tlismni_restart(self.address)
+
     def next_point(self, t: float) -> float:
         """Where the newest step ends, s, at most `t`. Raises SimulationError."""
         point = ctypes.c_double()
@@ -179,18 +193,19 @@ class NativeRun:
 
     def save(self) -> bytes:
         """The state, for this run."""
-        room = ctypes.create_string_buffer(self._library.tlismni_state_size(self.model.address))
+        room = ctypes.create_string_buffer(self._library.tlismni_saved_size(self.address))
         self._library.tlismni_save(self.address, room)
         return room.raw
 
     def restore(self, saved: bytes) -> None:
-        """Go back to what `save` has given."""
-        self._library.tlismni_restore(self.address, saved)
+        """Go back to what `save` has given. Raises SimulationError for what is none of this run's."""
+        self._check(self._library.tlismni_restore(self.address, saved))
 
     def pack(self) -> bytes:
         """The state, for any run of this image."""
-        room = ctypes.create_string_buffer(self._library.tlismni_packed_size(self.model.address))
-        self._check(self._library.tlismni_pack(self.address, self.save(), room))
+        saved = self.save()
+        room = ctypes.create_string_buffer(self._library.tlismni_packed_size(saved))
+        self._check(self._library.tlismni_pack(self.address, saved, room))
         return room.raw
 
     def unpack(self, packed: bytes) -> None:

@@ -6,14 +6,18 @@ from typing import Any
 from numpy.typing import NDArray
 
 from ..compiled.library import Library
+from ..linalg.record import VALUES
 from ..rounding import PUNCTUAL, SHORTEST
+from ..state.workspace_records import OF_D, OF_KKT
+from ..tables.matrix_words import HEAD as MATRIX_HEAD
 
 MAGIC = b"TLISMNI\x01"
 VERSION = 1
 
 HEAD = (
     "version", "size", "checksum",
-    "shared", "tables", "decisive", "own",     # bytes: never written; that have addresses, that a state has, and all
+    "shared",                                  # bytes that are never written
+    "tables", "decisive", "copied", "own",     # records and addresses; with what decides; what an image has; all
     "functions", "function_text", "texts", "text_size",
     "parameters", "words", "coefficients", "exclusions",
     "shared_shared", "shared_function", "own_own", "own_shared", "own_function",  # addresses: in, to
@@ -21,18 +25,20 @@ HEAD = (
 """Sizes and counts, 8 bytes each."""
 
 CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "locate_now", "along_inputs", "in_time",
-          "begin_now")  # fmt: skip
+          "begin_now", "matrix_words", "save_matrices", "restore_matrices",
+          "want")  # fmt: skip
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
     "exchange": "run.exchange", "tell": "run.exchange", "read": "run.exchange", "drive": "loop.drive",
     "settle_pending": "loop.drive", "repair_now": "repair.mend", "locate_now": "loop.drive",
     "along_inputs": "run.slopes", "in_time": "run.slopes",
-    "begin_now": "run.begin_now",
+    "begin_now": "run.begin_now", "want": "run.read_channels",
+    **dict.fromkeys(("matrix_words", "save_matrices", "restore_matrices"), "tables.matrix_words"),
 }  # fmt: skip
 
 NUMBERS = (
     "inputs", "channels", "contacts", "n", "event_rows", "most_steps", "chunk", "fixed_step", "redundant",
-    "events", "begins",
+    "events", "begins", "matrix_words",
     "start", "shortest", "punctual",
 )  # fmt: skip
 """Counts, and whether a run may begin anew; then the start, s, and what steps and changes of inputs are compared
@@ -41,7 +47,7 @@ with (`advance.py`, `inputs.py`)."""
 PLACES = (
     "exchange", "drive", "reads", "budget", "times", "inputs", "channels", "goals", "counts", "events", "pending",
     "clock", "counters", "method_times", "ring", "parameters",
-    "control", "begin", "begin_numbers", "rates",
+    "control", "begin", "begin_numbers", "rates", "workspace",
 )  # fmt: skip
 """Where these stand in a run's memory."""
 
@@ -62,9 +68,16 @@ def numbers_of(sim: Any, most_steps: int, begins: bool) -> bytes:
     whole = (
         len(assembly.input_names), len(sim.table.channels), len(assembly.contacts), assembly.n,
         len(sim.drive.events), most_steps, int(ex._record.table["chunk"][0]), int(bool(sim.settings.step)),
-        len(sim.workspace.dropped), len(sim.events), int(begins),
+        len(sim.workspace.dropped), len(sim.events), int(begins), most_matrix_words(sim.workspace),
     )  # fmt: skip
     return struct.pack(f"<{len(whole)}q3d", *whole, sim.t, SHORTEST, PUNCTUAL)
+
+
+def most_matrix_words(workspace: Any) -> int:
+    """Words that a state has of the matrices at most (`tables/matrix_words.py`)."""
+    a, rooms = workspace.assembly, workspace.slots.rooms
+    size, factors = a.n + a.m, 2 * int(rooms[OF_KKT + VALUES] + rooms[OF_D + VALUES])
+    return 2 + len(a.contacts) + 2 * a.m + 4 * (MATRIX_HEAD + size) + factors
 
 
 def arrays_in_places(sim: Any, parameters: NDArray[Any]) -> tuple[NDArray[Any], ...]:
@@ -75,5 +88,5 @@ def arrays_in_places(sim: Any, parameters: NDArray[Any]) -> tuple[NDArray[Any], 
         ex.arrays["inputs"], ex.arrays["channels"], sim.drive.goals, sim.drive.counts, sim.drive.events,
         sim.drive.pending, sim.clock, ws["counters"], sim.method_arrays["times"], sim.method_arrays["ring"],
         parameters, ws["control"], sim.beginning.record.table, sim.beginning.numbers,
-        ex.arrays["rates"],
+        ex.arrays["rates"], sim.workspace._record.table,
     )  # fmt: skip

@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 
 from ..description import Model
 from ..errors import TlismniError
-from ..run.blueprint import take_numbers, what_differs
 from .errors import NativeError
 from .forms import Form
-from .reach import begin_of, content, held_by, without_parts
-from .scratch import scratch_of
+from .reach import begin_of
+from .trials import Trials
 
 ALONE, PRODUCT, SUM = range(3)
 """A word follows from one parameter; from several, as a product or as a sum of what each makes of it."""
@@ -124,63 +123,48 @@ def variants(setting: Setting) -> list[tuple[float, Model]]:
     return found
 
 
-def take(sim: Any, model: Model) -> None:
-    """Let a run take the numbers of another model. Raises NativeError if more than numbers differ."""
-    assembly = model.assemble()
-    if differs := what_differs(sim.assembly, assembly):
-        raise NativeError(f"another value changes more than numbers ({differs})")
-    take_numbers(sim, model, assembly)
-    sim.beginning.take_numbers(assembly)
-    sim.crossing._record.arrays["derived_numbers"][:] = sim.table.index_arrays()["derived_numbers"]
-
-
-def startable(sim: Any, setting: Setting, begun: Callable[[Model], Any], begins: bool) -> Tried:
+def startable(trials: Trials, setting: Setting, begins: bool) -> Tried:
     """The values, with the models of them, that can be set: the present value and those around it.
 
     Parameters
     ----------
-    sim : a run that has just begun. begun : a run of a model at its start. begins : runs may begin anew.
+    begins : runs may begin anew.
 
     Raises
     ------
     NativeError : if there are none, with the reason.
     """
     models = variants(setting)
-    plain, why = _around(sim, setting, models, begun)
+    begun: dict[float, Any] = {}
+    plain, why = _around(trials, setting, models, begun, False)
     if len(plain) < len(models) and begins:
-        starts: dict[float, NDArray[np.float64]] = {}
-        wide, why = _around(sim, setting, models, begun, starts)
+        wide, why = _around(trials, setting, models, begun, True)
         if len(wide) > len(plain):
-            return Tried(wide, starts)
+            return Tried(wide, {x: begun[x].values() for x, _ in wide if x != setting.value})
     if len(plain) == 1:
         raise NativeError(why)
     return Tried(plain, None)
 
 
 def _around(
-    sim: Any, setting: Setting, models: Sequence[tuple[float, Model]], begun: Callable[[Model], Any],
-    starts: dict[float, NDArray[np.float64]] | None = None,
-) -> tuple[list[tuple[float, Model]], str]:  # fmt: skip
-    """Values around the present one with which runs start, and why not others: as `sim` does but for the words that
-    follow from them; or in any way, and then the `starts` are added."""
-    model, good = sim.system, [(setting.value, sim.system)]
+    trials: Trials, setting: Setting, models: Sequence[tuple[float, Model]], begun: dict[float, Any], begins: bool
+) -> tuple[list[tuple[float, Model]], str]:
+    """Values around the present one with which runs start, and why not others: as the present one but for the words
+    that follow from them, or, if it `begins` anew, in any way. `begun` has the runs that there are, and gets others."""
+    good = [(setting.value, trials.model)]
     low, high, why = -math.inf, math.inf, "all other values that were tried are refused by the model"
     for x, variant in models:
         if x == setting.value or not low < x < high:
             continue
         try:
-            other = begun(variant)
-            take(sim, variant)
-            fits = starts is not None or _content(other) == _content(sim)
+            if x not in begun:
+                begun[x] = trials.begun(variant)
+            fits = begins or trials.follows(begun[x])
             why = "the start follows from it, and runs of this model begin as it was exported only"
-            if starts is not None:
-                starts[x] = other.values()
         except NativeError as error:
             fits, why = False, str(error)
         except TlismniError as error:
             fits, why = False, f"a run does not start with {x!r}: {error}"
-        finally:
-            take(sim, model)
         if fits:
             good.append((x, variant))
         elif x < setting.value:
@@ -190,12 +174,3 @@ def _around(
         if len(good) == 1 and math.isfinite(low) and math.isfinite(high):
             break
     return sorted(good, key=lambda pair: pair[0]), why
-
-
-def _content(sim: Any) -> list[bytes]:
-    """All that decides a run, wherever it is in memory."""
-    first = sim.crossing._record.table  # made when it is first asked for
-    arrays = list(held_by(sim))
-    empty = frozenset(begin_of(x) for x in arrays if not x.nbytes)
-    start = [np.array([sim.t, sim.table.initial_energy]).tobytes()]
-    return start + content(first, without_parts(arrays), without_parts(scratch_of(sim)), empty)

@@ -52,6 +52,9 @@ def rehearse(sim: Any, t_end: float) -> None:
     _close_all(sim)
     _make_room(sim)
     sim.restore(start)
+    # the present structure comes first, the other places are room without content
+    sim.workspace.keep_slots(len(sim.workspace.slots.structures))
+    sim.restore(start)
     sim.events[:] = events
     _as_at_first(sim)
 

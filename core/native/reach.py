@@ -58,7 +58,8 @@ def held_by(*roots: Any) -> Iterator[Array]:
             left += x
         elif type(x).__module__.startswith("tlismni"):
             left += getattr(x, "__dict__", {}).values()
-            left += [getattr(x, name, None) for kind in type(x).__mro__ for name in getattr(kind, "__slots__", ())]
+            names = [name for kind in type(x).__mro__ for name in getattr(kind, "__slots__", ())]
+            left += [getattr(x, name, None) for name in names if name != "_numba_type_"]  # which would import numba
 
 
 def without_parts(arrays: Iterable[Array]) -> Found:
@@ -99,30 +100,6 @@ def reached(first: Sequence[Array], held: Found) -> Found:
         seen |= new
         left += new
     return without_parts(held.arrays[k] for k in seen)
-
-
-def content(first: Array, held: Found, blank: Found, empty: frozenset[int]) -> list[bytes]:
-    """What is reached from `first`, in the order in which it is: the same for runs that differ only in where their
-    memory is. Of arrays that are `blank` their sizes count alone; `empty` are addresses of those without content."""
-    start = int(held.owner(np.array([begin_of(first)]))[0])
-    number, order, found = {start: 0}, [start], []
-    for k in order:  # which grows meanwhile
-        x = held.arrays[k]
-        if int(blank.owner(held.begin[k : k + 1])[0]) >= 0:
-            found.append(str(x.nbytes).encode())
-            continue
-        words = words_of(x).copy()
-        owner = held.owner(words)
-        for at in np.flatnonzero(owner >= 0).tolist():
-            to = int(owner[at])
-            if to not in number:
-                number[to] = len(order)
-                order.append(to)
-            words[at] += (number[to] << 32) - int(held.begin[to])
-        if not holds_reals(x):
-            words[[at for at in np.flatnonzero((owner < 0) & like_addresses(words)) if int(words[at]) in empty]] = 0
-        found.append(words.tobytes() if len(words) else x.tobytes())
-    return found
 
 
 def like_addresses(words: Whole) -> NDArray[np.bool_]:

@@ -17,25 +17,16 @@ size_t tlismni_run_size(const tlismni_model *model) {
     return head_size() + (size_t)model->head.own;
 }
 
-tlismni_run *tlismni_start_in(const tlismni_model *m, void *memory, size_t size) {
-    if (!memory || (uintptr_t)memory % ALIGNED || size < tlismni_run_size(m)) {
-        return NULL;
-    }
-    tlismni_run *run = memory;
-    memset(run, 0, sizeof *run);
-    run->model = m;
-    run->own = (char *)memory + head_size();
-    run->limit = m->numbers.most_steps;
-    tlismni_restart(run);
-    return run;
-}
 
-void tlismni_restart(tlismni_run *run) {
+/* The memory at the start; `blank`: it is zero already where it has no content. */
+static void lay_out(tlismni_run *run, bool blank) {
     const tlismni_model *m = run->model;
     pieces_touch();
-    run->beside = (Beside){m->numbers.start, m->numbers.events, 0, 0, 0};
-    memcpy(run->own, m->own_bytes, (size_t)m->head.decisive);
-    memset(run->own + m->head.decisive, 0, (size_t)(m->head.own - m->head.decisive));
+    run->beside = (Beside){m->numbers.start, m->numbers.events, 0, 0, 0, 0};
+    memcpy(run->own, m->own_bytes, (size_t)m->head.copied);
+    if (!blank) {
+        memset(run->own + m->head.copied, 0, (size_t)(m->head.own - m->head.copied));
+    }
     int64_t *words = (int64_t *)run->own;
     for (int64_t k = 0; k < m->head.own_own; k++) {
         words[m->own_own[k]] += (int64_t)(intptr_t)run->own;
@@ -48,14 +39,33 @@ void tlismni_restart(tlismni_run *run) {
     }
 }
 
+static tlismni_run *start_in(const tlismni_model *m, void *memory, bool blank) {
+    tlismni_run *run = memory;
+    memset(run, 0, sizeof *run);
+    run->model = m;
+    run->own = (char *)memory + head_size();
+    run->limit = m->numbers.most_steps;
+    lay_out(run, blank);
+    return run;
+}
+
+tlismni_run *tlismni_start_in(const tlismni_model *m, void *memory, size_t size) {
+    if (!memory || (uintptr_t)memory % ALIGNED || size < tlismni_run_size(m)) {
+        return NULL;
+    }
+    return start_in(m, memory, false);
+}
+
+void tlismni_restart(tlismni_run *run) {
+    lay_out(run, false);
+}
+
 tlismni_run *tlismni_start(const tlismni_model *model) {
-    size_t size = tlismni_run_size(model);
-    char *allocated = malloc(size + ALIGNED);
+    char *allocated = calloc(1, tlismni_run_size(model) + ALIGNED);
     if (!allocated) {
         return NULL;
     }
-    char *aligned = (char *)(((uintptr_t)allocated + ALIGNED - 1) / ALIGNED * ALIGNED);
-    tlismni_run *run = tlismni_start_in(model, aligned, size);
+    tlismni_run *run = start_in(model, (char *)(((uintptr_t)allocated + ALIGNED - 1) / ALIGNED * ALIGNED), true);
     run->allocated = allocated;
     return run;
 }

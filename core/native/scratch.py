@@ -13,7 +13,8 @@ _OF_LOOP = (
     "travel", "brackets", "samples", "log",
 )  # fmt: skip
 _OF_DRIVE = ("found", "events", "nearest", "last_trial")
-_OF_EXCHANGE = ("before", "sample", "channels")
+OF_EXCHANGE = ("before", "sample", "channels")
+"""Scratch of the record `exchange` works with."""
 
 
 def scratch_of(sim: Any) -> list[NDArray[Any]]:
@@ -23,7 +24,7 @@ def scratch_of(sim: Any) -> list[NDArray[Any]]:
         (sim.workspace.arrays, _OF_WORKSPACE),
         (sim._loop.arrays, _OF_LOOP),
         (sim.drive.record.arrays, _OF_DRIVE),
-        (sim.crossing._record.arrays, _OF_EXCHANGE),
+        (sim.crossing._record.arrays, OF_EXCHANGE),
     ):
         found += [arrays[name] for name in names]
     found += [*sim.drive.instant.scratch(), *(sim.beginning.scratch if hasattr(sim, "beginning") else ())]
@@ -45,6 +46,6 @@ _CONSTANT = (
     "near", "leap", "breakpoints", "law", "restitution", "rest_ratio", "friction", "places", "summed", "number",
     "column", "signs", "flags", "flag_columns", "force_law", "force_numbers", "least_approach", "ends_early",
     "impulse_account", "dissipation_account", "bristle", "bristle_stiffness", "marker_columns", "marker_offsets",
-    "marker_angles", "marker_channels",
+    "marker_angles", "marker_channels", "kinds", "forced",
 )  # fmt: skip
 """Arrays of the records that a run never writes into."""

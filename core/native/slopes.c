@@ -21,9 +21,10 @@ static tlismni_status look_closely(tlismni_run *run, void *room) {
         return status;
     }
     tlismni_save(run, room);
+    tlismni_want(run, TLISMNI_ALL);
     status = way_read(run, run->beside.now);
     if (status != TLISMNI_OK) {
-        tlismni_restore(run, room);
+        (void)tlismni_restore(run, room);
     }
     return status;
 }
@@ -54,11 +55,11 @@ tlismni_status tlismni_derivatives(tlismni_run *run, const double *direction, do
     void *raised = NULL;
     int32_t code = ((Along)m->functions[ALONG])(&result, &raised, run->own + m->places.exchange, REAL_ARRAY(seed, inputs),
                                                 REAL_ARRAY(found, channels));
-    tlismni_restore(run, room);
+    status = tlismni_restore(run, room);
     for (size_t k = 0; k < channels; k++) {
         found[k] *= largest;
     }
-    return code == 0 && result == 0 ? TLISMNI_OK : NO_DERIVATIVES;
+    return status != TLISMNI_OK ? status : code == 0 && result == 0 ? TLISMNI_OK : NO_DERIVATIVES;
 }
 
 tlismni_status tlismni_rates(tlismni_run *run, double *found, void *room) {
@@ -70,6 +71,6 @@ tlismni_status tlismni_rates(tlismni_run *run, double *found, void *room) {
     void *result = NULL, *raised = NULL;
     int32_t code = ((InTime)m->functions[IN_TIME])(&result, &raised, run->own + m->places.exchange,
                                                    REAL_ARRAY(found, m->numbers.channels));
-    tlismni_restore(run, room);
-    return code == 0 ? TLISMNI_OK : NO_DERIVATIVES;
+    status = tlismni_restore(run, room);
+    return status != TLISMNI_OK ? status : code == 0 ? TLISMNI_OK : NO_DERIVATIVES;
 }

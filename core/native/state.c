@@ -1,4 +1,7 @@
-/* States: copies of what decides the future of a run, and the same for other runs and processes. */
+/* States: copies of what decides the future of a run, and the same for other runs and processes.
+ *
+ * A state is Beside, the numbers of the run's memory, and what of the matrices decides (`tables/matrix_words.py`). It has no
+ * addresses: records and structures stay as they are in the run, or are built again. */
 
 #include "codes.h"
 #include "image.h"
@@ -7,110 +10,109 @@
 
 #define PACKED_MAGIC "TLISTATE"
 
+typedef struct {
+    int64_t size; /* bytes of the state, this head too */
+    Beside beside;
+} Saved;
+
 /* What stands before a packed state. */
 typedef struct {
     char magic[8];
     int64_t version, image, checksum, size;
 } PackedHead;
 
-/* What a word of the tables is. */
-enum { NUMBER, OWN, SHARED, OF_LIBRARY };
+/* Calls of compiled code follow numba's convention: places of the result and of what is raised come first. */
+typedef int32_t (*OfWorkspace)(int64_t *result, void **raised, void *workspace);
+typedef int32_t (*Save)(int64_t *result, void **raised, void *workspace, int64_t at);
+typedef int32_t (*Restore)(int64_t *result, void **raised, void *workspace, int64_t at, int64_t anew);
 
-/* A saved state: Beside, then the decisive part of the memory. */
-
-size_t tlismni_state_size(const tlismni_model *model) {
-    return sizeof(Beside) + (size_t)model->head.decisive;
+static size_t numbers_size(const tlismni_model *m) {
+    return (size_t)(m->head.decisive - m->head.tables);
 }
 
-size_t tlismni_packed_size(const tlismni_model *model) {
-    return sizeof(PackedHead) + tlismni_state_size(model) + (size_t)model->head.tables / 8;
+static void *workspace_of(const tlismni_run *run) {
+    return run->own + run->model->places.workspace;
+}
+
+size_t tlismni_state_size(const tlismni_model *m) {
+    return sizeof(Saved) + numbers_size(m) + 8 * (size_t)m->numbers.matrix_words;
+}
+
+size_t tlismni_saved_size(const tlismni_run *run) {
+    int64_t words = 0;
+    void *raised = NULL;
+    ((OfWorkspace)run->model->functions[MATRIX_WORDS])(&words, &raised, workspace_of(run));
+    return sizeof(Saved) + numbers_size(run->model) + 8 * (size_t)words;
 }
 
 void tlismni_save(const tlismni_run *run, void *bytes) {
-    memcpy(bytes, &run->beside, sizeof run->beside);
-    memcpy((char *)bytes + sizeof run->beside, run->own, (size_t)run->model->head.decisive);
+    const tlismni_model *m = run->model;
+    Saved *saved = bytes;
+    char *numbers = (char *)(saved + 1), *matrices = numbers + numbers_size(m);
+    int64_t words = 0;
+    void *raised = NULL;
+    memcpy(numbers, run->own + m->head.tables, numbers_size(m));
+    ((Save)m->functions[SAVE_MATRICES])(&words, &raised, workspace_of(run), (int64_t)(intptr_t)matrices);
+    saved->size = matrices + 8 * words - (char *)bytes;
+    saved->beside = run->beside;
 }
 
-void tlismni_restore(tlismni_run *run, const void *bytes) {
-    memcpy(&run->beside, bytes, sizeof run->beside);
-    memcpy(run->own, (const char *)bytes + sizeof run->beside, (size_t)run->model->head.decisive);
-}
-
-/* Number of a function of the image; -1 if it has it not. */
-static int64_t function_number(const tlismni_model *m, uint64_t address) {
-    for (int64_t k = 0; k < m->head.functions; k++) {
-        if ((uint64_t)(uintptr_t)m->functions[k] == address) {
-            return k;
-        }
+tlismni_status tlismni_restore(tlismni_run *run, const void *bytes) {
+    const tlismni_model *m = run->model;
+    const Saved *saved = bytes;
+    const char *numbers = (const char *)(saved + 1), *matrices = numbers + numbers_size(m);
+    int64_t how = 0, anew = saved->beside.beginning != run->beside.beginning;
+    void *raised = NULL;
+    run->beside = saved->beside;
+    memcpy(run->own + m->head.tables, numbers, numbers_size(m));
+    int32_t code = ((Restore)m->functions[RESTORE_MATRICES])(&how, &raised, workspace_of(run), (int64_t)(intptr_t)matrices, anew);
+    if (code != 0 || (how != KEPT && how != BUILT)) {
+        run->beside.failed = 1;
+        run->beside.beginning = ++run->beginnings;
+        return NOT_RESTORED;
     }
-    return -1;
+    if (how == BUILT) { /* which has forgotten what was known of other matrices */
+        memcpy(run->own + m->head.tables, numbers, numbers_size(m));
+    }
+    return TLISMNI_OK;
+}
+
+size_t tlismni_packed_size(const void *saved) {
+    return sizeof(PackedHead) + (size_t)((const Saved *)saved)->size;
 }
 
 tlismni_status tlismni_pack(const tlismni_run *run, const void *saved, void *bytes) {
-    const tlismni_model *m = run->model;
-    size_t size = tlismni_state_size(m), words = (size_t)m->head.tables / 8;
-    char *state = (char *)bytes + sizeof(PackedHead), *kinds = state + size;
-    memcpy(state, saved, size);
-    memset(kinds, NUMBER, words);
-    uint64_t own = (uint64_t)(uintptr_t)run->own, shared = (uint64_t)(uintptr_t)m->shared;
-    for (size_t k = 0; k < words; k++) {
-        char *place = state + sizeof(Beside) + 8 * k;
-        uint64_t word;
-        memcpy(&word, place, sizeof word);
-        if (word - own < (uint64_t)m->head.own) {
-            word -= own, kinds[k] = OWN;
-        } else if (word - shared < (uint64_t)m->head.shared) {
-            word -= shared, kinds[k] = SHARED;
-        } else if (word >> 32 && word >> 48 == 0) {
-            int64_t number = function_number(m, word);
-            if (number < 0) {
-                return NOT_PACKED;
-            }
-            word = (uint64_t)number, kinds[k] = OF_LIBRARY;
-        }
-        memcpy(place, &word, sizeof word);
-    }
-    PackedHead head = {{0}, IMAGE_VERSION, m->head.checksum, image_checksum(state, size + words), (int64_t)(size + words)};
+    int64_t size = ((const Saved *)saved)->size;
+    char *state = (char *)bytes + sizeof(PackedHead);
+    memcpy(state, saved, (size_t)size);
+    memset(state + offsetof(Saved, beside.beginning), 0, sizeof(int64_t)); /* says something in this run only */
+    PackedHead head = {{0}, IMAGE_VERSION, run->model->head.checksum, image_checksum(state, (size_t)size), size};
     memcpy(head.magic, PACKED_MAGIC, sizeof head.magic);
     memcpy(bytes, &head, sizeof head);
     return TLISMNI_OK;
 }
 
-tlismni_status tlismni_unpack(const tlismni_run *run, const void *bytes, size_t given, void *saved) {
+tlismni_status tlismni_unpack(tlismni_run *run, const void *bytes, size_t given, void *saved) {
     const tlismni_model *m = run->model;
-    size_t size = tlismni_state_size(m), words = (size_t)m->head.tables / 8;
-    const char *state = (const char *)bytes + sizeof(PackedHead), *kinds = state + size;
+    const char *state = (const char *)bytes + sizeof(PackedHead);
     PackedHead head;
-    if (given != tlismni_packed_size(m)) {
+    Saved first;
+    int64_t words;
+    size_t least = sizeof first + numbers_size(m) + sizeof words;
+    if (given < sizeof head + least || given > sizeof head + tlismni_state_size(m)) {
         return NOT_PACKED;
     }
     memcpy(&head, bytes, sizeof head);
+    memcpy(&first, state, sizeof first);
+    memcpy(&words, state + least - sizeof words, sizeof words);
     if (memcmp(head.magic, PACKED_MAGIC, sizeof head.magic) != 0 || head.version != IMAGE_VERSION ||
-        head.image != m->head.checksum || head.size != (int64_t)(size + words) ||
-        head.checksum != image_checksum(state, size + words)) {
+        head.image != m->head.checksum || head.size != (int64_t)(given - sizeof head) || first.size != head.size ||
+        (uint64_t)words != (given - sizeof head - least) / 8 + 1 || head.size % 8 ||
+        head.checksum != image_checksum(state, given - sizeof head)) {
         return NOT_PACKED;
     }
-    const uint64_t limits[] = {0, (uint64_t)m->head.own, (uint64_t)m->head.shared, (uint64_t)m->head.functions};
-    for (size_t k = 0; k < words; k++) { /* all of it before any of it is taken */
-        uint64_t word;
-        memcpy(&word, state + sizeof(Beside) + 8 * k, sizeof word);
-        if (kinds[k] != NUMBER && ((unsigned char)kinds[k] > OF_LIBRARY || word >= limits[(int)kinds[k]])) {
-            return NOT_PACKED;
-        }
-    }
-    memcpy(saved, state, size);
-    for (size_t k = 0; k < words; k++) {
-        char *place = (char *)saved + sizeof(Beside) + 8 * k;
-        uint64_t word;
-        memcpy(&word, place, sizeof word);
-        if (kinds[k] == OWN) {
-            word += (uint64_t)(uintptr_t)run->own;
-        } else if (kinds[k] == SHARED) {
-            word += (uint64_t)(uintptr_t)m->shared;
-        } else if (kinds[k] == OF_LIBRARY) {
-            word = (uint64_t)(uintptr_t)m->functions[word];
-        }
-        memcpy(place, &word, sizeof word);
-    }
+    first.beside.beginning = ++run->beginnings;
+    memcpy(saved, state, given - sizeof head);
+    memcpy(saved, &first, sizeof first);
     return TLISMNI_OK;
 }

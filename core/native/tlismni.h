@@ -103,6 +103,14 @@ TLISMNI_API void tlismni_rates_of(const tlismni_run *run, size_t number, double 
 /* The channels, as the last `tlismni_step` with `read` or `tlismni_look` has left them. */
 TLISMNI_API const double *tlismni_channels(const tlismni_run *run);
 
+/* Which channels are read from now on: all of a run that has been started or restarted. Reading few of them is cheaper (those
+ * without accelerations, forces and energies most of all), and gives these the same bits; the others are anything.
+ * `tlismni_want` adds one, or TLISMNI_ALL, and answers whether anything is read then that was not before;
+ * `tlismni_want_none` leaves none. */
+#define TLISMNI_ALL ((size_t)-1)
+TLISMNI_API bool tlismni_want(tlismni_run *run, size_t number);
+TLISMNI_API void tlismni_want_none(tlismni_run *run);
+
 /* Go on to time `t` (s) with the present inputs, impacts included; `read`: have the channels there. */
 TLISMNI_API tlismni_status tlismni_step(tlismni_run *run, double t, bool read);
 
@@ -144,16 +152,18 @@ TLISMNI_API const char *tlismni_why(tlismni_status status);
 
 /* --- state ------------------------------------------------------------------------------------------------------- */
 
-/* All that decides the future of a run, inputs included. `tlismni_save` is a copy of memory (`tlismni_state_size` bytes),
- * which only the same run can go back to. `tlismni_pack` makes of what a run has saved bytes for any run of the same
- * image, in another process too (`tlismni_packed_size`); `tlismni_unpack` makes of these what `run` can restore, and
- * refuses bytes that are damaged or of another image. */
+/* All that decides the future of a run, inputs included. `tlismni_save` writes it to memory aligned to 8 bytes:
+ * `tlismni_saved_size` bytes for the present state, `tlismni_state_size` are enough for any. Only the same run can go back to
+ * it; structures of matrices that it no longer has are built again, which takes longer. `tlismni_pack` makes of what a run has
+ * saved bytes for any run of the same image, in another process too (`tlismni_packed_size`); `tlismni_unpack` makes of these
+ * what `run` can restore (`tlismni_state_size` bytes), and refuses bytes that are damaged or of another image. */
 TLISMNI_API size_t tlismni_state_size(const tlismni_model *model);
+TLISMNI_API size_t tlismni_saved_size(const tlismni_run *run);
 TLISMNI_API void tlismni_save(const tlismni_run *run, void *bytes);
-TLISMNI_API void tlismni_restore(tlismni_run *run, const void *bytes);
-TLISMNI_API size_t tlismni_packed_size(const tlismni_model *model);
+TLISMNI_API tlismni_status tlismni_restore(tlismni_run *run, const void *bytes);
+TLISMNI_API size_t tlismni_packed_size(const void *saved);
 TLISMNI_API tlismni_status tlismni_pack(const tlismni_run *run, const void *saved, void *bytes);
-TLISMNI_API tlismni_status tlismni_unpack(const tlismni_run *run, const void *bytes, size_t size, void *saved);
+TLISMNI_API tlismni_status tlismni_unpack(tlismni_run *run, const void *bytes, size_t size, void *saved);
 
 /* Digests of the sources of this library, and of its C sources: an image is of one library. */
 extern TLISMNI_API const char tlismni_digest[];

@@ -6,9 +6,8 @@ another value than that of the image, not both.
 """
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
@@ -29,12 +28,22 @@ LIKE = 1e-13
 """Relative: what roundings leave of a product or a sum."""
 
 
-def together(sim: Any, found: Sequence[Parameter], settings: Mapping[str, Setting]) -> list[Parameter]:
+def together(memory: Memory, found: Sequence[Parameter], settings: Mapping[str, Setting]) -> list[Parameter]:
     """The parameters with the modes of the words that they share, and with those that exclude each other."""
-    copies = _Copies(Memory(sim), settings)
+    copies = _Copies(memory, settings)
     excluded: set[tuple[int, int]] = set()
     fits: dict[tuple[int, int], dict[Place, tuple[int, ...]]] = {}
+    places = [{word.place for word in p.words} for p in found]
+    apart = _each_its_own(copies, found)
+    copies.prepare(
+        {p.name: _near(p, FACTORS[0]), q.name: _near(q, FACTORS[-1])}
+        for (i, p), (j, q) in combinations(enumerate(found), 2)
+        if not apart or places[i] & places[j]
+    )
     for pair in combinations(range(len(found)), 2):
+        if apart and not places[pair[0]] & places[pair[1]]:
+            fits[pair] = {}
+            continue
         modes_of = _modes(copies, found[pair[0]], found[pair[1]])
         if modes_of is None:
             excluded.add(pair)
@@ -61,6 +70,29 @@ def together(sim: Any, found: Sequence[Parameter], settings: Mapping[str, Settin
     return [with_modes(k, p) for k, p in enumerate(found)]
 
 
+def _each_its_own(copies: "_Copies", found: Sequence[Parameter]) -> bool:
+    """Whether with other values of all parameters at once each word that only one of them leads is what that makes of
+    it, and one that none leads stays: then two that lead no word both do together what each does alone."""
+    memory = copies.memory
+    for first in range(len(FACTORS) if len(found) > 1 else 0):
+        near = {p.name: _near(p, FACTORS[(first + k) % len(FACTORS)]) for k, p in enumerate(found)}
+        if any(near[p.name] == p.value for p in found):
+            continue
+        copies.prepare([near])
+        alone = [copies.of(**{name: x}) for name, x in near.items()]
+        all_at_once = copies.of(**near)
+        if all_at_once is None or None in alone:
+            continue
+        rows = memory.words([{}, *(copy for copy in alone if copy is not None), all_at_once])
+        for values in rows.values():
+            bits = values.view(np.int64)
+            leaders = np.flatnonzero(bits[1:-1] != bits[0])
+            if len(leaders) < 2 and bits[-1] != (bits[1 + leaders[0]] if len(leaders) else bits[0]):
+                return False
+        return True
+    return False
+
+
 def _near(p: Parameter, factor: float) -> float:
     x = p.value * factor if p.value else factor - 1.0
     return min(max(x, p.least), p.largest)
@@ -72,6 +104,23 @@ class _Copies:
     def __init__(self, memory: Memory, settings: Mapping[str, Setting]) -> None:
         self.memory, self._settings = memory, settings
         self._known: dict[tuple[tuple[str, float], ...], dict[int, bytes] | None] = {}
+
+    def prepare(self, several: Iterable[Mapping[str, float]]) -> None:
+        """Look at models with these values, and with each of them alone: what is asked for later is there then."""
+        keys: list[tuple[tuple[str, float], ...]] = []
+        models = []
+        for values in several:
+            for key in (*((item,) for item in values.items()), tuple(values.items())):
+                if key not in self._known and key not in keys:
+                    try:
+                        models.append(self._settings[key[0][0]].with_values(dict(key)))
+                        keys.append(key)
+                    except TlismniError:
+                        self._known[key] = None
+        try:
+            self._known.update(zip(keys, self.memory.copies(models), strict=True))
+        except (TlismniError, NativeError):
+            pass  # one of them has more than other numbers: `of` finds which
 
     def of(self, **values: float) -> dict[int, bytes] | None:
         """Of the model with these values; None if there is none."""

@@ -157,6 +157,7 @@ tlismni_status way_go_on(tlismni_run *run, int64_t code, bool hold, int64_t firs
 
 /* Begin anew, with parameters or a start time that are not those of the image. */
 static tlismni_status begin_anew(tlismni_run *run) {
+    run->beside.beginning = ++run->beginnings;
     int64_t status = call(run, BEGIN, run->model->places.begin);
     if (status != SETTLED) {
         return (tlismni_status)(status < RAISED ? SETTLING + status : status);
@@ -215,6 +216,24 @@ tlismni_status way_end(tlismni_run *run, tlismni_status status) {
 tlismni_status way_read(tlismni_run *run, double t) {
     REALS(run, times)[TO] = t;
     return call(run, READ, run->model->places.exchange) == 1 ? TLISMNI_OK : NOT_READ;
+}
+
+/* `want` of read_channels.py: a channel, all (-1), or none (-2). */
+typedef int32_t (*Want)(int64_t *result, void **raised, void *record, int64_t channel);
+
+static bool want(tlismni_run *run, int64_t channel) {
+    int64_t more = 0;
+    void *raised = NULL;
+    ((Want)run->model->functions[WANT])(&more, &raised, run->own + run->model->places.exchange, channel);
+    return more & 1;
+}
+
+bool tlismni_want(tlismni_run *run, size_t number) {
+    return want(run, number < (size_t)run->model->numbers.channels ? (int64_t)number : -1);
+}
+
+void tlismni_want_none(tlismni_run *run) {
+    want(run, -2);
 }
 
 tlismni_status tlismni_step(tlismni_run *run, double t, bool read) {

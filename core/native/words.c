@@ -106,6 +106,8 @@ const char *tlismni_why(tlismni_status status) {
     case NOT_READ:
         return "the channels cannot be had at this time (a value is not finite, or the mechanism is near a singular "
                "position): ask at another time" WITH_PYTHON;
+    case NOT_RESTORED:
+        return "the state is none that this run has had: it is damaged, or of another run (pack it to carry it over)";
     case NOT_PACKED:
         return "the bytes are no packed state of this image, or are damaged";
     case NO_PARAMETER:

@@ -50,6 +50,11 @@ class Blueprint:
         blank += [*sim.drive.instant.scratch(), *sim.workspace.blank()]
         self._image = Image(arrays, tables, blank)
 
+    @property
+    def size(self) -> int:
+        """Bytes of a run's memory that are copied; behind them is room without content."""
+        return self._image.copied
+
     def simulation(self) -> Simulation:
         """One more run, independent of all others."""
         old, new, take = self._sim, object.__new__(Simulation), self._image.take()

@@ -22,7 +22,7 @@ from ..errors import ModelError
 from ..events.records import instant_at
 from ..events.settle import begin_anew
 from ..events.unsettled import find_unsettled
-from ..location.dense_output import query
+from ..location.dense_output import query, query_motion
 from ..loop.drive import drive_on, loop_at, method_at, workspace_at
 from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
@@ -199,10 +199,12 @@ class Exchange:
                 "times": self.times, "inputs": self.wanted, "before": np.zeros((inputs, INPUT_SIZE)),
                 "rates": np.zeros((inputs, RATES_SIZE)),
                 "sample": self.sample, "channels": self.channels, **formulas,
+                "wants": np.ones(len(formulas["forced"]), dtype=np.int64),
             },
             {
                 "workspace": sim.workspace.address, "method": sim._method.address, "loop": loop.address,
                 "drive": sim.drive.address, "query": address_of(query, QUERY_SIGNATURE),
+                "query_motion": address_of(query_motion, QUERY_SIGNATURE), "n_wants": len(formulas["forced"]),
                 "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
                 "n_inputs": inputs, "chunk": chunk, "read": 0,
                 "sample_length": length, "n_channels": channels, "n_sums": len(formulas["summed"]),

@@ -26,9 +26,17 @@ EXCHANGE = np.dtype(
             "first_derived",
             "derived_rates", "n_derived_rates",                    # number of each one's rate among them; < 0: none
             "residual_channels",                                   # (3,) int64
+            # what is read (`read_channels.py`): the function that finds motion alone; (n_wants,) int64: 1 for kinds of
+            # channels that are wanted; the kind of each channel; 1 for kinds that take accelerations
+            "query_motion", "wants", "n_wants", "kinds", "forced",
         )
     ]
 )  # fmt: skip
+
+# kinds of channels: coordinates, velocities and what follows from them; what takes accelerations and multipliers too;
+# energies; then groups of derived ones
+MOTION, FORCES, ENERGIES = range(3)
+OF_GROUPS = 3
 
 # columns of `times`
 NOW = 0

@@ -9,11 +9,21 @@ from numpy.typing import NDArray
 
 from ..compiled.image import twin
 from ..model.channels import Channel, Enumeration
-from ..model.derived import NOT_KNOWN, Derived, DerivedTable, Places
+from ..model.derived import (
+    CHANNELS,
+    FIRST_CHANNEL,
+    FIRST_PLACE,
+    NOT_KNOWN,
+    PLACES,
+    Derived,
+    DerivedTable,
+    Places,
+)
 from ..model.units import conjugate, per_second, times_second
 from ..state.modes import ACTIVE, CLOSED, MODE_NAMES
 from ..tables.assembly import Assembly, ContactInfo
 from ..tables.sample_layout import SampleLayout
+from .exchange_record import ENERGIES, FORCES, MOTION, OF_GROUPS
 
 CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
 
@@ -133,7 +143,38 @@ class ChannelTable:
             "derived": derived.heads, "derived_places": derived.places, "derived_numbers": derived.numbers,
             "derived_rates": self._derived_rate.astype(np.int64),
             "residual_channels": np.array([self.index[f"residual.{level}"] for level in LEVELS], dtype=np.int64),
+            **self._kinds(),
         }  # fmt: skip
+
+    def _kinds(self) -> dict[str, NDArray[np.int64]]:
+        """What each channel takes (`exchange_record.py`)."""
+        heads, places = self._derived.heads, self._derived.places
+        forced, group_of = [0, 1, 0], [OF_GROUPS] * self._derived.size
+        for k, head in enumerate(heads.tolist()):
+            columns = places[head[FIRST_PLACE] : head[FIRST_PLACE] + head[PLACES]].tolist()
+            forced.append(int(any(self._kind_of(column) != MOTION for column in columns)))
+            group_of[head[FIRST_CHANNEL] : head[FIRST_CHANNEL] + head[CHANNELS]] = [OF_GROUPS + k] * head[CHANNELS]
+
+        def kind(formula: Any) -> int:
+            if isinstance(formula, OneOf):
+                return group_of[formula.number]
+            if isinstance(formula, Sum):
+                return max((self._kind_of(column) for column in (*formula.columns, *formula.less)), default=MOTION)
+            return self._kind_of(formula.column if isinstance(formula, InContact) else formula)
+
+        kinds = [kind(formula) for _, formula in self._formulas]
+        return {"kinds": np.array(kinds, dtype=np.int64), "forced": np.array(forced, dtype=np.int64)}
+
+    def _kind_of(self, column: int) -> int:
+        """What a column of a sample takes."""
+        layout, contacts = self.layout, self.layout.gap - self.layout.force
+        forces = (
+            range(layout.a.start, layout.multipliers.stop), range(layout.force, layout.force + contacts),
+            range(layout.friction, layout.friction + contacts), (layout.residuals[2],),
+        )  # fmt: skip
+        if any(column in part for part in forces):
+            return FORCES
+        return ENERGIES if layout.kinetic <= column <= layout.strain else MOTION
 
     @property
     def first_derived(self) -> int:

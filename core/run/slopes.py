@@ -1,7 +1,7 @@
 """Derivatives of all channels at the workspace's point, compiled: along inputs, and in time.
 
 What they are and why they are exact stands in `sensitivity.py` and `output_rates.py`, which call this; so does the C
-code of runs without Python.
+code of runs without Python, which has all channels read before.
 """
 
 from typing import Any
@@ -19,7 +19,7 @@ from ..model.signals import INPUT_SIZE
 from ..rounding import SENSITIVITY_SOLVED
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
-from .exchange_record import EXCHANGE
+from .exchange_record import EXCHANGE, OF_GROUPS
 from .read_channels import put_channels
 
 LARGE = 2.0**40
@@ -46,7 +46,7 @@ def _channels_at(ex: Any, ws: Any, out: Any) -> None:
     """All channels of the workspace's point as it stands."""
     evaluate_residuals(ws)
     write_sample(ws, vec(ex.sample, ex.sample_length))
-    put_channels(ex, out)
+    put_channels(ex, out, ivec(ex.wants, ex.n_wants)[OF_GROUPS:])
 
 
 @internal

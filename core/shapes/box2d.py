@@ -12,7 +12,8 @@ from ..elements.formula2d import Frame2D
 from ..model.base import Positive, Record
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
-from .scalar_contact2d import ScalarContact, ScalarContact2D, scalar_contact
+from .disk_contact2d import DiskContact2D
+from .scalar_contact2d import ScalarContact, scalar_contact
 
 
 class Box2D(Record):
@@ -75,7 +76,7 @@ def box_slide(box: Frame2D, centre: Frame2D, half_width: float, half_height: flo
     return 3.0 * half_height + 3.0 * quarter + 3.0 * half_width + x - rolled
 
 
-class DiskOnBox2D(ScalarContact2D):
+class DiskOnBox2D(DiskContact2D):
     """A disk, or a point, on a box, round its corners too.
 
     With radius 0 the contact goes round a corner in one instant; a box that others tip over has a small disk there.
@@ -86,23 +87,11 @@ class DiskOnBox2D(ScalarContact2D):
 
     shape: Box2D
     """The box."""
-    disk: Disk2D
-    """The disk."""
 
     @property
     def box(self) -> Marker2D:
         """Centre and axes of the box."""
         return self.shape.marker
-
-    @property
-    def centre(self) -> Marker2D:
-        """Of the disk."""
-        return self.disk.marker
-
-    @property
-    def radius(self) -> float:
-        """Of the disk, m."""
-        return self.disk.radius
 
     @property
     def half_width(self) -> float:
@@ -113,9 +102,6 @@ class DiskOnBox2D(ScalarContact2D):
     def half_height(self) -> float:
         """m."""
         return 0.5 * self.shape.height
-
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)
 
     def lengths(self) -> Sequence[float]:
         return self.disk.radius, self.half_width, self.half_height

@@ -16,7 +16,8 @@ from ..elements.formula2d import Frame2D
 from ..model.base import Record
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
-from .scalar_contact2d import ScalarContact, ScalarContact2D, scalar_contact
+from .disk_contact2d import DiskContact2D
+from .scalar_contact2d import ScalarContact, scalar_contact
 
 MOST_SIDES = 8
 """Of a polygon."""
@@ -128,7 +129,7 @@ def polygon_slide(
     return before + along + arc - rolled
 
 
-class DiskOnPolygon2D(ScalarContact2D):
+class DiskOnPolygon2D(DiskContact2D):
     """A disk, or a point, on a convex polygon, round its corners too.
 
     With radius 0 the contact goes round a corner in one instant; a polygon that others tip over has small disks there.
@@ -139,23 +140,11 @@ class DiskOnPolygon2D(ScalarContact2D):
 
     shape: Polygon2D
     """The polygon."""
-    disk: Disk2D
-    """The disk."""
 
     @property
     def polygon(self) -> Marker2D:
         """Origin and axes of the polygon."""
         return self.shape.marker
-
-    @property
-    def centre(self) -> Marker2D:
-        """Of the disk."""
-        return self.disk.marker
-
-    @property
-    def radius(self) -> float:
-        """Of the disk, m."""
-        return self.disk.radius
 
     @property
     def sides(self) -> float:
@@ -168,9 +157,6 @@ class DiskOnPolygon2D(ScalarContact2D):
             k, vertices = int(name[1]), self.shape.vertices
             return vertices[k]["xy".index(name[0])] if k < len(vertices) else 0.0
         return super().__getattr__(name)  # type: ignore[misc]
-
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)
 
     def lengths(self) -> Sequence[float]:
         return self.disk.radius, self.shape.perimeter / self.sides

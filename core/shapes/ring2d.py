@@ -13,8 +13,8 @@ from pydantic import model_validator
 from ..elements.formula2d import Frame2D
 from ..model.base import Positive, Record
 from ..model.markers import Marker2D
-from .contact2d import Disk2D
-from .scalar_contact2d import ScalarContact, ScalarContact2D, scalar_contact
+from .disk_contact2d import DiskContact2D
+from .scalar_contact2d import ScalarContact, scalar_contact
 
 
 class Ring2D(Record):
@@ -39,7 +39,7 @@ def ring_slide(ring: Frame2D, centre: Frame2D, ring_radius: float, radius: float
     return ring_radius * (phi - ring.angle) - radius * (phi - centre.angle)
 
 
-class DiskInRing2D(ScalarContact2D):
+class DiskInRing2D(DiskContact2D):
     """A disk, or a point, in a round hole: gap = radius of the hole - radius of the disk - distance of the centres."""
 
     type: Literal["DiskInRing2D"] = "DiskInRing2D"
@@ -47,8 +47,6 @@ class DiskInRing2D(ScalarContact2D):
 
     shape: Ring2D
     """The hole."""
-    disk: Disk2D
-    """The disk in it."""
 
     @model_validator(mode="after")
     def _fits(self) -> "DiskInRing2D":
@@ -65,22 +63,9 @@ class DiskInRing2D(ScalarContact2D):
         return self.shape.marker
 
     @property
-    def centre(self) -> Marker2D:
-        """Of the disk."""
-        return self.disk.marker
-
-    @property
     def ring_radius(self) -> float:
         """Of the hole, m."""
         return self.shape.radius
-
-    @property
-    def radius(self) -> float:
-        """Of the disk, m."""
-        return self.disk.radius
-
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)
 
     def lengths(self) -> Sequence[float]:
         return self.disk.radius, self.shape.radius

@@ -41,8 +41,8 @@ def _project_level(ws: Any, residual_address: int, x_address: int, tolerance: fl
 
 
 @internal
-def project(ws: Any) -> int:
-    """Coordinates and velocities of the current point onto the constraints, then accelerations and multipliers."""
+def project_motion(ws: Any) -> int:
+    """Coordinates and velocities of the current point onto the constraints."""
     control = vec(ws.control, CONTROL_SIZE)
     evaluate_residuals(ws)
     if ws.m_act > 0:
@@ -52,9 +52,16 @@ def project(ws: Any) -> int:
         status = _project_level(ws, ws.phi, ws.q, control[POSITION_TOLERANCE])
         if status != OK:
             return status
-        status = _project_level(ws, ws.phid, ws.v, control[VELOCITY_TOLERANCE])
-        if status != OK:
-            return status
+        return _project_level(ws, ws.phid, ws.v, control[VELOCITY_TOLERANCE])
+    return OK
+
+
+@internal
+def project(ws: Any) -> int:
+    """The same, then accelerations and multipliers."""
+    status = project_motion(ws)
+    if status != OK:
+        return status
     status = solve_accelerations(ws)
     evaluate_power(ws)
     return status

@@ -50,9 +50,15 @@ def plot_sweep(
             drawn: Any = axis.pcolormesh(columns, rows, image, shading="nearest", cmap="viridis", rasterized=True)
         else:
             drawn = axis.scatter(across, up, s=size, c=shade, cmap="viridis", linewidths=0)
-        figure.colorbar(drawn, label=colour)
-    axis.set(xlabel=x, ylabel=y)
+        figure.colorbar(drawn, label=_titled(sweep, colour))
+    axis.set(xlabel=_titled(sweep, x), ylabel=_titled(sweep, y))
     axis.grid(alpha=0.3)
     if path is not None:
         figure.savefig(path, dpi=150)
     return figure
+
+
+def _titled(sweep: "Sweep", name: str) -> str:
+    """A column's name with its unit."""
+    unit = sweep.units.get(name, "1")
+    return name if unit in ("", "1") else f"{name} ({unit})"

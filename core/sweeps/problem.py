@@ -36,7 +36,7 @@ class Problem(Protocol):
     """A question that a sweep asks at every point. It goes to other processes, so it is plain data.
 
     `identity` says all that the answers depend on but the points: a folder of answers belongs to one. `check` raises
-    ModelError for names that mean nothing.
+    ModelError for names that mean nothing. It may have `units()`, by the names of columns.
     """
 
     def identity(self) -> str: ...
@@ -93,6 +93,9 @@ class ModelProblem:
         for name in names:
             group_of(compiled, name)
 
+    def units(self) -> dict[str, str]:
+        return units_of(_compiled(self.text, self.settings))
+
     def run(self, points: Mapping[str, NDArray[np.float64]], threads: int | None) -> Outcomes:
         compiled = _compiled(self.text, self.settings)
         groups = {name: group_of(compiled, name) for name in points}
@@ -127,6 +130,15 @@ def group_of(compiled: CompiledModel, name: str) -> str:
         f"of model '{model.name}'; there are also places of numbers such as 'body.mass' and start values such as "
         f"'{START}{compiled.start_names[0]}'"
     )
+
+
+def units_of(compiled: CompiledModel) -> dict[str, str]:
+    """Units of parameters, inputs, start values and channels, and of the columns that every sweep has."""
+    model: Any = compiled.system
+    channels = {channel.name: channel.unit for channel in compiled.channel_records}
+    named = {each.name: each.unit for each in (*model.parameters, *model.inputs)}
+    start = {f"{START}{name}": channels[name] for name in compiled.start_names if name in channels}
+    return {"time": "s", "reached": "s", **channels, **start, **named}
 
 
 def begin_at(compiled: CompiledModel, values: Mapping[str, float], groups: Mapping[str, str]) -> Simulation:

@@ -29,12 +29,13 @@ class Store:
 
     Attributes
     ----------
-    folder : where they are. parts : number of parts; part k holds runs k size to (k + 1) size.
+    folder : where they are. units : of columns, as far as they are known.
+    parts : number of parts; part k holds runs k size to (k + 1) size.
     """
 
-    def __init__(self, folder: Path, points: Points, size: int) -> None:
+    def __init__(self, folder: Path, points: Points, size: int, units: Mapping[str, str]) -> None:
         require("a sweep's table", "sweep", pyarrow="")
-        self.folder, self.points, self.size = folder, points, size
+        self.folder, self.points, self.size, self.units = folder, points, size, dict(units)
         self.count = len(next(iter(points.values())))
         self.parts = -(-self.count // size)
 
@@ -55,15 +56,16 @@ class Store:
                     f"'{folder}' holds another sweep (of {found.get('names')}, {found.get('runs')} runs): what is "
                     "swept, the model or its settings differ. Name another folder, or remove this one"
                 )
-            store = cls(folder, points, int(found["part"]))
+            store = cls(folder, points, int(found["part"]), found.get("units", {}))
         else:
             if folder.exists() and any(folder.iterdir()):
                 raise ModelError(f"'{folder}' is not empty and no sweep: name another folder")
             (folder / "parts").mkdir(parents=True, exist_ok=True)
-            store = cls(folder, points, size)
+            store = cls(folder, points, size, getattr(problem, "units", dict)())
             _whole(folder / "points.npz", lambda path: _save_points(path, points))
             content = {
                 "format": FORMAT, "identity": digest, "names": list(points), "runs": store.count, "part": size,
+                "units": store.units,
             }  # fmt: skip
             # last of all: a folder with a header is complete
             _whole(header, lambda path: path.write_text(json.dumps(content, indent=2), encoding="utf-8"))
@@ -77,7 +79,8 @@ class Store:
             raise ModelError(f"'{folder}' is no folder of a sweep: it has no sweep.json")
         with np.load(folder / "points.npz") as kept:
             points = {name: kept[name] for name in kept.files}
-        return cls(folder, points, int(_header(header)["part"]))
+        said = _header(header)
+        return cls(folder, points, int(said["part"]), said.get("units", {}))
 
     def part(self, k: int) -> Path:
         """File of part k."""
@@ -101,12 +104,19 @@ class Store:
         _whole(self.part(k), lambda path: parquet.write_table(table, path))
 
     def table(self) -> Any:
-        """All answers that there are, as a table of pyarrow sorted by run and time."""
+        """All answers that there are, as a table of pyarrow sorted by run and time, units in the metadata of fields."""
         import pyarrow
         from pyarrow import parquet
 
         parts = [parquet.read_table(self.part(k)) for k in range(self.parts) if self.part(k).exists()]
-        return pyarrow.concat_tables(parts) if parts else pyarrow.table({"run": pyarrow.array([], pyarrow.int64())})
+        if not parts:
+            return pyarrow.table({"run": pyarrow.array([], pyarrow.int64())})
+        table = pyarrow.concat_tables(parts)
+        fields = [
+            field.with_metadata({"unit": self.units[field.name]}) if field.name in self.units else field
+            for field in table.schema
+        ]
+        return table.cast(pyarrow.schema(fields))
 
     def write_table(self) -> Path:
         """All answers in one file."""

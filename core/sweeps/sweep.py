@@ -36,6 +36,11 @@ class Sweep:
         return tuple(self._store.points)
 
     @property
+    def units(self) -> dict[str, str]:
+        """Units of columns, as far as they are known."""
+        return self._store.units
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """All columns."""
         return tuple(self._table.column_names)

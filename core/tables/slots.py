@@ -135,6 +135,11 @@ class Slots:
         self.needs[:] = np.maximum(self.needs, (times / SLACK * self.rooms).astype(np.int64))
         self.needs[OF_KKT + SCRATCH] = int(times / SLACK * len(self.scratch.numbers))
 
+    def ask_for_as_much_as(self, other: "Slots") -> None:
+        """Need what another run of the same model has."""
+        self.needs[:] = np.maximum(self.needs, (other.rooms / SLACK).astype(np.int64) + 1)
+        self.needs[OF_KKT + SCRATCH] = len(other.scratch.numbers) / SLACK + 1
+
     def grow(self, others: list[NDArray[np.int64]]) -> bool:
         """Give what is needed; True if places have moved. `others` are the words of records that know addresses of
         what is in them: these are moved along."""

@@ -11,6 +11,8 @@ from mkdocs.structure.files import File, Files, InclusionLevel
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("core", "models", "viewer", "fmu_wrapper", "validation", "cli")
+WIDE = "---\nhide: [toc]\n---\n"
+"""Head of pages whose lines of code are long: without the list of headings beside them."""
 LANGUAGES = {".toml": "toml", ".c": "c", ".py": "python"}
 
 
@@ -60,9 +62,30 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     return text.replace("gallery/embedding.md", "embedding.md").replace("](../docs/", "](").replace("](docs/", "](")
 
 
+def on_page_content(html: str, page: Any, config: Any, files: Any) -> str:
+    """Pictures open at full size, and columns of words are wider than those of numbers."""
+    text = re.sub(r"(?<!>)(<img [^>]*src=\"([^\"]+)\"[^>]*>)(?!</a>)", r'<a class="picture" href="\2">\1</a>', html)
+    return re.sub(r"<table>.*?</table>", lambda table: with_widths(table[0]), text, flags=re.S)
+
+
+def with_widths(table: str) -> str:
+    """The table with a class for the cells of each column: it holds "sentences", some "words", or what is "short"."""
+    rows = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.S) for row in re.findall(r"<tr>.*?</tr>", table, re.S)]
+    lengths = [max(len(re.sub(r"<[^>]+>", "", row[k])) for row in rows if k < len(row)) for k in range(len(rows[0]))]
+    kinds = ["sentences" if length > 70 else "words" if length > 25 else "short" for length in lengths]
+
+    def classed(row: re.Match[str]) -> str:
+        left = iter(kinds)
+        return re.sub(
+            r"<(t[dh])", lambda cell: f'<{cell[1]} class="{kind}"' if (kind := next(left)) else cell[0], row[0]
+        )
+
+    return re.sub(r"<tr>.*?</tr>", classed, table, flags=re.S)
+
+
 def notebook_page(path: Path) -> str:
     """The cells of a notebook; the notebook itself lies beside the page."""
-    parts = []
+    parts = [WIDE]
     for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
         text = "".join(cell["source"])
         parts += [text, ""] if cell["cell_type"] == "markdown" else ["```python", text, "```", ""]
@@ -80,15 +103,15 @@ def words_of(path: Path) -> str:
 
 
 def picture_of(stem: str) -> str:
-    """The name of its picture in the folder of the gallery; empty without."""
-    found = (f"{stem}{suffix}" for suffix in (".gif", ".png"))
+    """Its picture, seen from the folder of the gallery; empty without."""
+    found = (f"{stem}.gif", f"{stem}.png", f"../images/{stem}.png")
     return next((name for name in found if (ROOT / "docs" / "gallery" / name).is_file()), "")
 
 
 def example_page(path: Path) -> str:
     """Words, moving picture and source of an example."""
     picture = picture_of(path.stem)
-    parts = [f"# {title_of(path)}", "", words_of(path), ""]
+    parts = [WIDE, f"# {title_of(path)}", "", words_of(path), ""]
     if picture:
         parts += [f"![{title_of(path)}]({picture})", ""]
     parts += [f"Run it: `python examples/{path.name}`", ""]
@@ -101,9 +124,15 @@ def example_page(path: Path) -> str:
 
 def gallery_page(examples: list[Path]) -> str:
     """A card for every example."""
-    parts = ["# Gallery", "", "Each one is a script, a test and a page. The pictures are made by the scripts.", ""]
+    parts = [
+        WIDE,
+        "# Gallery",
+        "",
+        "Each one is a script, a test and a page. The pictures are made by the scripts.",
+        "",
+    ]
     parts += ['<div class="grid cards" markdown>', ""]
-    for path in sorted(examples, key=lambda p: not picture_of(p.stem)):
+    for path in sorted(examples, key=lambda p: not picture_of(p.stem).endswith(".gif")):
         picture, first = picture_of(path.stem), words_of(path).split("\n\n")[0].replace("\n", " ")
         parts += [f"-   **[{title_of(path)}]({path.stem}.md)**", ""]
         parts += [f"    [![{title_of(path)}]({picture})]({path.stem}.md)", ""] if picture else []

@@ -67,7 +67,7 @@ int main(int count, char **argument) {
     control(run, model, 0, 150, 2.0);
     tlismni_save(run, kept);
     int gentle = control(run, model, 150, 300, 2.0);
-    tlismni_restore(run, kept);
+    check(tlismni_restore(run, kept), run);
     check(tlismni_look(run), run);
     int firm = control(run, model, 150, 300, 20.0);
     printf("%d impacts, and %d with the other gain\n", gentle, firm);

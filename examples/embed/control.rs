@@ -51,7 +51,7 @@ extern "C" {
     fn tlismni_why(status: c_int) -> *const c_char;
     fn tlismni_state_size(model: *const Model) -> usize;
     fn tlismni_save(run: *const Run, bytes: *mut c_void);
-    fn tlismni_restore(run: *mut Run, bytes: *const c_void);
+    fn tlismni_restore(run: *mut Run, bytes: *const c_void) -> c_int;
 }
 
 /// A model and a run of it; both are given back when it goes.
@@ -124,17 +124,17 @@ impl Mechanism {
         Ok(impacts)
     }
 
-    fn save(&self) -> Vec<u8> {
-        let mut bytes = vec![0; unsafe { tlismni_state_size(self.model) }];
+    fn save(&self) -> Vec<u64> {
+        // words, since the memory has to be aligned to 8 bytes
+        let mut bytes = vec![0; unsafe { tlismni_state_size(self.model) }.div_ceil(8)];
         unsafe { tlismni_save(self.run, bytes.as_mut_ptr().cast()) };
         bytes
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> Result<(), String> {
-        let status = unsafe {
-            tlismni_restore(self.run, bytes.as_ptr().cast());
-            tlismni_look(self.run)
-        };
+    fn restore(&mut self, bytes: &[u64]) -> Result<(), String> {
+        let status = unsafe { tlismni_restore(self.run, bytes.as_ptr().cast()) };
+        self.checked(status)?;
+        let status = unsafe { tlismni_look(self.run) };
         self.checked(status)
     }
 }

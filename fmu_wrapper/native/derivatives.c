@@ -64,7 +64,7 @@ static bool may_ask(Slave *self, const char *function, const uint32_t unknown[],
             return false;
         }
     }
-    return slave_look(self, function) == STATUS_OK;
+    return slave_look_at_all(self, function) == STATUS_OK;
 }
 
 static int check_finite(const Slave *self, const char *function, double x) {
@@ -137,7 +137,7 @@ int slave_output_derivatives(Slave *self, const char *function, const uint32_t v
         }
     }
     double *room = room_of(self, function);
-    if (!room || slave_look(self, function) != STATUS_OK) {
+    if (!room || slave_look_at_all(self, function) != STATUS_OK) {
         return STATUS_ERROR;
     }
     size_t channels = tlismni_count(self->model, TLISMNI_CHANNEL), inputs = tlismni_count(self->model, TLISMNI_INPUT);

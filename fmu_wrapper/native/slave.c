@@ -66,6 +66,9 @@ Slave *slave_new(const Slave *given, const char *function, const char *name, con
     self->model = NULL;
     self->run = NULL;
     self->parameters = self->room = NULL;
+    self->wanted = NULL;
+    self->is_wanted = NULL;
+    self->wants = 0;
     self->intermediate = NULL;
     self->file = NULL;
     self->stored = NULL;
@@ -79,13 +82,16 @@ Slave *slave_new(const Slave *given, const char *function, const char *name, con
     }
     if (self->name && (self->intermediate || !given->intermediates) && load(self, function, token ? token : "", resources)) {
         size_t numbers = 2 * tlismni_count(self->model, TLISMNI_PARAMETER) + 3 * tlismni_count(self->model, TLISMNI_INPUT);
+        size_t channels = tlismni_count(self->model, TLISMNI_CHANNEL);
         self->run = tlismni_start(self->model);
         self->parameters = malloc((numbers + 1) * sizeof *self->parameters);
-        if (!self->run || !self->parameters) {
+        self->wanted = malloc((channels + 1) * sizeof *self->wanted);
+        self->is_wanted = calloc(channels + 1, sizeof *self->is_wanted);
+        if (!self->run || !self->parameters || !self->wanted || !self->is_wanted) {
             slave_error(self, function, "there is no memory left for an instance");
         }
     }
-    if (self->run && self->parameters) {
+    if (self->run && self->parameters && self->wanted && self->is_wanted) {
         slave_take_parameters(self);
     } else {
         slave_free(self);
@@ -102,6 +108,8 @@ void slave_free(Slave *self) {
     tlismni_end(self->run);
     tlismni_close(self->model);
     free(self->parameters);
+    free(self->wanted);
+    free(self->is_wanted);
     free(self->room);
     free(self->intermediate);
     free(self->file);
@@ -149,6 +157,7 @@ int slave_exit_initialization(Slave *self, const char *function) {
     if (!slave_may(self, function, IN(INITIALIZATION))) {
         return STATUS_ERROR;
     }
+    tlismni_want(self->run, TLISMNI_ALL); /* a start without accelerations is none */
     int status = tlismni_look(self->run);
     if (status) {
         return slave_run_error(self, function, status);

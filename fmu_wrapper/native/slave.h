@@ -44,6 +44,7 @@ typedef struct Stored {
     struct Stored *next;
     Phase phase;
     double stop;
+    size_t room;  /* bytes of: */
     char saved[]; /* what `tlismni_save` writes */
 } Stored;
 
@@ -61,8 +62,11 @@ struct Slave {
     bool event_mode, early_return;
     Phase phase;
     double start, stop; /* s; no stop is infinity */
-    bool fresh;  /* the channels are those of the present time and inputs */
-    bool asked;  /* outputs have been asked for since the last step */
+    bool fresh;  /* the channels that the run reads are those of the present time and inputs */
+    bool asked;  /* outputs have been asked for since the last step: */
+    size_t *wanted;  /* these channels, each once: the first `wants` */
+    size_t wants;
+    bool *is_wanted; /* of each channel, whether it is among them */
     tlismni_model *model;
     tlismni_run *run;
     double *parameters; /* values, behind them room for those before, for the inputs and their derivatives */
@@ -113,8 +117,10 @@ int slave_set_others(Slave *self, const char *function, const uint32_t vr[], siz
 
 /* What a reference of this kind stands for; NULL with a line in the log. */
 const Variable *slave_variable(const Slave *self, const char *function, uint32_t reference, Kind kind);
-/* Have the channels at the present time with the present inputs. */
-int slave_look(Slave *self, const char *function);
+/* Have all channels at the present time with the present inputs. */
+int slave_look_at_all(Slave *self, const char *function);
+/* Let the run read only what has been asked for since this was last called. */
+void slave_want_what_was_asked(Slave *self);
 
 /* derivatives (derivatives.c) */
 int slave_directional(Slave *self, const char *function, const uint32_t unknown[], size_t unknowns, const uint32_t known[],

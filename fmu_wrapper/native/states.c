@@ -36,32 +36,37 @@ static Stored *kept(const Slave *self, const char *function, const void *state) 
     return NULL;
 }
 
-static Stored *new_state(Slave *self, const char *function) {
-    Stored *s = malloc(sizeof *s + tlismni_state_size(self->model));
+static Stored *new_state(Slave *self, const char *function, size_t room) {
+    Stored *s = malloc(sizeof *s + room);
     if (!s) {
         slave_error(self, function, "there is no memory left for a state");
         return NULL;
     }
     s->next = self->stored;
+    s->room = room;
     self->stored = s;
     return s;
 }
 
-/* The state that `*state` is a handle of, or a new one. */
-static Stored *room_for(Slave *self, const char *function, void *state) {
-    for (Stored *s = self->stored; s && state; s = s->next) {
-        if (s == state) {
-            return s;
+/* The state that `*state` is a handle of, if it has enough room, or a new one. */
+static Stored *room_for(Slave *self, const char *function, void **state, size_t room) {
+    for (Stored *s = self->stored; s && *state; s = s->next) {
+        if (s == *state) {
+            if (s->room >= room) {
+                return s;
+            }
+            slave_free_state(self, function, state);
+            break;
         }
     }
-    return new_state(self, function);
+    return new_state(self, function, room);
 }
 
 int slave_get_state(Slave *self, const char *function, void **state) {
     if (!slave_may(self, function, ~(IN(FAILED) | IN(INTERMEDIATE))) || !slave_has_room(self, function, state, 1)) {
         return STATUS_ERROR;
     }
-    Stored *s = room_for(self, function, *state);
+    Stored *s = room_for(self, function, state, tlismni_saved_size(self->run));
     if (!s) {
         return STATUS_ERROR;
     }
@@ -84,8 +89,12 @@ int slave_set_state(Slave *self, const char *function, void *state) {
     self->phase = s->phase;
     self->stop = s->stop;
     self->fresh = false;
-    tlismni_restore(self->run, s->saved);
+    int status = tlismni_restore(self->run, s->saved);
     slave_take_parameters(self);
+    if (status) {
+        self->phase = FAILED;
+        return slave_run_error(self, function, status);
+    }
     return STATUS_OK;
 }
 
@@ -119,10 +128,14 @@ void slave_forget_states(Slave *self) {
 }
 
 int slave_state_size(Slave *self, const char *function, void *state, size_t *size) {
-    if (!slave_alive(self) || !slave_has_room(self, function, size, 1) || !kept(self, function, state)) {
+    if (!slave_alive(self) || !slave_has_room(self, function, size, 1)) {
         return STATUS_ERROR;
     }
-    *size = sizeof(StateHead) + tlismni_packed_size(self->model);
+    Stored *s = kept(self, function, state);
+    if (!s) {
+        return STATUS_ERROR;
+    }
+    *size = sizeof(StateHead) + tlismni_packed_size(s->saved);
     return STATUS_OK;
 }
 
@@ -131,7 +144,7 @@ int slave_write_state(Slave *self, const char *function, void *state, void *byte
     if (!s) {
         return STATUS_ERROR;
     }
-    size_t needed = sizeof(StateHead) + tlismni_packed_size(self->model);
+    size_t needed = sizeof(StateHead) + tlismni_packed_size(s->saved);
     if (size < needed) {
         return slave_error(self, function, "the buffer holds %zu bytes, the stored state needs %zu", size, needed);
     }
@@ -148,16 +161,15 @@ int slave_read_state(Slave *self, const char *function, const void *bytes, size_
     if (!slave_alive(self) || !slave_has_room(self, function, bytes, 1) || !slave_has_room(self, function, state, 1)) {
         return STATUS_ERROR;
     }
-    if (size != sizeof head + tlismni_packed_size(self->model)) {
-        return slave_error(self, function, "%zu bytes are no stored state of this FMU, which takes %zu", size,
-                           sizeof head + tlismni_packed_size(self->model));
+    if (size < sizeof head) {
+        return slave_error(self, function, "%zu bytes are no stored state of this FMU, which takes more", size);
     }
     memcpy(&head, bytes, sizeof head);
     if (memcmp(head.magic, STATE_MAGIC, sizeof head.magic) != 0 || head.check != check_of(&head) || head.phase < 0 ||
         head.phase > TERMINATED || head.phase == FAILED || head.phase == INTERMEDIATE) {
         return slave_error(self, function, "the bytes are no stored state of this FMU, or damaged: store it again");
     }
-    Stored *s = new_state(self, function);
+    Stored *s = new_state(self, function, tlismni_state_size(self->model));
     if (!s) {
         return STATUS_ERROR;
     }

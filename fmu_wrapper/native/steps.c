@@ -106,6 +106,7 @@ int slave_step(Slave *self, const char *function, double t, double h, StepEnd *e
         return STATUS_ERROR;
     }
     bool read = self->asked, plain = !(self->event_mode || self->early_return || self->update);
+    slave_want_what_was_asked(self);
     self->asked = self->fresh = false;
     *end = (StepEnd){goal, false, false};
     int status = plain          ? tlismni_step(self->run, goal, read)

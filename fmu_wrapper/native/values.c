@@ -24,7 +24,8 @@ const Variable *slave_variable(const Slave *self, const char *function, uint32_t
     return v;
 }
 
-int slave_look(Slave *self, const char *function) {
+/* Have the channels that the run reads at the present time with the present inputs. */
+static int look(Slave *self, const char *function) {
     self->asked = true;
     if (self->fresh) {
         return STATUS_OK;
@@ -41,6 +42,33 @@ int slave_look(Slave *self, const char *function) {
     }
     self->fresh = true;
     return STATUS_OK;
+}
+
+int slave_look_at_all(Slave *self, const char *function) {
+    self->fresh = !tlismni_want(self->run, TLISMNI_ALL) && self->fresh;
+    return look(self, function);
+}
+
+/* Have the run read what a variable shows, now and after the next step. */
+static void want(Slave *self, const Variable *v) {
+    if (v->source != CHANNEL) {
+        return;
+    }
+    size_t number = (size_t)v->number;
+    if (!self->is_wanted[number]) {
+        self->is_wanted[number] = true;
+        self->wanted[self->wants++] = number;
+    }
+    self->fresh = !tlismni_want(self->run, number) && self->fresh;
+}
+
+void slave_want_what_was_asked(Slave *self) {
+    tlismni_want_none(self->run);
+    for (size_t k = 0; k < self->wants; k++) {
+        tlismni_want(self->run, self->wanted[k]);
+        self->is_wanted[self->wanted[k]] = false;
+    }
+    self->wants = 0;
 }
 
 static double value_of(const Slave *self, const Variable *v) {
@@ -65,9 +93,16 @@ int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size
         !slave_has_room(self, function, value, n)) {
         return STATUS_ERROR;
     }
-    for (size_t k = 0; k < n; k++) {
+    for (size_t k = 0; k < n; k++) { /* all of them at once */
         const Variable *v = slave_variable(self, function, vr[k], REAL);
-        if (!v || (v->source >= CHANNEL && slave_look(self, function) != STATUS_OK)) {
+        if (!v) {
+            return STATUS_ERROR;
+        }
+        want(self, v);
+    }
+    for (size_t k = 0; k < n; k++) {
+        const Variable *v = &self->variables[vr[k] - 1];
+        if (v->source >= CHANNEL && look(self, function) != STATUS_OK) {
             return STATUS_ERROR;
         }
         value[k] = value_of(self, v);
@@ -87,7 +122,10 @@ int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerati
             return slave_error(self, function, "value reference %lu is %s: use the functions for %s", (unsigned long)vr[k],
                                enumerations ? "an Int32, no enumeration" : "an enumeration", enumerations ? "Int32" : "Int64");
         }
-        if (!v || (v->source >= CHANNEL && slave_look(self, function) != STATUS_OK)) {
+        if (v) {
+            want(self, v);
+        }
+        if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
             return STATUS_ERROR;
         }
         double number = value_of(self, v);

@@ -12,7 +12,7 @@ UNITS_DEPEND = {
     "Axes": {"x", "z"}, "Bushing3D": {"stiffness", "damping"}, "Cable2D": {"shape"},
     "Cable3D": {"shape"}, "Constant": {"value"},
     "CoordinateContact": {"offset"}, "CoordinateRelation": {"offset"}, "CoordinateTerm": {"factor"},
-    "Input": {"start", "gain"},
+    "Input": {"start"}, "InputSignal": {"gain"},
     "EulerParameters": {"values"}, "FloatingBeam2D": {"amplitudes", "amplitude_rates", "damping_ratio"},
     "Gear3D": {"radius_a", "radius_b"}, "Parameter": {"value", "minimum", "maximum"}, "Polynomial": {"coefficients"},
     "Ramp": {"before", "after"}, "RelationTerm": {"factor"},
@@ -57,3 +57,11 @@ def test_the_page_of_fields_is_the_present_one() -> None:
 
     written = (Path(__file__).parents[2] / "docs" / "model-fields.md").read_text(encoding="utf-8")
     assert written == page(RECORDS), "write it anew: tlismni fields --markdown > docs/model-fields.md"
+
+
+def test_types_of_one_name_are_all_there() -> None:
+    """A `Step` is a signal and a law of friction, an `Input` a channel and a signal."""
+    schema = Model.model_json_schema()["$defs"]
+    assert {record.__name__ for record in RECORDS.values()} == {"Model", *schema}
+    assert RECORDS["Step"].__name__ == "Step" and "StepFriction" in RECORDS
+    assert RECORDS["Input"].__name__ == "Input" and "InputSignal" in RECORDS

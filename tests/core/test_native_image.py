@@ -72,6 +72,34 @@ def test_the_same_bits_at_other_times(name, t_end):
     assert run.model.names(1) == tuple(channel.name for channel in sim.channels)
 
 
+@pytest.mark.parametrize(
+    "name, t_end",
+    [
+        ("bouncing_ball", 3.0), ("pendulum_stop", 1.0), ("slider_crank_stop", 0.5), ("woodpecker", 0.3),
+        ("cable_ground", 0.1), ("sphere_beam", 6e-4), ("spatial_slider_crank_stop", 0.5), ("rolling_disk", 0.3),
+        ("stick_slip", 1.0), ("heavy_top", 0.2),
+    ],
+)  # fmt: skip
+def test_few_channels_have_the_bits_of_all(name, t_end):
+    """Each channel alone, some together, and none: the same bits as among all, and the same run from there on."""
+    from tlismni.core.native.in_process import NativeRun
+
+    whole, sim, _ = build(name, t_end)
+    part = NativeRun(whole.model)
+    inputs, count = [x.start for x in sim.system.inputs], len(sim.channels)
+    random = np.random.default_rng(5)
+    choices = [[k] for k in random.permutation(count).tolist()]
+    choices += [random.choice(count, int(random.integers(0, 4)), replace=False).tolist() for _ in range(20)]
+    times = np.sort(random.uniform(0.0, t_end, len(choices)))
+    for t, wanted in zip(times.tolist(), choices, strict=True):
+        part.want(wanted)
+        found, expected = part.step(t, inputs), whole.step(t, inputs)
+        assert found[wanted].tobytes() == expected[wanted].tobytes(), (t, [sim.channels[k].name for k in wanted])
+    assert (part.events, part.steps) == (whole.events, whole.steps)
+    part.want(range(count))
+    assert part.look().tobytes() == whole.look().tobytes()
+
+
 def test_inputs_change_as_in_python():
     """Some of them make the closed contact let go at once, or slide."""
     run, sim, _ = build("slider_crank_stop", 1.0)
@@ -152,6 +180,57 @@ def test_going_back_and_to_other_runs(name, t_end):
         for t, wanted in zip(times[first:], rows[first:], strict=True):
             assert run.step(t).tobytes() == other.step(t).tobytes() == wanted
         assert run.pack() == other.pack()
+
+
+@pytest.mark.parametrize("name, t_end, parameter, value", [
+    ("pendulum_stop", 1.0, "mass", 0.3), ("slider_crank_stop", 0.5, "crank_mass", 0.5), ("chain", 0.5, "gravity", 3.7),
+])  # fmt: skip
+def test_going_back_to_a_start_with_other_parameters(name, t_end, parameter, value):
+    """Matrices of one start, whose units are others, do not serve a state of another."""
+    from tlismni.core.native.export import image_and_parameters
+    from tlismni.core.native.in_process import NativeModel, NativeRun
+    from tlismni.core.native.parameters import Setting
+
+    scenario = load(name)
+    settings = {"method": scenario.method, "rtol": scenario.rtol, "atol": scenario.atol, **scenario.options}
+    setting = Setting(parameter, scenario.parameters[parameter], 1e-3, 1e3, lambda values: load(name, **values).model)
+    image, found, _ = image_and_parameters(scenario.model, t_end, [setting], **settings)
+    assert [p.begins for p in found] == [True]
+    model = NativeModel(image, LIBRARY)
+    run, inputs = NativeRun(model), [0.0] * len(model.names(0))
+    times, random = np.linspace(0.0, t_end, 9)[1:].tolist(), np.random.default_rng(2)
+
+    def way(other):
+        states, rows = [], []
+        if other:
+            run.set_parameter(0, value)
+        run.look()
+        for t in times:
+            states.append((run.save(), run.pack()))
+            rows.append(run.step(t, inputs).tobytes())
+        return states, rows
+
+    ways = []
+    for other in (False, True, False):
+        ways.append(way(other))
+        run.restart()
+    assert ways[0][1] == ways[2][1] != ways[1][1]
+    for _ in range(12):
+        (states, rows), first = ways[int(random.integers(3))], int(random.integers(len(times)))
+        if random.random() < 0.3:
+            run.unpack(states[first][1])
+        else:
+            run.restore(states[first][0])
+        for t, wanted in list(zip(times, rows, strict=True))[first : first + int(random.integers(1, 9))]:
+            assert run.step(t, inputs).tobytes() == wanted
+
+
+@pytest.mark.parametrize("name", ["bouncing_ball", "chain", "slider_crank_stop"])
+def test_a_state_has_no_structures(name):
+    """It is about as large as Python's, and a small part of the memory that a run works in."""
+    run, sim, image = build(name, 0.1)
+    parts = sim.state().arrays
+    assert len(run.save()) < 3 * sum(x.nbytes for x in parts.values()) + 4096 and 4 * len(run.save()) < len(image)
 
 
 def test_packed_states_that_are_none():
@@ -246,4 +325,11 @@ def test_numbers_of_c_are_those_of_python():
             checked += 1
     head = re.search(r"typedef struct \{(.*?)\} Head;", (NATIVE / "image.h").read_text(), re.S)[1]
     assert tuple(re.findall(r"\b(?!int64_t)[a-z_]+\b", head)) == layouts.HEAD
+    for name, fields in (("Numbers", layouts.NUMBERS), ("Places", layouts.PLACES)):
+        body = re.findall(r"typedef struct \{([^{}]*?)\} " + name + ";", (NATIVE / "image.h").read_text())[0]
+        assert tuple(re.findall(r"\b(?!int64_t|double)[a-z_0-9]+\b", body)) == fields
+    called = re.search(r"enum \{ (EXCHANGE.*?), CALLED \};", (NATIVE / "image.h").read_text(), re.S)[1]
+    names = [name.strip().lower() for name in called.split(",")]
+    assert len(names) == len(layouts.CALLED)
+    assert all(python.startswith(c) for c, python in zip(names, layouts.CALLED, strict=True))
     assert checked > 30

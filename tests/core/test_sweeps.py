@@ -178,3 +178,17 @@ def test_models_that_are_files_and_models_in_memory_are_one_problem(tmp_path):
     BALL.save(tmp_path / "ball.json")
     again = Model.load(tmp_path / "ball.json")
     assert ModelProblem.of(again, 1.0).identity() == ModelProblem.of(BALL, 1.0).identity()
+
+
+def test_units_stand_in_the_table_in_the_folder_and_at_the_axes(tmp_path):
+    found = sweep(
+        BALL, {"restitution": [0.5, 0.6], "start.ball.vy": [0.0, 1.0]}, 0.1, out=tmp_path, channels=["ball.y"]
+    )
+    told = {"ball.y": "m", "start.ball.vy": "m/s", "time": "s", "restitution": "1"}
+    table = pytest.importorskip("pyarrow.parquet").read_table(tmp_path / "table.parquet")
+    assert table.schema.field("ball.y").metadata == {b"unit": b"m"} and table.schema.field("run").metadata is None
+    for units in (found.units, load_sweep(tmp_path).units):
+        assert {name: units[name] for name in told} == told
+    pytest.importorskip("matplotlib")
+    (axis,) = found.plot("ball.y", "start.ball.vy").axes
+    assert (axis.get_xlabel(), axis.get_ylabel()) == ("start.ball.vy (m/s)", "ball.y (m)")

@@ -1,5 +1,6 @@
 """FMUs on other machines: which Python a host without Python starts, and FMUs that carry the package along."""
 
+import io
 import json
 import os
 import runpy
@@ -17,6 +18,7 @@ import fmpy
 import pytest
 from fmu_helpers import ball_model
 from test_fmu_real import STEPS, Fmu, host, run_host  # noqa: F401
+from tlismni.core.compiled.library import LIBM, LIBRARY, PLACE, SUFFIX, USUAL_PLACE
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.bundle import package_archive
 from tlismni.fmu_wrapper.libpython import requirements
@@ -24,6 +26,9 @@ from tlismni.fmu_wrapper.python_library import library_record, shared_library
 
 needs_library = pytest.mark.skipif(shared_library() is None, reason="needs a Python with a shared library")
 BOOT = Path(__file__).parents[2] / "fmu_wrapper" / "boot.py"
+NEEDED = USUAL_PLACE.with_name("needed.py").read_bytes()
+EMPTY = b"PK\x05\x06" + bytes(18)
+"""A zip archive of nothing."""
 
 
 @pytest.fixture(scope="module")
@@ -158,12 +163,14 @@ for k in range({steps}):
     fmu.doStep(k * 0.1, 0.1)
     print(fmu.getReal([y])[0].hex())
 assert not [name for name in sys.modules if name == "tlismni" or name.startswith("tlismni.")]
+print("numba" in sys.modules)
 """
 
 
-@pytest.mark.slow  # compiles once for each state of the sources
+@pytest.mark.slow  # without the library of machine code: compiles once for each state of the sources
 def test_a_bundled_fmu_needs_no_tlismni(bundled, tmp_path):
-    """In a venv with the third-party packages alone: the values are those of this process."""
+    """In a venv with the third-party packages alone: the values are those of this process, and where this process has
+    machine code ahead of time nothing is compiled."""
     moved = elsewhere(bundled, tmp_path)
     command = [str(bare_python(tmp_path / "venv")), "-c", STEPPING.replace("{steps}", str(STEPS)), moved.unzipped]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
@@ -172,7 +179,52 @@ def test_a_bundled_fmu_needs_no_tlismni(bundled, tmp_path):
     for k in range(STEPS):
         fmu.doStep(k * 0.1, 0.1)
         expected.append(fmu.getReal([bundled.vr["ball.y"]])[0].hex())
-    assert done.stdout.split() == expected
+    *values, compiles = done.stdout.split()
+    assert values == expected and compiles == str(LIBRARY is None)
+
+
+WHICH = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from carried.core.compiled import library
+print(library.LIBRARY is not None, "numba" in sys.modules, library.REFUSED)
+"""
+
+
+def library_of(folder, bundle=None, **files):
+    """What the package of `bundle` says of its machine code, with other content of `files` in `core/compiled`."""
+    with zipfile.ZipFile(io.BytesIO(bundle or package_archive()[0])) as content:
+        content.extractall(folder / "carried")
+    for name, data in files.items():
+        (folder / "carried" / "core" / "compiled" / name).write_bytes(data)
+    environment = {k: v for k, v in os.environ.items() if k not in (PLACE, LIBM)}
+    command = [sys.executable, "-c", WHICH, str(folder)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, env=environment)
+    assert done.returncode == 0, done.stderr
+    there, numba, *why = done.stdout.split(maxsplit=2)
+    return there == "True", numba == "True", "".join(why).strip()
+
+
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code")
+def test_a_bundle_has_the_machine_code(tmp_path):
+    """And leaves it alone beside other sources."""
+    archive = package_archive()[0]
+    assert library_of(tmp_path / "same", archive) == (True, False, "")
+    there, numba, why = library_of(tmp_path / "edited", archive, **{"needed.py": NEEDED + b"# edited"})
+    assert not there and numba and "is of other sources" in why and "a minute or two" in why
+
+
+def test_machine_code_of_another_platform_is_said_to_be_left_alone(tmp_path):
+    """A file that does not load, and one of another system, are no errors."""
+    foreign = {f"tlismni_core{SUFFIX}": b"\x7fELF of another processor"}
+    there, numba, why = library_of(tmp_path / "processor", **foreign)
+    assert not there and numba and "cannot be loaded here" in why
+    other = ".dll" if SUFFIX != ".dll" else ".so"
+    with zipfile.ZipFile(io.BytesIO(package_archive()[0])) as content:
+        names = [name for name in content.namelist() if not name.endswith(SUFFIX)]
+        content.extractall(tmp_path / "system" / "carried", names)
+    there, numba, why = library_of(tmp_path / "system", EMPTY, **{f"tlismni_core{other}": b"MZ"})
+    assert not there and numba and "is for another system" in why
 
 
 def test_bundled_and_installed_live_side_by_side(ball, bundled):

@@ -21,7 +21,7 @@ from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.errors import ExportError
 from tlismni.fmu_wrapper.export import fmi2_platform, fmi3_platform
-from tlismni.models import load
+from tlismni.models import load, names
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
 HERE = Path(__file__).parent
@@ -301,11 +301,21 @@ def jail_of(folder, *programs):
     assert not [p for p in folder.rglob("*") if "python" in p.name.lower() and "pytest" not in str(p)]
 
 
+TAKE_PYTHON = ("split_wall", "four_bar", "spinning_sphere", "tippe_top")
+"""Scenarios that cannot be FMUs without Python."""
+ALONE = [
+    "woodpecker",
+    *(pytest.param(x, marks=pytest.mark.full) for x in names() if x not in (*TAKE_PYTHON, "woodpecker")),
+]
+
+
 @pytest.mark.skipif(CC is None or os.name != "posix" or os.getuid() != 0, reason="needs cc, and root for chroot")
-def test_where_there_is_no_python(tmp_path):
+@pytest.mark.parametrize("name", ALONE)
+def test_where_there_is_no_python(name, tmp_path):
     """A C host in a root folder with the C library alone."""
-    headers = Path(fmpy.__file__).parent / "c-code"
-    pair = Pair(load("woodpecker"), tmp_path, "2.0")
+    headers, scenario = Path(fmpy.__file__).parent / "c-code", load(name)
+    step = 0.01 if name == "woodpecker" else scenario.t_end / 64.0
+    pair = Pair(scenario, tmp_path, "2.0")
     _, unzipped, description = pair.sides[0]
     jail = tmp_path / "jail"
     library = Path("/fmu/binaries", fmi2_platform(), f"{description.coSimulation.modelIdentifier}.so")
@@ -317,13 +327,22 @@ def test_where_there_is_no_python(tmp_path):
     jail_of(jail, host, jail / str(library).lstrip("/"))
     references = [str(v.valueReference) for v in description.modelVariables if v.causality == "output"
                   and v.type == "Real"]  # fmt: skip
-    command = ["chroot", str(jail), str(host), str(library), "file:///fmu/resources", description.guid, "0.01", "60"]
+    command = [
+        "chroot",
+        str(jail),
+        str(host),
+        str(library),
+        "file:///fmu/resources",
+        description.guid,
+        repr(step),
+        "60",
+    ]
     done = subprocess.run([*command, *references], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr + done.stdout
     found = [[float.fromhex(x) for x in line.split()] for line in done.stdout.splitlines()]
     side = pair.instances()[1]
     side.begin()
     for k, row in enumerate(found):
-        side.fmu.doStep(0.01 * k, 0.01)
+        side.fmu.doStep(step * k, step)
         assert row == side.fmu.getReal([int(r) for r in references])
     assert len(found) == 60

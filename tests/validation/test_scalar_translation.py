@@ -258,7 +258,7 @@ def test_a_rigid_stop_is_the_limit_of_stiff_ones() -> None:
     found = crosscheck(model, t_end=1.0)
     assert found.ok
     units = {row.quantity.partition(": ")[2]: row.unit for row in found.rows if row.quantity.startswith("stop: ")}
-    assert units["approach speed"] == units["separation speed"] == "rad/s" and units["impulse"] == "N.m s"
+    assert units["approach speed"] == units["separation speed"] == "rad/s" and units["impulse"] == "N.m.s"
 
 
 @pytest.mark.parametrize("follower", [False, True])

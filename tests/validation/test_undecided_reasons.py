@@ -17,6 +17,8 @@ from tlismni.core import (
     SpringDamper2D,
 )
 from tlismni.validation import Row, crosscheck
+from tlismni.validation.cases import CASES
+from tlismni.validation.catalogue import Outcome
 from tlismni.validation.comparisons.common import Touch
 from tlismni.validation.comparisons.contact_count import contact_count
 from tlismni.validation.comparisons.penalty_limit import LONGEST, PenaltyRun, Sides, duration, softest_stiffness
@@ -226,3 +228,23 @@ def test_a_contact_that_exudyn_does_not_come_to_is_no_difference(monkeypatch: py
     found = crosscheck(model, t_end=0.5)
     assert found.ok, [(r.quantity, r.doubt) for r in found.rows if r.verdict == "differ"]
     assert "run ends" in row(found, "of_late").doubt and row(found, "of_late").verdict == "undecided"
+
+
+@pytest.mark.parametrize(
+    ("difference", "bars", "doubt", "said"),
+    [
+        (0.5e-3, 5e-3, "", "error bars of 0.005 m are 5 times the tolerance"),
+        (2e-3, 5e-3, "", "the difference is 0.002 m, within error bars of 0.005 m"),
+        (2e-3, 0.0, "the limit is not reached", "the limit is not reached"),
+    ],
+)
+def test_an_undecided_case_says_in_the_overview_which_quantity_and_why(
+    difference: float, bars: float, doubt: str, said: str
+) -> None:
+    one = Row("tip", "m", 1.0 + difference, 1.0, 1e-3, "absolute", bars, doubt=doubt)
+    sure = Row("time", "s", 1.0, 1.0, 1e-3, "absolute")
+    assert one.verdict == "undecided" and one.why == said and sure.why == ""
+    found: Any = SimpleNamespace(ok=True, rows=(sure, one, one), to_dict=dict)
+    outcome = Outcome(CASES["bouncing_ball"][0], found, "", 1.0)
+    assert outcome.verdict == "undecided"
+    assert outcome.remark == outcome.to_dict()["reason"] == f"tip: {said} (and 1 more)"

@@ -107,6 +107,19 @@ class Row:
             return "not comparable"
         return "undecided" if self.within_bars or self.doubt else "differ"
 
+    @property
+    def why(self) -> str:
+        """Why the row does not decide; empty where it does."""
+        if self.verdict == "not comparable":
+            return self.reason
+        if self.verdict != "undecided":
+            return ""
+        bars, allowed = self.uncertainty + self.ours_uncertainty, self.allowed
+        wide = f"error bars of {bars:.2g} {self.unit}".rstrip()
+        if self.difference <= allowed:
+            return f"{wide} are {bars / allowed:.2g} times the tolerance" if allowed > 0.0 else f"{wide}, no tolerance"
+        return self.doubt or f"the difference is {self.difference:.2g} {self.unit}".rstrip() + f", within {wide}"
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data, verdict and differences included."""
         derived = {"difference": self.difference, "relative": self.relative, "verdict": self.verdict}
@@ -268,7 +281,7 @@ def unit_of(result: Result, channel: str) -> str:
 
 @dataclass(frozen=True)
 class ContactUnits:
-    """Units of what is compared of a contact: of a stop of an angle they are rad/s, N.m and N.m s."""
+    """Units of what is compared of a contact: of a stop of an angle they are rad/s, N.m and N.m.s."""
 
     speed: str
     force: str
@@ -278,7 +291,7 @@ class ContactUnits:
 def contact_units(result: Result, contact: str) -> ContactUnits:
     """Units of the contact's speeds, forces and impulses."""
     force = unit_of(result, f"{contact}.normal_force")
-    return ContactUnits(unit_of(result, f"{contact}.gap_rate"), force, f"{force} s")
+    return ContactUnits(unit_of(result, f"{contact}.gap_rate"), force, f"{force}.s")
 
 
 def course_scale(result: Result, channel: str, own: float) -> float | None:
@@ -304,7 +317,7 @@ def energy_panel(result: Result) -> Panel:
 
 
 def reasons_of(rows: Sequence[Row]) -> set[str]:
-    """Why quantities are not comparable, or undecided beyond what error bars say."""
+    """Why quantities are not comparable, or undecided beyond what error bars say (they stand beside the figures)."""
     told = {row.reason for row in rows if row.verdict == "not comparable"}
     return told | {row.doubt for row in rows if row.verdict == "undecided" and row.doubt}
 

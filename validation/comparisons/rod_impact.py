@@ -191,7 +191,7 @@ def _blow(t: np.ndarray, force: np.ndarray, handed: np.ndarray, openings: int) -
 BLOW = {
     "mean": ("mean force between a quarter and three quarters of the impulse", "N"),
     "duration": ("time from 5 % to 95 % of the impulse", "s"),
-    "impulse": ("impulse", "N s"),
+    "impulse": ("impulse", "N.s"),
 }
 """What is compared of a blow: words and unit."""
 
