@@ -12,6 +12,7 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..compiled.kernels import RESIDUAL
+from ..compiled.packed import curvature
 from ..compiled.views import imat, vec
 
 HESSIAN_PAIRS = np.array([(i, j) for i in range(6) for j in range(i, 6)], dtype=np.int64)
@@ -28,20 +29,28 @@ def place(point: tuple[float, float], body: Sequence[float]) -> tuple[float, flo
     return x + c * point[0] - s * point[1], y + s * point[0] + c * point[1]
 
 
-@internal
-def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
-    """Height of point b (offset w) over the line through point a (offset u) with normal at `angle` in a's frame.
-
-    Returns (g, gradient(6), Hessian(21)), lengths in m.
-    """
+@inlined
+def arms(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """The offsets u on body a and w on body b in the directions of space: (a_x, a_y, b_x, b_y)."""
     ta, tb = q[coord[2]], q[coord[5]]
     ca, sa = math.cos(ta), math.sin(ta)
-    nx, ny = math.cos(ta + angle), math.sin(ta + angle)
     ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
     cb, sb = math.cos(tb), math.sin(tb)
     bx, by = cb * wx - sb * wy, sb * wx + cb * wy
+    return ax, ay, bx, by
+
+
+@internal
+def _from_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
+    """For a line through point a (offset u) and a point b (offset w): (r_b + rho_b - r_a, rho_a, rho_b)."""
+    ax, ay, bx, by = arms(q, coord, ux, uy, wx, wy)
+    return q[coord[3]] + bx - q[coord[0]], q[coord[4]] + by - q[coord[1]], ax, ay, bx, by
+
+
+@internal
+def _height(nx: float, ny: float, ex: float, ey: float, ax: float, ay: float, bx: float, by: float) -> Any:
+    """(g, gradient(6), Hessian(21)) of the height along the direction n, which turns with body a."""
     # e = r_b + rho_b - r_a: n . rho_a does not depend on theta_a
-    ex, ey = q[coord[3]] + bx - q[coord[0]], q[coord[4]] + by - q[coord[1]]
     g = nx * (ex - ax) + ny * (ey - ay)
     mx, my = -ny, nx  # n' = J n
     gradient = (-nx, -ny, mx * ex + my * ey, nx, ny, -nx * by + ny * bx)
@@ -57,15 +66,26 @@ def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: fl
     return g, gradient, hessian
 
 
-@inlined
-def arms(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float) -> Any:
-    """The offsets u on body a and w on body b in the directions of space: (a_x, a_y, b_x, b_y)."""
-    ta, tb = q[coord[2]], q[coord[5]]
-    ca, sa = math.cos(ta), math.sin(ta)
-    ax, ay = ca * ux - sa * uy, sa * ux + ca * uy
-    cb, sb = math.cos(tb), math.sin(tb)
-    bx, by = cb * wx - sb * wy, sb * wx + cb * wy
-    return ax, ay, bx, by
+@internal
+def height_over_line(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
+    """Height of point b (offset w) over the line through point a (offset u) with normal at `angle` in a's frame.
+
+    Returns (g, gradient(6), Hessian(21)), lengths in m.
+    """
+    ex, ey, ax, ay, bx, by = _from_line(q, coord, ux, uy, wx, wy)
+    turned = q[coord[2]] + angle
+    return _height(math.cos(turned), math.sin(turned), ex, ey, ax, ay, bx, by)
+
+
+@internal
+def height_and_way(q: Any, coord: Any, ux: float, uy: float, wx: float, wy: float, angle: float) -> Any:
+    """`height_over_line`, and the same along the line, a quarter turn clockwise from the normal: six values."""
+    ex, ey, ax, ay, bx, by = _from_line(q, coord, ux, uy, wx, wy)
+    turned = q[coord[2]] + angle
+    nx, ny = math.cos(turned), math.sin(turned)
+    g, gradient, hessian = _height(nx, ny, ex, ey, ax, ay, bx, by)
+    s, along_gradient, along_hessian = _height(ny, -nx, ex, ey, ax, ay, bx, by)
+    return g, gradient, hessian, s, along_gradient, along_hessian
 
 
 @internal
@@ -130,11 +150,12 @@ def add_product(
 ) -> None:
     """values[slot[p, j]] += left_p (by_value G + by_rate H v)_j: how a force along `left` changes with the value of the
     function with gradient G and with its rate G . v."""
+    for j in range(len(gradient)):
+        for p in range(len(left)):
+            values[slot[p, j]] += left[p] * by_value * gradient[j]
     i, j = 0, 0
     for k in range(len(hessian)):
         x, y = by_rate * hessian[k] * v[coord[i]], by_rate * hessian[k] * v[coord[j]]
-        if i == j:
-            x += by_value * gradient[j]
         for p in range(len(left)):
             values[slot[p, j]] += left[p] * x
             if i != j:
@@ -160,21 +181,18 @@ def add_hessian(values: Any, slot: Any, gradient: Any, hessian: Any, factor: flo
 
 
 @internal
-def levels(b: Any, e: int, row: int, g: float, gradient: Any, hessian: Any) -> None:
-    """Row `row` of phi, phid and phidd: value, rate and acceleration of `g`."""
+def levels(b: Any, e: int, row: int, g: float, gradient: Any, bend: float) -> None:
+    """Row `row` of phi, phid and phidd: value, rate and acceleration of `g`; `bend` is v . H v, H its Hessian."""
     coord = imat(b.coord, b.count, b.ncoord)[e]
-    v = vec(b.v, b.n_extended)
     vec(b.phi, b.m_extended)[row] = g
-    vec(b.phid, b.m_extended)[row] = along(gradient, v, coord)
-    acceleration, i, j = along(gradient, vec(b.a, b.n_extended), coord), 0, 0
-    for k in range(len(hessian)):
-        w = 1.0 if i == j else 2.0
-        acceleration += w * hessian[k] * v[coord[i]] * v[coord[j]]
-        j += 1
-        if j == len(gradient):
-            i += 1
-            j = i
-    vec(b.phidd, b.m_extended)[row] = acceleration
+    vec(b.phid, b.m_extended)[row] = along(gradient, vec(b.v, b.n_extended), coord)
+    vec(b.phidd, b.m_extended)[row] = along(gradient, vec(b.a, b.n_extended), coord) + bend
+
+
+@internal
+def bend_of(b: Any, e: int, hessian: Any) -> float:
+    """v . H v at element e of the batch."""
+    return curvature(hessian, vec(b.v, b.n_extended), imat(b.coord, b.count, b.ncoord)[e])
 
 
 @internal
@@ -183,7 +201,7 @@ def constrain(b: Any, job: int, e: int, row: int, local_row: int, g: float, grad
     n = b.ncoord
     lam = vec(b.lam, b.m_extended)[row]
     if job == RESIDUAL:
-        levels(b, e, row, g, gradient, hessian)
+        levels(b, e, row, g, gradient, bend_of(b, e, hessian))
         coord = imat(b.coord, b.count, n)[e]
         r = vec(b.r, b.n_extended)
         for i in range(len(gradient)):

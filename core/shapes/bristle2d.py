@@ -11,7 +11,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..elements.geometry2d import add_product, along, levels
+from ..elements.geometry2d import add_product, along, bend_of, levels
 from ..laws.friction.lugre import lugre_formula
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
 from .normal2d import act, evaluate_law
@@ -78,7 +78,7 @@ def act_bristles(
     k = imat(b.extra, b.count, b.nextra)[e, 0]
     if job == RESIDUAL:
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
-        levels(b, e, imat(b.row, b.count, 2)[e, 1], 0.0, gradient, hessian)
+        levels(b, e, imat(b.row, b.count, 2)[e, 1], 0.0, gradient, bend_of(b, e, hessian))
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] == ACTIVE:
         return _bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
     return 0.0, 0.0, 0.0

@@ -7,12 +7,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import Field, model_validator
 
-from ..compiled.jit import internal
+from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, mat, vec
 from ..elements.base import BodyElement, Numbering, Row
+from ..elements.geometry2d import along
 from ..laws import ForceLaw
 from ..model.base import Name, Record
 from ..model.markers import GROUND
@@ -28,41 +28,39 @@ GAP_FACTORS = 16
 SLIDE_FACTORS = GAP_FACTORS + MOST_COORDINATES
 
 
+@inlined
+def _factors(par: Any, first: int) -> Any:
+    """Those of the coordinates."""
+    return (par[first], par[first + 1], par[first + 2], par[first + 3], par[first + 4], par[first + 5])
+
+
 @internal
 def coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
-    par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6)
-    q, flat, gradient = vec(b.q, b.n_extended), np.zeros(21), np.empty(6)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6), vec(b.q, b.n_extended)
+    # of length 0: nothing is curved
+    flat = vec(b.q, 0)
     for e in range(b.count):
-        g = par[e, 0]
-        for i in range(6):
-            gradient[i] = par[e, GAP_FACTORS + i]
-            g += gradient[i] * q[coord[e, i]]
-        act(b, job, e, g, gradient, flat)
+        gradient = _factors(par[e], GAP_FACTORS)
+        act(b, job, e, par[e, 0] + along(gradient, q, coord[e]), gradient, flat)
 
 
 @internal
 def sliding_coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
-    par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6)
-    q, flat, gradient, along = vec(b.q, b.n_extended), np.zeros(21), np.empty(6), np.empty(6)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6), vec(b.q, b.n_extended)
+    flat = vec(b.q, 0)
     for e in range(b.count):
-        g, s = par[e, 0], 0.0
-        for i in range(6):
-            gradient[i], along[i] = par[e, GAP_FACTORS + i], par[e, SLIDE_FACTORS + i]
-            g += gradient[i] * q[coord[e, i]]
-            s += along[i] * q[coord[e, i]]
-        act_sliding(b, job, e, g, gradient, flat, s, along, flat, 0.0)
+        gradient, tangent = _factors(par[e], GAP_FACTORS), _factors(par[e], SLIDE_FACTORS)
+        g, s = par[e, 0] + along(gradient, q, coord[e]), along(tangent, q, coord[e])
+        act_sliding(b, job, e, g, gradient, flat, s, tangent, flat, 0.0)
 
 
 @internal
 def bristle_coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
-    par, coord = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord)
-    q, flat, gradient, along = vec(b.q, b.n_extended), np.zeros(21), np.empty(6), np.empty(6)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
+    flat = vec(b.q, 0)
     for e in range(b.count):
-        g = par[e, 0]
-        for i in range(6):
-            gradient[i], along[i] = par[e, GAP_FACTORS + i], par[e, SLIDE_FACTORS + i]
-            g += gradient[i] * q[coord[e, i]]
-        act_bristles(b, job, e, g, gradient, flat, along, flat)
+        gradient, tangent = _factors(par[e], GAP_FACTORS), _factors(par[e], SLIDE_FACTORS)
+        act_bristles(b, job, e, par[e, 0] + along(gradient, q, coord[e]), gradient, flat, tangent, flat)
 
 
 class CoordinateTerm(Record):

@@ -9,7 +9,16 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, ivec, mat, vec
-from ..elements.geometry2d import add_hessian, add_product, along, constrain, distance, height_over_line, levels
+from ..elements.geometry2d import (
+    add_hessian,
+    add_product,
+    along,
+    bend_of,
+    constrain,
+    distance,
+    height_over_line,
+    levels,
+)
 from ..laws import call_law
 from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MEMORY_SIZE, MODE
 
@@ -79,7 +88,7 @@ def act(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any) -> None
     lam = vec(b.lam, b.m_extended)
     closed = vec(b.memory, MEMORY_SIZE * b.n_memory)[MEMORY_SIZE * k + MODE] == CLOSED
     if job == RESIDUAL and not closed:
-        levels(b, e, row, g, gradient, hessian)
+        levels(b, e, row, g, gradient, bend_of(b, e, hessian))
         if not force_law:
             vec(b.monitor, b.n_monitor)[k] = 0.0
     elif job == RESIDUAL or (job == TANGENT and closed):

@@ -21,8 +21,9 @@ from ..model.markers import Marker2D
 from .bristle2d import act_bristles
 from .contact2d import Contact2D, Disk2D
 from .normal2d import act, asleep
-from .sliding2d import QUARTER_TURN, act_sliding
+from .sliding2d import act_sliding
 
+QUARTER_TURN = 0.5 * np.pi
 LENGTH = 16
 """Column of the segment's length in the table of parameters, after those that every contact has."""
 

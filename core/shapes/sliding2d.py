@@ -17,9 +17,10 @@ from ..elements.geometry2d import (
     add_product,
     along,
     bearing,
+    bend_of,
     constrain,
     distance,
-    height_over_line,
+    height_and_way,
     levels,
 )
 from ..laws.friction import call_friction
@@ -30,7 +31,6 @@ FRICTION = 11
 """First friction parameter in the table of parameters."""
 FRICTION_ADDRESS = 5
 """Column of `extra` with the address of a regularised law's formula."""
-QUARTER_TURN = 0.5 * np.pi
 
 
 @internal
@@ -46,7 +46,7 @@ def _slide_row(
         constrain(b, job, e, row, 1, since, gradient, hessian)
     elif job == RESIDUAL:
         # what to remember if it begins to stick here
-        levels(b, e, row, s, gradient, hessian)
+        levels(b, e, row, s, gradient, bend_of(b, e, hessian))
 
 
 @internal
@@ -154,9 +154,8 @@ def act_sliding(
 def slide_on_half_plane(q: Any, coord: Any, par: Any) -> Any:
     """(gap, gradient, Hessian, sliding distance, gradient, Hessian) of one row of coordinates and parameters."""
     ux, uy, wx, wy, angle, radius = par[0], par[1], par[2], par[3], par[4], par[5]
-    g, g_gradient, g_hessian = height_over_line(q, coord, ux, uy, wx, wy, angle)
     # along t = -J n, n the normal, and rolling: d = t . (r_b - r_a) + radius (theta_b - theta_a)
-    s, (t0, t1, t2, t3, t4, t5), hessian = height_over_line(q, coord, ux, uy, wx, wy, angle - QUARTER_TURN)
+    g, g_gradient, g_hessian, s, (t0, t1, t2, t3, t4, t5), hessian = height_and_way(q, coord, ux, uy, wx, wy, angle)
     s += radius * (q[coord[5]] - q[coord[2]])
     return g - radius, g_gradient, g_hessian, s, (t0, t1, t2 - radius, t3, t4, t5 + radius), hessian
 
