@@ -1,10 +1,11 @@
 """From a model to its image: built, rehearsed, written, and proved."""
 
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..compiled.library import Library
 from ..description import Model
@@ -17,7 +18,7 @@ from .follows import Memory, parameter_of
 from .image_file import native_image, own_library, refuse_motions
 from .in_process import NativeModel, NativeRun
 from .parameters import Parameter, Setting, Tried, settings_of, startable
-from .prepare import points, rehearse, start_inputs
+from .prepare import channels_at, points, rehearse, start_inputs
 from .together import together
 from .trials import Trials
 
@@ -26,7 +27,7 @@ logger = logging.getLogger(__name__)
 FOR_PROOFS = 3
 """Of the progress: the proofs count as so many parameters."""
 SHARE = 0.125
-"""Of the run: as far as it is compared for parameters after the first."""
+"""Of the run: as far as it is compared for most parameters."""
 MOST_STEPS = 1_000_000
 """Steps of the solver within one call, unless settings say otherwise."""
 
@@ -72,7 +73,7 @@ def image_and_parameters(
     tried: dict[str, Tried] = {}
     fixed: dict[str, str] = {}
     found: list[Parameter] = []
-    rehearse(sim, t_end)
+    expected = rehearse(sim, t_end)
     if wanted:
         trials = Trials(model, full)
         memory = Memory(sim, trials)
@@ -97,14 +98,14 @@ def image_and_parameters(
     native = NativeModel(image, library)
     if begins:
         prove_beginning(sim, native)
-    _prove(sim, NativeRun(native), t_end)
+    _prove(sim, NativeRun(native), t_end, iter(expected))
     prove_together(native, found, {setting.name: setting for setting in wanted}, lambda x: Simulation(x, **full))
-    proved: set[bool] = set()
+    proved = False
     for k, p in enumerate(found):
-        # from memory that is the same there is but one way on: one run of each kind to the end, the others a part of it
-        end = t_end if p.begins not in proved else sim.t + SHARE * (t_end - sim.t)
-        if _prove_parameter(full, native, k, p, tried[p.name], end):
-            proved.add(p.begins)
+        # from memory that is the same there is but one way on: one run that begins anew to the end, the others a part
+        whole = p.begins and not proved
+        end = t_end if whole else sim.t + SHARE * (t_end - sim.t)
+        proved = (_prove_parameter(full, native, k, p, tried[p.name], end) and whole) or proved
         done((len(wanted) + FOR_PROOFS * (k + 1) / len(found)) / (len(wanted) + FOR_PROOFS))
     return image, found, fixed
 
@@ -154,7 +155,7 @@ def _prove_parameter(
     run.set_parameter(number, value)
     sim = Simulation(variant, **settings)
     try:
-        _prove(sim, run, t_end)
+        _prove(sim, run, t_end, (channels_at(sim, t) for t in points(sim.t, t_end)))
         return True
     except SimulationError as error:
         logger.info("with %s = %r the run ends in Python too: %s", p.name, value, error)
@@ -167,13 +168,11 @@ class Unprepared(NativeError):
     """A run without Python has come to something that takes it."""
 
 
-def _prove(sim: Any, run: NativeRun, t_end: float) -> None:
-    """Let both go to `t_end` (s). Raises NativeError if one does what the other does not: Unprepared if the one without
-    Python fails."""
+def _prove(sim: Any, run: NativeRun, t_end: float, expected: Iterator[NDArray[np.float64]]) -> None:
+    """Let a run go to `t_end` (s), where `sim` has the channels `expected` at the `points`. Raises NativeError if it
+    has others: Unprepared if it fails."""
     inputs = start_inputs(sim)
-    for t in points(sim.t, t_end):
-        quick = sim.exchange(inputs, t)
-        wanted = sim.values() if quick is None else quick
+    for t, wanted in zip(points(sim.t, t_end), expected, strict=True):
         try:
             found = run.step(t, inputs)
         except SimulationError as error:

@@ -129,6 +129,7 @@ class ChannelTable:
         number = {k: i for i, (k, _) in enumerate(sums)}
         self._terms = _pairs([(number[k], column) for k, column, _ in terms])
         self._signs = np.array([sign for *_, sign in terms])
+        self._kinds: dict[str, NDArray[np.int64]] = {}
 
     def index_arrays(self) -> dict[str, NDArray[np.int64] | NDArray[np.float64]]:
         """The formulas of all channels, by the names that `exchange` has."""
@@ -143,11 +144,11 @@ class ChannelTable:
             "derived": derived.heads, "derived_places": derived.places, "derived_numbers": derived.numbers,
             "derived_rates": self._derived_rate.astype(np.int64),
             "residual_channels": np.array([self.index[f"residual.{level}"] for level in LEVELS], dtype=np.int64),
-            **self._kinds(),
+            **(self._kinds or self._find_kinds()),
         }  # fmt: skip
 
-    def _kinds(self) -> dict[str, NDArray[np.int64]]:
-        """What each channel takes (`exchange_record.py`)."""
+    def _find_kinds(self) -> dict[str, NDArray[np.int64]]:
+        """What each channel takes (`exchange_record.py`): found once for all runs that share the table's columns."""
         heads, places = self._derived.heads, self._derived.places
         forced, group_of = [0, 1, 0], [OF_GROUPS] * self._derived.size
         for k, head in enumerate(heads.tolist()):
@@ -163,7 +164,8 @@ class ChannelTable:
             return self._kind_of(formula.column if isinstance(formula, InContact) else formula)
 
         kinds = [kind(formula) for _, formula in self._formulas]
-        return {"kinds": np.array(kinds, dtype=np.int64), "forced": np.array(forced, dtype=np.int64)}
+        self._kinds |= {"kinds": np.array(kinds, dtype=np.int64), "forced": np.array(forced, dtype=np.int64)}
+        return self._kinds
 
     def _kind_of(self, column: int) -> int:
         """What a column of a sample takes."""
