@@ -1,6 +1,6 @@
 """Inputs on the command line: numbers, and columns of CSV files."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +13,12 @@ TIME = ("time", "t", "time_s")
 """What the column of times may be called."""
 
 
-def read_inputs(given: Iterable[str], model: Model, between: str = "linear") -> Courses | None:
+def read_inputs(
+    given: Iterable[str], model: Model, between: str = "linear", parameters: Collection[str] = ()
+) -> Courses | None:
     """What `--input` says: NAME=VALUE, or a CSV file with a line of names, times in its column `time`.
+
+    parameters : names that are no inputs, but set by `--set`.
 
     Raises
     ------
@@ -25,6 +29,8 @@ def read_inputs(given: Iterable[str], model: Model, between: str = "linear") -> 
     names = [record.name for record in model.inputs]
     for text in given:
         name, separator, value = (part.strip() for part in text.partition("="))
+        if separator and name in parameters and name not in names:
+            raise Failure(f"'{name}' is a parameter, not an input: give it by --set {name}={value}; inputs are {names}")
         if separator and not Path(text).exists():
             try:
                 constant[name] = float(value)

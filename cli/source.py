@@ -90,6 +90,8 @@ def is_file(source: str) -> bool:
 def _scenario(name: str, changes: dict[str, str]) -> Scenario:
     tables = {entry.name: {p.name: p for p in entry.parameters} for entry in catalogue()}
     table = tables.get(name, {})
+    if table and any(key not in table for key in changes):
+        _refuse_inputs(load(name).model, [key for key in changes if key not in table])
     # `load` refuses unknown names, and says what there is
     return load(name, **{key: table[key].parse(text) if key in table else text for key, text in changes.items()})
 
@@ -98,12 +100,20 @@ def _model_file(path: str, changes: dict[str, str], t_end: float | None) -> Scen
     model = Model.load(path)
     if t_end is None:
         raise typer.BadParameter("a model file says nothing about how long to run: give --t-end", param_hint="--t-end")
+    _refuse_inputs(model, [name for name in changes if name not in {p.name for p in model.parameters}])
     values = {name: _number(name, text) for name, text in changes.items()}
     model = model.with_parameters(values) if values else model
     parameters = {p.name: model.parameter_value(p.name) for p in model.parameters}
     return Scenario(
         model.name, model.description, model, t_end, parameters=parameters, compare=_interesting_channels(model)
     )
+
+
+def _refuse_inputs(model: Model, unknown: Iterable[str]) -> None:
+    """Raise ModelError for an input that is given as a parameter."""
+    for name in unknown:
+        if name in {record.name for record in model.inputs}:
+            raise ModelError(f"'{name}' is an input, not a parameter: give it by --input {name}=VALUE, or in a file")
 
 
 def _number(name: str, text: str) -> float:

@@ -19,8 +19,8 @@ def build() -> tl.Model:
         tl.RigidBody2D(name="driver", mass=1.0, inertia=0.01, angular_velocity=SWING * RATE),
         tl.RigidBody2D(name="driven", mass=2.0, inertia=INERTIA, position=(sum(RADII), 0.0)),
     ]
-    m = tl.Marker2D
-    pins = [tl.Revolute2D(name=f"{w.name}_pin", a=m(point=w.position), b=m(body=w.name)) for w in wheels]
+    ends = [(w.name, tl.Marker2D(point=w.position), tl.Marker2D(body=w.name)) for w in wheels]
+    pins = [tl.Revolute2D(name=f"{name}_pin", a=a, b=b) for name, a, b in ends]
 
     def flank(name: str, side: float) -> tl.CoordinateContact:
         pairs = zip(("driver", "driven"), RADII, strict=True)
@@ -54,7 +54,6 @@ def animate(figures: dict[str, Any], path: Path) -> None:
 
 
 if __name__ == "__main__":
-    file = Path(sys.argv[1] if len(sys.argv) > 1 else "gear_backlash.html")
-    found = run()
+    file, found = Path(sys.argv[1] if len(sys.argv) > 1 else "gear_backlash.html"), run()
     (plot if file.suffix == ".png" else animate)(found, file)
     print(f"{found['blows']} blows, the first at {found['first'].t:.6f} s; wrote {file}")

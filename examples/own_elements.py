@@ -92,6 +92,7 @@ def plot(figures: dict[str, Any], path: Path) -> None:
     plane, over_time = figure.subplots(1, 2)
     plane.plot(result["bob.x"], result["bob.y"], lw=0.8)
     plane.set(xlabel="x, m", ylabel="y, m", aspect="equal")
+    plane.locator_params(nbins=5)
     over_time.plot(result.t, figures["tension"], lw=0.8)
     over_time.set(xlabel="time, s", ylabel="force in the rope, N")
     figure.savefig(path, dpi=150)

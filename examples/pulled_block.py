@@ -24,8 +24,8 @@ def build() -> tl.Model:
     how: Any = {"law": tl.NewtonImpact(restitution=0.0), "friction": tl.CoulombFriction(coefficient=FRICTION)}
     inertia, contacts = MASS * (WIDTH**2 + HEIGHT**2) / 12.0, []
     for side, name in ((-1, "left"), (1, "right")):
-        ground, foot = tl.HalfPlane2D(), corner(0, side, -1)
-        contacts.append(tl.DiskOnHalfPlane2D(name=f"ground_{name}", plane=ground, disk=foot, **how))
+        foot = corner(0, side, -1)
+        contacts.append(tl.DiskOnHalfPlane2D(name=f"ground_{name}", plane=tl.HalfPlane2D(), disk=foot, **how))
         for k in range(1, BLOCKS):
             sides = {"lower": (face(k - 1, 1), corner(k, side, -1)), "upper": (face(k, -1), corner(k - 1, side, 1))}
             for part, (line, disk) in sides.items():
@@ -44,9 +44,8 @@ def run() -> dict[str, Any]:
     result = tl.simulate(build(), 0.9, rtol=1e-6)
     moving = result.t[np.argmax(np.abs(result[f"block{PULLED}.vx"]) > 1e-9)]
     slip = max(event.t for event in result.events if event.t < moving)
-    expected = 0.1 + FRICTION * MASS * G * (BLOCKS - PULLED) / RATE
-    balance = float(np.abs(result["energy.balance"]).max())
-    return {"result": result, "slip": slip, "expected_slip": expected, "balance": balance}
+    expected, balance = 0.1 + FRICTION * MASS * G * (BLOCKS - PULLED) / RATE, np.abs(result["energy.balance"]).max()
+    return {"result": result, "slip": slip, "expected_slip": expected, "balance": float(balance)}
 
 
 def plot(figures: dict[str, Any], path: Path) -> None:

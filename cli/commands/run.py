@@ -88,7 +88,7 @@ def run(
             "(--every chooses times instead)"
         )
     wanted = [name.strip() for text in channels or () for name in text.split(",")]
-    course = read_inputs(inputs or (), scenario.model, "hold" if hold else "linear")
+    course = read_inputs(inputs or (), scenario.model, "hold" if hold else "linear", tuple(scenario.parameters))
     stopped = False
     with compile_notice(), progress_bar(scenario.name, scenario.t_end) as progress:
         try:

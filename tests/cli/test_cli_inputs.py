@@ -65,6 +65,26 @@ def test_what_is_wrong_is_said(tlismni: Command, pushed: Path, tmp_path: Path) -
     assert tlismni(*run, "--channel", "p.x", "--output", tmp_path / "r.npz").code == 2
 
 
+def test_inputs_and_parameters_that_are_taken_for_each_other(tlismni: Command, pushed: Path) -> None:
+    for source in (pushed, "pendulum_stop"):
+        name = "force" if source == pushed else "torque"
+        said = tlismni("run", source, "--t-end", 1, "--set", f"{name}=3").cause
+        assert said == f"tlismni: '{name}' is an input, not a parameter: give it by --input {name}=VALUE, or in a file"
+    said = tlismni("run", "pendulum_stop", "--input", "mass=3").cause
+    assert said == "tlismni: 'mass' is a parameter, not an input: give it by --set mass=3; inputs are ['torque']"
+
+
+def test_ctrl_c_before_the_run_is_said(tlismni: Command, pushed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import tlismni.core as core
+
+    def interrupted(*_: Any, **__: Any) -> Any:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(core, "simulate", interrupted)
+    done = tlismni("run", pushed, "--t-end", 1)
+    assert done.code == 130 and "stopped; there is nothing to keep yet" in done.err
+
+
 def test_ctrl_c_keeps_what_was_reached(
     tlismni: Command, pushed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -19,9 +19,9 @@ SYMBOLS = {"refused": "R", "failed": "×", "limit": "L", "broken": "B", "short":
 """What stands in a cell without a figure: a sign, not only a colour."""
 LEGEND = (
     "number: CPU time over the least of the column (≤: even its loosest run has that error)\n"
-    "above the line TLISMNI, below it what it is compared with    "
-    "×: the run fails    R: refused    L: above the CPU limit of a run    –: its tightest run misses the error    "
-    "B: broken"
+    "above the line TLISMNI, below it what it is compared with\n"
+    "×: the run fails    R: refused    L: above the CPU limit of a run\n"
+    "–: its tightest run misses the error    B: broken"
 )
 NO_FIGURE = "#e4e4e4"
 FAILED = "#f6d5d0"
