@@ -144,9 +144,6 @@ REACHES_LIMIT_NOW = 1e-6
 """Of the limit, in space: friction of a contact whose event is that it reaches it is that near at least."""
 STICKS_STILL = 1e-9
 """Of the largest acceleration, in space: what sticks moves less along its tangents."""
-STANDS = 1e-7
-"""Of the speeds, in space: where the direction of sliding ends with less, the contact has stopped. Both velocities
-along the tangents vanish together to what the location of the first one's zero leaves of the second."""
 NEARLY_JAMMED = 1e-6
 """Of a contact's inverse effective mass, in space: with less left of it by friction, it jams."""
 FRICTION_ENOUGH = 1e-14

@@ -23,21 +23,22 @@ from ..rounding import (
     PERHAPS_REST,
     REACHES_LIMIT,
     REACHES_LIMIT_NOW,
-    STANDS,
     STICKS_STILL,
     UNSOLVED,
 )
 from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
+from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+from ..tables.levels import rate_size
 from ..tables.switch import engage_modes
 from .forces import cones_at
 from .laws import POISSON
 from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
 from .rates_in_space import masses, push_in_space, read_in_space, read_rates_in_space, solve_cones_in_space
-from .reading import largest_acceleration, rate_size, unresolved_speed
+from .reading import largest_acceleration, unresolved_speed
 from .records import (
     ACCELERATIONS,
     APART,
@@ -77,6 +78,7 @@ from .records import (
     NO_FREE_ACCELERATIONS,
     NO_IMPACT,
     NONE,
+    OLD_RATIO,
     OTHER_N,
     OTHER_T,
     OTHER_WN,
@@ -96,6 +98,7 @@ from .records import (
     SIN_WAY,
     SINGULAR_JOINTS,
     SIZE,
+    SLID,
     SLIDE_BEFORE,
     SLIDE_RATE,
     SLIPS,
@@ -125,6 +128,8 @@ from .touching import find_gradient, force_noise, refuse_immovable
 
 BEGINS = 2.0
 """In DIRECTION: sliding begins here."""
+ENDS_WITH = 2.0
+"""Of the sliding speed that has no direction: with less where sliding ends, the contact has stopped."""
 HOLDS = 1e-6
 """Of the largest free acceleration: how fast a gap may close that is left to other contacts to hold."""
 _FOUND = (
@@ -282,7 +287,7 @@ def _blow(ev: Any, dr: Any, ws: Any) -> int:
             e = 0.0 if low and col(ev, LOW)[i] != 0.0 else col(ev, RESTITUTION)[i]
             back = back or (part[i] != 0.0 and poisson and e > 0.0)
             if phase == 1:
-                base[i] = e * p_n[i] if poisson else 0.0
+                base[i] = e * max(p_n[i], 0.0) if poisson else 0.0
             clear_rate = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
             wanted = e * (col(ev, RATE_BEFORE)[i] if phase == 1 else clear_rate) if not poisson else 0.0
             b[i] = clear_rate + wanted
@@ -308,11 +313,13 @@ def _blow(ev: Any, dr: Any, ws: Any) -> int:
 @internal
 def _look(ev: Any, ws: Any) -> None:
     """Which contacts slide, and where to: 1 in KNOWN, with COS_WAY and SIN_WAY; 0 where friction decides."""
+    contacts = ivec(ev.contacts, ev.most)
     for i in range(whole(ev)[COUNT]):
         x, y, none = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i], max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
         speed, stands = math.sqrt(x * x + y * y), col(ev, STOPS)[i] != 0.0 and whole(ev)[STRUCK] == 0
         if stands:
-            none = max(none, STANDS * rate_size(ws, ivec(ev.contacts, ev.most)[i]))
+            # it has gone on in its direction to where error control does not resolve another
+            none = max(none, ENDS_WITH * mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], SLOW_SLIDING])
         slides = speed > none and col(ev, STATIC)[i] > 0.0
         col(ev, KNOWN)[i] = 1.0 if slides else 0.0
         col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (x / speed, y / speed) if slides else (1.0, 0.0)
@@ -620,12 +627,25 @@ def _hand_over(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
 
 
 @internal
+def _gives_way(ev: Any, i: int, fastest: float) -> bool:
+    """True if contact i, which others hold along one tangent, has reached its limit with what it carries there, and
+    does not move: without that share it need not slide yet. A ball in a corner, on floor and wall, is held by both, and
+    its friction on the wall, upwards, may be anything with the normal forces that fit it."""
+    moves = math.sqrt(col(ev, W_T)[i] ** 2 + col(ev, W_S)[i] ** 2) > STICKS_STILL * fastest
+    shared = col(ev, SLID)[i] == ALONG and col(ev, OLD_RATIO)[i] != 0.0
+    return bool(col(ev, DIRECTION)[i] == BEGINS and shared and not moves)
+
+
+@internal
 def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """As `keep`: normals first, those that carry most before others; then tangents of those that stick. Where both of a
-    contact are left to others, or one, it carries its share of friction along with its normal force."""
+    contact are left to others, or one, it carries its share of friction along with its normal force; at the limit of
+    its friction it leaves all that it carries there to them, for it can only slide across that."""
     count, some, flag = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), col(ev, FLAG)
     f_n, f_t, f_s, order = col(ev, F_N), col(ev, F_T), col(ev, F_S), ivec(ev.order, 2 * ev.most)
-    rank, normals = real(ev)[RANK], 0
+    rank, normals, fastest = real(ev)[RANK], 0, 0.0
+    for i in range(count):
+        fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]), abs(col(ev, B_S)[i]))
     clear(flag, count)
     for i in range(count):
         if col(ev, CLOSES)[i] != 0.0:
@@ -648,6 +668,8 @@ def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         i = order[j]
         rubs = col(ev, STATIC)[i] > 0.0
         size = math.sqrt(f_t[i] ** 2 + f_s[i] ** 2)
+        if _gives_way(ev, i, fastest):
+            col(ev, DIRECTION)[i] = 0.0
         if col(ev, DIRECTION)[i] != 0.0 and rubs:
             col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = 1.0, -col(ev, KINETIC)[i]
             continue
@@ -657,4 +679,7 @@ def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (f_t[i] / size, f_s[i] / size) if size > 0.0 else (1.0, 0.0)
         if rubs:
             total += _hold(ev, total, i, rank)
+            full = size >= (1.0 - REACHES_LIMIT_NOW) * col(ev, STATIC)[i] * f_n[i]
+            if col(ev, NEW_SLIDE)[i] == ALONG and full:
+                col(ev, NEW_RATIO)[i] = 0.0
     return SETTLED

@@ -16,10 +16,10 @@ from ..rounding import RATE_ROUNDING
 from ..state.modes import APPROACH_SPEED, CLOSED, LARGEST_APPROACH, MEMORY_SIZE, MODE, OPEN
 from ..state.run_records import CLOSE, GRAZE, OPENS, call_accelerations
 from ..state.workspace_records import OK
+from ..tables.levels import rate_size
 from .laws import MASSLESS
 from .meeting import meet_constraints
 from .progress import GUARD_SIZE, START
-from .reading import rate_size
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report
 

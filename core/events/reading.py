@@ -8,8 +8,9 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
+from ..state.workspace_records import CONTROL_SIZE, RTOL
 from ..tables.held import held_friction, is_held
-from ..tables.levels import force_level, position_level, rate_level
+from ..tables.levels import force_level, position_level, rate_size
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
 
 
@@ -23,11 +24,9 @@ def largest_acceleration(ws: Any) -> float:
 
 
 @internal
-def rate_size(ws: Any, k: int) -> float:
-    """What the rates of gap and sliding distance of contact k are small or large against, m/s."""
-    scale, slide = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    along = scale[slide] if slide >= 0 else 0.0
-    return rate_level(ws) * max(scale[ivec(ws.contact_rows, ws.n_contacts)[k]], along)
+def slow_sliding(ws: Any, k: int) -> float:
+    """Sliding speed of contact k in space whose direction error control does not resolve, m/s."""
+    return float(vec(ws.control, CONTROL_SIZE)[RTOL] * rate_size(ws, k))
 
 
 @internal

@@ -15,9 +15,9 @@ from ..rounding import FORCE_ROUNDING, NO_ACCELERATION, NO_SLIDING, PERHAPS_REST
 from ..state.modes import CLOSED, IDLE
 from ..state.modes import STICKS as STUCK
 from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE
-from ..tables.levels import position_level
+from ..tables.levels import position_level, rate_size
 from .forces import NO_SOLUTION, among, farthest_of, independent_of, remove_rates
-from .reading import comes_back, largest_acceleration, rate_size, unresolved_speed
+from .reading import comes_back, largest_acceleration, unresolved_speed
 from .records import (
     ACCELERATIONS,
     APART,

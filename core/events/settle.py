@@ -29,6 +29,7 @@ from ..state.modes import (
     SLIDE_START,
     WAY,
 )
+from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import (
     CLOCK_SIZE,
@@ -51,7 +52,7 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE
 from ..tables.evaluate import evaluate_power, evaluate_residuals
-from ..tables.levels import position_level
+from ..tables.levels import position_level, rate_size
 from ..tables.switch import take_structure
 from .blow import impact
 from .breakpoint import pass_breakpoint
@@ -62,7 +63,7 @@ from .massless import settle_massless
 from .meeting import meet_constraints
 from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
 from .progress import COUNT as GUARDED
-from .reading import largest_acceleration, rate_size, read_before
+from .reading import largest_acceleration, read_before, slow_sliding
 from .records import (
     ACCELERATIONS,
     AXIS_NOW,
@@ -390,6 +391,7 @@ def _take(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         changed = changed or not kept
         if ws.tangents == 2:
             memory[WAY], memory[AXIS] = np.arctan2(col(ev, SIN_WAY)[i], col(ev, COS_WAY)[i]), col(ev, AXIS_NOW)[i]
+            memory[SLOW_SLIDING] = slow_sliding(ws, k)
         elif memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
             memory[SLIDE_START] = col(ev, SLIDE_VALUE)[i]
     if some:

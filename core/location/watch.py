@@ -8,7 +8,7 @@ from ..rounding import FORCE_ROUNDING, GAP_MOVES, GAP_ROUNDING, RATE_ROUNDING, S
 from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE
 from ..state.run_records import WATCH
 from ..tables.held import held_friction, is_held
-from ..tables.levels import force_level, position_level, rate_level
+from ..tables.levels import force_level, position_level, rate_level, rate_size
 from .asleep import sleeps_on
 from .certain import first_root, way_of_gap
 from .force_watch import forces_may_vanish, forces_vanish, sliding_turns
@@ -66,7 +66,7 @@ def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
             return False
         # shapes that touch and neither part nor press drift by rounding only; those that a method without position
         # constraints has let overlap before they opened may come apart
-        if rate < -RATE_ROUNDING * rate_level(ws) * size:
+        if rate < -RATE_ROUNDING * rate_size(ws, k):
             return True
         overlap, before = GAP_ROUNDING * position_level(ws) * size, mat(lc.watch, ws.n_contacts, WATCH)[k, 0]
         # a gap that others hold near this limit stays where it is, and the limit moves with the coordinates

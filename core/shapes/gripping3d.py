@@ -3,12 +3,13 @@
 A closed contact that sticks has, beside the gap, two rows at velocity level: the sliding velocity along both tangents
 is zero; one that others hold along the second tangent has the first one's row, and carries along the second a share of
 its normal force. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|. Where |u_T| comes to zero a direction
-has to go on through it, for steps end beyond the event before they end at it: with x and y along the tangents, x along
-the direction of sliding at the last event, the angle of friction is atan(x y/(x^2 + STILL^2)), which for x > 0 is that
-of u_T.
+has to go on through it: steps end beyond the event before they end at it, and a speed that is less than what error
+control resolves has no direction but that of its errors. With x and y along the tangents, x along the direction of
+sliding at the last event, and the speed SLOW that is so small, s^2 = x^2 + SLOW^2, the angle of friction is atan(y/s):
+that of u_T but for (SLOW/x)^2/2. It is there where sliding begins, and draws y to zero from the first instant on.
 
-What the rows of a contact that does not stick tell: of an open one x and y; of one that slides x - TURNED |u_T|, whose
-zero is the end of sliding, or a turn of its direction by much, and |u_T|.
+What the rows of a contact that does not stick tell: of an open one x and y; of one that slides x - TURNED (|(s, y)| -
+SLOW), whose zero is the end of sliding, or a turn of its direction by much, and |u_T|.
 """
 
 import math
@@ -21,7 +22,7 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS
 from ..model.rotation3d import dot, less, plus, times
-from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS, WAY
+from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
 from .held3d import MOVES
 from .normal2d import act, asleep
@@ -35,28 +36,29 @@ TURNED = 0.2
 
 
 @internal
-def _direction(x: float, y: float, still: float) -> Any:
+def _direction(x: float, y: float, slow: float) -> Any:
     """(cosine, sine) of the angle of friction from the first tangent, and its derivatives by x and y."""
-    square = x * x + still * still
-    w = x * y / square
+    root = math.sqrt(x * x + slow * slow)
+    w = y / root
     scale = 1.0 / (1.0 + w * w)
     c = math.sqrt(scale)
-    return c, w * c, scale * y * (still * still - x * x) / (square * square), scale * x / square
+    return c, w * c, -scale * x * w / (root * root), scale / root
 
 
 @internal
-def _levels(b: Any, e: int, x: float, y: float, x_rate: float, y_rate: float, slides: bool) -> None:
-    """The rows of the tangents at all levels."""
+def _levels(b: Any, e: int, x: float, y: float, x_rate: float, y_rate: float, slow: float) -> None:
+    """The rows of the tangents at all levels; slow < 0: of a contact that does not slide."""
     first = imat(b.row, b.count, 3)[e, 1]
     phi, phid, phidd = vec(b.phi, b.m_extended), vec(b.phid, b.m_extended), vec(b.phidd, b.m_extended)
     phi[first] = phi[first + 1] = 0.0
-    if not slides:
+    if slow < 0.0:
         phid[first], phid[first + 1], phidd[first], phidd[first + 1] = x, y, x_rate, y_rate
         return
-    speed = math.sqrt(x * x + y * y)
-    faster = (x * x_rate + y * y_rate) / speed if speed > 0.0 else math.sqrt(x_rate * x_rate + y_rate * y_rate)
-    phid[first], phid[first + 1] = x - TURNED * speed, speed
-    phidd[first], phidd[first + 1] = x_rate - TURNED * faster, faster
+    speed, size = math.sqrt(x * x + y * y), math.sqrt(x * x + y * y + slow * slow)
+    power = x * x_rate + y * y_rate
+    faster = power / speed if speed > 0.0 else math.sqrt(x_rate * x_rate + y_rate * y_rate)
+    phid[first], phid[first + 1] = x - TURNED * (size - slow), speed
+    phidd[first], phidd[first + 1] = x_rate - TURNED * power / size, faster
 
 
 @internal
@@ -76,14 +78,15 @@ def grip(b: Any, job: int, e: int, held: Any, moves: Any, work: Any) -> None:
     t1, t2 = tangents(b, coord, held, axis, angle, n, work)
     x, y = dot(u, t1), dot(u, t2)
     state = memory[SLIDE]
-    slides = closed and abs(state) == 1.0
+    slides, slow = closed and abs(state) == 1.0, -1.0
     both, one = closed and state == STICKS, closed and state == ALONG
     # force on the second shape; how it goes with the normal's multiplier
     share, pull = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     c, s, by_x, by_y = 1.0, 0.0, 0.0, 0.0
     if slides or (closed and state == IDLE):
         if slides:
-            c, s, by_x, by_y = _direction(x, y, par[STILL_SPEED])
+            slow = max(par[STILL_SPEED], memory[SLOW])
+            c, s, by_x, by_y = _direction(x, y, slow)
         share = times(-memory[RATIO], plus(times(c, t1), times(s, t2)))
         pull = times(lam[row[0]], share)
     elif both or one:
@@ -97,7 +100,7 @@ def grip(b: Any, job: int, e: int, held: Any, moves: Any, work: Any) -> None:
         a = vec(b.a, b.n_extended)
         u_rate = plus(product_with(work, W, a, coord), product_with(work, U, v, coord))
         t1_rate, t2_rate = product_with(work, T1, v, coord), product_with(work, T2, v, coord)
-        _levels(b, e, x, y, dot(u_rate, t1) + dot(u, t1_rate), dot(u_rate, t2) + dot(u, t2_rate), slides)
+        _levels(b, e, x, y, dot(u_rate, t1) + dot(u, t1_rate), dot(u_rate, t2) + dot(u, t2_rate), slow)
         force = math.sqrt(dot(pull, pull))
         # of an open contact nobody asks for friction: what an instant has to know of its tangents stands there
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = force if closed else float(axis)

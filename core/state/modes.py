@@ -28,3 +28,4 @@ MEMORY_SIZE = 11
 # of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):
 WAY = SLIDE_START  # angle of the first tangent, rad
 AXIS = BEGUN_IMPULSE  # which axis of the first marker angles are counted from: 1, 2, 3; 0: not chosen
+SLOW = BEGUN_LOSS  # sliding speed whose direction error control does not resolve, m/s

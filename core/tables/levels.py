@@ -7,7 +7,7 @@ levels, times the scale of the coordinate or of the row. Without units, and the 
 from typing import Any
 
 from ..compiled.jit import compiled, internal
-from ..compiled.views import vec
+from ..compiled.views import ivec, vec
 from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE, RATE_SCALE
 
 
@@ -33,6 +33,14 @@ def position_level(ws: Any) -> float:
 def rate_level(ws: Any) -> float:
     """Of the velocities, at least what the model's own time makes, 1/s."""
     return _level(ws, ws.v, vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
+
+
+@internal
+def rate_size(ws: Any, k: int) -> float:
+    """What the rates of gap and sliding distance of contact k are small or large against, m/s."""
+    scale, slide = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    along = scale[slide] if slide >= 0 else 0.0
+    return rate_level(ws) * max(scale[ivec(ws.contact_rows, ws.n_contacts)[k]], along)
 
 
 @compiled
