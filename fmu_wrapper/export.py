@@ -119,11 +119,8 @@ def export_fmu(
             "sources are for FMUs without Python (native) that are not protected: "
             + ("leave out protect, or sources" if protect else "one that runs with Python carries the model anyway")
         )
-    if native and (bundle or arrays):
-        raise ExportError(
-            "an FMU without Python (native) has no package to bundle and describes no arrays: leave out "
-            f"{'bundle' if bundle else 'arrays'}, or native"
-        )
+    if native and bundle:
+        raise ExportError("an FMU without Python (native) has no package to bundle: leave out bundle, or native")
     if not native:
         shim_path()  # before any work
     require("export_fmu", "lxml", error=ExportError)
@@ -161,7 +158,9 @@ def export_fmu(
         files = {
             "modelDescription.xml": described,
             "resources/model.image": run.image,
-            "resources/variables.bin": variables_file(slave.variables, token, slave.settings.rtol, channels),
+            "resources/variables.bin": variables_file(
+                slave.variables, token, slave.settings.rtol, channels, slave.variables.arrays if arrays else ()
+            ),
             **native_binaries(folder(), identifier, fmi_version, platforms),
             **({} if protect else scene(slave.model)),
             **(_of_model(slave, about, fmi_version) if sources else {}),

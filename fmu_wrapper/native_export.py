@@ -16,6 +16,7 @@ from ..core.native import NativeError
 from ..core.native.c_sources import c_digest
 from ..core.native.export import image_and_parameters
 from ..core.native.parameters import Parameter, Setting
+from .arrays import ArrayVariable
 from .effective import effective
 from .errors import ExportError, FmuValueError
 from .origin import Origin
@@ -33,7 +34,7 @@ _TARGETS = {
 }  # fmt: skip
 _KINDS = {"real": 0, "integer": 1, "boolean": 2}
 _SOURCES = {"time": 0, "constant": 1, "input": 2, "parameter": 3, "channel": 4, "figure": 5}
-_MAGIC, _VERSION, _TOKEN = b"TLISVARS", 1, 64
+_MAGIC, _VERSION, _TOKEN = b"TLISVARS", 2, 64
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,9 @@ def _setting(v: Variable, model: Model, settings: Settings, table: VariableTable
     return Setting(v.name, float(v.start or 0.0), least, largest, changed)
 
 
-def variables_file(table: VariableTable, token: str, rtol: float, names: Sequence[str]) -> bytes:
+def variables_file(
+    table: VariableTable, token: str, rtol: float, names: Sequence[str], arrays: Sequence[ArrayVariable] = ()
+) -> bytes:
     """The list of variables, as `native/files.c` reads it. Raises ExportError for a token that is too long."""
     text = token.encode()
     if len(text) >= _TOKEN:
@@ -121,7 +124,9 @@ def variables_file(table: VariableTable, token: str, rtol: float, names: Sequenc
     places = {name: k for k, name in enumerate(names)}
     channels = {v.reference: places[v.name] for v in table.block("channel")}
     parameters = {v.reference: k for k, v in enumerate(table.of_role("parameter"))}
-    rows = [struct.pack("<8sqqd64s", _MAGIC, _VERSION, len(table.variables), rtol, text)]
+    elements = [e.reference for array in arrays for e in array.elements]
+    sizes = len(table.variables), len(arrays), len(elements)
+    rows = [struct.pack("<8sqqqqd64s", _MAGIC, _VERSION, *sizes, rtol, text)]
     for v in table.variables:
         source = v.role if v.role in ("constant", "parameter") else v.block
         low, high = (-math.inf if v.minimum is None else v.minimum), (math.inf if v.maximum is None else v.maximum)
@@ -129,7 +134,11 @@ def variables_file(table: VariableTable, token: str, rtol: float, names: Sequenc
         start = 0.0 if v.start is None else float(v.start)
         numbers = (_KINDS[v.kind], _SOURCES[source], int(v.enumeration is not None), number)
         rows.append(struct.pack("<4i3d", *numbers, start, low, high))
-    return b"".join(rows)
+    first = 0
+    for array in arrays:
+        rows.append(struct.pack("<2i", first, len(array.elements)))
+        first += len(array.elements)
+    return b"".join((*rows, struct.pack(f"<{len(elements)}I", *elements)))
 
 
 def native_binaries(folder: str, identifier: str, fmi_version: str, platforms: Sequence[str]) -> dict[str, bytes]:

@@ -100,22 +100,34 @@ EXPORT fmi3Status fmi3Reset(fmi3Instance c) {
 
 /* values */
 
-/* Each variable is a scalar. */
+/* A value for each scalar, those of arrays too. */
 static bool of_one_length(fmi3Instance c, const char *function, size_t n, size_t values) {
     if (slave_alive(c) && n != values) {
-        slave_error(c, function, "room for %zu values was given for %zu scalar variables", values, n);
+        slave_error(c, function, "room for %zu values was given for %zu scalars", values, n);
         return false;
     }
     return true;
 }
 
 EXPORT fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, double value[], size_t values) {
-    return of_one_length(c, "fmi3GetFloat64", n, values) ? slave_get_reals(c, "fmi3GetFloat64", vr, n, value) : STATUS_ERROR;
+    Elements e;
+    int status = STATUS_ERROR;
+    if (slave_elements(c, "fmi3GetFloat64", vr, n, NULL, &e) && of_one_length(c, "fmi3GetFloat64", e.n, values)) {
+        status = slave_get_reals(c, "fmi3GetFloat64", e.vr, e.n, value);
+    }
+    slave_elements_end(&e);
+    return status;
 }
 
 EXPORT fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const double value[],
                                  size_t values) {
-    return of_one_length(c, "fmi3SetFloat64", n, values) ? slave_set_reals(c, "fmi3SetFloat64", vr, n, value) : STATUS_ERROR;
+    Elements e;
+    int status = STATUS_ERROR;
+    if (slave_elements(c, "fmi3SetFloat64", vr, n, NULL, &e) && of_one_length(c, "fmi3SetFloat64", e.n, values)) {
+        status = slave_set_reals(c, "fmi3SetFloat64", e.vr, e.n, value);
+    }
+    slave_elements_end(&e);
+    return status;
 }
 
 #define WHOLE(name, type, kind, enumerations)                                                                           \
@@ -255,21 +267,34 @@ static bool of_lengths(fmi3Instance c, const char *function, size_t seeds, size_
 
 EXPORT fmi3Status fmi3GetDirectionalDerivative(OF_KNOWNS) {
     const char *name = "fmi3GetDirectionalDerivative";
-    return of_lengths(c, name, seeds, knowns, sensitivities, unknowns)
-               ? slave_directional(c, name, unknown, unknowns, known, knowns, seed, sensitivity)
-               : STATUS_ERROR;
+    Elements e;
+    int status = STATUS_ERROR;
+    if (slave_elements(c, name, unknown, unknowns, NULL, &e) && of_lengths(c, name, seeds, knowns, sensitivities, e.n)) {
+        status = slave_directional(c, name, e.vr, e.n, known, knowns, seed, sensitivity);
+    }
+    slave_elements_end(&e);
+    return status;
 }
 
 EXPORT fmi3Status fmi3GetAdjointDerivative(OF_KNOWNS) {
     const char *name = "fmi3GetAdjointDerivative";
-    return of_lengths(c, name, seeds, unknowns, sensitivities, knowns)
-               ? slave_adjoint(c, name, unknown, unknowns, known, knowns, seed, sensitivity)
-               : STATUS_ERROR;
+    Elements e;
+    int status = STATUS_ERROR;
+    if (slave_elements(c, name, unknown, unknowns, NULL, &e) && of_lengths(c, name, seeds, e.n, sensitivities, knowns)) {
+        status = slave_adjoint(c, name, e.vr, e.n, known, knowns, seed, sensitivity);
+    }
+    slave_elements_end(&e);
+    return status;
 }
 
 EXPORT fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const int32_t order[],
                                            double value[], size_t values) {
-    return of_one_length(c, "fmi3GetOutputDerivatives", n, values)
-               ? slave_output_derivatives(c, "fmi3GetOutputDerivatives", vr, n, order, value)
-               : STATUS_ERROR;
+    const char *name = "fmi3GetOutputDerivatives";
+    Elements e;
+    int status = STATUS_ERROR;
+    if (slave_elements(c, name, vr, n, order, &e) && of_one_length(c, name, e.n, values)) {
+        status = slave_output_derivatives(c, name, e.vr, e.n, e.order, value);
+    }
+    slave_elements_end(&e);
+    return status;
 }

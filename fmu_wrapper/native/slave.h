@@ -32,6 +32,11 @@ typedef struct {
     double start, least, largest;
 } Variable;
 
+/* An array: its elements are variables (`elements` of the slave). */
+typedef struct {
+    int32_t first, count;
+} ArrayOf;
+
 typedef struct Slave Slave;
 
 /* Hands one message to the host, in the manner of the FMI version. */
@@ -74,6 +79,9 @@ struct Slave {
     void *file; /* the variables' */
     const Variable *variables;
     size_t count;
+    const ArrayOf *arrays; /* which have the references behind those of the variables */
+    size_t array_count;
+    const uint32_t *elements;
     double rtol;
     Stored *stored;
 };
@@ -114,6 +122,19 @@ int slave_set_rates(Slave *self, const char *function, const uint32_t vr[], size
 void slave_take_parameters(Slave *self);
 /* None but reals can be set: says so. */
 int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n);
+
+/* References with those of the elements in place of arrays (arrays.c), and the orders that belong to them. */
+typedef struct {
+    const uint32_t *vr;
+    const int32_t *order;
+    size_t n;
+    uint32_t *made; /* what `slave_elements_end` frees */
+    int32_t *orders;
+} Elements;
+/* `order` may be NULL. False, with a line in the log, without memory. */
+bool slave_elements(const Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
+                    Elements *found);
+void slave_elements_end(Elements *found);
 
 /* What a reference of this kind stands for; NULL with a line in the log. */
 const Variable *slave_variable(const Slave *self, const char *function, uint32_t reference, Kind kind);

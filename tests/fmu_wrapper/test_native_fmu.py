@@ -1,5 +1,6 @@
 """FMUs without Python: the same bits as those with it, by FMI 2.0 and 3.0, and where there is no Python at all."""
 
+import ctypes
 import os
 import random
 import re
@@ -281,10 +282,49 @@ def test_what_takes_python_is_refused_by_name(name, text, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_no_bundle_and_no_arrays(tmp_path):
-    for wrong in ({"bundle": True}, {"arrays": True}):
-        with pytest.raises(ExportError, match="no package to bundle and describes no arrays"):
-            export_fmu(load("pendulum"), tmp_path / "x.fmu", "3.0", native=True, **wrong)
+def test_no_bundle(tmp_path):
+    with pytest.raises(ExportError, match="no package to bundle"):
+        export_fmu(load("pendulum"), tmp_path / "x.fmu", "3.0", native=True, bundle=True)
+
+
+def test_arrays_are_their_scalars(tmp_path):
+    """Values, derivatives along inputs and in time of vectors, mixed with scalars: those of the FMU with Python."""
+    pair = Pair(load("slider_crank_stop", driven=True), tmp_path, "3.0", arrays=True)
+    assert validate_fmu(str(pair.sides[0][0])) == []
+    found = []
+    for side in pair.instances():
+        fmu, arrays = side.fmu, [v for v in side.by_name.values() if v.dimensions]
+        side.begin()
+        side.set(torque=0.3)
+        side.step(0.05)
+        references, torque = [v.valueReference for v in arrays], [side.by_name["torque"].valueReference]
+        count = 2 * len(arrays)
+        mixed = [side.by_name["time"].valueReference, *references, side.by_name["crank.x"].valueReference]
+        values = fmu.getFloat64(mixed, nValues=count + 2)
+        moving = [v.valueReference for v in arrays if v.name.endswith(("position", "velocity"))]
+        rates, along, back = (ctypes.c_double * count)(), (ctypes.c_double * count)(), (ctypes.c_double * 1)()
+        unknowns, known = (ctypes.c_uint32 * len(references))(*references), (ctypes.c_uint32 * 1)(*torque)
+        fmu.fmi3GetOutputDerivatives(
+            fmu.component, (ctypes.c_uint32 * len(moving))(*moving), len(moving),
+            (ctypes.c_int32 * len(moving))(*[1] * len(moving)), rates, 2 * len(moving),
+        )  # fmt: skip
+        fmu.fmi3GetDirectionalDerivative(
+            fmu.component, unknowns, len(references), known, 1, (ctypes.c_double * 1)(1.0), 1, along, count
+        )
+        fmu.fmi3GetAdjointDerivative(
+            fmu.component, unknowns, len(references), known, 1, (ctypes.c_double * count)(*range(1, count + 1)), count,
+            back, 1,
+        )  # fmt: skip
+        assert back[0] == pytest.approx(sum((k + 1) * x for k, x in enumerate(along)), rel=1e-12) != 0.0
+        with pytest.raises(FMICallException):
+            fmu.getFloat64(references)  # room for one number each
+        with pytest.raises(FMICallException):
+            fmu.setFloat64(references[:1], [0.0, 0.0])
+        place = 1 + 2 * [v.name for v in arrays].index("crank.position")
+        scalars = fmu.getFloat64([side.by_name[f"crank.{x}"].valueReference for x in ("x", "y")])
+        assert values[place : place + 2] == scalars and values[-1] == scalars[0] and values[0] == 0.05
+        found.append([np.array(list(x)).tobytes() for x in (values, rates, along)])
+    assert len(moving) > 5 and found[0] == found[1]
 
 
 def jail_of(folder, *programs):
