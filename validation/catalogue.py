@@ -47,10 +47,12 @@ class Outcome:
 
     @property
     def doubt(self) -> str:
-        """Why there is no cross-check, or why it decides nothing: of the first quantity that is open."""
+        """Why there is no cross-check, or why it decides nothing: of the quantity farthest from its tolerance."""
         if self.reason or self.found is None or self.verdict not in ("undecided", "not comparable"):
             return self.reason
-        told = [f"{row.quantity}: {row.why}" for row in self.found.rows if row.required and row.why]
+        undecided = [row for row in self.found.rows if row.required and row.why]
+        undecided.sort(key=lambda row: -row.difference / row.allowed if row.allowed > 0.0 else 0.0)
+        told = [f"{row.quantity}: {row.why}" for row in undecided]
         more = f" (and {len(told) - 1} more)" if len(told) > 1 else ""
         return f"{told[0]}{more}" if told else ""
 

@@ -121,9 +121,17 @@ def _worst(outcome: "Outcome") -> str:
     return f"{max(parts):.2g}" if parts else ""
 
 
+NAMES = ("exudyn", "tlismni", "scipy")
+"""That are written small."""
+
+
 def _sentence(text: str) -> str:
-    """With a capital and a full stop."""
-    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".") if text else ""
+    """With a capital, unless it begins with a name ("disk.z", exudyn), and a full stop."""
+    if not text:
+        return ""
+    first = text.split()[0].rstrip(":,")
+    begun = text if first in NAMES or "." in first or "_" in first else text[:1].upper() + text[1:]
+    return begun if begun.endswith(".") else f"{begun}."
 
 
 def _units(found: "CrossCheck") -> dict[str, tuple[str, str]]:

@@ -52,7 +52,7 @@ def ebdf_step(ws: Any, ms: Any, h: float) -> int:
     bar_q, bar_v, bar_a = vec(ws.base_q, n), vec(ws.base_v, n), vec(ws.base_a, n)
     bar_lam = mat(ws.stage_a, 8, n + ws.m_ext)[0]
 
-    status = bdf_stage(ws, ms, h, k, table[BDF], table[EXTRAPOLATION], True)
+    status = bdf_stage(ws, ms, h, k, table[BDF], table[EXTRAPOLATION])
     if status != OK:
         return status
     for i in range(n):
@@ -70,7 +70,7 @@ def ebdf_step(ws: Any, ms: Any, h: float) -> int:
     c_v = h * coefficients[k]
     combine_stars(ws, ms, bar_q, bar_v, coefficients[1:], 0, k - 1, c_v)
     predict(ws, ms, extrapolation[1:], 0, k)
-    status = finish_stage(ws, t_new + h, c_v, True)
+    status = finish_stage(ws, t_new + h, c_v)
     if status != OK:
         return status
 

@@ -10,7 +10,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..stage.solver import weighted_norm
 from ..state.method_records import MAX_NODES
-from ..state.workspace_records import CONTROL_SIZE, PASSING, call_stage
+from ..state.workspace_records import call_stage
 from ..tables.evaluate import evaluate_power
 from .history import history_row, history_time
 
@@ -85,22 +85,9 @@ def clear(address: int, n: int) -> None:
 
 
 @internal
-def solve_passing(ws: Any, t: float, c_q: float, c_v: float) -> int:
-    """Solve a stage whose point is not kept."""
-    control = vec(ws.control, CONTROL_SIZE)
-    control[PASSING] = 1.0
-    status = call_stage(ws.stage_function, ws, t, c_q, c_v)
-    control[PASSING] = 0.0
-    return status
-
-
-@internal
-def finish_stage(ws: Any, t: float, c_v: float, passing: bool = False) -> int:
-    """Solve the stage; then power and work accounts. `passing`: its point is not kept."""
-    if passing:
-        status = solve_passing(ws, t, c_v * c_v, c_v)
-    else:
-        status = call_stage(ws.stage_function, ws, t, c_v * c_v, c_v)
+def finish_stage(ws: Any, t: float, c_v: float) -> int:
+    """Solve the stage; then power and work accounts."""
+    status = call_stage(ws.stage_function, ws, t, c_v * c_v, c_v)
     if status != 0:
         return status
     evaluate_power(ws)
@@ -112,8 +99,8 @@ def finish_stage(ws: Any, t: float, c_v: float, passing: bool = False) -> int:
 
 
 @internal
-def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolation: Any, passing: bool = False) -> int:
-    """y_{n+1} = sum_j coefficients_j y_{n-j} + coefficients_k h y'_{n+1}; `passing`: it is not kept."""
+def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolation: Any) -> int:
+    """y_{n+1} = sum_j coefficients_j y_{n-j} + coefficients_k h y'_{n+1}."""
     n = ws.n_ext
     newest = history_row(ws, ms, 0)
     c_v = h * coefficients[k]
@@ -123,7 +110,7 @@ def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolati
     clear(ws.a, ws.n)
     clear(ws.lam, ws.m_ext)
     predict(ws, ms, extrapolation, 0, k + 1)
-    return finish_stage(ws, history_time(ms, 0) + h, c_v, passing)
+    return finish_stage(ws, history_time(ms, 0) + h, c_v)
 
 
 @internal

@@ -14,7 +14,6 @@ from ..stage.solver import weighted_norm
 from ..state.workspace_records import OK, call_stage
 from ..tables.evaluate import evaluate_power
 from .history import history_row, history_time
-from .multistep import solve_passing
 
 A = np.array(
     [
@@ -53,10 +52,7 @@ def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
                 p_v += h * A[s, j] * stage_a[j, i]
             q_star[i] = p_q + c_v * p_v
             v_star[i] = p_v
-        if s < STAGES - 1:
-            status = solve_passing(ws, t + C[s] * h, c_v * c_v, c_v)
-        else:
-            status = call_stage(ws.stage_function, ws, t + C[s] * h, c_v * c_v, c_v)
+        status = call_stage(ws.stage_function, ws, t + C[s] * h, c_v * c_v, c_v)
         if status != OK:
             return status, 0.0
         evaluate_power(ws)

@@ -16,7 +16,6 @@ from ..state.workspace_records import (
     FACTOR_CV,
     FACTORIZATIONS,
     FIRST_SENSITIVITY,
-    FRESH_INNER,
     LAST_INNER,
     LAST_OUTER,
     LEAST_CONDITION,
@@ -58,7 +57,6 @@ def refactor(ws: Any, c_q: float, c_v: float) -> int:
     ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     rate[FACTOR_AGE], rate[FACTOR_CV] = 0.0, c_v
     rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
-    rate[FRESH_INNER] = 0.0
     return OK
 
 

@@ -23,7 +23,6 @@ from ..state.workspace_records import (
     FACTOR_AGE,
     FACTOR_CV,
     FAILED_NORM,
-    FRESH_INNER,
     INNER,
     LAST_INNER,
     LAST_OUTER,
@@ -36,7 +35,6 @@ from ..state.workspace_records import (
     OUTER_DIVERGED,
     OUTER_RATE,
     OUTER_SLOW,
-    PASSING,
     POSITION_TOLERANCE,
     RATE_SIZE,
     RTOL,
@@ -57,9 +55,6 @@ RATE_GROWTH = 1.5
 # A contraction does not show what old matrices do in single directions: increments that they make too small shrink
 # slowly there, behind others that shrink fast. So they are renewed after so many stages.
 OLDEST = 30.0
-# Violations of the constraints that the inner loop may leave, in parts of the increment that comes next; the first one
-# is taken to be this many times the tolerance.
-PART, FIRST = 0.01, 10.0
 # A contraction above this costs more iterations than a factorisation.
 SLOW = 0.2
 
@@ -115,7 +110,7 @@ def prepare_attempt(ws: Any, c_q: float, c_v: float, attempt: int, most_outer: i
     if attempt > 0:
         evaluate_prediction(ws, c_q, c_v)
     most_inner = MOST_INNER if ws.part_first == 0 else MOST_CHEAP_INNER
-    slow = rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > rate[FRESH_INNER] + most_inner
+    slow = rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > most_inner
     if attempt > 0 or slow or not 0.0 <= rate[FACTOR_AGE] < OLDEST:
         status = refactor(ws, c_q, c_v)
         if status != OK:
@@ -157,14 +152,6 @@ def inner_slack(control: Any) -> float:
 
 
 @inlined
-def _slack_for(control: Any, norm: float) -> float:
-    """How loose the inner loop may be before an increment that is expected to have this norm: what the constraints are
-    violated by then spoils a hundredth of it."""
-    share = PART * max(norm, control[NEWTON_TOLERANCE])
-    return max(1.0, min(1e6, share * control[RTOL] / control[POSITION_TOLERANCE]))
-
-
-@inlined
 def judge_contraction(rate: Any, contraction: float, wanting: bool, renewed: int) -> int:
     """OK, OUTER_DIVERGED, or OUTER_SLOW: the matrix of the predicted point is not good enough, that of the present one
     is. `wanting`: the tolerance is not met; `renewed`: how often the matrix has been renewed in this iteration."""
@@ -196,8 +183,7 @@ def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
 
 @internal
 def _iterate(ws: Any, c_q: float, c_v: float) -> int:
-    """The outer loop. Before each increment the constraints hold as well as it needs; how large the first one will be
-    is not known, so that a tenth of the tolerance has to be enough."""
+    """The outer loop."""
     control = vec(ws.control, CONTROL_SIZE)
     counters = ivec(ws.counters, COUNTERS_SIZE)
     rate = vec(ws.rate, RATE_SIZE)
@@ -205,9 +191,10 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
     start_inner = counters[INNER]
     previous = np.inf
     renewed = 0
-    status, enough = OUTER_SLOW, _slack_for(control, FIRST * control[NEWTON_TOLERANCE])
+    slack = inner_slack(control)
+    status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
-        status = inner_loop(ws, ws.lu_d, enough, np.inf, k > 0)
+        status = inner_loop(ws, ws.lu_d, slack, np.inf, k > 0)
         if status != OK:
             return status
         solve_increment(ws, ws.kkt)
@@ -236,13 +223,9 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
             if k == 0:
                 rate[OUTER_RATE] = known * RATE_GROWTH
             break
-        status, enough = OUTER_SLOW, _slack_for(control, norm * known)
+        status = OUTER_SLOW
     if status != OK:
         return status
-    # (a point that is not kept needs its constraints only as well as the rest of it is known)
-    exact = _slack_for(control, 0.0) if control[PASSING] > 0.0 else 1.0
-    status = inner_loop(ws, ws.lu_d, exact, exact, True)
+    status = inner_loop(ws, ws.lu_d, 1.0, 1.0, True)
     rate[LAST_INNER] = counters[INNER] - start_inner
-    if rate[FACTOR_AGE] <= 1.0:
-        rate[FRESH_INNER] = rate[LAST_INNER]
     return status

@@ -144,8 +144,7 @@ LINEAR = 14  # 1: the equations are linear, so that one iteration with their own
 RATE_SCALE = 15  # inverse of the model's own time, 1/s
 ENERGY_SCALE = 16  # work of its forces along its lengths, J
 STIFFNESS_SCALE = 17  # square of the rate of its fastest vibration, 1/s^2
-PASSING = 18  # 1: the point of the present stage is not kept, only what the formula makes of it
-CONTROL_SIZE = 19
+CONTROL_SIZE = 18
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
@@ -163,8 +162,7 @@ WORST_CONDITION = 11  # the largest of them in the present step
 CHOICE_CONDITION = 12  # when the redundant rows were last chosen, or the least since; 0: not known yet
 LOOKED_CONDITION = 13  # up to here it has been looked for a singular position in vain
 CONDITIONS = (CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION, LOOKED_CONDITION)
-FRESH_INNER = 14  # as LAST_INNER, of the first stage with new matrices
-RATE_SIZE = 15
+RATE_SIZE = 14
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)

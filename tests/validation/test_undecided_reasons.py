@@ -26,6 +26,7 @@ from tlismni.validation.comparisons.persistent_contact import Limits, _confirmed
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.exudyn_run import ExudynResult
 from tlismni.validation.metrics import ContactInterval
+from tlismni.validation.report import _sentence
 
 needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot be imported")
 
@@ -244,7 +245,13 @@ def test_an_undecided_case_says_in_the_overview_which_quantity_and_why(
     one = Row("tip", "m", 1.0 + difference, 1.0, 1e-3, "absolute", bars, doubt=doubt)
     sure = Row("time", "s", 1.0, 1.0, 1e-3, "absolute")
     assert one.verdict == "undecided" and one.why == said and sure.why == ""
-    found: Any = SimpleNamespace(ok=True, rows=(sure, one, one), to_dict=dict)
+    less = Row("hip", "m", 1.0 + 0.9 * difference, 1.0, 1e-3, "absolute", bars, doubt=doubt)
+    found: Any = SimpleNamespace(ok=True, rows=(sure, less, one), to_dict=dict)
     outcome = Outcome(CASES["bouncing_ball"][0], found, "", 1.0)
     assert outcome.verdict == "undecided"
     assert outcome.remark == outcome.to_dict()["reason"] == f"tip: {said} (and 1 more)"
+
+
+def test_sentences_of_reports_begin_with_a_capital_but_for_names() -> None:
+    said = {"the limit": "The limit.", "disk.z: far": "disk.z: far.", "exudyn: steps.": "exudyn: steps.", "": ""}
+    assert {text: _sentence(text) for text in said} == said
