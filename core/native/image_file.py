@@ -133,10 +133,10 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
     of_run = [x for x, own in zip(found.arrays, is_own, strict=True) if own]
     mine = _Segment([*of_run, values] if len(values) else of_run, kind_of, _first_place(sim.workspace.slots))
     lists: dict[tuple[int, int], list[NDArray[np.int64]]] = {}
-    for kind, segment in ((0, shared), (1, mine)):
+    for of, segment in ((0, shared), (1, mine)):
         for x in segment.arrays:
             for to, at in _relocate(x, segment, found, is_own, (shared, mine), addresses, symbols, empty):
-                lists.setdefault((kind, to), []).append(at)
+                lists.setdefault((of, to), []).append(at)
     if (0, 1) in lists:
         raise NativeError("memory that all runs share points into that of one: it cannot be written as an image")
     names = [
