@@ -121,7 +121,7 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
             addresses[address] = symbol
     pool = without_parts([sim.workspace.slots.pool])
 
-    def kind(x: NDArray[Any]) -> int:
+    def kind_of(x: NDArray[Any]) -> int:
         begin = np.array([begin_of(x)])
         if scratch.owner(begin)[0] >= 0:
             return ROOM
@@ -131,7 +131,7 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
 
     shared = _Segment([x for x, own in zip(found.arrays, is_own, strict=True) if not own], lambda x: TABLES)
     of_run = [x for x, own in zip(found.arrays, is_own, strict=True) if own]
-    mine = _Segment([*of_run, values] if len(values) else of_run, kind, _first_place(sim.workspace.slots))
+    mine = _Segment([*of_run, values] if len(values) else of_run, kind_of, _first_place(sim.workspace.slots))
     lists: dict[tuple[int, int], list[NDArray[np.int64]]] = {}
     for of, segment in ((0, shared), (1, mine)):
         for x in segment.arrays:
