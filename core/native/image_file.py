@@ -121,7 +121,7 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
             addresses[address] = symbol
     pool = without_parts([sim.workspace.slots.pool])
 
-    def kind(x: NDArray[Any]) -> int:
+    def kind_of(x: NDArray[Any]) -> int:
         begin = np.array([begin_of(x)])
         if scratch.owner(begin)[0] >= 0:
             return ROOM
@@ -131,12 +131,12 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
 
     shared = _Segment([x for x, own in zip(found.arrays, is_own, strict=True) if not own], lambda x: TABLES)
     of_run = [x for x, own in zip(found.arrays, is_own, strict=True) if own]
-    mine = _Segment([*of_run, values] if len(values) else of_run, kind, _first_place(sim.workspace.slots))
+    mine = _Segment([*of_run, values] if len(values) else of_run, kind_of, _first_place(sim.workspace.slots))
     lists: dict[tuple[int, int], list[NDArray[np.int64]]] = {}
-    for kind, segment in ((0, shared), (1, mine)):
+    for of, segment in ((0, shared), (1, mine)):
         for x in segment.arrays:
             for to, at in _relocate(x, segment, found, is_own, (shared, mine), addresses, symbols, empty):
-                lists.setdefault((kind, to), []).append(at)
+                lists.setdefault((of, to), []).append(at)
     if (0, 1) in lists:
         raise NativeError("memory that all runs share points into that of one: it cannot be written as an image")
     names = [

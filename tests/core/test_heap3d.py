@@ -47,7 +47,7 @@ def test_a_second_layer_costs_no_more_steps_than_its_motion():
     places += rng.uniform(-0.008, 0.008, (12, 3))
     sim = Simulation(box(places, radii), "ebdf")
     deepest = 0.0
-    for t in np.linspace(0.0, 0.31, 8)[1:]:
+    for t in np.linspace(0.0, 0.302, 8)[1:]:
         sim.advance(float(t))
         q = sim.workspace.arrays["q"][: 7 * 12].reshape(-1, 7)[:, :3]
         apart = np.linalg.norm(q[:, None] - q, axis=-1) - radii[:, None] - radii + np.diag(np.full(12, np.inf))
