@@ -4,7 +4,7 @@ A new block is a copy of the bytes in which addresses of what is in the block ar
 else (index arrays, compiled functions) stay, so that all blocks share that.
 """
 
-from collections.abc import Callable, ItemsView, Iterable, Iterator, KeysView, ValuesView
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -57,15 +57,15 @@ class Arrays(dict[str, Array]):
         self._all()
         return super().__iter__()
 
-    def keys(self) -> KeysView[str]:
+    def keys(self) -> Any:
         self._all()
         return super().keys()
 
-    def values(self) -> ValuesView[Array]:
+    def values(self) -> Any:
         self._all()
         return super().values()
 
-    def items(self) -> ItemsView[str, Array]:
+    def items(self) -> Any:
         self._all()
         return super().items()
 

@@ -25,7 +25,7 @@ from ..state.run_records import (
     call_trial,
 )
 from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
-from ..tables.levels import position_level, rate_size
+from ..tables.levels import position_level
 from .probe import BRACKET, HAPPENS, VIEW, look
 from .watch import friction_margin
 
@@ -38,9 +38,6 @@ in the limit of small steps: an event located this near to it lies at the row it
 LATER = 1.001
 """Events that the dense output puts this much later than the first one are searched for only if they turn out to lie
 before it: each search makes the step several times."""
-
-SLID = 2e-15
-"""Of the speeds: rounding of a sliding velocity, where its zero is found."""
 
 NEAREST = 3
 """Sizes of steps before and beyond the last event that was searched for, and the size that ends there."""
@@ -228,13 +225,7 @@ def _go_back(
 
 @internal
 def _by_force(dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: float, high: float, h: float) -> Any:
-    """(status, size, whether it happens) of an event at which a force, sliding, or what friction can hold ends."""
-    memory, nearest = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], vec(dr.nearest, NEAREST)[0]
-    slides = memory[MODE] == CLOSED and abs(memory[SLIDE]) == 1.0 and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0
-    if slides and ms.exact != 0 and not low <= nearest < high:
-        status, found, good = _by_speed(dr, ws, ms, lc, k, low, high, h)
-        if status != OK or good:
-            return status, found, good
+    """(status, size, whether it happens) of an event at which a force or what friction can still hold ends."""
     if high < h:
         status, f = _value(dr, ws, ms, lc, k, FORCE, sign, 0.0, high, h)
         if status != OK:
@@ -245,34 +236,6 @@ def _by_force(dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: floa
     if status != OK:
         return status, low, False
     return _root(dr, ws, ms, lc, k, FORCE, sign, 0.0, low, high, 0.0, h)
-
-
-@internal
-def _by_speed(dr: Any, ws: Any, ms: Any, lc: Any, k: int, low: float, high: float, h: float) -> Any:
-    """(status, size, found) of the step at whose end the sliding of closed contact k ends, by Newton's method on its
-    speed. Not found: where that does not fall plainly to zero between `low` and `high`, or the normal force is gone
-    there."""
-    slide = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE]
-    row, start = ivec(ws.contact_slide_rows, ws.n_contacts)[k], mat(lc.watch, ws.n_contacts, WATCH)[k]
-    speed, rate, x, floor = slide * start[3], slide * start[4], 0.5 * (low + high), SLID * rate_size(ws, k)
-    if low == 0.0 and speed > 0.0 and rate < 0.0 and low < -speed / rate < high:
-        x = -speed / rate
-    for _ in range(MOST_NEWTON):
-        status = make_trial(dr, ws, ms, lc, x, h)
-        if status != OK:
-            return status, x, False
-        speed, rate = slide * vec(ws.phid, ws.m_ext)[row], slide * vec(ws.phidd, ws.m_ext)[row]
-        if not rate < 0.0 or not vec(ws.monitor, ws.n_contacts)[k] > 0.0:
-            return OK, x, False
-        if abs(speed) <= floor:
-            # what ends one sliding often ends others
-            nearest = vec(dr.nearest, NEAREST)
-            nearest[0], nearest[1], nearest[2] = x * (1.0 - SAME_INSTANT), x * (1.0 + SAME_INSTANT), x
-            return OK, x, True
-        x -= speed / rate
-        if not low < x < high:
-            return OK, x, False
-    return OK, x, False
 
 
 @internal

@@ -24,7 +24,7 @@ from .begin_record import LOOK_AT_RANK, MOVED, MOVED_RATES, WHO
 from .failures import failure_of
 
 if TYPE_CHECKING:
-    from .simulation import Simulation
+    from .engine import Engine
 
 logger = logging.getLogger(__name__)
 
@@ -32,7 +32,7 @@ _MAY_REPEAT = (NO_POSITIONS, NO_VELOCITIES, SINGULAR_START)
 """What rows that repeat others may be the reason of."""
 
 
-def begin(sim: "Simulation") -> None:
+def begin(sim: "Engine") -> None:
     """Measure the model's scales and make a consistent start.
 
     Raises
@@ -49,7 +49,7 @@ def begin(sim: "Simulation") -> None:
     start(sim)
 
 
-def start(sim: "Simulation") -> None:
+def start(sim: "Engine") -> None:
     """A consistent start, with the model's scales as they have been measured. Raises as `begin`."""
     motions.begin(sim.workspace, sim.settings.t0)
     numbers, before = sim.beginning.numbers, sim.workspace.state_bytes.copy()
@@ -81,7 +81,7 @@ def start(sim: "Simulation") -> None:
     sim._handle_pending()
 
 
-def start_again(sim: "Simulation") -> None:
+def start_again(sim: "Engine") -> None:
     """Start anew with the present inputs, as if nothing had happened yet.
 
     Raises
@@ -99,7 +99,7 @@ def start_again(sim: "Simulation") -> None:
     start(sim)
 
 
-def _act(sim: "Simulation", act: Callable[[Any], Any]) -> int:
+def _act(sim: "Engine", act: Callable[[Any], Any]) -> int:
     """Let compiled code do its part, from the state as it is, with the memory that it wants; its status."""
     state, before = sim.workspace.state_bytes, sim.workspace.state_bytes.copy()
     while DECLINED < (status := int(act(sim.beginning.record.record))) <= WANT_MEMORY:
@@ -110,7 +110,7 @@ def _act(sim: "Simulation", act: Callable[[Any], Any]) -> int:
     return status
 
 
-def _failure(sim: "Simulation", status: int) -> ConsistencyError | SimulationError:
+def _failure(sim: "Engine", status: int) -> ConsistencyError | SimulationError:
     """Why there is no start; the workspace is where that was seen."""
     if status in (NO_POSITIONS, NO_VELOCITIES):
         return _far_from_constraints(sim, status == NO_VELOCITIES)
@@ -130,7 +130,7 @@ def _failure(sim: "Simulation", status: int) -> ConsistencyError | SimulationErr
     return failure_of(sim, status)
 
 
-def _far_from_constraints(sim: "Simulation", rates: bool) -> ConsistencyError:
+def _far_from_constraints(sim: "Engine", rates: bool) -> ConsistencyError:
     """The refusal of positions (or velocities) that violate the constraints beyond repair."""
     assembly, arrays, found = sim.assembly, sim.workspace.arrays, sim.beginning.found
     x, residual, level = ("v", "phid", "velocities v0") if rates else ("q", "phi", "positions q0")
@@ -150,7 +150,7 @@ def _far_from_constraints(sim: "Simulation", rates: bool) -> ConsistencyError:
     )
 
 
-def _violations(sim: "Simulation", residual: NDArray[np.float64]) -> str:
+def _violations(sim: "Engine", residual: NDArray[np.float64]) -> str:
     """The worst violated constraints by name."""
     worst: dict[str, float] = {}
     for row in sim.workspace.structure.active:

@@ -1,6 +1,6 @@
 """Workspace: the arrays of one running system and the record through which compiled code reaches them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -144,7 +144,8 @@ class Workspace:
         self._dropped_before: dict[frozenset[int], int] = {frozenset(): 0}
         self._views: dict[int, Structure] = {}
         self.dropped: frozenset[int] = frozenset()
-        self.arrays = arrays
+        self.arrays: Any = arrays
+        self._make_batches: Callable[[], list[ArrayRecord]] = list
         self._made_batches: list[ArrayRecord] | None = [self._batch(k) for k in range(len(a.batches))]
         arrays["batches"][:] = [batch.address for batch in self._batches]
         record_arrays = {k: v for k, v in arrays.items() if k not in ("signals", "units", "left_out")}
