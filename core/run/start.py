@@ -25,6 +25,7 @@ from .failures import failure_of
 
 if TYPE_CHECKING:
     from .engine import Engine
+    from .simulation import Simulation
 
 logger = logging.getLogger(__name__)
 
@@ -81,7 +82,7 @@ def start(sim: "Engine") -> None:
     sim._handle_pending()
 
 
-def start_again(sim: "Engine") -> None:
+def start_again(sim: "Simulation") -> None:
     """Start anew with the present inputs, as if nothing had happened yet.
 
     Raises
