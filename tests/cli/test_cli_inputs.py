@@ -48,7 +48,8 @@ def test_a_number(tlismni: Command, pushed: Path, tmp_path: Path) -> None:
 
 def test_what_is_wrong_is_said(tlismni: Command, pushed: Path, tmp_path: Path) -> None:
     run = ("run", pushed, "--t-end", 1)
-    assert "is an input of model 'pushed'" in tlismni(*run, "--set", "force=2").cause
+    as_parameter = tlismni(*run, "--set", "force=2").cause
+    assert "'force' is an input, not a parameter" in as_parameter and "--input force=VALUE" in as_parameter
     assert "there is no input ['farce']" in tlismni(*run, "--input", "farce=2").cause
     assert tlismni(*run, "--input", "force=two").code == 2
     assert "cannot be read" in tlismni(*run, "--input", tmp_path / "none.csv").cause

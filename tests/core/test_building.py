@@ -111,7 +111,8 @@ def test_partitions_are_what_they_are_defined_to_be(name):
         assert np.array_equal(present.dependent, dependent) and np.array_equal(structure.dependent, dependent)
         where = {int(x): k for k, x in enumerate(dependent)}
         free = [entry for entry in entries if int(entry[1]) not in where]
-        assert list(zip(*present.free, strict=True)) == free
+        of_free = (present.array(part) for part in ("free_row", "free_col", "free_slot"))
+        assert list(zip(*of_free, strict=True)) == free
         bound = [(i, where[int(j)], k) for i, j, k in entries if int(j) in where]
         held = [(i, j, k) for i, j, k in bound if max(i, j) < structure.m_held]
         two = bool(sim.assembly.rate_rows)

@@ -263,7 +263,6 @@ def test_images_that_are_none():
     [
         ("split_wall", "motion of a driver"),
         ("four_bar", "singular position"),
-        ("spinning_sphere", "singular position"),
     ],
 )
 def test_what_takes_python_is_refused(name, text):

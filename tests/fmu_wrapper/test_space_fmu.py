@@ -25,14 +25,11 @@ from tlismni.core import (
 )
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper import Slave, export_fmu
-from tlismni.fmu_wrapper.errors import ExportError
 from tlismni.fmu_wrapper.terminals import terminals
 from tlismni.models import load, names
 from tlismni.viewer.space.build import is_spatial
 
 SPATIAL = [name for name in names() if is_spatial(load(name).model)]
-NOT_NATIVE = {"spinning_sphere": "singular position"}
-"""What takes Python, and why."""
 STEPS = 12
 
 
@@ -58,13 +55,9 @@ def test_the_bits_of_a_run_in_this_process(name, tmp_path):
     assert validate_fmu(str(path)) == []
     sides = [opened(path, tmp_path / "python", version)]
     if LIBRARY is not None:
-        if name in NOT_NATIVE:
-            with pytest.raises(ExportError, match=NOT_NATIVE[name]):
-                export_fmu(scenario, tmp_path / "native.fmu", version, native=True, **settings)
-        else:
-            native = export_fmu(scenario, tmp_path / "native.fmu", version, native=True, **settings)
-            assert validate_fmu(str(native)) == []
-            sides.append(opened(native, tmp_path / "native", version))
+        native = export_fmu(scenario, tmp_path / "native.fmu", version, native=True, **settings)
+        assert validate_fmu(str(native)) == []
+        sides.append(opened(native, tmp_path / "native", version))
     slave = Slave(scenario, **settings)
     slave.setup()
     slave.enter_initialization()
