@@ -40,9 +40,7 @@ class Trials:
         self._blueprint, self._own = Blueprint(bare), bare.assembly
         self._others: dict[int, tuple[Model, Assembly]] = {}
         # all of them have the room that one start takes, so that few have to ask for more
-        bare.workspace.slots.ask_for_as_much_as(self.begun(model).workspace.slots)
-        bare.workspace.give_room()
-        self._blueprint = Blueprint(bare)
+        self._blueprint = self._blueprint.with_room(self.begun(model))
         self._probe = self.begun(model)
 
     def assembly(self, model: Model) -> Assembly:

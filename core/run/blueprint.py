@@ -53,12 +53,13 @@ class Blueprint:
 
     def with_room(self, other: Simulation) -> "Blueprint":
         """The same runs with as much memory for structures as `other` had to ask for; this one, if they have."""
-        workspace = self._sim.workspace
-        if np.all(other.workspace.slots.rooms <= workspace.slots.rooms):
+        if np.all(other.workspace.slots.rooms <= self._sim.workspace.slots.rooms):
             return self
-        workspace.slots.ask_for_as_much_as(other.workspace.slots)
-        workspace.give_room()
-        return Blueprint(self._sim)
+        # of a copy: other threads may be copying from this one
+        sim = self.simulation()
+        sim.workspace.slots.ask_for_as_much_as(other.workspace.slots)
+        sim.workspace.give_room()
+        return Blueprint(sim)
 
     @property
     def size(self) -> int:

@@ -20,7 +20,7 @@ from tlismni.core import (
     Step,
     compile_model,
 )
-from tlismni.core.run.blueprint import Blueprint
+from tlismni.core.run.blueprint import Blueprint, Unstarted
 from tlismni.models import load
 
 
@@ -174,6 +174,25 @@ def test_a_run_is_copied_in_the_middle_of_its_way():
     for copy in copies:
         assert seen(copy, [1.0, 2.0]) == expected
         assert copy.events == sim.events
+
+
+def test_more_room_for_later_runs_leaves_those_before_alone():
+    """A thread may be copying while another one gives room."""
+    model = load("bouncing_ball").model
+    first = Blueprint(Unstarted(model))
+    larger = first.simulation()
+    larger.begin()
+    assert first.with_room(first.simulation()) is first
+    larger.workspace.slots.ask(3.0)
+    larger.workspace.give_room()
+    wider = first.with_room(larger)
+    before, copies = seen(Simulation(model), [1.5]), [first.simulation(), first.simulation(), wider.simulation()]
+    pools = [copy.workspace.slots.pool for copy in copies]
+    assert pools[0].size == pools[1].size < pools[2].size
+    assert not any(np.shares_memory(x, y) for k, x in enumerate(pools) for y in pools[:k])
+    for copy in copies:
+        copy.begin()
+        assert seen(copy, [1.5]) == before
 
 
 def ball_equations():
