@@ -6,7 +6,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.friction_cones import FOUND, solve_friction_cones
 from ..linalg.small import call_least_norm
-from ..rounding import DIRECTION_RANK, STICKS_STILL
+from ..rounding import DIRECTION_RANK, FRICTION_NEAR, STICKS_STILL
 from .forces import cones_at
 from .records import COS_WAY, COUNT, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, col, whole
 
@@ -57,7 +57,7 @@ def push_in_space(ev: Any, ws: Any, p: Any) -> None:
 def _spread(least_norm: int, n: int, a: Any, b: Any, mu: Any, known: Any, p: Any, work: int) -> None:
     """Friction of contacts that stick is not unique where they hold each other: of all that leave the same motion take
     the one that is farthest from its limits, by the sum of squares, if it is within them all."""
-    m, fastest, held, wanted = 3 * n, 0.0, 0, 0.0
+    m, fastest, held = 3 * n, 0.0, 0
     for i in range(m):
         fastest = max(fastest, abs(b[i]))
     sticking, matrix = ivec(work, n), work + 8 * n
@@ -71,7 +71,6 @@ def _spread(least_norm: int, n: int, a: Any, b: Any, mu: Any, known: Any, p: Any
         if known[i] == 0.0 and mu[i] * p[i] > 0.0 and speed <= STICKS_STILL * fastest:
             sticking[held] = i
             held += 1
-            wanted = max(wanted, (p[n + i] ** 2 + p[2 * n + i] ** 2) / (mu[i] * p[i]) ** 2)
     if held < 2:
         return
     shares, effect = mat(matrix, m, 2 * held), mat(matrix + 8 * 2 * m * held, m, 1)
@@ -87,7 +86,8 @@ def _spread(least_norm: int, n: int, a: Any, b: Any, mu: Any, known: Any, p: Any
     largest = 0.0
     for k in range(held):
         largest = max(largest, found[2 * k, 0] ** 2 + found[2 * k + 1, 0] ** 2)
-    if largest >= max(wanted, 1.0):
+    # (their limits as well as the forces are known)
+    if largest > 1.0 + FRICTION_NEAR:
         return
     for k in range(held):
         for block in range(2):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of
 from tlismni.core.cones.friction_cones import FOUND, friction_cones_size, solve_friction_cones
+from tlismni.core.events.rates_in_space import _spread
 from tlismni.core.linalg.small import LEAST_NORM_SIGNATURE, least_norm
 
 
@@ -24,6 +25,25 @@ def solve(a, b, mu, base=None, known=None, way=None):
     status = _solve(address, n, a, b, np.asarray(mu, float), base, known, way, p, work.ctypes.data)
     assert status == FOUND
     return p, b + a @ p
+
+
+@numba.njit
+def _spread_out(address, n, a, b, mu, known, p, work):
+    _spread(address, n, a, b, mu, known, p, work)
+
+
+@pytest.mark.parametrize("rest", [0.0, 1e-24])
+def test_shares_of_friction_stay_in_their_cones(rest):
+    """Two contacts hold a body together, both at their limits: of all shares the least ones would be 1.2 and 0.6 of
+    these. A third contact carries nothing but rounding, with friction beyond its cone."""
+    mu, a = np.array([1.0, 0.5, 0.5]), np.eye(9)
+    a[3, 4] = a[4, 3] = 1.0
+    p = np.array([1.0, 1.0, rest, 1.0, 0.5, 0.75 * rest, 0.0, 0.0, 0.0])
+    b, work = -a @ p, np.zeros(friction_cones_size(3))
+    found = p.copy()
+    _spread_out(address_of(least_norm, LEAST_NORM_SIGNATURE), 3, a, b, mu, np.zeros(3), found, work.ctypes.data)
+    assert (a @ found)[:6] == pytest.approx((a @ p)[:6], abs=1e-12)
+    assert np.all(np.hypot(found[3:5], found[6:8]) <= mu[:2] * found[:2] + 1e-12)
 
 
 def off(p, w, mu, base=0.0):
