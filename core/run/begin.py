@@ -20,7 +20,7 @@ from ..stage.accelerations import solve_accelerations
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from ..tables.evaluate import evaluate_power, evaluate_residuals
-from ..tables.levels import position_level, rate_level
+from ..tables.levels import position_level, rate_level, rate_size
 from ..tables.projection import meet
 from .begin_measure import place
 from .begin_record import (
@@ -120,19 +120,18 @@ def _accelerate(ws: Any) -> bool:
 @internal
 def _find_touching(bg: Any, dr: Any, ws: Any) -> int:
     """Contacts that touch at the start are pending."""
-    rows, slides, law = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts), dr.law
+    rows, law = ivec(ws.contact_rows, ws.n_contacts), ivec(dr.law, ws.n_contacts)
     pending, scale = ivec(dr.pending, ws.n_contacts), vec(ws.row_scale, ws.m_ext)
     phi, phid, phidd = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext)
     for k in range(ws.n_contacts):
-        row, force = rows[k], ivec(law, ws.n_contacts)[k] == FORCE
+        row, force = rows[k], law[k] == FORCE
         gap, most = phi[row], START_OVERLAP * (position_level(ws) * scale[row])
         if gap < -most and not force:
             vec(bg.found, FOUND_SIZE)[WHO] = k
             return OVERLAPS
         if gap > most:
             continue
-        rate, along = phid[row], scale[slides[k]] if slides[k] >= 0 else 0.0
-        still = RATE_ROUNDING * (rate_level(ws) * max(scale[row], along))
+        rate, still = phid[row], RATE_ROUNDING * rate_size(ws, k)
         touches = rate <= still
         if force:
             touches = gap < -most or rate < -still

@@ -161,7 +161,6 @@ LEAST_CONDITION = 10  # the least of them in this structure; 0: none yet
 WORST_CONDITION = 11  # the largest of them in the present step
 CHOICE_CONDITION = 12  # when the redundant rows were last chosen, or the least since; 0: not known yet
 LOOKED_CONDITION = 13  # up to here it has been looked for a singular position in vain
-CONDITIONS = (CONDITION, LEAST_CONDITION, WORST_CONDITION, CHOICE_CONDITION, LOOKED_CONDITION)
 RATE_SIZE = 14
 
 # columns of `counters` (int64)
