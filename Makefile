@@ -51,7 +51,7 @@ dist: $(VENV)/.installed-dev
 	rm -rf build/dist
 	$(BIN)/python -m tlismni.core.ahead $(TARGETS:%=--target %) --output build/dist
 	for target in $(TARGETS); do \
-		rm -rf build/lib build/bdist.* build/temp.*; \
+		rm -rf build/lib* build/bdist.* build/temp.*; \
 		TLISMNI_AHEAD=build/dist TLISMNI_TARGET=$$target $(BIN)/pip wheel --disable-pip-version-check --quiet \
 			--no-deps --no-build-isolation -w dist . || exit 1; \
 	done
