@@ -82,9 +82,7 @@ def test_both_frictions_leave_each_other_alone():
     model = ball((speed, 0.0, 0.0), (0.0, speed / RADIUS, spin), turning)
     result = simulate(model, 0.5, "ebdf", rtol=1e-9, atol=1e-12)
     assert result["ball.vx"][-1] == pytest.approx(speed - 0.003 * G / (1.4 * RADIUS) * 0.5, abs=1e-7)
-    assert result["ball.angular_velocity_z"][-1] == pytest.approx(
-        spin - 0.001 * G / (0.8 * RADIUS**2), abs=1e-5
-    )
+    assert result["ball.angular_velocity_z"][-1] == pytest.approx(spin - 0.001 * G / (0.8 * RADIUS**2), abs=1e-5)
 
 
 def test_sliding_ends_in_rolling_as_without_but_for_the_torque():
