@@ -103,7 +103,7 @@ CASES: Mapping[str, Sequence[Case]] = {
     "spatial_slider_crank": (Case("spatial_slider_crank", coarse={"t_end": 1.0}),),
     "arm_stop": (
         Case("arm_stop", {"law": "hertz"}, t_end=0.42, step=2e-5, seconds=15.0,
-             coarse={"t_end": 0.3, "step": 1e-4, "tolerance": 1e-3}, 
+             coarse={"t_end": 0.3, "step": 1e-4, "tolerance": 1e-3},
              why="a blow of the tip and one of the elbow, by force"),
     ),
     "dropped_box": (
