@@ -9,11 +9,13 @@ from . import (  # noqa: F401
     forces,
     joints,
     loads3d,
+    reduced,
     scalar_contacts,
     scalar_forces,
     scalar_joints,
     space,
     space_contacts,
+    springs3d,
 )
 from .registry import Build, Column, ContactColumns, find_translator, translate, translates
 

@@ -13,6 +13,7 @@ from ...core.elements import (
     Distance3D,
     Fixed3D,
     Gear3D,
+    InterfaceFrame3D,
     Joint3D,
     Planar3D,
     PointMass3D,
@@ -28,8 +29,6 @@ from ...core.elements import (
     RollingSphere3D,
     Screw3D,
     Spherical3D,
-    SpringDamper3D,
-    TorsionSpring3D,
     Universal3D,
 )
 from ...core.elements.joint_coordinates3d import JointAngle, JointPosition
@@ -42,6 +41,7 @@ from ...core.model.markers import GROUND, Marker3D
 from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
 from ..errors import NotTranslatable
 from .bodies import node_columns
+from .reduced import on_interface
 from .registry import BodyItems, Build, Derived, no_equal, translates
 
 Work = Callable[[np.ndarray], np.ndarray]
@@ -53,7 +53,6 @@ no_equal("a Universal3D, where the joint bends little", ConstantVelocity3D)
 no_equal("a sphere on a ground plane with large friction", RollingSphere3D)
 no_equal("a thin rod between a Revolute3D and a Spherical3D", RevoluteSpherical3D)
 no_equal("an ObjectConnectorRigidBodySpringDamper with the same stiffness", Bushing3D, AxialSpring3D)
-no_equal("an ObjectConnectorTorsionalSpringDamper about the same axis", TorsionSpring3D)
 
 CONSTRAINED: dict[type[Joint3D], list[int]] = {
     Fixed3D: [1, 1, 1, 1, 1, 1],
@@ -154,6 +153,8 @@ def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = 
         return int(
             build.add("MarkerBodyPosition", bodyNumber=body, localPosition=[*build.bodies[marker.body].local, 0.0])
         )
+    if any(record.name == marker.body and isinstance(record, InterfaceFrame3D) for record in build.model.bodies):
+        return on_interface(marker, build, np.eye(3) if axes is None else axes)
     transformation = np.eye(4)
     transformation[:3, 3] = marker.point
     if axes is not None:
@@ -198,13 +199,3 @@ def rolling_disk(record: RollingDisk3D, build: Build) -> None:
     axes = (record.a.axes(), record.b.axes() @ YZ)
     markers = [placed(m, build, record.name, of) for m, of in zip((record.a, record.b), axes, strict=True)]
     build.add("ObjectJointRollingDisc", markerNumbers=markers, discRadius=record.radius)
-
-
-@translates(SpringDamper3D)
-def spring_damper(record: SpringDamper3D, build: Build) -> None:
-    """ObjectConnectorSpringDamper."""
-    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
-    build.add(
-        "ObjectConnectorSpringDamper", markerNumbers=markers, stiffness=record.stiffness, damping=record.damping,
-        referenceLength=record.natural_length,
-    )  # fmt: skip
