@@ -128,8 +128,8 @@ CASES: Mapping[str, Sequence[Case]] = {
     "tippe_top": (
         Case("tippe_top", {"law": "hertz"}, t_end=0.05, step=1e-5, seconds=15.0,
              coarse={"t_end": 0.02, "step": 4e-5, "tolerance": 1e-3},
-             why="the contact begins at rest, where laws that divide by the approach speed are different laws here and in "
-             "exudyn, which has no settling speed"),
+             why="the contact begins at rest, where laws that divide by the approach speed are different laws here and "
+             "in exudyn, which has no settling speed"),
     ),
     "heavy_top": (Case("heavy_top", coarse={"t_end": 0.3}),),
     "rolling_disk": (Case("rolling_disk", coarse={"t_end": 0.3}),),
