@@ -8,18 +8,19 @@ OUT := out/demo
 # what an installation depends on: the FMU shim is compiled by it
 SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/shim/*)
 
-.PHONY: demo test lint docs bench three dist clean help
+.PHONY: demo test library lint docs bench three dist clean help
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make demo   co-simulation of an exported FMU, and a cross-check with exudyn; results in $(OUT)"
-	@echo "make test   the tests"
-	@echo "make lint   ruff"
-	@echo "make docs   the docs as a site, in build/site"
-	@echo "make bench  speed and work-precision against exudyn (minutes)"
-	@echo "make dist   wheels with machine code for all platforms, and the sources' archive, in dist (tens of minutes)"
-	@echo "make three  viewer/page/three.js anew, from viewer/three; needs node and npm"
-	@echo "make clean  remove .venv, build products and caches"
+	@echo "make demo     co-simulation of an exported FMU, and a cross-check with exudyn; results in $(OUT)"
+	@echo "make test     the tests; before the first ones the solver's machine code"
+	@echo "make library  the solver's machine code anew, after the core has changed"
+	@echo "make lint     ruff"
+	@echo "make docs     the docs as a site, in build/site"
+	@echo "make bench    speed and work-precision against exudyn (minutes)"
+	@echo "make dist     wheels with machine code for all platforms, and the sources' archive, in dist (tens of minutes)"
+	@echo "make three    viewer/page/three.js anew, from viewer/three; needs node and npm"
+	@echo "make clean    remove .venv, build products and caches"
 
 demo: $(VENV)/.installed-all
 	$(BIN)/tlismni cosim pendulum_stop -o $(OUT)
@@ -28,8 +29,19 @@ demo: $(VENV)/.installed-all
 	@echo "The demo left in $(OUT):"
 	@ls $(OUT) | sed 's/^/  /'
 
-test: $(VENV)/.installed-dev
+# the solver's machine code is made once, before the first tests: they take half the time with it. Where the core's sources
+# have changed since, it is left alone, and the tests compile what they use; `make library` makes it anew.
+test: $(VENV)/.installed-dev | $(VENV)/.library
 	$(BIN)/python -m pytest
+
+$(VENV)/.library: | $(VENV)/.installed-dev
+	$(MAKE) library
+
+library: $(VENV)/.installed-dev
+	$(BIN)/pip install --disable-pip-version-check --quiet -e ".[cross]"
+	@echo "The solver's machine code is made: seven minutes on one core"
+	TLISMNI_LIBRARY=none $(BIN)/python -m tlismni.core.ahead
+	@touch $(VENV)/.library
 
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
@@ -51,7 +63,7 @@ dist: $(VENV)/.installed-dev
 	rm -rf build/dist
 	$(BIN)/python -m tlismni.core.ahead $(TARGETS:%=--target %) --output build/dist
 	for target in $(TARGETS); do \
-		rm -rf build/lib build/bdist.* build/temp.*; \
+		rm -rf build/lib* build/bdist.* build/temp.*; \
 		TLISMNI_AHEAD=build/dist TLISMNI_TARGET=$$target $(BIN)/pip wheel --disable-pip-version-check --quiet \
 			--no-deps --no-build-isolation -w dist . || exit 1; \
 	done
@@ -80,4 +92,4 @@ $(VENV)/.installed-dev: $(BIN)/python $(SOURCES)
 clean:
 	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
-	rm -f fmu_wrapper/*.so fmu_wrapper/*.dll fmu_wrapper/*.dylib
+	rm -f $(foreach place,fmu_wrapper core/compiled,$(place)/*.so $(place)/*.dll $(place)/*.dylib)

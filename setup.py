@@ -71,16 +71,26 @@ class BuildShim(build_ext):
         zig = [sys.executable, "-m", "ziglang", "cc"]
         command = [*zig, "-target", TARGETS[TARGET][0], "-s"] if TARGET else compiler() or zig
         self.spawn([*command, *FLAGS, "-o", str(target), *ext.sources, *SYSTEM_FLAGS])
+        for written_beside in target.parent.glob("*.lib"):  # what Windows programs would link with; nobody does
+            written_beside.unlink()
 
     def run(self) -> None:
         """The shim, and the machine code of the sources that are in the wheel."""
         super().run()
         if AHEAD and not self.inplace:
             root = Path(self.build_lib).resolve()
+            self.leave_none_of_other_platforms(root)
             if AHEAD == "1":
                 self.make_machine_code(root)
             else:
                 self.take_machine_code(Path(AHEAD), root)
+
+    @staticmethod
+    def leave_none_of_other_platforms(root: Path) -> None:
+        """What an earlier wheel has left in the same folder would be in this one too."""
+        for name in ("core/compiled/tlismni_core", "fmu_wrapper/tlismni_shim"):
+            for suffix in {".so", ".dll", ".dylib"} - {SUFFIX}:
+                (root / "tlismni" / f"{name}{suffix}").unlink(missing_ok=True)
 
     def take_machine_code(self, folder: Path, root: Path) -> None:
         """Put what was made before beside the sources."""

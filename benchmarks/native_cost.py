@@ -1,6 +1,7 @@
 """What FMUs without Python cost a C host, beside those with it: python benchmarks/native_cost.py [SCENARIO ...]
 
 Needs a C compiler, fmpy (for the standard's headers) and the library of machine code. One process a measurement.
+FMUs of others in the same host: native_peers.py.
 """
 
 import argparse
@@ -13,24 +14,13 @@ from pathlib import Path
 from typing import Any
 
 import fmpy
-from fmpy.fmi2 import FMU2Slave
+from native_host import figures, host, under_fmpy
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.errors import ExportError
 from tlismni.fmu_wrapper.export import fmi2_platform
 from tlismni.models import load, names
 
-HERE = Path(__file__).parent
-STEPS = 2000
 USUAL = ("bouncing_ball", "chain", "slider_crank_stop", "rod_rod")
-
-
-def host(folder: Path) -> Path:
-    """The C host, compiled."""
-    program = folder / "native_host"
-    headers = Path(fmpy.__file__).parent / "c-code"
-    command = ["cc", "-O2", f"-I{headers}", "-o", str(program), str(HERE / "native_host.c"), "-ldl", "-lpthread"]
-    subprocess.run(command, check=True)
-    return program
 
 
 def measure(program: Path, path: Path) -> dict[str, float]:
@@ -44,9 +34,8 @@ def measure(program: Path, path: Path) -> dict[str, float]:
     library = next(binaries.glob(f"{description.coSimulation.modelIdentifier}.*"))
     arguments = [library, (folder / "resources").as_uri(), description.guid, description.defaultExperiment.stopTime]
     arguments += [inputs[0] if inputs else 0, *outputs[:2]]
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True)
+    found = figures(program, arguments)
     fmpy_us = under_fmpy(library, folder / "resources", description.guid, inputs[:1], outputs[:2], 1e-12)
-    found = {line.split()[0]: float(line.split()[1]) for line in done.stdout.splitlines()}
     return {**found, "under_fmpy_us": fmpy_us}
 
 
@@ -62,42 +51,6 @@ def costs(scenarios: list[str]) -> None:
                 exported = time.perf_counter() - began
                 found = {"bytes": path.stat().st_size, "export_s": exported, **measure(program, path)}
                 print(name, "native" if native else "python", *(f"{k}={v:.4g}" for k, v in found.items()), flush=True)
-
-
-def peer() -> None:
-    """The same of an FMU written in C by hand."""
-    with tempfile.TemporaryDirectory() as folder:
-        program, library = host(Path(folder)), Path(folder, "ball.so")
-        headers = Path(fmpy.__file__).parent / "c-code"
-        sources = [str(HERE / "fmu_peers" / name) for name in ("ball.c", "ball_absent.c")]
-        subprocess.run(["cc", "-O2", "-shared", "-fPIC", f"-I{headers}", "-o", str(library), *sources], check=True)
-        arguments = [library, "file:///", "guid", 3.0, 0, 1, 2]
-        done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True)
-        share = under_fmpy(library, Path(folder, "resources"), "guid", [], [1, 2], 1e-12)
-        print(f"under fmpy, of which this is fmpy's own share: {share:.1f} us a step", flush=True)
-        print("by hand in C:", *("=".join(line.split()) for line in done.stdout.splitlines()), flush=True)
-
-
-def under_fmpy(library: Path, resources: Path, guid: str, inputs: list[int], outputs: list[int], h: float) -> float:
-    """CPU time, us, of set + doStep + get through fmpy, of steps of h (s)."""
-    fmu = FMU2Slave(guid=guid, unzipDirectory=str(resources.parent), modelIdentifier="x", libraryPath=str(library))
-    fmu.instantiate()
-    fmu.setupExperiment(startTime=0.0)
-    fmu.enterInitializationMode()
-    fmu.exitInitializationMode()
-    t, best = 0.0, float("inf")
-    fmu.doStep(t, 0.01)
-    t += 0.01
-    for _ in range(5):
-        began = time.process_time()
-        for _ in range(STEPS):
-            if inputs:
-                fmu.setReal(inputs, [0.0])
-            fmu.doStep(t, h)
-            fmu.getReal(outputs)
-            t += h
-        best = min(best, time.process_time() - began)
-    return 1e6 * best / STEPS
 
 
 def first_result() -> None:
@@ -143,7 +96,6 @@ def main() -> None:
         share()
     else:
         first_result()
-        peer()
         costs(given.scenarios)
 
 

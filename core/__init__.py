@@ -125,6 +125,7 @@ from .laws.friction import (
     StepFriction,
     TanhFriction,
     ThrelfallFriction,
+    TurningFriction,
 )
 from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
 from .methods.registry import METHODS
@@ -340,6 +341,7 @@ __all__ = [
     "Torus3D",
     "TriangleMesh3D",
     "Tsuji",
+    "TurningFriction",
     "Universal3D",
     "ZhiyingQishao",
     "axial_force",

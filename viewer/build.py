@@ -18,7 +18,8 @@ from .fixtures import add_fixtures
 from .forces import add_forces
 from .motion import Motion
 from .scene import Floats, Frame, Part, Scene
-from .sketches import Sketch, add_sketches
+from .sketches import Sketch
+from .sketching import add_sketches
 from .space.build import is_spatial, spatial_scene
 from .timing import EVEN, MOST_SAMPLES, choose_frames
 from .tracks import Tracks

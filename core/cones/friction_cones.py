@@ -229,7 +229,8 @@ def solve_friction_cones(
     Parameters
     ----------
     least_norm : address of `linalg.small.least_norm`.
-    a, b : inverse masses (3 n, 3 n) and motion without forces (3 n,), in the same order.
+    a, b : inverse masses (3 n, 3 n) and motion without forces (3 n,), in the same order; where normal forces come with
+        torques, a is not symmetric.
     mu, base : coefficients and least normal forces (n,).
     known, way : where not 0, the contact slides along the direction `way` (2, n).
     work : address of `friction_cones_size` numbers.
@@ -238,6 +239,8 @@ def solve_friction_cones(
         p[i] = 0.0
     for i in range(n):
         p[i] = base[i]
+    # one whose normal force comes with a torque is solved by sweeps too, which have a symmetric matrix for it
+    alone = n == 1 and a[0, 1] == a[1, 0] and a[0, 2] == a[2, 0]
     sweeps, wait, part, before, change, largest = 0, SWEEPS, 1.0, math.inf, 0.0, 0.0
     while sweeps < MOST_SWEEPS:
         for _ in range(wait):
@@ -245,7 +248,7 @@ def solve_friction_cones(
             sweeps += 1
             if not found:
                 return FAILED
-            if n == 1 or change <= FRICTION_ENOUGH * largest:
+            if alone or change <= FRICTION_ENOUGH * largest:
                 return FOUND
         kept = vec(work + 8 * (9 * n * n + 12 * n), 3 * n)
         for i in range(3 * n):

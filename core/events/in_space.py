@@ -37,14 +37,13 @@ from ..tables.switch import engage_modes
 from .forces import cones_at
 from .laws import POISSON
 from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
-from .rates_in_space import masses, push_in_space, read_in_space, read_rates_in_space, solve_cones_in_space
+from .rates_in_space import masses, pressing, push_in_space, read_in_space, read_rates_in_space, solve_cones_in_space
 from .reading import largest_acceleration, unresolved_speed
 from .records import (
     ACCELERATIONS,
     APART,
     APPROACH,
     AT_REST,
-    AXIS_NOW,
     B_N,
     B_S,
     B_T,
@@ -124,6 +123,7 @@ from .records import (
     whole,
 )
 from .resting import note_loaded
+from .torques_in_space import find_torques, press_with_torques
 from .touching import find_gradient, force_noise, refuse_immovable
 
 BEGINS = 2.0
@@ -159,6 +159,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return WANT_MEMORY
     # the rows of those that slid or stuck now tell both velocities
     evaluate_residuals(ws)
+    find_torques(ev, ws, count)
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
     evaluate_tangent(ws, 0.0, 0.0)
@@ -180,10 +181,6 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
     _respond(ev, ws, count)
     read_rates_in_space(ev, ws)
-    # (`shapes/gripping3d.py`: what an open contact says of its tangents)
-    monitor = vec(ws.monitor, 2 * ws.n_contacts)
-    for i in range(count):
-        col(ev, AXIS_NOW)[i] = monitor[ws.n_contacts + contacts[i]]
     return refuse_immovable(ev, ws, count)
 
 
@@ -219,6 +216,7 @@ def _respond(ev: Any, ws: Any, count: int) -> None:
     for i in range(2 * count):
         for j in range(2 * count):
             plane[i, j] = a[i, j]
+    press_with_torques(ev, ws, count)
 
 
 # ---- impact ---------------------------------------------------------------------------------------------------------
@@ -295,7 +293,7 @@ def _blow(ev: Any, dr: Any, ws: Any) -> int:
             if abs(b[count + i]) <= rounding[i] and abs(b[2 * count + i]) <= rounding[i]:
                 b[count + i] = b[2 * count + i] = 0.0
             col(ev, KNOWN)[i] = 0.0
-        if not solve_cones_in_space(ev, count, part, b, col(ev, KINETIC), base, col(ev, KNOWN), p):
+        if not solve_cones_in_space(ev, masses(ev, count), count, part, b, col(ev, KINETIC), base, col(ev, KNOWN), p):
             return NO_IMPACT
         push_in_space(ev, ws, p)
         for i in range(count):
@@ -419,8 +417,8 @@ def _falls_back(ev: Any, ws: Any, part: Any) -> bool:
 def _find_forces(ev: Any, part: Any, more: bool) -> int:
     """Forces of the contacts `part`; `more`: of others at rest too, which these press together again."""
     count, takes = whole(ev)[COUNT], col(ev, TAKES)
-    direction, b, p, a = col(ev, DIRECTION), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count), masses(ev, count)
-    fastest, any_slips = 0.0, False
+    direction, b, p = col(ev, DIRECTION), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
+    fastest, any_slips, a = 0.0, False, pressing(ev, count)
     for i in range(count):
         takes[i] = part[i]
         any_slips = any_slips or col(ev, SLIPS)[i] != 0.0
@@ -431,7 +429,7 @@ def _find_forces(ev: Any, part: Any, more: bool) -> int:
     for _ in range(2 * count + 2):
         for i in range(count):
             mu[i] = col(ev, KINETIC)[i] if direction[i] != 0.0 else col(ev, STATIC)[i]
-        if not solve_cones_in_space(ev, count, takes, b, mu, col(ev, BASE), direction, p):
+        if not solve_cones_in_space(ev, a, count, takes, b, mu, col(ev, BASE), direction, p):
             _name_jammed(ev)
             return NO_FORCES
         again = False

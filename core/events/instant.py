@@ -91,6 +91,7 @@ class Instant:
                 "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
                 "space_a": spatial * spatial, "space_b": spatial, "space_p": spatial,
+                "pressing_a": spatial * spatial, "torques": (spatial // 3) * n,
                 "space_room": spatial * spatial + 4 * spatial + friction_cones_size(most) if spatial else 0,
                 "slots_work": n + sum(len(b.coord) * len(b.tangent_pattern) for b in assembly.batches),
             },

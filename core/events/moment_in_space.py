@@ -19,7 +19,7 @@ from ..state.run_records import IMPACT
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
 from ..tables.evaluate import evaluate_energy
 from .forces import cones_at
-from .rates_in_space import masses, push_in_space, solve_cones_in_space
+from .rates_in_space import masses, pressing, push_in_space, solve_cones_in_space
 from .records import (
     AT_REST,
     B_N,
@@ -124,7 +124,7 @@ def decide_by_moment(ev: Any, dr: Any, ws: Any, ms: Any, part: Any, moment: floa
     count, least = whole(ev)[COUNT], moment * _fastest(ev)
     if least == 0.0:
         return False
-    b, p, a = vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count), masses(ev, count)
+    b, p, a = vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count), pressing(ev, count)
     mu, none, takes, base = col(ev, MU), col(ev, SPARE), col(ev, TAKES), col(ev, BASE)
     of_n, of_t, of_s = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE)
     for i in range(count):
@@ -133,7 +133,7 @@ def decide_by_moment(ev: Any, dr: Any, ws: Any, ms: Any, part: Any, moment: floa
         b[i] = (0.0 if abs(of_n[i]) <= col(ev, ROUNDING)[i] else of_n[i]) + moment * col(ev, B_N)[i]
         b[count + i] = of_t[i] + moment * col(ev, B_T)[i]
         b[2 * count + i] = of_s[i] + moment * col(ev, B_S)[i]
-    if not solve_cones_in_space(ev, count, takes, b, mu, base, none, p):
+    if not solve_cones_in_space(ev, a, count, takes, b, mu, base, none, p):
         return False
     for i in range(count):
         col(ev, P_N)[i], col(ev, P_T)[i], col(ev, P_S)[i] = p[i], p[count + i], p[2 * count + i]

@@ -8,13 +8,19 @@ from ..cones.friction_cones import FOUND, solve_friction_cones
 from ..linalg.small import call_least_norm
 from ..rounding import DIRECTION_RANK, FRICTION_NEAR, STICKS_STILL
 from .forces import cones_at
-from .records import COS_WAY, COUNT, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, col, whole
+from .records import COS_WAY, COUNT, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, col, whole
 
 
 @internal
 def masses(ev: Any, count: int) -> Any:
     """Inverse effective masses (3 count, 3 count): normals, first and second tangents, 1/kg."""
     return mat(ev.space_a, 3 * count, 3 * count)
+
+
+@internal
+def pressing(ev: Any, count: int) -> Any:
+    """The same for forces that last: normal forces come with their torques against rolling and spinning."""
+    return mat(ev.pressing_a if whole(ev)[TURNS] != 0 else ev.space_a, 3 * count, 3 * count)
 
 
 @internal
@@ -95,9 +101,12 @@ def _spread(least_norm: int, n: int, a: Any, b: Any, mu: Any, known: Any, p: Any
 
 
 @internal
-def solve_cones_in_space(ev: Any, count: int, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
-    """Forces p (3 count,) of the contacts `part` from the motion b (3 count,); the others get none."""
-    a, n, some = masses(ev, count), 0, ivec(ev.some, 3 * ev.most)
+def solve_cones_in_space(
+    ev: Any, a: Any, count: int, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any
+) -> bool:
+    """Forces p (3 count,) of the contacts `part` from inverse masses a and the motion b (3 count,); the others get
+    none."""
+    n, some = 0, ivec(ev.some, 3 * ev.most)
     for i in range(count):
         if part[i] != 0.0:
             some[n] = i

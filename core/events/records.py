@@ -43,7 +43,7 @@ INSTANT = np.dtype(
             "unsettled",                 # (n_contacts,) int64
             "massless_rates",            # (n_contacts,) float64
             # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
-            "space_a", "space_b", "space_p", "space_room",
+            "space_a", "space_b", "space_p", "space_room", "pressing_a", "torques",
         )
     ]
 )  # fmt: skip
@@ -96,7 +96,8 @@ STICKS = 3  # all friction was found below its limit at once
 WHO = 4  # the contact that a failure is of
 READY = 5  # accelerations have been looked at
 WITHOUT = 6  # 1: impacts are without restitution where `LOW` says so
-WHOLES = 7
+TURNS = 7  # 1: forces of contacts have torques against turning with them
+WHOLES = 8
 
 # what settling an instant returns
 SETTLED = 0

@@ -1,6 +1,7 @@
 """Base of all model records: frozen, validated, no unknown fields, no NaN."""
 
 import inspect
+import threading
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
@@ -27,6 +28,22 @@ else:
     ModelMetaclass = type(BaseModel)
 
 
+_BUILDING = threading.RLock()
+_builds = threading.local()
+
+
+def complete(record: type[BaseModel]) -> None:
+    """Let pydantic make what reads and checks a record. That takes a millisecond each, and few kinds are used by one
+    process, so it is left until a record is made; by one thread at a time, since pydantic does not see to that."""
+    if not record.__pydantic_complete__:
+        with _BUILDING:
+            _builds.busy = True
+            try:
+                record.model_rebuild()
+            finally:
+                _builds.busy = False
+
+
 class _DescribesItself(ModelMetaclass):
     """Class of the classes of records: their docstring, for `help()`, ends with their fields. It is made when it is
     asked for, since that reads their source."""
@@ -38,17 +55,21 @@ class _DescribesItself(ModelMetaclass):
             from .fields import described
 
             own = vars(cls).get("__doc__")
-            text = described(cls) if getattr(cls, "__pydantic_complete__", False) else ""
+            known = "__pydantic_fields__" in vars(cls) and not getattr(_builds, "busy", False)
+            text = described(cls) if known else ""
             return f"{inspect.cleandoc(own or '')}\n\n{text}" if text else own
 
 
 class Record(BaseModel, metaclass=_DescribesItself):
     """A validated, immutable piece of a model. JSON in and out; equality by value."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="strings")
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, ser_json_inf_nan="strings", defer_build=True
+    )
 
     def __init__(self, /, *values: Any, **data: Any) -> None:
         kind = type(self)
+        complete(kind)
         if values:
             fields = [name for name in kind.model_fields if name != "type"]
             raise ModelError(

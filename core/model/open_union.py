@@ -4,17 +4,17 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from difflib import get_close_matches
-from functools import reduce
+from functools import cached_property, reduce
 from inspect import get_annotations
 from operator import or_
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
-from pydantic_core import core_schema
+from pydantic_core import CoreSchema, core_schema
 
-from .base import Record
+from .base import Record, complete
 
 
 class OpenRecord(Record):
@@ -29,7 +29,8 @@ class OpenRecord(Record):
         if "type" not in get_annotations(cls):
             # as if the class had said: type: Literal["Name"] = "Name"
             cls.model_fields["type"] = FieldInfo(annotation=Literal[cls.__name__], default=cls.__name__)  # type: ignore[arg-type]
-            cls.model_rebuild(force=True)
+            if cls.__pydantic_complete__:
+                cls.model_rebuild(force=True)
 
 
 _meant: ContextVar[Mapping[str, type[OpenRecord]]] = ContextVar("meant", default=MappingProxyType({}))
@@ -61,27 +62,45 @@ class OpenUnion:
         self.known, self.base = known, base
         self.names = {record.model_fields["type"].default: record for record in known}
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        union: Any = Annotated[reduce(or_, self.known), Field(discriminator="type")]
-        return core_schema.no_info_wrap_validator_function(
-            self._own_first,
-            handler.generate_schema(union),
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        # not the schemas of all that is known: those are made when a record of their kind is first read
+        return core_schema.no_info_plain_validator_function(
+            self._read,
             # as the record that it is, not as the union: own fields are written too
             serialization=core_schema.simple_ser_schema("any"),
         )
 
-    def _own_first(self, value: Any, handler: core_schema.ValidatorFunctionWrapHandler) -> Any:
-        if isinstance(value, self.base) and type(value) not in self.known:
-            name = type(value).model_fields["type"].default
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return handler(self._union.core_schema)
+
+    @cached_property
+    def _union(self) -> TypeAdapter[Any]:
+        """The known records, told apart by pydantic, which knows how to say what is wrong with one of none."""
+        union: Any = Annotated[reduce(or_, self.known), Field(discriminator="type")]
+        return TypeAdapter(union)
+
+    def _read(self, value: Any) -> Any:
+        kind = type(value)
+        if self.names.get(getattr(value, "type", None)) is kind:
+            return value
+        if isinstance(value, self.base) and kind not in self.known:
+            name = kind.model_fields["type"].default
             if name in self.names:
                 raise ValueError(
                     f"type '{name}' is taken by a record of this library, which a model file would be read as: "
                     "give your class another name"
                 )
             return value
-        if isinstance(value, Mapping) and isinstance(value.get("type"), str) and value["type"] not in self.names:
-            return self._from_data(value)
-        return handler(value)
+        if isinstance(value, Mapping) and isinstance(value.get("type"), str):
+            if value["type"] not in self.names:
+                return self._from_data(value)
+            record = self.names[value["type"]]
+            complete(record)
+            try:
+                return record.__pydantic_validator__.validate_python(value)
+            except ValidationError:
+                pass  # said with the place where it is, below
+        return self._union.validator.validate_python(value)
 
     def _from_data(self, value: Mapping[str, Any]) -> Any:
         name = value["type"]

@@ -17,8 +17,9 @@
 extern "C" {
 #endif
 
-/* A library for Windows in which nothing asks to be seen shows everything, the compiled functions too. */
-#if defined _WIN32
+/* On Windows too, where compilers of the kind of gcc hide what is not said to be seen; `__declspec(dllexport)` would hide the
+ * compiled functions, which say nothing. */
+#if defined _MSC_VER && !defined __clang__
 #define TLISMNI_API
 #else
 #define TLISMNI_API __attribute__((visibility("default")))

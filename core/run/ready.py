@@ -15,7 +15,7 @@ from ..linalg.analyze import follow
 from ..linalg.record import FACTOR_SIGNATURE, LU_TYPE, SOLVE_SIGNATURE
 from ..linalg.row_pivoting import FEW_ENTRIES, make_elimination_ready
 from ..linalg.solve import factor, solve
-from ..location.dense_output import interpolate, query
+from ..location.dense_output import interpolate, query, query_motion
 from ..location.watch import find_events, friction_margin, remember
 from ..loop.drive import aim_now, drive, settle_pending
 from ..loop.loop import accept, set_weights_at, trial_step, violates_redundant
@@ -40,6 +40,8 @@ from ..tables.probe import set_probe
 from ..tables.projection import meet
 from .begin_now import measure_now, place_now, start_now
 from .begin_record import BEGIN
+from .normal_form import OF_COPY, normalise_buffer
+from .slopes import ALONG_ARGUMENTS, SLOPES_ARGUMENTS, along_inputs, in_time
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -52,6 +54,7 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (drive, (DRIVE_TYPE, types.boolean)),
     (aim_now, (DRIVE_TYPE,)),
     (query, (_WORKSPACE, _METHOD, _REAL)),
+    (query_motion, (_WORKSPACE, _METHOD, _REAL)),
     (interpolate, (_WORKSPACE, _METHOD, _REAL)),
     (write_sample, (_WORKSPACE, _VECTOR)),
     (recall, (_WORKSPACE, _METHOD, _WHOLE)),
@@ -83,6 +86,9 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (follow, (LU_TYPE, LU_TYPE)),
     (factor, FACTOR_SIGNATURE.args),
     (solve, SOLVE_SIGNATURE.args),
+    (along_inputs, ALONG_ARGUMENTS),
+    (in_time, SLOPES_ARGUMENTS),
+    (normalise_buffer, OF_COPY),
 )
 """Called by every run, with the types of their arguments."""
 

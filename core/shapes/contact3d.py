@@ -9,14 +9,15 @@ from pydantic import model_validator
 from ..elements.base import Form, Numbering, Row
 from ..elements.measure3d import DISTANCE, PLACE, columns_of, coordinates_of
 from ..laws import NewtonImpact
-from ..laws.friction import CoulombFriction, LuGreFriction
+from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
 from ..rounding import STILL
 from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
+from .frictionless3d import sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
-from .normal3d import SIZE, sphere3d_kernel
+from .normal3d import SIZE
 from .support3d import SUPPORT_NUMBERS
 
 
@@ -50,6 +51,17 @@ class Contact3D(ContactElement):
     rubbing_kernel: ClassVar[Any] = rubbing_sphere3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_sphere3d_kernel
     kind: ClassVar[int]
+
+    turning: TurningFriction | None = None
+    """What resists rolling and spinning; left out: nothing."""
+
+    @model_validator(mode="after")
+    def _slides_with_friction(self) -> "Contact3D":
+        if self.turning is not None and self.friction is None:
+            raise ValueError(
+                f"contact '{self.name}' has friction against turning, but slides without any: give it `friction` too"
+            )
+        return self
 
     @model_validator(mode="after")
     def _friction_in_space(self) -> "Contact3D":
@@ -94,9 +106,10 @@ class Contact3D(ContactElement):
         # small against all speeds that weight causes
         still = STILL * math.sqrt(numbering.length * (math.hypot(*numbering.gravity) or numbering.length))
         geometry = (float(self.kind), radius_a, radius_b, still, *extents, 0.0)
+        turning = (0.0, 0.0, 1.0) if self.turning is None else self.turning.parameters()
         return Row(
-            (*geometry, *law.parameters, *columns_of(a, b, numbering), *numbers), coordinates_of(a, b, numbering),
-            (*law.extra, address),
+            (*geometry, *law.parameters, *columns_of(a, b, numbering), *numbers, *turning),
+            coordinates_of(a, b, numbering), (*law.extra, address),
         )  # fmt: skip
 
 

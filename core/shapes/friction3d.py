@@ -16,11 +16,13 @@ from ..elements.measure3d import COLUMNS, product
 from ..laws.friction import call_friction
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
-from .held3d import MOVES
+from .held3d import MOVES, moves_on
 from .normal2d import act, asleep, evaluate_law
-from .normal3d import KIND, PACKED, SIZE, gap_of, hold
+from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
 from .sliding2d import FRICTION, FRICTION_ADDRESS
+from .spheres3d import press_spheres, pull_spheres, slip_of_spheres
 from .tangent3d import NORMAL, ROWS, U, W, add_directions, column, tangent_of_batch
+from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_arms
 
 SLOW = 1e-150
 """m/s: below it the direction of sliding is lost to rounding, and the law's slope at rest says the force."""
@@ -34,6 +36,31 @@ def _law(b: Any, e: int, speed: float, normal: float) -> Any:
         extra[FRICTION_ADDRESS], speed, normal,
         par[FRICTION], par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
     )  # fmt: skip
+
+
+@internal
+def rub_spheres(b: Any, e: int) -> None:
+    """The residual of element e of a batch, a pair of spheres, or a sphere on a half-space: gap and friction."""
+    par, extra, coord = (
+        mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, SIZE)[e]
+    )  # fmt: skip
+    motion, found = press_spheres(b, e)
+    pair, n, row = pair_of(b, e), motion[2][0], imat(b.row, b.count, 2)[e, 1]
+    slip = slip_of_spheres(b, par, coord, pair, motion)
+    slide = less(slip[0], times(dot(n, slip[0]), n))
+    speed = math.sqrt(dot(slide, slide))
+    vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
+    vec(b.phidd, b.m_extended)[row] = 0.0
+    vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = 0.0
+    if mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0], MODE] != ACTIVE:
+        return
+    normal = max(found, 0.0)
+    force, by_rate, _ = _law(b, e, speed, normal)
+    pull_spheres(b, coord, motion, slip, times(force / speed if speed > SLOW else by_rate, slide))
+    vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = -force
+    if resists_turning(par):
+        m, _ = turning_arms(b, par, coord, pair, n)
+        add_torque(b, coord, pair, times(-normal, m))
 
 
 @internal
@@ -61,13 +88,18 @@ def regularised(
     along = times(1.0 / speed, slide) if speed > SLOW else (0.0, 0.0, 0.0)
     over_speed = force / speed if speed > SLOW else by_rate
     pull = times(over_speed, slide)
+    m, power, turns_hard = (0.0, 0.0, 0.0), 0.0, resists_turning(par)
+    if turns_hard:
+        m, power = turning_arms(b, par, coord, held, n)
     if job == RESIDUAL:
         r = vec(b.r, b.n_extended)
         for i in range(SIZE):
             r[coord[i]] -= dot(column(work, W, i), pull)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = -force
+        if turns_hard:
+            add_torque(b, coord, held, times(-normal, m))
     elif job == POWER:
-        vec(b.a, b.n_extended)[extra[3]] -= force * speed
+        vec(b.a, b.n_extended)[extra[3]] -= force * speed - normal * power
     elif job == TANGENT:
         values, slot, coef = vec(b.values, b.n_values), imat(b.slot_s + 8 * SIZE * SIZE * e, SIZE, SIZE), vec(b.coef, 2)
         if not found > 0.0:
@@ -76,6 +108,7 @@ def regularised(
             int(par[KIND]), values, slot, vec(b.q, b.n_extended), coord, held, moves, work, beta_a, beta_b, size,
             pull, -coef[0],
         )  # fmt: skip
+        changes = np.empty(SIZE)
         for j in range(SIZE):
             by_n, of_v = column(work, NORMAL, j), column(work, W, j)
             of_q = less(column(work, U, j), times(across, by_n))
@@ -86,6 +119,7 @@ def regularised(
                 turn += hessian[i, j] * v[coord[i]]
             # penetration and its rate are less the gap and its rate
             of_normal = -coef[0] * (normal_d * gradient[j] + normal_dd * turn) - coef[1] * normal_dd * gradient[j]
+            changes[j] = -of_normal if found > 0.0 else 0.0
             slides = plus(times(coef[0], of_q), times(coef[1], of_v))
             forward = dot(along, slides)
             change = plus(
@@ -94,14 +128,20 @@ def regularised(
             )
             for i in range(SIZE):
                 values[slot[i, j]] -= dot(column(work, W, i), change)
+        if turns_hard:
+            add_torque_tangent(b, par, coord, held, slot, work, n, m, -normal, changes)
 
 
 @internal
 def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    par = mat(b.par, b.count, b.npar)
     for e in range(b.count):
         if asleep(b, e):
+            continue
+        if job == RESIDUAL and not moves_on(int(par[e, KIND])):
+            rub_spheres(b, e)
             continue
         hold(b, e, held, moves)
         g = gap_of(b, e, held, moves, gradient, hessian, packed)

@@ -10,10 +10,10 @@ from .coordinate_contact import (
     sliding_coordinate_contact_kernel,
 )
 from .friction3d import rubbing_sphere3d_kernel
+from .frictionless3d import sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
 from .line2d import bristle_disk_on_line_kernel, disk_on_line_kernel, sliding_disk_on_line_kernel
 from .normal2d import disk_on_disk_kernel, disk_on_half_plane_kernel
-from .normal3d import sphere3d_kernel
 from .segment2d import bristle_disk_on_segment_kernel, disk_on_segment_kernel, sliding_disk_on_segment_kernel
 from .sliding2d import sliding_disk_on_disk_kernel, sliding_disk_on_half_plane_kernel
 

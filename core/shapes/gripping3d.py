@@ -17,22 +17,27 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import internal
+from ..compiled.jit import inlined, internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
-from .held3d import MOVES
+from .held3d import MOVES, moves_on
 from .normal2d import act, asleep
-from .normal3d import KIND, PACKED, SIZE, gap_of, hold
+from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
+from .spheres3d import press_spheres, pull_spheres, slip_of_spheres, tangents_in_motion
 from .tangent3d import U, W, add_directions, column, product_with, tangent_of_batch
+from .turning3d import add_torque, add_torque_by, add_torque_tangent, resists_turning, turning_arms
 
 STILL_SPEED = 3
 """Column of the parameters: STILL, m/s."""
 TURNED = 0.2
 """Cosine of the angle by which the direction of sliding has turned when it is taken anew."""
+
+TURNS_HARD = 4.0
+"""Added to the axis that the tangents of an open contact are counted from: it resists turning."""
 
 
 @internal
@@ -61,8 +66,74 @@ def _levels(b: Any, e: int, x: float, y: float, x_rate: float, y_rate: float, sl
     phidd[first], phidd[first + 1] = x_rate - TURNED * power / size, faster
 
 
+@inlined
+def _state(par: Any, memory: Any, closed: bool) -> Any:
+    """(it slides, it sticks along both tangents, along the first one, speed that has no direction; -1: it does not
+    slide) of a contact."""
+    state = memory[SLIDE]
+    slides = closed and abs(state) == 1.0
+    return slides, closed and state == STICKS, closed and state == ALONG, (
+        max(par[STILL_SPEED], memory[SLOW]) if slides else -1.0
+    )  # fmt: skip
+
+
 @internal
-def grip(b: Any, job: int, e: int, held: Any, moves: Any, work: Any) -> None:
+def _forces(b: Any, memory: Any, row: Any, state: Any, t1: Any, t2: Any, x: Any, y: Any) -> Any:
+    """(force on the second shape, how it goes with the normal's multiplier, cosine and sine of its angle and their
+    derivatives by x and y) of a contact."""
+    lam, (slides, both, one, slow) = vec(b.lam, b.m_extended), state
+    share, pull = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    c, s, by_x, by_y = 1.0, 0.0, 0.0, 0.0
+    if slides or (memory[MODE] == CLOSED and memory[SLIDE] == IDLE):
+        if slides:
+            c, s, by_x, by_y = _direction(x, y, slow)
+        share = times(-memory[RATIO], plus(times(c, t1), times(s, t2)))
+        pull = times(lam[row[0]], share)
+    elif both or one:
+        pull = times(-lam[row[1]], t1)
+        if both:
+            pull = less(pull, times(lam[row[2]], t2))
+        else:
+            share = times(-memory[RATIO], t2)
+            pull = plus(pull, times(lam[row[0]], share))
+    return pull, share, c, s, by_x, by_y
+
+
+@inlined
+def _says_of_tangents(par: Any, axis: int) -> float:
+    """Of an open contact nobody asks for friction: what an instant has to know of its tangents stands there."""
+    return float(axis) + (TURNS_HARD if resists_turning(par) else 0.0)
+
+
+@internal
+def grip_spheres(b: Any, e: int) -> None:
+    """The residual of element e of a batch, a pair of spheres, or a sphere on a half-space: gap and friction."""
+    par, extra, coord = (
+        mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, SIZE)[e]
+    )  # fmt: skip
+    memory, row, pair = mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0]], imat(b.row, b.count, 3)[e], pair_of(b, e)
+    motion, _ = press_spheres(b, e)
+    slip, n, closed = slip_of_spheres(b, par, coord, pair, motion), motion[2][0], memory[MODE] == CLOSED
+    u, u_rate = slip[0], slip[1]
+    axis, angle = int(memory[AXIS]), memory[WAY]
+    if not closed or axis == 0:
+        axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
+    t1, t2, t1_rate, t2_rate = tangents_in_motion(b, coord, pair, axis, angle, motion)
+    x, y, state = dot(u, t1), dot(u, t2), _state(par, memory, closed)
+    pull, _, _, _, _, _ = _forces(b, memory, row, state, t1, t2, x, y)
+    _levels(b, e, x, y, dot(u_rate, t1) + dot(u, t1_rate), dot(u_rate, t2) + dot(u, t2_rate), state[3])
+    says = math.sqrt(dot(pull, pull)) if closed else _says_of_tangents(par, axis)
+    vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = says
+    if not closed:
+        return
+    pull_spheres(b, coord, motion, slip, pull)
+    if resists_turning(par):
+        m, _ = turning_arms(b, par, coord, pair, n)
+        add_torque(b, coord, pair, times(vec(b.lam, b.m_extended)[row[0]], m))
+
+
+@internal
+def grip(b: Any, job: int, e: int, gradient: Any, held: Any, moves: Any, work: Any) -> None:
     """The friction of element e of a batch, whose gap has been evaluated."""
     memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
     closed = memory[MODE] == CLOSED
@@ -77,38 +148,26 @@ def grip(b: Any, job: int, e: int, held: Any, moves: Any, work: Any) -> None:
         axis, angle = farthest_axis(b, coord, held, kind, n), 0.0
     t1, t2 = tangents(b, coord, held, axis, angle, n, work)
     x, y = dot(u, t1), dot(u, t2)
-    state = memory[SLIDE]
-    slides, slow = closed and abs(state) == 1.0, -1.0
-    both, one = closed and state == STICKS, closed and state == ALONG
-    # force on the second shape; how it goes with the normal's multiplier
-    share, pull = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    c, s, by_x, by_y = 1.0, 0.0, 0.0, 0.0
-    if slides or (closed and state == IDLE):
-        if slides:
-            slow = max(par[STILL_SPEED], memory[SLOW])
-            c, s, by_x, by_y = _direction(x, y, slow)
-        share = times(-memory[RATIO], plus(times(c, t1), times(s, t2)))
-        pull = times(lam[row[0]], share)
-    elif both or one:
-        pull = times(-lam[row[1]], t1)
-        if both:
-            pull = less(pull, times(lam[row[2]], t2))
-        else:
-            share = times(-memory[RATIO], t2)
-            pull = plus(pull, times(lam[row[0]], share))
+    state = _state(par, memory, closed)
+    _, both, one, slow = state
+    pull, share, c, s, by_x, by_y = _forces(b, memory, row, state, t1, t2, x, y)
+    m, power, turns_hard = (0.0, 0.0, 0.0), 0.0, closed and resists_turning(par)
+    if turns_hard:
+        m, power = turning_arms(b, par, coord, held, n)
     if job == RESIDUAL:
         a = vec(b.a, b.n_extended)
         u_rate = plus(product_with(work, W, a, coord), product_with(work, U, v, coord))
         t1_rate, t2_rate = product_with(work, T1, v, coord), product_with(work, T2, v, coord)
         _levels(b, e, x, y, dot(u_rate, t1) + dot(u, t1_rate), dot(u_rate, t2) + dot(u, t2_rate), slow)
         force = math.sqrt(dot(pull, pull))
-        # of an open contact nobody asks for friction: what an instant has to know of its tangents stands there
-        vec(b.monitor, b.n_monitor)[b.n_memory + k] = force if closed else float(axis)
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = force if closed else _says_of_tangents(par, axis)
         r = vec(b.r, b.n_extended)
         for i in range(SIZE):
             r[coord[i]] -= dot(column(work, W, i), pull)
+        if turns_hard:
+            add_torque(b, coord, held, times(lam[row[0]], m))
     elif job == POWER:
-        vec(b.a, b.n_extended)[extra[3]] -= dot(pull, u)
+        vec(b.a, b.n_extended)[extra[3]] -= dot(pull, u) + lam[row[0]] * power
     else:
         values, slot, c_q = (
             vec(b.values, b.n_values),
@@ -119,6 +178,11 @@ def grip(b: Any, job: int, e: int, held: Any, moves: Any, work: Any) -> None:
         add_directions(
             kind, values, slot, vec(b.q, b.n_extended), coord, held, moves, work, beta_a, beta_b, size, pull, -c_q
         )
+        if turns_hard:
+            for j in range(SIZE):
+                gradient[j] = 0.0
+            add_torque_tangent(b, par, coord, held, slot, work, n, m, lam[row[0]], gradient)
+            add_torque_by(b, coord, held, slot_jt, m)
         across, load = plus(times(-s, t1), times(c, t2)), -memory[RATIO] * lam[row[0]]
         for j in range(SIZE):
             of_v, by_t1, by_t2 = column(work, W, j), column(work, T1, j), column(work, T2, j)
@@ -148,10 +212,14 @@ def grip(b: Any, job: int, e: int, held: Any, moves: Any, work: Any) -> None:
 def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     work, held, moves = np.empty((FRAME_ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    par = mat(b.par, b.count, b.npar)
     for e in range(b.count):
         if asleep(b, e):
+            continue
+        if job == RESIDUAL and not moves_on(int(par[e, KIND])):
+            grip_spheres(b, e)
             continue
         hold(b, e, held, moves)
         g = gap_of(b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        grip(b, job, e, held, moves, work)
+        grip(b, job, e, gradient, held, moves, work)

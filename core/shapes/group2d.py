@@ -13,7 +13,7 @@ from typing import Literal
 
 from ..errors import ModelError
 from ..laws import ContactLaw
-from ..laws.friction import Friction
+from ..laws.friction import Friction, TurningFriction
 from ..model.base import Name, Record
 from ..model.markers import GROUND
 from .box2d import Box2D, DiskOnBox2D
@@ -42,6 +42,7 @@ def contacts_between(
     *,
     law: ContactLaw,
     friction: Friction | None = None,
+    turning: TurningFriction | None = None,
     except_bodies: Iterable[tuple[str, str]] = (),
 ) -> tuple[Contact2D | Contact3D, ...]:
     """Contacts of all pairs of `shapes` with each other, or of `shapes` with `others`, for a model's `contacts`.
@@ -50,6 +51,7 @@ def contacts_between(
     ----------
     name : the contacts are called name_body1_body2, with a number behind where two bodies have several.
     law, friction : of all of them.
+    turning : friction against rolling and spinning, of those in space.
     except_bodies : pairs of bodies that do not touch, such as those that a joint holds together.
 
     Raises
@@ -73,7 +75,7 @@ def contacts_between(
     made = []
     for label, touching in named.items():
         for k, (a, b) in enumerate(touching):
-            made.append(_contact(label if len(touching) == 1 else f"{label}_{k + 1}", a, b, law, friction))
+            made.append(_contact(label if len(touching) == 1 else f"{label}_{k + 1}", a, b, law, friction, turning))
     if not made:
         raise ModelError(
             f"group '{name}' has no two shapes that can touch: disks touch all shapes, boxes touch boxes and "
@@ -178,17 +180,18 @@ def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShap
 
 
 def _contact(
-    name: str, a: GroupShape, disk: GroupShape, law: ContactLaw, friction: Friction | None
-) -> Contact2D | Contact3D:
+    name: str, a: GroupShape, disk: GroupShape, law: ContactLaw, friction: Friction | None,
+    turning: TurningFriction | None,
+) -> Contact2D | Contact3D:  # fmt: skip
     if isinstance(a, Capsule3D) and isinstance(disk, Capsule3D | Sphere3D):
-        return CapsuleOnCapsule3D(name=name, a=a, b=disk, law=law, friction=friction)
+        return CapsuleOnCapsule3D(name=name, a=a, b=disk, law=law, friction=friction, turning=turning)
     if isinstance(a, HalfSpace3D) and isinstance(disk, SmoothShape3D):
-        return SmoothOnHalfSpace3D(name=name, plane=a, shape=disk, law=law, friction=friction)
+        return SmoothOnHalfSpace3D(name=name, plane=a, shape=disk, law=law, friction=friction, turning=turning)
     if isinstance(disk, Sphere3D):
         if isinstance(a, HalfSpace3D):
-            return SphereOnHalfSpace3D(name=name, plane=a, sphere=disk, law=law, friction=friction)
+            return SphereOnHalfSpace3D(name=name, plane=a, sphere=disk, law=law, friction=friction, turning=turning)
         if isinstance(a, Sphere3D):
-            return SphereOnSphere3D(name=name, a=a, b=disk, law=law, friction=friction)
+            return SphereOnSphere3D(name=name, a=a, b=disk, law=law, friction=friction, turning=turning)
     if not isinstance(disk, Disk2D):
         raise TypeError("the second shape of a pair is a disk")
     if isinstance(a, HalfPlane2D):

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from ..laws import ContactLaw
-from ..laws.friction import Friction
+from ..laws.friction import Friction, TurningFriction
 from ..model.base import Name, Record
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
@@ -43,6 +43,8 @@ class ContactGroup3D(Record):
     """What happens when a gap closes."""
     friction: Friction | None = None
     """What resists sliding; left out: nothing."""
+    turning: TurningFriction | None = None
+    """What resists rolling and spinning; left out: nothing."""
     except_bodies: tuple[tuple[str, str], ...] = ()
     """Pairs of bodies that do not touch, such as those that a joint holds together."""
 
@@ -54,5 +56,5 @@ class ContactGroup3D(Record):
         )  # fmt: skip
         return contacts_between(
             self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,
-            except_bodies=self.except_bodies,
+            turning=self.turning, except_bodies=self.except_bodies,
         )  # fmt: skip

@@ -6,13 +6,10 @@ parameters: `KIND`, the radii, the laws' from 7 on, those of the pair of markers
 
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS, measure
-from .held3d import HOLLOW, MOVES, SIZE, SUPPORT, bend_held, hold_segments, hold_support, measured, moves_on
-from .normal2d import act, asleep
+from .held3d import HOLLOW, SIZE, SUPPORT, bend_held, hold_segments, hold_support, measured, moves_on
 
 PACKED = SIZE * (SIZE + 1) // 2
 KIND, RADIUS_A, RADIUS_B = 0, 1, 2
@@ -75,15 +72,3 @@ def gap_of(b: Any, e: int, held: Any, moves: Any, gradient: Any, hessian: Any, p
             packed[k] = hessian[i, j]
             k += 1
     return g - par[RADIUS_A] - par[RADIUS_B]
-
-
-@internal
-def sphere3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    held, moves = np.empty(COLUMNS), np.empty((MOVES, SIZE))
-    for e in range(b.count):
-        if asleep(b, e):
-            continue
-        hold(b, e, held, moves)
-        g = gap_of(b, e, held, moves, gradient, hessian, packed)
-        act(b, job, e, g, gradient, packed)

@@ -137,7 +137,7 @@ def tangent_motion(
 
 
 @inlined
-def _add_lever(values: Any, slot: Any, first: int, factor: float, y: Any) -> None:
+def add_lever(values: Any, slot: Any, first: int, factor: float, y: Any) -> None:
     """values += factor d(E(p)^T y)/dp = factor [[0, -y^T], [y, y~]] in the Euler parameters from `first`."""
     y0, y1, y2 = factor * y[0], factor * y[1], factor * y[2]
     values[slot[first, first + 1]] -= y0
@@ -206,8 +206,8 @@ def add_directions(
             values[slot[10 + i, j]] += 2.0 * factor * on_b[i]
     _add_bend(values, slot, 3, -factor * size, force, constant(pair, POINT_A))
     _add_bend(values, slot, 10, factor * size, force, constant(pair, POINT_B))
-    _add_lever(values, slot, 3, -2.0 * factor, cross(beta_a, force))
-    _add_lever(values, slot, 10, 2.0 * factor, cross(beta_b, force))
+    add_lever(values, slot, 3, -2.0 * factor, cross(beta_a, force))
+    add_lever(values, slot, 10, 2.0 * factor, cross(beta_b, force))
 
 
 @inlined

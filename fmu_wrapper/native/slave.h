@@ -9,11 +9,10 @@
 
 #include "tlismni.h"
 
-#if defined _WIN32 /* as in tlismni.h */
-#define EXPORT
+#define EXPORT TLISMNI_API
+#if defined _WIN32
 #define PRINTF_LIKE(text, first)
 #else
-#define EXPORT __attribute__((visibility("default")))
 #define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
 #endif
 

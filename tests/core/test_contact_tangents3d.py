@@ -19,6 +19,7 @@ from tlismni.core import (
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
     TanhFriction,
+    TurningFriction,
 )
 from tlismni.core.shapes.gripping3d import TURNED
 from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, IDLE, MODE, RATIO, SLIDE, STICKS, WAY
@@ -50,6 +51,15 @@ CASES = {
     for where, ends in PLACES.items()
     for law, friction in ((HARD, None), (KELVIN, None), (KELVIN, TANH), (HUNT, PEAK), (Hertz(stiffness=2.0), TANH))
 }  # fmt: skip
+
+
+TURNS = TurningFriction(rolling=0.3, spinning=0.2, transition_speed=0.7)
+CASES |= {
+    f"{shape.__name__}, {where}, {law.type}, turning": (shape(law, *ends, friction=TANH, turning=TURNS), ACTIVE)
+    for shape in (on_plane, on_sphere)
+    for where, ends in PLACES.items()
+    for law in (KELVIN, HUNT)
+}
 
 
 def system(case):
@@ -103,8 +113,8 @@ GRIP = CoulombFriction(coefficient=0.4)
 SLIDES = {"sliding": 1.0, "sticking": STICKS, "held along one": ALONG, "carrying a share": IDLE, "open": None}
 
 
-def gripping(shape, where, slide):
-    contact = shape(HARD, *PLACES[where], friction=GRIP)
+def gripping(shape, where, slide, turning=None):
+    contact = shape(HARD, *PLACES[where], friction=GRIP, turning=turning)
     point = Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], contacts=[contact]))
     if slide is not None:
         twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
@@ -127,9 +137,10 @@ def forward(point, state):
 @pytest.mark.parametrize("shape", [on_plane, on_sphere])
 @pytest.mark.parametrize("where", PLACES)
 @pytest.mark.parametrize("slides", SLIDES)
-def test_tangent_of_coulomb_friction(shape, where, slides):
+@pytest.mark.parametrize("turning", [None, TURNS], ids=["", "turning"])
+def test_tangent_of_coulomb_friction(shape, where, slides, turning):
     """Rows of sticking at velocity level: their W is the derivative of phid by v."""
-    point = gripping(shape, where, SLIDES[slides])
+    point = gripping(shape, where, SLIDES[slides], turning)
     n, active = point.n, point.workspace.structure.active
 
     @quick

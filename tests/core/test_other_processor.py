@@ -1,10 +1,11 @@
-"""The library for another processor gives the bits of this one: aarch64 under qemu, where both are there.
+"""The library for another processor, system or C library gives the bits of this one, where there is what runs it:
 
-apt-get install qemu-user libc6-arm64-cross
-python -m tlismni.core.ahead --target linux-aarch64 --output build
+apt-get install qemu-user libc6-arm64-cross wine64 musl
+python -m tlismni.core.ahead --target linux-aarch64 --target musl-x86_64 --target windows-x86_64 --output build
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,38 +18,68 @@ from tlismni.core.native.c_sources import c_digest
 from tlismni.models import load
 
 HERE, NATIVE = Path(__file__).parent, Path(__file__).parents[2] / "core" / "native"
-SYSTEM = Path("/usr/aarch64-linux-gnu")
-OTHER = Path(os.environ.get("TLISMNI_LIBRARIES", "build"), "linux-aarch64", "tlismni_core.so").resolve()
+LIBRARIES = Path(os.environ.get("TLISMNI_LIBRARIES", "build")).resolve()
 QEMU = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
+ARM = Path("/usr/aarch64-linux-gnu")
+WINE = shutil.which("wine") or shutil.which("wine64")
+TARGETS = {
+    "linux-aarch64": ("aarch64-linux-gnu.2.17", [QEMU, "-L", ARM] if QEMU and ARM.is_dir() else None),
+    "musl-x86_64": ("x86_64-linux-musl", [] if Path("/lib/ld-musl-x86_64.so.1").exists() else None),
+    "windows-x86_64": ("x86_64-windows-gnu", [WINE] if WINE else None),
+}
+"""zig's name, and what programs are run with; None: nothing here runs them."""
 
 
-def missing():
+def missing(target):
     """What this needs and has not."""
     if LIBRARY is None or shutil.which("cc") is None:
         return "a C compiler and the library of machine code"
-    if QEMU is None or not SYSTEM.is_dir():
-        return "qemu-user and libc6-arm64-cross"
+    if TARGETS[target][1] is None:
+        return "what runs programs for it"
     if find_spec("ziglang") is None:
-        return "ziglang, which compiles for another processor"
-    if not OTHER.is_file() or any(x.encode() not in OTHER.read_bytes() for x in (core_digest(), c_digest())):
-        return f"the library for linux-aarch64 of these sources at {OTHER}"
+        return "ziglang, which compiles for it"
+    library = next(LIBRARIES.glob(f"{target}/tlismni_core.*"), None)
+    if library is None or any(x.encode() not in library.read_bytes() for x in (core_digest(), c_digest())):
+        return f"the library of these sources in {LIBRARIES}"
     return ""
 
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=f"needs {missing()}")
+def host_here(folder):
+    """The command of the host on this system."""
+    library = LIBRARY.path.resolve()
+    parts = [HERE / "bits_host.c", library, f"-Wl,-rpath,{library.parent}", "-lm"]
+    subprocess.run(["cc", "-O2", f"-I{NATIVE}", "-o", str(folder / "here"), *map(str, parts)], check=True)
+    return [str(folder / "here")]
 
 
-@pytest.fixture(scope="module")
-def programs(tmp_path_factory):
-    """The host for this processor and for the other one, as commands."""
-    folder, commands = tmp_path_factory.mktemp("bits"), []
-    zig = [sys.executable, "-m", "ziglang", "cc", "-target", "aarch64-linux-gnu.2.17"]
-    for compiler, library, before in ((["cc"], LIBRARY.path.resolve(), []), (zig, OTHER, [QEMU, "-L", SYSTEM])):
-        program = folder / str(len(commands))
-        parts = [HERE / "bits_host.c", library, f"-Wl,-rpath,{library.parent}", "-lm"]
-        subprocess.run([*compiler, "-O2", f"-I{NATIVE}", "-o", str(program), *map(str, parts)], check=True)
-        commands.append([*map(str, before), str(program)])
-    return commands
+def host_there(folder, target):
+    """The command of the host for the target."""
+    system, before = TARGETS[target]
+    library = folder / next(LIBRARIES.glob(f"{target}/tlismni_core.*")).name
+    shutil.copy(LIBRARIES / target / library.name, library)
+    linked = library
+    if target.startswith("windows"):  # programs are linked with a list of what the library has
+        functions = sorted(set(re.findall(r"\b(tlismni_\w+)\(", (NATIVE / "tlismni.h").read_text())))
+        names, linked = folder / "tlismni_core.def", folder / "libtlismni_core.a"
+        names.write_text("\n".join([f"LIBRARY {library.name}", "EXPORTS", *functions, ""]))
+        subprocess.run(
+            [sys.executable, "-m", "ziglang", "dlltool", "-m", "i386:x86-64", "-d", str(names), "-l", str(linked)],
+            check=True,
+        )
+    program = folder / "there.exe"
+    zig = [sys.executable, "-m", "ziglang", "cc", "-target", system, "-O2", f"-I{NATIVE}", "-o", str(program)]
+    parts = [HERE / "bits_host.c", linked, f"-Wl,-rpath,{folder}", "-lm"]
+    subprocess.run([*zig, *map(str, parts)], check=True)
+    return [*map(str, before), str(program)]
+
+
+@pytest.fixture(scope="module", params=TARGETS)
+def programs(request, tmp_path_factory):
+    """The host for this system and for another one, as commands."""
+    if missing(request.param):
+        pytest.skip(f"{request.param} needs {missing(request.param)}")
+    folder = tmp_path_factory.mktemp("bits")
+    return host_here(folder), host_there(folder, request.param)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +109,9 @@ def test_the_same_bits(programs, name, parameters, tmp_path):
     path.write_bytes(image)
     arguments = [str(path), repr(scenario.t_end), "40", *parameters]
     here, there = (
-        subprocess.run([*command, *arguments], capture_output=True, text=True, check=True).stdout
+        subprocess.run(
+            [*command, *arguments], capture_output=True, text=True, check=True, env={**os.environ, "WINEDEBUG": "-all"}
+        ).stdout
         for command in programs
     )
     assert here == there and len(here.splitlines()) == 41

@@ -14,6 +14,7 @@ from . import (  # noqa: F401
     scalar_joints,
     space,
     space_contacts,
+    springs3d,
 )
 from .registry import Build, Column, ContactColumns, find_translator, translate, translates
 

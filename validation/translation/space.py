@@ -28,8 +28,6 @@ from ...core.elements import (
     RollingSphere3D,
     Screw3D,
     Spherical3D,
-    SpringDamper3D,
-    TorsionSpring3D,
     Universal3D,
 )
 from ...core.elements.joint_coordinates3d import JointAngle, JointPosition
@@ -53,7 +51,6 @@ no_equal("a Universal3D, where the joint bends little", ConstantVelocity3D)
 no_equal("a sphere on a ground plane with large friction", RollingSphere3D)
 no_equal("a thin rod between a Revolute3D and a Spherical3D", RevoluteSpherical3D)
 no_equal("an ObjectConnectorRigidBodySpringDamper with the same stiffness", Bushing3D, AxialSpring3D)
-no_equal("an ObjectConnectorTorsionalSpringDamper about the same axis", TorsionSpring3D)
 
 CONSTRAINED: dict[type[Joint3D], list[int]] = {
     Fixed3D: [1, 1, 1, 1, 1, 1],
@@ -198,13 +195,3 @@ def rolling_disk(record: RollingDisk3D, build: Build) -> None:
     axes = (record.a.axes(), record.b.axes() @ YZ)
     markers = [placed(m, build, record.name, of) for m, of in zip((record.a, record.b), axes, strict=True)]
     build.add("ObjectJointRollingDisc", markerNumbers=markers, discRadius=record.radius)
-
-
-@translates(SpringDamper3D)
-def spring_damper(record: SpringDamper3D, build: Build) -> None:
-    """ObjectConnectorSpringDamper."""
-    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
-    build.add(
-        "ObjectConnectorSpringDamper", markerNumbers=markers, stiffness=record.stiffness, damping=record.damping,
-        referenceLength=record.natural_length,
-    )  # fmt: skip

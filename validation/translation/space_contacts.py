@@ -35,6 +35,11 @@ def sphere_contact(record: SphereOnHalfSpace3D | SphereOnSphere3D, build: Build)
             f"contact '{record.name}' has Coulomb friction in space, for which no sticking spring in two directions is "
             "written; a force law with a regularised friction is compared"
         )
+    if record.turning is not None:
+        raise NotTranslatable(
+            f"contact '{record.name}' has friction against rolling and spinning, which is not written for exudyn: "
+            "leave out `turning` for a comparison"
+        )
     for marker in record.markers():
         if marker.body != GROUND and len(build.bodies[marker.body].reference) not in (3, 7):
             raise NotTranslatable(

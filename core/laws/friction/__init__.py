@@ -14,6 +14,7 @@ from .lugre import LuGreFriction
 from .step import StepFriction
 from .tanh import TanhFriction
 from .threlfall import ThrelfallFriction
+from .turning import TurningFriction
 
 FRICTION_LAWS = (
     CoulombFriction,
@@ -39,6 +40,7 @@ __all__ = [
     "StepFriction",
     "TanhFriction",
     "ThrelfallFriction",
+    "TurningFriction",
     "call_friction",
     "friction_address",
 ]

@@ -1,0 +1,111 @@
+"""Friction against rolling and spinning of contacts in space: torques of `laws/friction/turning.py`.
+
+w = w_b - w_a is the angular velocity of the second shape on the first, w_n = n.w its part along the normal, with which
+it spins, w_T the rest, with which it rolls. The torque on the second shape is M = -F_N m, on the first -M,
+    m = rho w_T/sqrt(|w_T|^2 + w_s^2) + sigma n w_n/sqrt(w_n^2 + w_s^2),
+rho and sigma the arms in m, and w_s in rad/s.
+"""
+
+import math
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import vec
+from ..model.rotation3d import along, dot, four, less, onto, plus, times
+from .normal3d import NUMBERS, SIZE
+from .support3d import SUPPORT_NUMBERS
+from .tangent3d import NORMAL, add_lever, column, space_axes
+
+ROLLING = NUMBERS + SUPPORT_NUMBERS
+SPINNING, SLOW_TURNS = ROLLING + 1, ROLLING + 2
+"""Columns of the parameters: rho, sigma, w_s."""
+TURNING_NUMBERS = 3
+
+
+@internal
+def resists_turning(par: Any) -> bool:
+    """True if the contact with these parameters has a torque."""
+    return par[ROLLING] > 0.0 or par[SPINNING] > 0.0
+
+
+@internal
+def _spin(q: Any, v: Any, coord: Any, pair: Any) -> Any:
+    """w of the second body on the first."""
+    w_a = along(space_axes(four(q, coord, 3, pair[0])), four(v, coord, 3, 0.0))
+    return times(2.0, less(along(space_axes(four(q, coord, 10, pair[1])), four(v, coord, 10, 0.0)), w_a))
+
+
+@internal
+def _parts(par: Any, w: Any, n: Any) -> Any:
+    """(w_n, w_T, sqrt(w_n^2 + w_s^2), sqrt(|w_T|^2 + w_s^2))."""
+    w_n, slow = dot(n, w), par[SLOW_TURNS]
+    w_t = less(w, times(w_n, n))
+    return w_n, w_t, math.sqrt(w_n * w_n + slow * slow), math.sqrt(dot(w_t, w_t) + slow * slow)
+
+
+@internal
+def turning_arms(b: Any, par: Any, coord: Any, pair: Any, n: Any) -> Any:
+    """(m, m.w) at the current point of a batch."""
+    w = _spin(vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, pair)
+    w_n, w_t, of_n, of_t = _parts(par, w, n)
+    m = plus(times(par[ROLLING] / of_t, w_t), times(par[SPINNING] * w_n / of_n, n))
+    return m, dot(m, w)
+
+
+@internal
+def add_torque(b: Any, coord: Any, pair: Any, torque: Any) -> None:
+    """A torque on the second body against the first, to the residual."""
+    r, q = vec(b.r, b.n_extended), vec(b.q, b.n_extended)
+    on_a, on_b = (
+        onto(space_axes(four(q, coord, 3, pair[0])), torque),
+        onto(space_axes(four(q, coord, 10, pair[1])), torque),
+    )
+    for i in range(4):
+        r[coord[3 + i]] += 2.0 * on_a[i]
+        r[coord[10 + i]] -= 2.0 * on_b[i]
+
+
+@internal
+def add_torque_by(b: Any, coord: Any, pair: Any, slot: Any, m: Any) -> None:
+    """values[slot[j]] += derivative of the residual by f, the torque being f m: slot (14,)."""
+    values, q = vec(b.values, b.n_values), vec(b.q, b.n_extended)
+    on_a, on_b = onto(space_axes(four(q, coord, 3, pair[0])), m), onto(space_axes(four(q, coord, 10, pair[1])), m)
+    for i in range(4):
+        values[slot[3 + i]] += 2.0 * on_a[i]
+        values[slot[10 + i]] -= 2.0 * on_b[i]
+
+
+@internal
+def add_torque_tangent(
+    b: Any, par: Any, coord: Any, pair: Any, slot: Any, work: Any, n: Any, m: Any, force: float, changes: Any
+) -> None:
+    """values += derivative of the residual with the torque force m by the coordinates, force being -F_N; changes (14,):
+    of the force."""
+    q, v, values = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.values, b.n_values)
+    c_q, c_v, slow = vec(b.coef, 2)[0], vec(b.coef, 2)[1], par[SLOW_TURNS]
+    axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
+    spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
+    w = _spin(q, v, coord, pair)
+    w_n, w_t, of_n, of_t = _parts(par, w, n)
+    for j in range(SIZE):
+        local, by_n = j % 7 - 3, times(c_q, column(work, NORMAL, j))
+        change = (0.0, 0.0, 0.0)
+        if local >= 0:
+            # E(p) b = -E(b) p
+            if j < 7:
+                change = less(times(2.0 * c_q, spin_a[local]), times(2.0 * c_v, axes_a[local]))
+            else:
+                change = less(times(2.0 * c_v, axes_b[local]), times(2.0 * c_q, spin_b[local]))
+        along_n = dot(change, n) + dot(w, by_n)
+        across = less(change, plus(times(along_n, n), times(w_n, by_n)))
+        turn = less(times(1.0 / of_t, across), times(dot(w_t, across) / of_t**3, w_t))
+        drill = plus(times(slow * slow / of_n**3 * along_n, n), times(w_n / of_n, by_n))
+        by = plus(times(par[ROLLING], turn), times(par[SPINNING], drill))
+        by = plus(times(force, by), times(changes[j], m))
+        on_a, on_b = onto(axes_a, by), onto(axes_b, by)
+        for i in range(4):
+            values[slot[3 + i, j]] += 2.0 * on_a[i]
+            values[slot[10 + i, j]] -= 2.0 * on_b[i]
+    torque = times(force, m)
+    add_lever(values, slot, 3, 2.0 * c_q, torque)
+    add_lever(values, slot, 10, -2.0 * c_q, torque)
