@@ -9,6 +9,7 @@ from . import (  # noqa: F401
     forces,
     joints,
     loads3d,
+    reduced,
     scalar_contacts,
     scalar_forces,
     scalar_joints,
