@@ -2,10 +2,11 @@
 
     python benchmarks/heap3d.py [--spheres 20] [--end 2.0] [--most 300] [--only ours exudyn mujoco]
 
-Ours: contacts as constraints (e = 0.3, mu = 0.4), `ebdf`, one group for all pairs. exudyn's: `GeneralContact`, a spring
-and a damper that give the same restitution to two spheres of the mean mass, friction proportional to the speed below
-1 mm/s; explicit, at a hundredth of the contact's period. MuJoCo's: its soft constraints with default softness, steps of
-1 ms, elliptic cones; it knows no restitution, so that its heap bounces less (pip install mujoco, or leave it out with
+Ours: contacts as constraints (e = 0.3, mu = 0.4), `ebdf`, one group for all pairs; friction against rolling and
+spinning, since what rolls without it never rests. exudyn's, without these: `GeneralContact`, a spring and a damper that
+give the same restitution to two spheres of the mean mass, friction proportional to the speed below 1 mm/s; explicit, at
+a hundredth of the contact's period. MuJoCo's: its soft constraints with default softness, steps of 1 ms, elliptic
+cones, the same arms; it knows no restitution, so that its heap bounces less (pip install mujoco, or leave it out with
 --only). All hand out positions every 10 ms.
 """
 
@@ -26,12 +27,15 @@ from tlismni.core import (
     RigidBody3D,
     Simulation,
     Sphere3D,
+    TurningFriction,
 )
 
 SMALLEST, LARGEST, DENSITY, G = 0.03, 0.05, 2000.0, 9.81
 RESTITUTION, FRICTION = 0.3, 0.4
 WIDTH = 0.36
 """Of the square box, m: three spheres side by side."""
+SPIN = 0.5
+"""Arm against spinning, of that against rolling."""
 OUTPUT = 0.01
 STIFFNESS = 1e6
 """Of a contact between two spheres, N/m: a sphere's weight presses it by 6 um."""
@@ -54,8 +58,8 @@ def masses(radii: NDArray[np.float64]) -> NDArray[np.float64]:
     return DENSITY * 4.0 / 3.0 * math.pi * radii**3
 
 
-def our_model(start: Places, rest_ratio: float) -> Model:
-    """The spheres and the box."""
+def our_model(start: Places, rest_ratio: float, rolling: float) -> Model:
+    """The spheres and the box; rolling: arm of the friction against rolling, m, 0: none."""
     bodies, spheres = [], []
     for k, (centre, radius, mass) in enumerate(zip(*start, masses(start[1]), strict=True)):
         moment = 0.4 * mass * radius**2
@@ -71,6 +75,7 @@ def our_model(start: Places, rest_ratio: float) -> Model:
         name="heap", spheres=spheres, law=NewtonImpact(restitution=RESTITUTION, rest_ratio=rest_ratio),
         half_spaces=[HalfSpace3D(marker=Marker3D(point=point, attitude=Axes(z=normal))) for point, normal in walls],
         friction=CoulombFriction(coefficient=FRICTION),
+        turning=TurningFriction(rolling=rolling, spinning=SPIN * rolling) if rolling else None,
     )  # fmt: skip
     return Model(gravity=(0.0, 0.0, -G), bodies=bodies, groups=[group])
 
@@ -83,11 +88,11 @@ def overlap(centres: NDArray[np.float64], radii: NDArray[np.float64]) -> float:
     return -float(min(apart.min(), low.min()))
 
 
-def run_ours(start: Places, end: float, rest_ratio: float, most: float) -> None:
+def run_ours(start: Places, end: float, rest_ratio: float, most: float, rolling: float) -> None:
     """Run, for `most` seconds of CPU, and print what a demanding reader asks."""
     radii = start[1]
     begun = process_time()
-    sim = Simulation(our_model(start, rest_ratio), "ebdf")
+    sim = Simulation(our_model(start, rest_ratio, rolling), "ebdf")
     made, deepest, rests_at, said = process_time() - begun, -math.inf, math.nan, 0.0
     begun = process_time()
     for k in range(1, round(end / OUTPUT) + 1):
@@ -179,7 +184,7 @@ def run_exudyn(start: Places, end: float) -> None:
     told(tracks, speeds, radii)
 
 
-def run_mujoco(start: Places, end: float) -> None:
+def run_mujoco(start: Places, end: float, rolling: float) -> None:
     """The same with MuJoCo's soft constraints."""
     import mujoco
 
@@ -196,8 +201,9 @@ def run_mujoco(start: Places, end: float) -> None:
         for (x, y, z), radius, mass in zip(centres, radii, masses(radii), strict=True)
     )
     model = mujoco.MjModel.from_xml_string(
-        f'<mujoco><option timestep="1e-3" cone="elliptic" gravity="0 0 {-G}"/><default><geom friction="{FRICTION} 0 0" '
-        f'condim="3"/></default><worldbody>{walls}{balls}</worldbody></mujoco>'
+        f'<mujoco><option timestep="1e-3" cone="elliptic" gravity="0 0 {-G}"/><default><geom '
+        f'friction="{FRICTION} {SPIN * rolling} {rolling}" condim="{6 if rolling else 3}"/></default>'
+        f"<worldbody>{walls}{balls}</worldbody></mujoco>"
     )
     data = mujoco.MjData(model)
     steps, every = round(end / 1e-3), round(OUTPUT / 1e-3)
@@ -227,17 +233,20 @@ def main() -> None:
     parser.add_argument("--spheres", type=int, default=20)
     parser.add_argument("--end", type=float, default=2.0, help="s")
     parser.add_argument("--rest-ratio", type=float, default=1e-3)
+    parser.add_argument(
+        "--rolling", type=float, default=1e-3, help="arm of the friction against rolling, m (not exudyn)"
+    )
     parser.add_argument("--most", type=float, default=300.0, help="s of CPU for ours")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", nargs="+", choices=("mujoco", "exudyn", "ours"), default=("mujoco", "exudyn", "ours"))
     given = parser.parse_args()
     start = places(given.spheres, given.seed)
     if "mujoco" in given.only:
-        run_mujoco(start, given.end)
+        run_mujoco(start, given.end, given.rolling)
     if "exudyn" in given.only:
         run_exudyn(start, given.end)
     if "ours" in given.only:
-        run_ours(start, given.end, given.rest_ratio, given.most)
+        run_ours(start, given.end, given.rest_ratio, given.most, given.rolling)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ from .force_contact import settle_forces
 from .impact import strike
 from .in_space import begin_rest_in_space, find_forces_in_space, keep_in_space, open_in_space, strike_in_space
 from .prepare import use_modes
-from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, WHO, WHOLES
+from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
 from .resting import begin_rest, find_forces, keep
 from .touching import open_touching
 
@@ -118,9 +118,20 @@ class Instant:
 
     @property
     def inverse_masses(self) -> NDArray[np.float64]:
-        """Of the contacts that have been opened last, (2 contacts, 2 contacts), 1/kg: normals first."""
-        size = 2 * len(self.touching)
-        return self._record.part("a")[: size * size].reshape(size, size).copy()
+        """Of the contacts that have been opened last, (2 contacts, 2 contacts), 1/kg: normals first; in space the
+        tangent of a contact is that along which it slides, the first one where it does not."""
+        count = len(self.touching)
+        if self._assembly.tangents < 2:
+            return self._record.part("a")[: 4 * count * count].reshape(2 * count, 2 * count).copy()
+        table = self._record.part("table").reshape(COLUMNS, self.most)[:, :count]
+        along = np.stack([table[SLIDE_RATE], table[SWAY_RATE]])
+        speed = np.hypot(*along)
+        along = np.where(speed > 0.0, along / np.where(speed > 0.0, speed, 1.0), [[1.0], [0.0]])
+        turn = np.zeros((2 * count, 3 * count))
+        turn[:count, :count] = np.eye(count)
+        turn[count:, count : 2 * count], turn[count:, 2 * count :] = np.diag(along[0]), np.diag(along[1])
+        all_three = self._record.part("space_a")[: 9 * count * count].reshape(3 * count, 3 * count)
+        return np.asarray(turn @ all_three @ turn.T)
 
     @property
     def unsettled(self) -> NDArray[np.int64]:

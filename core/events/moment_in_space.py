@@ -36,7 +36,7 @@ from .records import (
     KNOWN,
     LEAVES,
     LOADED,
-    LOSS,
+    LOST_BEFORE,
     MOMENT,
     MU,
     P_N,
@@ -232,7 +232,7 @@ def _move(ev: Any, dr: Any, ws: Any, pressed: Any, slow: Any, slides: bool) -> N
     evaluate_energy(ws)
     before = energy[0]
     for i in range(count):
-        col(ev, SLIDE_BEFORE)[i], col(ev, SWAY_BEFORE)[i], col(ev, LOSS)[i] = slide[i], sway[i], loss[i]
+        col(ev, SLIDE_BEFORE)[i], col(ev, SWAY_BEFORE)[i], col(ev, LOST_BEFORE)[i] = slide[i], sway[i], loss[i]
     for turn in range(2):
         if turn == 1:
             push_in_space(ev, ws, p)
@@ -256,7 +256,7 @@ def _report(ev: Any, dr: Any, ms: Any, least: float) -> None:
         y = col(ev, SWAY_RATE)[i] - col(ev, SWAY_BEFORE)[i]
         if (x * x + y * y) ** 0.5 > FAST * least and col(ev, P_N)[i] > 0.0:
             friction = (p[count + i] ** 2 + p[2 * count + i] ** 2) ** 0.5
-            lost, apart = col(ev, STOP_LOSS)[i] - col(ev, LOSS)[i], max(col(ev, RATE)[i], 0.0)
+            lost, apart = col(ev, STOP_LOSS)[i] - col(ev, LOST_BEFORE)[i], max(col(ev, RATE)[i], 0.0)
             k = ivec(ev.contacts, ev.most)[i]
             report(dr, history_time(ms, 0), IMPACT, k, p[i], lost, 0.0, apart, 0.0, friction)
             whole(ev)[STRUCK] = 1

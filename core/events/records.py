@@ -81,8 +81,9 @@ instant_at = record_view(INSTANT_TYPE)
     SWAY_RATE, B_S, F_S, W_S, P_S, SWAY_BEFORE,
     COS_WAY, SIN_WAY,                  # direction of sliding, from the first tangent
     AXIS_NOW,                          # that angles are counted from (`shapes/frame3d.py`)
-) = range(79)  # fmt: skip
-COLUMNS = 79
+    LOST_BEFORE,                       # J: of STOP_LOSS, before the last that stopped
+) = range(80)  # fmt: skip
+COLUMNS = 80
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

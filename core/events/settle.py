@@ -59,6 +59,7 @@ from .breakpoint import pass_breakpoint
 from .crowding import count_instant
 from .in_space import BEGINS
 from .laws import FORCE, MASSLESS
+from .left_over import take_away_left
 from .massless import settle_massless
 from .meeting import meet_constraints
 from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
@@ -296,7 +297,7 @@ def _decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     if status != SETTLED:
         return status
     read_rates(ev, ws)
-    if _approach(ev, ms):
+    if _approach(ev, ws, ms):
         status = impact(ev, dr, ws, ms)
         if status != SETTLED:
             return status
@@ -353,17 +354,19 @@ def _any(ev: Any, k: int) -> bool:
 
 
 @internal
-def _approach(ev: Any, ms: Any) -> bool:
+def _approach(ev: Any, ws: Any, ms: Any) -> bool:
     """True if a touching contact approaches by more than what rounding leaves."""
     count, rate, rounding, largest = whole(ev)[COUNT], col(ev, RATE), col(ev, ROUNDING), 0.0
     for i in range(count):
         largest = max(largest, abs(rate[i]), abs(col(ev, SLIDE_RATE)[i]))
-    found = False
+    found, left = False, False
     for i in range(count):
         # what an impact of many leaves is no reason for another
         if count > MANY and -UNSOLVED * largest <= rate[i] < -rounding[i]:
-            rounding[i] = 2.0 * abs(rate[i])
+            rounding[i], left = 2.0 * abs(rate[i]), True
         found = found or (rate[i] < -rounding[i] and (col(ev, WAS)[i] == OPEN or ms.exact != 0))
+    if left and not found and ms.exact != 0:
+        take_away_left(ev, ws)
     return found
 
 

@@ -13,13 +13,14 @@ from tlismni.core import (
     RigidBody3D,
     Simulation,
     Sphere3D,
+    TurningFriction,
     simulate,
 )
 
 G, WIDTH = 9.81, 0.36
 
 
-def box(places, radii, speeds=None, friction=0.4):
+def box(places, radii, speeds=None, friction=0.4, turning=None):
     """Spheres of water's tenfold density in an open box; the law's restitution is 0.3."""
     bodies, spheres = [], []
     for k, (place, radius) in enumerate(zip(places, radii, strict=True)):
@@ -33,26 +34,37 @@ def box(places, radii, speeds=None, friction=0.4):
     group = ContactGroup3D(
         name="heap", spheres=spheres, law=NewtonImpact(restitution=0.3, rest_ratio=1e-3),
         half_spaces=[HalfSpace3D(marker=Marker3D(point=point, attitude=Axes(z=normal))) for point, normal in walls],
-        friction=CoulombFriction(coefficient=friction),
+        friction=CoulombFriction(coefficient=friction), turning=turning,
     )  # fmt: skip
     return Model(gravity=(0.0, 0.0, -G), bodies=bodies, groups=[group])
+
+
+def dropped(count, seed, **more):
+    """Spheres in layers of nine, above the floor; their radii."""
+    rng = np.random.default_rng(seed)
+    radii, k = rng.uniform(0.03, 0.05, count), np.arange(count)
+    places = np.stack([WIDTH * (k % 3 + 0.5) / 3, WIDTH * (k // 3 % 3 + 0.5) / 3, 0.08 + 0.13 * (k // 9)], axis=1)
+    places += rng.uniform(-0.008, 0.008, (count, 3))
+    return Simulation(box(places, radii, **more), "ebdf"), radii
+
+
+def deepest_until(sim, radii, times):
+    """The deepest overlap at these times, m."""
+    deepest = 0.0
+    for t in times:
+        sim.advance(float(t))
+        q = sim.workspace.arrays["q"][: 7 * len(radii)].reshape(-1, 7)[:, :3]
+        apart = np.linalg.norm(q[:, None] - q, axis=-1) - radii[:, None] - radii + np.diag(np.full(len(radii), np.inf))
+        low = np.minimum(q.min(axis=1), WIDTH - q[:, :2].max(axis=1)) - radii
+        deepest = max(deepest, -float(min(apart.min(), low.min())))
+    return deepest
 
 
 def test_a_second_layer_costs_no_more_steps_than_its_motion():
     """Twelve spheres, three of which roll between those below. Contacts reach the limit of their friction, and slide so
     slowly that no error control sees where to: some hundred steps, not thousands of next to nothing."""
-    rng = np.random.default_rng(0)
-    radii, k = rng.uniform(0.03, 0.05, 12), np.arange(12)
-    places = np.stack([WIDTH * (k % 3 + 0.5) / 3, WIDTH * (k // 3 % 3 + 0.5) / 3, 0.08 + 0.13 * (k // 9)], axis=1)
-    places += rng.uniform(-0.008, 0.008, (12, 3))
-    sim = Simulation(box(places, radii), "ebdf")
-    deepest = 0.0
-    for t in np.linspace(0.0, 0.302, 8)[1:]:
-        sim.advance(float(t))
-        q = sim.workspace.arrays["q"][: 7 * 12].reshape(-1, 7)[:, :3]
-        apart = np.linalg.norm(q[:, None] - q, axis=-1) - radii[:, None] - radii + np.diag(np.full(12, np.inf))
-        low = np.minimum(q.min(axis=1), WIDTH - q[:, :2].max(axis=1)) - radii
-        deepest = max(deepest, -float(min(apart.min(), low.min())))
+    sim, radii = dropped(12, 0)
+    deepest = deepest_until(sim, radii, np.linspace(0.0, 0.302, 8)[1:])
     values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
     lost = values["energy.dissipation"] + values["energy.impact_loss"]
     kinds = {event.kind for event in sim.events}
@@ -61,6 +73,21 @@ def test_a_second_layer_costs_no_more_steps_than_its_motion():
     assert lost > 1.0 and values["energy.balance"] == pytest.approx(0.0, abs=1e-6 * lost)
     # each instant begins a history anew, with some ten steps
     assert sim.stats["steps"] < 12 * len({event.t for event in sim.events})
+
+
+@pytest.mark.parametrize(
+    ("count", "seed", "end"), [(5, 0, 1.2), *(pytest.param(12, seed, 1.6, marks=pytest.mark.full) for seed in range(4))]
+)
+def test_a_heap_comes_to_rest(count, seed, end):
+    """With friction against rolling: what rolls without it goes on for ever."""
+    sim, radii = dropped(count, seed, turning=TurningFriction(rolling=1e-3, spinning=5e-4))
+    start = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    assert deepest_until(sim, radii, np.linspace(0.0, end, 25)[1:]) < 1e-12
+    values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    lost = values["energy.dissipation"] + values["energy.impact_loss"]
+    assert lost == pytest.approx(start["energy.potential"] - values["energy.potential"], rel=1e-6)
+    assert np.abs(sim.workspace.arrays["v"][: 7 * count]).max() < 1e-9
+    assert max(event.t for event in sim.events) < 0.98 * end
 
 
 def test_a_ball_that_rolls_along_a_wall_touches_it_without_force():
