@@ -126,8 +126,10 @@ CASES: Mapping[str, Sequence[Case]] = {
              "has no equal, the closed form is in the tests"),
     ),
     "tippe_top": (
-        Case("tippe_top", not_comparable="friction that carries on through the whole run, by user functions of small "
-             "steps, and contacts that begin at rest, where a law of approach speed has none"),
+        Case("tippe_top", {"law": "hertz"}, t_end=0.05, step=1e-5, seconds=15.0,
+             coarse={"t_end": 0.02, "step": 4e-5, "tolerance": 1e-3},
+             why="the contact begins at rest, where laws that divide by the approach speed are different laws here and "
+             "in exudyn, which has no settling speed"),
     ),
     "heavy_top": (Case("heavy_top", coarse={"t_end": 0.3}),),
     "rolling_disk": (Case("rolling_disk", coarse={"t_end": 0.3}),),

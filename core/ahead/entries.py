@@ -43,7 +43,7 @@ from ..loop import drive, loop, sample
 from ..methods import adams, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..repair import mend
-from ..run import begin_now, exchange, read_channels, slopes
+from ..run import begin_now, exchange, normal_form, read_channels, slopes
 from ..run.begin_record import BEGIN
 from ..shapes.support3d import SUPPORT_SIGNATURE, SmoothShape3D
 from ..stage import accelerations, joints
@@ -128,6 +128,8 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield read_channels.want, (types.from_dtype(exchange.EXCHANGE), _WHOLE)
     for function in (begin_now.begin_now, begin_now.measure_now, begin_now.place_now, begin_now.start_now):
         yield function, (types.from_dtype(BEGIN),)
+    yield normal_form.normalise_buffer, normal_form.OF_COPY
+    yield normal_form.normalise, normal_form.AT_SHIFT
     yield slopes.along_inputs, slopes.ALONG_ARGUMENTS
     yield slopes.in_time, slopes.SLOPES_ARGUMENTS
     yield dense_output.interpolate, (_WS, _MS, _REAL)

@@ -1,6 +1,7 @@
 """Guard against runs that events keep from going on: so many at one instant, or so many in next to no time."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..compiled.image import Take, twin
 from ..errors import SimulationError
@@ -18,15 +19,20 @@ GUARD_SIZE = 3
 
 
 class Progress:
-    """Counts events in time. It decides nothing but when to give up, so a restored run may begin it anew.
+    """Counts events in time. It decides when to give up, so its numbers belong to the state.
 
     Attributes
     ----------
-    numbers : (GUARD_SIZE,), which compiled code counts on too.
+    numbers : (GUARD_SIZE,), which compiled code counts on too; a part of the state's buffer.
     """
 
-    def __init__(self, start: float) -> None:
-        self.numbers = np.array([start, start, 0.0])
+    def __init__(self, start: float, numbers: NDArray[np.float64]) -> None:
+        self.numbers = numbers
+        self.begin(start)
+
+    def begin(self, start: float) -> None:
+        """Count from the time `start`, s."""
+        self.numbers[:] = start, start, 0.0
 
     def moved(self, take: Take) -> "Progress":
         """The same in a copy of its memory (`compiled/image.py`)."""

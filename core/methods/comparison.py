@@ -52,7 +52,7 @@ def _generalized_alpha(values: Mapping[str, Any]) -> Formula:
     gamma = 0.5 + af - am
     index, stage = FORMS[values["form"]]
     parameters = (am, af, 0.25 * (gamma + 0.5) ** 2, gamma, float(values["start"] == "shifted"), index)
-    return Formula(generalized_alpha_step, 0, parameters, stage=stage, exact=False)
+    return Formula(generalized_alpha_step, 0, parameters, stage=stage, carries=True, exact=False)
 
 
 _DAMPING = Option(-0.05, -1.0 / 3.0, 0.0, "numerical damping: 0 none, -1/3 most")

@@ -71,6 +71,8 @@ class Formula:
     """Outer loops that can solve its stages; a stage solver of its own knows newton alone."""
     weights: tuple[tuple[float, ...], ...] = ()
     """First content of the method record's `weights`, row by row."""
+    carries: bool = False
+    """True if it carries accelerations of its own from step to step, beside the true ones."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
 

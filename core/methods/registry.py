@@ -66,7 +66,7 @@ def _irk(name: str) -> Formula:
 
 def _hht(values: Mapping[str, Any]) -> Formula:
     alpha = values["alpha"]
-    return Formula(newmark_step, 0, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha))
+    return Formula(newmark_step, 0, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha), carries=True)
 
 
 METHODS = {
@@ -79,7 +79,7 @@ METHODS = {
                 "beta": Option(0.25, 0.01, 2.0, "beta; 1/4 with gamma 1/2 is the average acceleration"),
                 "gamma": Option(0.5, 0.5, 1.5, "gamma; above 1/2 it damps, at order 1"),
             },
-            lambda o: Formula(newmark_step, 0, (0.0, o["beta"], o["gamma"])),
+            lambda o: Formula(newmark_step, 0, (0.0, o["beta"], o["gamma"]), carries=True),
         ),
         Method(
             "hht",

@@ -52,7 +52,7 @@ typedef struct {
 
 /* The functions that the C code calls: the first ones of the image's list. */
 enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, LOCATE, ALONG, IN_TIME, BEGIN, MATRIX_WORDS,
-       SAVE_MATRICES, RESTORE_MATRICES, WANT, CALLED };
+       SAVE_MATRICES, RESTORE_MATRICES, WANT, NORMALISE, CALLED };
 
 typedef void (*Function)(void);
 
@@ -76,10 +76,15 @@ struct tlismni_model {
 /* What decides the future of a run besides its memory. */
 typedef struct {
     double now;
-    int64_t events, failed, begun; /* since the start */
-    int64_t stale;                 /* 1: the run has to begin anew before anything else */
-    int64_t beginning;             /* which start it goes on from: matrices of another one do not count */
+    int64_t failed, begun; /* since the start */
+    int64_t stale;         /* 1: the run has to begin anew before anything else */
 } Beside;
+
+/* What decides nothing, and goes with a state all the same. */
+typedef struct {
+    int64_t events;    /* since the start */
+    int64_t beginning; /* which start it goes on from: matrices of another one do not count */
+} Noted;
 
 struct tlismni_run {
     const tlismni_model *model;
@@ -88,6 +93,7 @@ struct tlismni_run {
     int64_t limit;
     int64_t beginnings; /* the last number that `beginning` had */
     Beside beside;
+    Noted noted;
 };
 
 /* Places in a run's memory. */

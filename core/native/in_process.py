@@ -8,9 +8,12 @@ from numpy.typing import NDArray
 
 from ..compiled.library import Library
 from ..errors import SimulationError
+from ..state.workspace_records import COUNTERS_SIZE
 from .errors import NativeError
 
 _ROOM = 500
+NOTED = 8 * (1 + COUNTERS_SIZE + 2)
+"""Bytes of a saved state before what decides: its size, counters, and the two numbers of `Noted` (state.c)."""
 _POINTER, _SIZE, _TEXT = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_char_p
 _SIGNATURES = {
     "tlismni_read_image": (_POINTER, _TEXT, _SIZE, _TEXT, _SIZE),
@@ -200,6 +203,10 @@ class NativeRun:
     def restore(self, saved: bytes) -> None:
         """Go back to what `save` has given. Raises SimulationError for what is none of this run's."""
         self._check(self._library.tlismni_restore(self.address, saved))
+
+    def deciding_bytes(self) -> bytes:
+        """Bytes that two runs of this image have in common exactly if their futures are the same."""
+        return self.save()[NOTED:]
 
     def pack(self) -> bytes:
         """The state, for any run of this image."""

@@ -26,13 +26,14 @@ HEAD = (
 
 CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "locate_now", "along_inputs", "in_time",
           "begin_now", "matrix_words", "save_matrices", "restore_matrices",
-          "want")  # fmt: skip
+          "want", "normalise")  # fmt: skip
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
     "exchange": "run.exchange", "tell": "run.exchange", "read": "run.exchange", "drive": "loop.drive",
     "settle_pending": "loop.drive", "repair_now": "repair.mend", "locate_now": "loop.drive",
     "along_inputs": "run.slopes", "in_time": "run.slopes",
     "begin_now": "run.begin_now", "want": "run.read_channels",
+    "normalise": "run.normal_form",
     **dict.fromkeys(("matrix_words", "save_matrices", "restore_matrices"), "tables.matrix_words"),
 }  # fmt: skip
 

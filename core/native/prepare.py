@@ -117,4 +117,4 @@ def _make_room(sim: Any) -> None:
 def _as_at_first(sim: Any) -> None:
     """Counters and the guard against endless events begin anew, as in a run that has not been restored."""
     sim.drive.counts[:] = 0
-    sim.guard.numbers[:] = sim.t, sim.t, 0.0
+    sim.guard.begin(sim.t)

@@ -22,7 +22,8 @@ size_t tlismni_run_size(const tlismni_model *model) {
 static void lay_out(tlismni_run *run, bool blank) {
     const tlismni_model *m = run->model;
     pieces_touch();
-    run->beside = (Beside){m->numbers.start, m->numbers.events, 0, 0, 0, 0};
+    run->beside = (Beside){m->numbers.start, 0, 0, 0};
+    run->noted = (Noted){m->numbers.events, 0};
     memcpy(run->own, m->own_bytes, (size_t)m->head.copied);
     if (!blank) {
         memset(run->own + m->head.copied, 0, (size_t)(m->head.own - m->head.copied));
@@ -111,7 +112,7 @@ const double *tlismni_channels(const tlismni_run *run) {
 }
 
 int64_t tlismni_event_count(const tlismni_run *run) {
-    return run->beside.events;
+    return run->noted.events;
 }
 
 int64_t tlismni_steps(const tlismni_run *run) {

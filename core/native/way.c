@@ -32,7 +32,7 @@ static void count_events(tlismni_run *run, int64_t first) {
     const double *rows = REALS(run, events);
     int64_t count = WHOLES(run, counts)[EVENTS];
     for (int64_t k = first; k < count; k++) {
-        run->beside.events += rows[EVENT_SIZE * k + 1] < (double)GAINS;
+        run->noted.events += rows[EVENT_SIZE * k + 1] < (double)GAINS;
     }
 }
 
@@ -157,12 +157,12 @@ tlismni_status way_go_on(tlismni_run *run, int64_t code, bool hold, int64_t firs
 
 /* Begin anew, with parameters or a start time that are not those of the image. */
 static tlismni_status begin_anew(tlismni_run *run) {
-    run->beside.beginning = ++run->beginnings;
+    run->noted.beginning = ++run->beginnings;
     int64_t status = call(run, BEGIN, run->model->places.begin);
     if (status != SETTLED) {
         return (tlismni_status)(status < RAISED ? SETTLING + status : status);
     }
-    run->beside.events = 0;
+    run->noted.events = 0;
     count_events(run, 0);
     run->beside.stale = 0;
     return TLISMNI_OK;

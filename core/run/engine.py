@@ -124,7 +124,7 @@ class Engine(ContactSide):
         self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
         self.name_arrays()
         self.fine_starter = step_address(FINE_STARTER)
-        self.guard = Progress(float(t0))
+        self.guard = Progress(float(t0), self.workspace.state["guard"][0])
         self.drive = Drive(self, self.guard)
         self.beginning = Beginning(self)
         set_control(self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays["control"])

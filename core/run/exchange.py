@@ -113,8 +113,9 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
         for j in range(INPUT_SIZE):
             before[k, j] = rows[k, j]
         if not _goes_on(ex, ws, k, t):
-            rows[k, 0], rows[k, INPUT_SIZE - 1] = wanted[k], t
-            rows[k, 1], rows[k, 2] = rates[k, FIRST], rates[k, SECOND]
+            rows[k, 0], rows[k, 1], rows[k, 2] = wanted[k], rates[k, FIRST], rates[k, SECOND]
+            # since when does not matter to what stays as it is
+            rows[k, INPUT_SIZE - 1] = t if rows[k, 1] != 0.0 or rows[k, 2] != 0.0 else 0.0
     if t == newest:
         recall(ws, ms, 0)
         status = OK

@@ -30,7 +30,7 @@ def set_inputs(sim: "Simulation", values: Mapping[str, float], derivatives: Mapp
     before, pending, moved = rows.copy(), sim.pending, motions.led_by(sim, changed)
     start = bool(moved) and motions.at_start(sim)
     for k, new in changed.items():
-        rows[k] = (*new, t)
+        rows[k] = (*new, t if any(new[1:]) else 0.0)  # since when does not matter to what stays as it is
     motions.lead(sim, moved)
     try:
         if start:

@@ -40,6 +40,7 @@ from ..tables.probe import set_probe
 from ..tables.projection import meet
 from .begin_now import measure_now, place_now, start_now
 from .begin_record import BEGIN
+from .normal_form import OF_COPY, normalise_buffer
 from .slopes import ALONG_ARGUMENTS, SLOPES_ARGUMENTS, along_inputs, in_time
 
 if TYPE_CHECKING:
@@ -87,6 +88,7 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (solve, SOLVE_SIGNATURE.args),
     (along_inputs, ALONG_ARGUMENTS),
     (in_time, SLOPES_ARGUMENTS),
+    (normalise_buffer, OF_COPY),
 )
 """Called by every run, with the types of their arguments."""
 

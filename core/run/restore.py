@@ -51,7 +51,9 @@ def set_state(sim: "Simulation", state: State) -> None:
     own = get_state(sim)
     check_state(sim, state, own)
     try:
-        _take(sim, snapshot_of(state.arrays, state.facts, sim.workspace.state.dtype, Fallback), state.events)
+        _take(
+            sim, snapshot_of(state.arrays, state.facts, state.past, sim.workspace.state.dtype, Fallback), state.events
+        )
     except BaseException as error:  # what is left may be half of each
         _take(sim, own.parts, own.events)
         if isinstance(error, ValueError):
@@ -87,6 +89,7 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
                 raise ModelError(f"the factors of the solver state are not {len(mine)} numbers but {len(stored)}")
             mine[:] = stored
     workspace.state_bytes[:] = parts.buffer
+    workspace.arrays["counters"][:] = parts.counters
     sim.t, sim.pending = parts.t, list(parts.pending)
     sim.start_open, sim.input_times = parts.start_open, parts.input_times
     sim.table.initial_energy = parts.initial_energy

@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
+from ..events.progress import GUARD_SIZE
 from ..location.probe import build_probes
 from ..location.watch import find_events
 from ..loop.controllers import CONTROLLERS
 from ..loop.sample import empty_buffer, sample_length
 from ..methods.registry import FINE_STARTER, STARTER, Formula
 from ..stage.accelerations import solve_accelerations
-from ..state.method_records import CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
+from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
 from ..state.run_records import (
     A2,
     ACCELERATIONS_SIGNATURE,
@@ -46,7 +47,8 @@ _LOG_ROWS = 4096
 
 def state_fields(assembly: Assembly) -> list[Field]:
     """The fields of the state that belong to formula and time loop: history of accepted rows and its ring, error norm
-    and choice of the order (`methods/records.py`), clock and watch over contacts (`records.py`)."""
+    and choice of the order (`methods/records.py`), clock and watch over contacts (`records.py`), and the guard against
+    endless events (`events/progress.py`)."""
     return [
         ("method_history", np.float64, (HISTORY_ROWS, row_length(assembly))),
         ("method_times", np.float64, (HISTORY_ROWS,)),
@@ -57,6 +59,7 @@ def state_fields(assembly: Assembly) -> list[Field]:
         ("method_choice", np.float64, (CHOICE_SIZE,)),
         ("clock", np.float64, (CLOCK_SIZE,)),
         ("watch", np.float64, (max(len(assembly.contacts), 1), WATCH)),
+        ("guard", np.float64, (GUARD_SIZE,)),
     ]
 
 
@@ -66,7 +69,7 @@ def build_method(formula: Formula, settings: Settings, state: NDArray[Any]) -> A
     arrays = {name: state[f"method_{name}"][0] for name in names}
     parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
-    parameters[ESTIMATE] = 1.0 if settings.step is None else 0.0
+    parameters[CARRIES], parameters[ESTIMATE] = float(formula.carries), float(settings.step is None)
     for row, values in zip(weights, formula.weights, strict=False):
         row[: len(values)] = values
     arrays["choice"][K] = formula.k

@@ -1,9 +1,10 @@
-"""Snapshot: what decides the future of a run, copied as it lies in memory.
+"""Snapshot: what decides the future of a run, copied as it lies in memory and put in normal form (`normal_form.py`).
 
 Its bulk is the state's buffer (`tables/state_fields.py`). The rest are the factors of the matrices, whose size changes
-with the structure, and what Python keeps.
+with the structure, and what Python keeps. Beside it goes what has been counted and noted so far, which decides nothing.
 """
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,12 +12,15 @@ from numpy.typing import NDArray
 
 from ..state.run_records import HANDLED_AT, HERE
 from ..tables.state_fields import STATE
+from .normal_form import normalise_buffer
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
 FACTORIZATIONS = ("kkt", "kkt_query", "lu_d", "lu_p")
 """The last one is there in models with velocity-level rows only."""
+OF_QUERY = 1
+"""Whose factors are computed anew whenever they are used: what decides of them are pivots and limits."""
 _OF_METHOD = ("history", "times", "ring", "parameters", "weights", "error", "choice")
 
 Key = tuple[frozenset[int], frozenset[int], frozenset[int]]
@@ -52,11 +56,14 @@ class Snapshot(NamedTuple):
     start_open: bool
     input_times: tuple[float, float]
     initial_energy: float
+    counters: NDArray[np.int64]
+    """Beside the state."""
     fallbacks: tuple[Any, ...]
+    """Beside the state."""
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """The arrays by name."""
-        names = (*STATE, *(f"method_{name}" for name in _OF_METHOD), "clock", "watch")
+        names = (*STATE, *(f"method_{name}" for name in _OF_METHOD), "clock", "watch", "guard")
         state = self.buffer.view(self.layout)
         arrays: dict[str, NDArray[Any]] = {name: state[name][0] for name in names}
         arrays["dependent"], arrays["probe"] = self.dependent, self.probe
@@ -79,6 +86,12 @@ class Snapshot(NamedTuple):
             "start_open": self.start_open,
             "input_times": [repr(x) for x in self.input_times],
             "initial_energy": repr(self.initial_energy),
+        }
+
+    def past(self) -> dict[str, Any]:
+        """What goes beside, as JSON data."""
+        return {
+            "counters": self.counters.tolist(),
             "fallbacks": [[f.t, f.outer, f.reason] for f in self.fallbacks],
         }
 
@@ -89,32 +102,44 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
     partition = structure.present
     if partition is None:
         raise RuntimeError("a simulation always has a partition once it is built")
+    buffer = workspace.state_bytes.copy()
+    normalise_buffer(drive.record.record, buffer.__array_interface__["data"][0])
+    factors = [
+        Factors(rows.copy(), columns, values.copy(), pivots.copy())
+        for rows, columns, values, pivots in (lu.parts() for lu in (
+            structure.kkt, structure.kkt_query, *partition.factorizations
+        ))
+    ]  # fmt: skip
+    places, _, values, pivots = factors[OF_QUERY]
+    if len(pivots):  # dense: chosen anew whenever it is used
+        values[:], pivots[:] = 0.0, np.arange(len(pivots))
+    else:
+        values[: -len(places)] = 0.0
+    now, handled_at = sim.t_internal, drive.goals.item(HANDLED_AT)
     return Snapshot(
-        workspace.state_bytes.copy(),
+        buffer,
         workspace.state.dtype,
-        tuple([
-            Factors(rows.copy(), columns, values.copy(), pivots.copy())
-            for rows, columns, values, pivots in (lu.parts() for lu in (
-                structure.kkt, structure.kkt_query, *partition.factorizations
-            ))
-        ]),
+        tuple(factors),
         partition.dependent,
         structure.arrays["probe"].copy(),
         workspace.key,
         workspace.dropped,
         sim.t,
         tuple(sim.pending),
-        (drive.goals.item(HANDLED_AT), drive.counts.item(HERE)),
+        (handled_at, drive.counts.item(HERE)) if handled_at == now else (math.nan, 0),
         sim.outer,
         sim.start_open,
         sim.input_times,
         sim.table.initial_energy,
+        workspace.arrays["counters"].copy(),
         tuple(sim.fallbacks),
     )  # fmt: skip
 
 
-def snapshot_of(arrays: dict[str, NDArray[Any]], facts: dict[str, Any], layout: np.dtype, fallback: Any) -> Snapshot:
-    """The parts from arrays and facts that have been read; `fallback` makes one of those.
+def snapshot_of(
+    arrays: dict[str, NDArray[Any]], facts: dict[str, Any], past: dict[str, Any], layout: np.dtype, fallback: Any
+) -> Snapshot:
+    """The parts from arrays, facts and `past` that have been read; `fallback` makes one of those.
 
     Raises
     ------
@@ -144,5 +169,6 @@ def snapshot_of(arrays: dict[str, NDArray[Any]], facts: dict[str, Any], layout: 
         bool(facts["start_open"]),
         (float(facts["input_times"][0]), float(facts["input_times"][1])),
         float(facts["initial_energy"]),
-        tuple(fallback(*entry) for entry in facts["fallbacks"]),
+        np.array(past["counters"], dtype=np.int64),
+        tuple(fallback(*entry) for entry in past["fallbacks"]),
     )

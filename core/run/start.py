@@ -80,6 +80,7 @@ def start(sim: "Engine") -> None:
     sim._sample_now()
     sim.pending = sim.drive.take_pending()
     sim._handle_pending()
+    sim.guard.begin(sim.t)  # what happens at the start does not count
 
 
 def start_again(sim: "Simulation") -> None:

@@ -1,7 +1,10 @@
 """State is a value: everything that decides the future of a run, to copy, compare, store and restore bit for bit.
 
-As bytes: a checksum (32), the length of the header (8, little endian), the header (JSON: format, model, facts, name,
-type and shape of each array), the arrays' numbers one after the other. Nothing may follow.
+Beside it goes what a run has counted and noted so far (events, statistics, fallbacks), which decides nothing: states
+are equal exactly if their futures are.
+
+As bytes: a checksum (32), the length of the header (8, little endian), the header (JSON: format, model, facts, what
+goes beside, name, type and shape of each array), the arrays' numbers one after the other. Nothing may follow.
 """
 
 import hashlib
@@ -16,26 +19,28 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..events import Event
 
-FORMAT = "tlismni-state-5"
+FORMAT = "tlismni-state-6"
 TYPES = ("<f8", "<i8")
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A state of a `Simulation`.
+    """A state of a `Simulation`. Two are equal exactly if their futures are, whatever came before.
 
     Attributes
     ----------
     arrays : copies of the deciding arrays, by name.
     facts : the deciding scalars and lists (JSON data).
     model_hash : of the model and the method's settings; a state fits only its own.
-    events : the events so far; states of one run share the tuple while none is added.
+    events : the events so far, beside the state; states of one run share the tuple while none is added.
+    past : counters and fallbacks so far, beside the state (JSON data).
     """
 
     arrays: dict[str, NDArray[Any]]
     facts: dict[str, Any]
     model_hash: str
     events: tuple[Event, ...] = ()
+    past: dict[str, Any] = field(default_factory=dict, compare=False)
     foreign: bool = field(default=False, compare=False)
     """Made from bytes, which anybody may have written: what it holds is looked at before it is used."""
 
@@ -50,7 +55,7 @@ class State:
         return state
 
     def __getattr__(self, name: str) -> Any:
-        if self.parts is None or name not in ("arrays", "facts"):
+        if self.parts is None or name not in ("arrays", "facts", "past"):
             raise AttributeError(f"a State has no attribute '{name}'")
         value = getattr(self.parts, name)()
         self.__dict__[name] = value
@@ -59,27 +64,25 @@ class State:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, State):
             return NotImplemented
-        return (
-            self.model_hash == other.model_hash
-            and json.dumps(self._all_facts(), sort_keys=True) == json.dumps(other._all_facts(), sort_keys=True)
-            and self.arrays.keys() == other.arrays.keys()
-            and all(x.tobytes() == other.arrays[name].tobytes() for name, x in self.arrays.items())
-        )
+        return self.deciding_bytes() == other.deciding_bytes()
 
     def __hash__(self) -> int:
-        return hash(self.to_bytes())
+        return hash(self.deciding_bytes())
 
-    def _all_facts(self) -> dict[str, Any]:
-        return {**self.facts, "events": [event.to_dict() for event in self.events]}
+    def deciding_bytes(self) -> bytes:
+        """Bytes that two states have in common exactly if their futures are the same."""
+        return self._bytes({"format": FORMAT, "model": self.model_hash, "facts": self.facts})
 
-    def to_bytes(self) -> bytes:
-        """The state as bytes, with a checksum."""
+    def _bytes(self, header: dict[str, Any]) -> bytes:
         arrays = {name: np.ascontiguousarray(x, x.dtype.newbyteorder("<")) for name, x in self.arrays.items()}
         listed = [[name, x.dtype.str, list(x.shape)] for name, x in arrays.items()]
-        facts = self._all_facts()
-        header = json.dumps({"format": FORMAT, "model": self.model_hash, "facts": facts, "arrays": listed}).encode()
-        parts = [len(header).to_bytes(8, "little"), header, *(x.tobytes() for x in arrays.values())]
-        payload = b"".join(parts)
+        head = json.dumps({**header, "arrays": listed}).encode()
+        return b"".join([len(head).to_bytes(8, "little"), head, *(x.tobytes() for x in arrays.values())])
+
+    def to_bytes(self) -> bytes:
+        """The state and what goes beside it as bytes, with a checksum."""
+        past = {**self.past, "events": [event.to_dict() for event in self.events]}
+        payload = self._bytes({"format": FORMAT, "model": self.model_hash, "facts": self.facts, "past": past})
         return hashlib.sha256(payload).digest() + payload
 
     @classmethod
@@ -99,13 +102,14 @@ class State:
             if header["format"] != FORMAT:
                 raise ModelError(f"the state has format '{header['format']}', this version reads '{FORMAT}'")
             facts, model, listed = dict(header["facts"]), str(header["model"]), list(header["arrays"])
-            events = tuple(Event(**event) for event in facts.pop("events"))
+            past = dict(header["past"])
+            events = tuple(Event(**event) for event in past.pop("events"))
             arrays = _arrays_in(payload, start, listed)
         except (ValueError, TypeError, KeyError, RecursionError) as error:
             if isinstance(error, ModelError):
                 raise
             raise ModelError(f"this is no solver state, though its checksum fits: {error!r}; store it again") from None
-        return cls(arrays, facts, model, events, foreign=True)
+        return cls(arrays, facts, model, events, past, foreign=True)
 
 
 def _arrays_in(payload: bytes, at: int, listed: list[Any]) -> dict[str, NDArray[Any]]:

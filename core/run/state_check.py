@@ -31,13 +31,27 @@ from ..state.run_records import (
     REJECTED_HERE,
     STEP_SIZE,
 )
+from ..state.workspace_records import COUNTERS_SIZE
 from .snapshot import FACTORIZATIONS
 from .state import State
 
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-_FINITE = ("t", "q", "v", "a", "aux", "lam", "memory", "probe", "method_weights", "method_times", "method_history")
+_FINITE = (
+    "t",
+    "q",
+    "v",
+    "a",
+    "aux",
+    "lam",
+    "memory",
+    "probe",
+    "method_weights",
+    "method_times",
+    "method_history",
+    "guard",
+)
 _NO_NAN = ("inputs", "watch", "clock")
 _SETTINGS = (MAX_STEP, FIXED_STEP, GROWTH, HOLD, EAGER, B1, B2, A2)
 """Columns of the clock that never change in a run."""
@@ -62,7 +76,6 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     _need("dependent", len(set(arrays["dependent"].tolist())) == len(arrays["dependent"]), "names a coordinate twice")
     _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
     _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + sim.assembly.n)
-    _need_range("counters", arrays["counters"], 0, _LARGEST_COUNT)
     _check_memory(sim, state)
     _check_method(sim, arrays, own.arrays)
     _check_clock(arrays["clock"], own.arrays["clock"])
@@ -109,7 +122,7 @@ def _check_facts(sim: "Simulation", state: State) -> None:
     facts, contacts, assembly = state.facts, len(sim.assembly.contacts), sim.assembly
     own = {
         "t", "closed", "dropped", "engaged", "sticking", "pending", "handled", "outer", "start_open",
-        "input_times", "initial_energy", "fallbacks",
+        "input_times", "initial_energy",
     }  # fmt: skip
     _need("facts", set(facts) == own, f"are {sorted(facts)}, needed are {sorted(own)}")
     for name, count in (
@@ -132,7 +145,13 @@ def _check_facts(sim: "Simulation", state: State) -> None:
     _need("start_open", isinstance(facts["start_open"], bool), f"is {facts['start_open']!r}: true or false")
     energy = facts["initial_energy"]
     _need("initial_energy", _text_number(energy), f"is {energy!r}, no energy")
-    fallbacks = facts["fallbacks"]
+    past = state.past
+    _need("past", set(past) == {"counters", "fallbacks"}, f"is {sorted(past)}: counters and fallbacks are needed")
+    counters = past["counters"]
+    whole = isinstance(counters, list) and all(isinstance(x, int) and not isinstance(x, bool) for x in counters)
+    fits = whole and len(counters) == COUNTERS_SIZE and all(0 <= x <= _LARGEST_COUNT for x in counters)
+    _need("counters", fits, f"are {counters!r}: {COUNTERS_SIZE} counts")
+    fallbacks = past["fallbacks"]
     listed = isinstance(fallbacks, list) and all(
         isinstance(f, list) and len(f) == 3 and _number(f[0]) and isinstance(f[1], str) and isinstance(f[2], str)
         for f in fallbacks

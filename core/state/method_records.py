@@ -16,7 +16,7 @@ METHOD = np.dtype(
             "history",    # (capacity, row_length) float64, a ring
             "times",      # (capacity,) float64
             "ring",       # (RING_SIZE,) int64: position of the newest row, number of rows, points of a long step
-            "parameters", # (8,) float64: alpha, beta, gamma ...; the last is ESTIMATE
+            "parameters", # (8,) float64: alpha, beta, gamma ...; the last two are CARRIES, ESTIMATE
             "weights",    # (8, MAX_NODES) float64: nodes and coefficients of the present grid; a tableau
             "error",      # (2,) float64: error norm of the last step, order of its estimate
             "choice",     # (CHOICE_SIZE,) float64: steps k of a multistep formula, and what order selection proposes
@@ -36,8 +36,11 @@ K = 0  # 0: the formula has no order to choose
 NEXT_K = 1  # k that the next step shall take; 0: the same
 NEXT_NORM = 2  # error norm that it would have had
 CHOICE_SIZE = 3
+# columns of `parameters`
+CARRIES = 6
+"""1: the formula carries accelerations of its own, `aux`, from step to step."""
 ESTIMATE = 7
-"""Column of `parameters`: 0 with fixed steps, where nobody asks for the error."""
+"""0 with fixed steps, where nobody asks for the error."""
 
 STEP_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
 """A step: from the newest row of history by h; leaves the new point in the workspace and its error norm."""

@@ -23,6 +23,8 @@ from .switch import STUCK_TWICE
 
 HEAD = 3
 """Words before each matrix."""
+OF_QUERY = 1
+"""Number of the matrix for queries."""
 KEPT, BUILT = 0, 1
 """What `restore_matrices` returns: all fitted, or some was built."""
 UNFIT = 50
@@ -89,12 +91,14 @@ def save_matrices(ws: Any, at: int) -> int:
         head, count = ivec(at, HEAD), _numbers(lu)
         head[0], head[1], head[2] = _kind(lu), lu.n, count
         pivots, own = ivec(at + 8 * HEAD, lu.n), ivec(lu.pivots if lu.kind == DENSE else lu.perm_r, lu.n)
+        # the factors for queries are computed anew whenever they are used: of sparse ones the limits of L decide
+        forgotten = 0 if k != OF_QUERY else count - (0 if lu.kind == DENSE else min(lu.n, count))
         for i in range(lu.n):
-            pivots[i] = own[i]
+            pivots[i] = i if k == OF_QUERY and lu.kind == DENSE else own[i]
         at += 8 * (HEAD + lu.n)
         numbers, values = vec(at, count), vec(lu.values, count)
         for p in range(count):
-            numbers[p] = values[p]
+            numbers[p] = 0.0 if p < forgotten else values[p]
         at += 8 * count
     return size
 

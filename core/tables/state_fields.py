@@ -5,7 +5,6 @@ The state of a run is one buffer, a numpy structured scalar. Its fields stand on
 
     memory    (contacts, MEMORY_SIZE)  mode and memory of each contact (`state/modes.py`)
     inputs    (inputs, INPUT_SIZE)     value, two derivatives and time of each input (`model/signals.py`)
-    counters  (COUNTERS_SIZE,) int64   statistics
     rate      (RATE_SIZE,)             convergence of the outer loop, age of the factors
     t         (1,)                     s
     q, v, a   (n_ext,)                 coordinates, velocities and accelerations, with the work accounts
@@ -22,13 +21,13 @@ import numpy as np
 from ..model.motion import input_rows
 from ..model.signals import INPUT_SIZE
 from ..state.modes import MEMORY_SIZE
-from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
+from ..state.workspace_records import RATE_SIZE
 from .assembly import Assembly
 
 Field = tuple[str, Any, tuple[int, ...]]
 """Name, type and shape."""
 
-STATE = ("memory", "inputs", "counters", "rate", "t", "q", "v", "a", "aux", "lam")
+STATE = ("memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam")
 
 
 def state_fields(assembly: Assembly) -> list[Field]:
@@ -37,9 +36,9 @@ def state_fields(assembly: Assembly) -> list[Field]:
     inputs = input_rows(len(assembly.input_names), len(assembly.motions))
     shapes = {
         "memory": (max(len(assembly.contacts), 1), MEMORY_SIZE), "inputs": (inputs, INPUT_SIZE),
-        "counters": (COUNTERS_SIZE,), "rate": (RATE_SIZE,), "t": (1,), "lam": (m_ext,),
+        "rate": (RATE_SIZE,), "t": (1,), "lam": (m_ext,),
     }  # fmt: skip
-    return [(name, np.int64 if name == "counters" else np.float64, shapes.get(name, (n_ext,))) for name in STATE]
+    return [(name, np.float64, shapes.get(name, (n_ext,))) for name in STATE]
 
 
 def row_length(assembly: Assembly) -> int:

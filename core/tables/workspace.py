@@ -17,6 +17,7 @@ from ..linalg.record import PROGRAM_LIMIT
 from ..state.workspace_records import (
     BUILDING,
     CONTROL_SIZE,
+    COUNTERS_SIZE,
     COUPLED_STAGES,
     ENGAGE_SIGNATURE,
     EVALUATE_SIGNATURE,
@@ -99,6 +100,7 @@ class Workspace:
         )}  # fmt: skip
         arrays |= {name: np.zeros(m_ext) for name in ("phi", "phid", "phidd")}
         arrays |= {
+            "counters": np.zeros(COUNTERS_SIZE, dtype=np.int64),  # statistics: they decide nothing
             "values": np.zeros(1),
             "coef": np.zeros(2),
             "energy": np.zeros(3),

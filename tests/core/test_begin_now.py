@@ -45,9 +45,8 @@ class Starts:
         assert self.begin(model) == SETTLED
         there, here = Simulation(model, **{**self.settings, **other}), self.sim
         for field in here.workspace.state.dtype.names:
-            if field != "counters":  # evaluations
-                a, b = here.workspace.state[field], there.workspace.state[field]
-                assert a.tobytes() == b.tobytes(), (self.name, field)
+            a, b = here.workspace.state[field], there.workspace.state[field]
+            assert a.tobytes() == b.tobytes(), (self.name, field)
         for field in NOT_IN_STATE:
             assert here.workspace.arrays[field].tobytes() == there.workspace.arrays[field].tobytes(), field
         assert here.crossing.times[INITIAL_ENERGY] == there.table.initial_energy

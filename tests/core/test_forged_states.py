@@ -129,6 +129,24 @@ def sweep(name):
     return refused
 
 
+def forge_past(name):
+    """The same of what goes beside a state."""
+    _, other, state = stored(name)
+    before, refused = other.state(), 0
+    for what, value in (
+        ("counters", []), ("counters", [0] * 11), ("counters", [-1] * 10), ("counters", [2**60] * 10),
+        ("counters", [0.5] * 10), ("counters", None), ("fallbacks", [[1]]), ("fallbacks", "x"), ("more", 0),
+    ):  # fmt: skip
+        forged = replace(state, past={**state.past, what: value})
+        try:
+            other.restore(State.from_bytes(forged.to_bytes()))
+        except ModelError as error:
+            if not 40 < len(str(error)) or other.state() != before:
+                raise AssertionError(f"{what}: {error}") from error
+            refused += 1
+    return refused
+
+
 def scramble(name, seed, count):
     """Random numbers at random places: refused, or a run that ends, in whatever way it tells."""
     _, other, state = stored(name)
@@ -162,6 +180,10 @@ def in_a_process(*arguments):
 def test_what_is_out_of_range_is_refused():
     counts = in_a_process("sweep", *CASES)
     assert len(counts) == len(CASES) and min(counts) > 250
+
+
+def test_a_past_that_cannot_be_is_refused():
+    assert forge_past("a chain") == 9
 
 
 @pytest.mark.parametrize("name", ["a pendulum over impacts", "a chain"])

@@ -314,7 +314,7 @@ def test_numbers_of_c_are_those_of_python():
                    "EVENT_SIZE", "GAINS", "REACHED", "EVENT", "FULL", "CHUNK", "STEP_TOO_SMALL", "REPARTITION",
                    "NEAR_SINGULAR", "VIOLATED", "UNLOCATED", "DUE", "SETTLE_IT", "JAM", "WANTED", "EVENT_FAILED")),
         (system, ("OUTER_DIVERGED", "INNER_DIVERGED", "SINGULAR", "REANALYZE", "NOT_FINITE", "OUTER_SLOW", "STEPS",
-                  "RATE_SCALE")),
+                  "COUNTERS_SIZE", "RATE_SCALE")),
         (begin_record, ("T0",)),
         (exchange_record, ("FIRST", "SECOND", "SINCE", "RATES_SIZE")),
         (events, ("SETTLED", "NOT_SETTLED")),
@@ -332,3 +332,33 @@ def test_numbers_of_c_are_those_of_python():
     assert len(names) == len(layouts.CALLED)
     assert all(python.startswith(c) for c, python in zip(names, layouts.CALLED, strict=True))
     assert checked > 30
+
+
+@pytest.mark.parametrize(
+    "name, t", [("woodpecker", 0.21), ("slider_crank_stop", 0.05), ("chain", 0.3), ("stick_slip", 1.1)]
+)
+def test_states_are_equal_exactly_if_their_futures_are(name, t):
+    """Whatever was looked at, counted or built on the way; where inputs or times differ, states do."""
+    from tlismni.core.native.in_process import NativeRun
+
+    run, *_ = build(name, 2.0 * t)
+    inputs = [0.0] * len(run.model.names(0))
+    other, third = NativeRun(run.model), NativeRun(run.model)
+    for part in (0.3, 0.7, 1.0):
+        run.step(part * t, inputs)
+        other.step(part * t, inputs)
+        run.look()
+        assert run.deciding_bytes() == other.deciding_bytes()
+    third.step(1.5 * t, inputs)
+    third.look()
+    steps = third.steps
+    third.unpack(run.pack())
+    assert third.deciding_bytes() == run.deciding_bytes() and third.steps == run.steps != steps
+    for x in (run, other, third):
+        x.step(1.2 * t, inputs)
+    assert run.deciding_bytes() == other.deciding_bytes() == third.deciding_bytes()
+    other.step(1.2 * t + 1e-4, inputs)
+    assert run.deciding_bytes() != other.deciding_bytes()
+    if inputs:
+        third.step(1.2 * t, [1.0])
+        assert run.deciding_bytes() != third.deciding_bytes()

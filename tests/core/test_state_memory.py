@@ -11,8 +11,9 @@ def test_state_is_one_buffer_without_gaps(name):
     sim = Simulation(load(name).model)
     buffer = sim.workspace.state
     assert set(buffer.dtype.names) == {
-        "memory", "inputs", "counters", "rate", "t", "q", "v", "a", "aux", "lam", "method_history", "method_times",
+        "memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam", "method_history", "method_times",
         "method_ring", "method_parameters", "method_weights", "method_error", "method_choice", "clock", "watch",
+        "guard",
     }  # fmt: skip
     at = 0
     for field in buffer.dtype.names:
@@ -21,7 +22,8 @@ def test_state_is_one_buffer_without_gaps(name):
         at += kind.itemsize
     assert at == buffer.nbytes
     own = {n: x for n, x in sim.workspace.arrays.items() if n in buffer.dtype.names}
-    own |= {f"method_{n}": x for n, x in sim.method_arrays.items()} | {"clock": sim.clock, "watch": sim.watch}
+    own |= {f"method_{n}": x for n, x in sim.method_arrays.items()}
+    own |= {"clock": sim.clock, "watch": sim.watch, "guard": sim.guard.numbers}
     assert own.keys() == set(buffer.dtype.names)
     for field, array in own.items():
         assert array.ctypes.data == buffer.ctypes.data + buffer.dtype.fields[field][1]
