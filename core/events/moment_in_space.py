@@ -14,7 +14,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import call_least_norm
 from ..methods.history import history_time
-from ..rounding import DIRECTION_RANK, REACHES_LIMIT
+from ..rounding import DIRECTION_RANK, REACHES_LIMIT, REACHES_LIMIT_NOW
 from ..state.run_records import IMPACT
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
 from ..tables.evaluate import evaluate_energy
@@ -179,6 +179,11 @@ def _say_what_slides(ev: Any, least: float) -> None:
             direction[i] = 1.0 if before > col(ev, ROUNDING)[i] else 2.0
             col(ev, KNOWN)[i] = 1.0
             col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = x / speed, y / speed
+        elif col(ev, SLIPS)[i] != 0.0 and friction > (1.0 - REACHES_LIMIT_NOW) * col(ev, MU)[i] * max(p_n, 0.0):
+            # its event is that it reaches its limit: others' directions are not those of the moment's end to the last
+            # digit, and with them it may be just within
+            direction[i], col(ev, KNOWN)[i] = 2.0, 1.0
+            col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -col(ev, P_T)[i] / friction, -col(ev, P_S)[i] / friction
 
 
 @internal
