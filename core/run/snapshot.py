@@ -6,7 +6,7 @@ with the structure, and what Python keeps. Beside it goes what has been counted 
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,8 @@ OF_QUERY = 1
 """Whose factors are computed anew whenever they are used: what decides of them are pivots and limits."""
 _OF_METHOD = ("history", "times", "ring", "parameters", "weights", "error", "choice")
 
-Whole, Real = NDArray[np.int64], NDArray[np.float64]
+Whole: TypeAlias = NDArray[np.int64]
+Real: TypeAlias = NDArray[np.float64]
 Key = tuple[frozenset[int], frozenset[int], frozenset[int]]
 
 
