@@ -48,11 +48,12 @@ def differ(one, other):
     if kinds[0] != kinds[1]:
         return None, None
     times = max((abs(a[0] - b[0]) for a, b in zip(one["events"], other["events"], strict=True)), default=0.0)
-    largest = 0.0
+    largest, sizes = 0.0, [abs(x) for column in one["channels"].values() for x in column if x == x]
+    least = 1e-6 * max(sizes, default=0.0)  # what is much smaller than all else is rounding
     for name in one["channels"].keys() & other["channels"].keys():
         a, b = one["channels"][name], other["channels"][name]
         size = max(map(abs, (*a, *b)))
-        if size > 0.0 and all(x == x for x in (*a, *b)) and "residual" not in name and "balance" not in name:
+        if size > least and all(x == x for x in (*a, *b)) and "residual" not in name and "balance" not in name:
             largest = max(largest, abs(a[-1] - b[-1]) / size)
     return times, largest
 

@@ -5,7 +5,8 @@ with the structure, and what Python keeps. Beside it goes what has been counted 
 """
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ OF_QUERY = 1
 """Whose factors are computed anew whenever they are used: what decides of them are pivots and limits."""
 _OF_METHOD = ("history", "times", "ring", "parameters", "weights", "error", "choice")
 
+Whole: TypeAlias = NDArray[np.int64]
+Real: TypeAlias = NDArray[np.float64]
 Key = tuple[frozenset[int], frozenset[int], frozenset[int]]
 
 
@@ -96,6 +99,28 @@ class Snapshot(NamedTuple):
         }
 
 
+def _copied(rows: Whole, columns: Whole, values: Real, pivots: Whole) -> Factors:
+    return Factors(rows.copy(), columns, values.copy(), pivots.copy())
+
+
+def _for_queries(rows: Whole, columns: Whole, values: Real, pivots: Whole) -> Factors:
+    """Of the matrix for queries, whose factors are computed anew whenever they are used: of a sparse one pivots and
+    limits decide, of a dense one nothing."""
+    if len(pivots):
+        return Factors(rows, columns, *_nothing(len(pivots)))
+    limits = values.copy()
+    limits[: -len(rows)] = 0.0
+    return Factors(rows.copy(), columns, limits, pivots)
+
+
+@cache
+def _nothing(n: int) -> tuple[Real, Whole]:
+    """Values and pivots of a dense matrix of size n that has never been factored."""
+    values, pivots = np.zeros(n * (n + 1)), np.arange(n)
+    values.flags.writeable = pivots.flags.writeable = False
+    return values, pivots
+
+
 def take_snapshot(sim: "Simulation") -> Snapshot:
     """Copy everything that decides the future."""
     workspace, structure, drive = sim.workspace, sim.workspace.structure, sim.drive
@@ -104,17 +129,8 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         raise RuntimeError("a simulation always has a partition once it is built")
     buffer = workspace.state_bytes.copy()
     normalise_buffer(drive.record.record, buffer.__array_interface__["data"][0])
-    factors = [
-        Factors(rows.copy(), columns, values.copy(), pivots.copy())
-        for rows, columns, values, pivots in (lu.parts() for lu in (
-            structure.kkt, structure.kkt_query, *partition.factorizations
-        ))
-    ]  # fmt: skip
-    places, _, values, pivots = factors[OF_QUERY]
-    if len(pivots):  # dense: chosen anew whenever it is used
-        values[:], pivots[:] = 0.0, np.arange(len(pivots))
-    else:
-        values[: -len(places)] = 0.0
+    factors = [_copied(*lu.parts()) for lu in (structure.kkt, *partition.factorizations)]
+    factors.insert(OF_QUERY, _for_queries(*structure.kkt_query.parts()))
     now, handled_at = sim.t_internal, drive.goals.item(HANDLED_AT)
     return Snapshot(
         buffer,
