@@ -1,4 +1,4 @@
-"""Friction against rolling and spinning in an FMU without Python: the bits of that with it, of both kinds of contact."""
+"""Friction against rolling and spinning in an FMU without Python: the bits of that with it, of both contacts."""
 
 import numpy as np
 import pytest
