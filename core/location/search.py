@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..methods.history import history_row, history_time, recall
+from ..methods.history import history_time, recall
 from ..rounding import GAP_ROUNDING, NO_STEP, PRESSING, RESOLVED_TIME, SAME_INSTANT, SAME_TRIAL, UNRESOLVED
 from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, SLIDE
 from ..state.run_records import (
@@ -25,7 +25,6 @@ from ..state.run_records import (
     call_trial,
 )
 from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
-from ..tables.held import held_friction, is_held
 from ..tables.levels import position_level
 from .probe import BRACKET, HAPPENS, VIEW, look
 from .watch import friction_margin
@@ -72,32 +71,6 @@ def make_trial(dr: Any, ws: Any, ms: Any, lc: Any, step: float, full: float) -> 
 
 
 @internal
-def _force_now(ws: Any, k: int, sign: float) -> float:
-    """At the current point, of contact k: its force (times sign), or what is left of its friction, if that is less."""
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
-    force = sign * vec(ws.monitor, ws.n_contacts)[k]
-    if memory[MODE] == CLOSED and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0 and memory[SLIDE] != IDLE:
-        force = min(force, friction_margin(ws, k))
-    return force
-
-
-@internal
-def _force_before(ws: Any, ms: Any, lc: Any, k: int) -> float:
-    """The same of closed contact k at the newest row; NaN: it is not known there, or is none."""
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
-    if memory[MODE] != CLOSED or ms.exact == 0:
-        return np.nan
-    lam, row = history_row(ws, ms, 0)[4 * ws.n_ext :], ivec(ws.contact_rows, ws.n_contacts)[k]
-    force, static = -lam[row], vec(ws.contact_sticking, ws.n_contacts)[k]
-    if static > 0.0 and memory[SLIDE] != IDLE:
-        if is_held(ws, k):
-            force = min(force, static * force - held_friction(ws, k, lam))
-        else:
-            force = min(force, memory[SLIDE] * mat(lc.watch, ws.n_contacts, WATCH)[k, 3])
-    return force if force > 0.0 else np.nan
-
-
-@internal
 def _value(
     dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack: float, step: float, full: float
 ) -> Any:
@@ -110,23 +83,26 @@ def _value(
         return OK, sign * vec(ws.phi, ws.m_ext)[row] + slack
     if what == CLOSING:
         return OK, vec(ws.phidd, ws.m_ext)[row] + slack
-    return OK, _force_now(ws, k, sign)
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+    force = sign * vec(ws.monitor, ws.n_contacts)[k]
+    if memory[MODE] == CLOSED and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0 and memory[SLIDE] != IDLE:
+        force = min(force, friction_margin(ws, k))
+    return OK, force
 
 
 @internal
 def _root(
     dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack: float,
-    low: float, high: float, floor: float, full: float, f_low: float = np.nan, f_high: float = np.nan,
+    low: float, high: float, floor: float, full: float,
 ) -> Any:  # fmt: skip
     """(status, size, whether it happens) of the step that ends at the root of what is positive at `low` and negative at
     `high`; that step is the current point. Not: up to that size there is none, and another
-    contact has its event before it. f_low, f_high: the values there; NaN: not known."""
-    x_low, x_high, largest = low, high, 0.0
+    contact has its event before it."""
+    x_low, x_high, f_low, f_high, largest = low, high, np.nan, np.nan, 0.0
     # what ends one force often ends others
     nearest = vec(dr.nearest, NEAREST)
     if low <= nearest[0] < high:
         x_high = min(nearest[1], high)
-        f_low = np.nan
         status, f_high = _value(dr, ws, ms, lc, k, what, sign, slack, x_high, full)
         if status != OK or f_high > 0.0:
             return status, x_high, False
@@ -137,9 +113,6 @@ def _root(
         x_high, f_high, f_low = nearest[0], f_low, np.nan
     resolved = NO_STEP * abs(history_time(ms, 0))
     x, last_x, last_f = 0.5 * (x_low + x_high), np.nan, np.nan
-    if not np.isnan(f_low) and f_high < 0.0:
-        guess = x_low + (x_high - x_low) * f_low / (f_low - f_high)
-        x = guess if x_low < guess < x_high else x
     # widths of the bracket three, two and one trials ago
     third, second, first, trials = np.inf, np.inf, x_high - x_low, 1
     for _ in range(MAX_TRIALS):
@@ -251,24 +224,18 @@ def _go_back(
 
 
 @internal
-def _by_force(
-    dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: float, high: float, h: float, end: float
-) -> Any:  # fmt: skip
-    """(status, size, whether it happens) of an event at which a force or what friction can still hold ends; `end`: its
-    value at the end of the step."""
-    first, last = _force_before(ws, ms, lc, k), high
+def _by_force(dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: float, high: float, h: float) -> Any:
+    """(status, size, whether it happens) of an event at which a force or what friction can still hold ends."""
     if high < h:
         status, f = _value(dr, ws, ms, lc, k, FORCE, sign, 0.0, high, h)
         if status != OK:
             return status, high, False
         if f > 0.0:
             return OK, high if high > AT_ONCE * h else h, False
-        end = f
     status, low, high = _go_back(dr, ws, ms, lc, k, FORCE, sign, low, high, h)
     if status != OK:
         return status, low, False
-    f_low, f_high = first if low == 0.0 else np.nan, end if high == last else np.nan
-    return _root(dr, ws, ms, lc, k, FORCE, sign, 0.0, low, high, 0.0, h, f_low, f_high)
+    return _root(dr, ws, ms, lc, k, FORCE, sign, 0.0, low, high, 0.0, h)
 
 
 @internal
@@ -296,11 +263,11 @@ def _begins_to_close(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, overl
 def _event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: Any) -> Any:
     """(status, size, True) of the step at which contact k has its event; or (status, size, False): up to that size the
     motion has none. `places`: the gap at the end of the step of size h; sizes before a root of the gap's dense output,
-    beyond it, where that is deepest, and that root itself; the force at the end."""
+    beyond it, where that is deepest, and that root itself."""
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     end, low, high, deepest, guess = places[0], places[1], places[2], places[3], places[4]
     if mode == CLOSED or (mode != OPEN and end <= 0.0 and high == h):
-        return _by_force(dr, ws, ms, lc, k, 1.0 if mode == CLOSED or mode == ACTIVE else -1.0, low, high, h, places[5])
+        return _by_force(dr, ws, ms, lc, k, 1.0 if mode == CLOSED or mode == ACTIVE else -1.0, low, high, h)
     sign = 1.0 if mode == OPEN else -1.0
     size = position_level(ws) * vec(ws.row_scale, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
     overlap = GAP_ROUNDING * size
@@ -351,12 +318,9 @@ def _event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: An
 
 @internal
 def _guess(ws: Any, ms: Any, lc: Any, k: int, h: float, places: Any) -> float:
-    """Where in the step of size h that ends at the current point the dense output says that the event is, or a line
-    through the forces at both ends; -1: they do not say."""
+    """Where in the step of size h that ends at the current point the dense output says that the event is; -1: it does
+    not say."""
     mode, end = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE], places[0]
-    if mode == CLOSED and places[2] == h:
-        first = _force_before(ws, ms, lc, k)
-        return h * first / (first - places[5]) if not np.isnan(first) and places[5] < 0.0 else -1.0
     if mode == CLOSED or (mode != OPEN and end <= 0.0 and places[2] == h):
         return -1.0
     return dense_root(ws, ms, lc, k, h, 1.0 if mode == OPEN else -1.0, places[1], places[2])
@@ -387,8 +351,6 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
             places[0] = vec(ws.phi, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
             for i in range(3):
                 places[1 + i] = step * brackets[k, i]
-            mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
-            places[5] = _force_now(ws, k, 1.0 if mode == CLOSED or mode == ACTIVE else -1.0)
             places[4] = _guess(ws, ms, lc, k, step, places)
             if places[4] >= 0.0:
                 soonest = min(soonest, places[4])

@@ -24,6 +24,7 @@ from .begin_record import LOOK_AT_RANK, MOVED, MOVED_RATES, WHO
 from .failures import failure_of
 
 if TYPE_CHECKING:
+    from ..tables.workspace import Workspace
     from .engine import Engine
     from .simulation import Simulation
 
@@ -53,17 +54,17 @@ def begin(sim: "Engine") -> None:
 def start(sim: "Engine") -> None:
     """A consistent start, with the model's scales as they have been measured. Raises as `begin`."""
     motions.begin(sim.workspace, sim.settings.t0)
-    numbers, before = sim.beginning.numbers, sim.workspace.state_bytes.copy()
+    numbers, before = sim.beginning.numbers, _now(sim.workspace)
     sim.redundant = ()
     numbers[LOOK_AT_RANK] = float(sim.settings.redundant != "refuse")
     try:
         status = _act(sim, start_now)
         if status in _MAY_REPEAT and numbers[LOOK_AT_RANK]:
-            sim.workspace.state_bytes[:] = before
+            _go_back(sim.workspace, before)
             place_now(sim.beginning.record.record)
             sim.redundant = find_redundant(sim.workspace)
             numbers[LOOK_AT_RANK] = 0.0
-            sim.workspace.state_bytes[:] = before
+            _go_back(sim.workspace, before)
             status = _act(sim, start_now)
         if status != SETTLED:
             raise _failure(sim, status)
@@ -101,13 +102,23 @@ def start_again(sim: "Simulation") -> None:
     start(sim)
 
 
+def _now(workspace: "Workspace") -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+    """State and statistics, to go back to."""
+    return workspace.state_bytes.copy(), workspace.arrays["counters"].copy()
+
+
+def _go_back(workspace: "Workspace", before: tuple[NDArray[np.uint8], NDArray[np.int64]]) -> None:
+    """State and statistics as they were: what is tried again is counted once."""
+    workspace.state_bytes[:], workspace.arrays["counters"][:] = before
+
+
 def _act(sim: "Engine", act: Callable[[Any], Any]) -> int:
     """Let compiled code do its part, from the state as it is, with the memory that it wants; its status."""
-    state, before = sim.workspace.state_bytes, sim.workspace.state_bytes.copy()
+    before = _now(sim.workspace)
     while DECLINED < (status := int(act(sim.beginning.record.record))) <= WANT_MEMORY:
         sim.workspace.sync()
         sim.build_wanted(status)
-        state[:] = before
+        _go_back(sim.workspace, before)
     sim.workspace.sync()
     return status
 

@@ -136,7 +136,7 @@ EVENTS = 3  # events in the ring
 STATUS = 4  # of the settling that has ended a run: `events/records.py`
 COUNTS_SIZE = 5
 
-FOUND_SIZE = 8
+FOUND_SIZE = 7
 FORCE_NUMBERS = 4
 """Parameters of a force law."""
 # columns of an event

@@ -68,7 +68,7 @@ def test_sleeping_contacts_change_no_bit(model, method, end):
         for sim in (with_sleep, without):
             sim.advance(float(t))
             sim.sample()
-        assert with_sleep.workspace.state_bytes.tobytes() == without.workspace.state_bytes.tobytes()
+        assert with_sleep.state().deciding_bytes() == without.state().deciding_bytes()
         for name in ("phi", "phid", "phidd"):
             np.testing.assert_array_equal(with_sleep.workspace.arrays[name], without.workspace.arrays[name])
         assert not with_sleep.workspace.arrays["asleep"].any()

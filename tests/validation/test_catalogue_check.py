@@ -14,7 +14,7 @@ needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot 
 COMPARABLE = [case for case in cases() if not case.not_comparable]
 HALVES = ("split_striker", "split_wall")
 """Scenarios that are compared as the whole that they are halves of."""
-NOT_COMPARED = (*HALVES, "bricard", "arm_stop", "tippe_top")
+NOT_COMPARED = (*HALVES, "bricard")
 """And what `CASES` gives a reason for."""
 FIRST = [next(case for case in COMPARABLE if case.scenario == name) for name in names() if name not in NOT_COMPARED]
 FLUCTUATING = ("woodpecker",)
