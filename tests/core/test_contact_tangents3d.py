@@ -67,6 +67,17 @@ def system(case):
     return Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], contacts=[contact]), mode)
 
 
+def is_smooth(point, state):
+    """Whether differences of two widths agree: between their points is no kink, as of friction at small speeds."""
+    none, no_lam = np.zeros(point.n), np.zeros(point.m)
+    for e in np.eye(point.n):
+        for along in ((0.0, e, none, none, no_lam), (0.0, none, e, none, no_lam)):
+            wide, narrow = (point.derivative(0, along, state, h) for h in (4e-3, 2e-3))
+            if np.abs(wide - narrow).max() > 1e-6 * max(1.0, np.abs(wide).max()):
+                return False
+    return True
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_tangent_is_the_derivative_of_the_residual(case):
     point = system(case)
@@ -78,6 +89,7 @@ def test_tangent_is_the_derivative_of_the_residual(case):
         point.at(*state)
         # friction has a kink where the normal force vanishes
         assume(abs(point.workspace.arrays["monitor"][0]) > 0.5)
+        assume(is_smooth(point, state))
         check_matrix(point, state, h=4e-3)
 
     check()
