@@ -150,6 +150,7 @@ from .shapes.disk_on_line import DiskOnLine2D, Line2D
 from .shapes.group2d import ContactGroup2D, contacts_between
 from .shapes.group3d import ContactGroup3D
 from .shapes.mesh3d import TriangleMesh3D, read_mesh
+from .shapes.on_cable3d import CableLine3D, CableOnHalfSpace3D, SphereOnCable3D
 from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
 from .shapes.ring2d import DiskInRing2D, Ring2D
 from .shapes.rope2d import Rope2D
@@ -189,6 +190,8 @@ __all__ = [
     "Cable2D",
     "Cable3D",
     "CableClamp3D",
+    "CableLine3D",
+    "CableOnHalfSpace3D",
     "Capsule3D",
     "CapsuleOnCapsule3D",
     "CarvalhoMartins",
@@ -323,6 +326,7 @@ __all__ = [
     "SmoothShape3D",
     "Sphere3D",
     "SphereInSphere3D",
+    "SphereOnCable3D",
     "SphereOnHalfSpace3D",
     "SphereOnSphere3D",
     "Spherical3D",

@@ -11,6 +11,7 @@ from .coordinate_contact import CoordinateContact
 from .disk_on_cable import DiskOnCable2D
 from .disk_on_line import DiskOnLine2D
 from .element import ContactElement
+from .on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
 from .polygon2d import DiskOnPolygon2D
 from .ring2d import DiskInRing2D
 from .rope2d import Rope2D
@@ -35,6 +36,8 @@ CONTACTS = (
     SmoothOnHalfSpace3D,
     SphereInSphere3D,
     CapsuleOnCapsule3D,
+    SphereOnCable3D,
+    CableOnHalfSpace3D,
     AngleStop3D,
     SlideStop3D,
     Rope3D,
