@@ -151,6 +151,7 @@ from .shapes.group2d import ContactGroup2D, contacts_between
 from .shapes.group3d import ContactGroup3D
 from .shapes.mesh3d import TriangleMesh3D, read_mesh
 from .shapes.on_cable3d import CableLine3D, CableOnHalfSpace3D, SphereOnCable3D
+from .shapes.on_mesh3d import SphereOnMesh3D, mesh_parts
 from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
 from .shapes.ring2d import DiskInRing2D, Ring2D
 from .shapes.rope2d import Rope2D
@@ -328,6 +329,7 @@ __all__ = [
     "SphereInSphere3D",
     "SphereOnCable3D",
     "SphereOnHalfSpace3D",
+    "SphereOnMesh3D",
     "SphereOnSphere3D",
     "Spherical3D",
     "SpringDamper2D",
@@ -358,6 +360,7 @@ __all__ = [
     "deformed_shape",
     "force_formula",
     "load_result",
+    "mesh_parts",
     "read_mesh",
     "scalar_constraint",
     "scalar_contact",

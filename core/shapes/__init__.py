@@ -12,6 +12,7 @@ from .disk_on_cable import DiskOnCable2D
 from .disk_on_line import DiskOnLine2D
 from .element import ContactElement
 from .on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
+from .on_mesh3d import SphereOnMesh3D
 from .polygon2d import DiskOnPolygon2D
 from .ring2d import DiskInRing2D
 from .rope2d import Rope2D
@@ -38,6 +39,7 @@ CONTACTS = (
     CapsuleOnCapsule3D,
     SphereOnCable3D,
     CableOnHalfSpace3D,
+    SphereOnMesh3D,
     AngleStop3D,
     SlideStop3D,
     Rope3D,
