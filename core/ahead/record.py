@@ -16,6 +16,7 @@ from numba.core.runtime import rtsys
 
 from ..compiled.kept import KeptCode
 from ..errors import TlismniError
+from .front import quick_front_end
 
 
 class RecordError(TlismniError):
@@ -55,7 +56,8 @@ def recording() -> Iterator[None]:
     KeptCode.load_overload = lambda self, sig, target_context: None  # type: ignore[method-assign]
     KeptCode.save_overload = lambda self, sig, data: None  # type: ignore[method-assign]
     try:
-        yield
+        with quick_front_end():
+            yield
     finally:
         KeptCode.load_overload, KeptCode.save_overload = kept  # type: ignore[method-assign]
         del codegen._library_class, codegen.set_env
