@@ -69,15 +69,16 @@ def _array_structure(make_array: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 
 def _kept(run_untyped_passes: Callable[..., Any]) -> Callable[..., Any]:
-    """`run_untyped_passes`, once for each function: whoever inlines the result works on a copy of it."""
+    """`run_untyped_passes`, once for each helper that is inlined before types are known: its caller takes a copy."""
     kept: dict[Any, Any] = {}
 
     def run(worker: Any, function: Any, enable_ssa: bool = False) -> Any:
+        if enable_ssa:
+            return run_untyped_passes(worker, function, enable_ssa)
         # left behind in the flags of the function that calls, each time
         worker.flags.enable_ssa = enable_ssa
-        key = (function, enable_ssa)
-        if key not in kept:
-            kept[key] = run_untyped_passes(worker, function, enable_ssa)
-        return kept[key]
+        if function not in kept:
+            kept[function] = run_untyped_passes(worker, function, enable_ssa)
+        return kept[function]
 
     return run
