@@ -10,8 +10,14 @@ from pathlib import Path
 from ..compiled.library import PLACE, USUAL_PLACE
 from ..errors import TlismniError
 
-FRESH = {PLACE: "none", "NUMBA_OPT": "0", "OPENBLAS_NUM_THREADS": "1"}
-"""Environment of the process that makes it: without a library, and numba's own optimiser, whose work is not used."""
+FRESH = {
+    PLACE: "none",
+    "NUMBA_OPT": "0",
+    "OPENBLAS_NUM_THREADS": "1",
+    "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1",
+}
+"""Environment of the process that makes it: without a library, and numba's own optimiser, whose work is not used; what
+numba tries and gives up by an exception is not worth colours."""
 
 
 def main() -> int:

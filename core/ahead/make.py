@@ -5,16 +5,16 @@ import platform
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..compiled.library import USUAL_PLACE, core_digest
 from ..errors import TlismniError
 from ..native.c_sources import c_sources
-from .entries import entries, forms
 from .libm import BESIDE, FUNCTIONS, PREFIX, SEEN, libm_texts
 from .module import DIGEST, MANIFEST, TARGETS, Target, link, manifest_text, optimised, undefined
-from .record import compile_for, recording, texts_of
+from .parts import recorded
 from .shared import link_shared
 
 logger = logging.getLogger(__name__)
@@ -39,29 +39,33 @@ def own_target() -> Target:
     return TARGETS[name]
 
 
-def whole_module(only: Sequence[str], libm: Sequence[str] = ()) -> tuple[Any, dict[str, str], dict[str, str]]:
-    """The module of everything, `libm` too, not optimised; its symbols by LLVM's names; and these by what they are
-    asked for."""
-    symbols: dict[str, str] = {}
-    keys: dict[str, str] = {}
-    with recording():
-        found, compilations = [x for x in entries() if any(part in x.name for part in only)], []
-        for number, entry in enumerate(found):
-            made = compile_for(entry.function, entry.signature)
-            plain = entry.name.removeprefix("tlismni.core.").split(":")[0].replace(".", "_")
-            symbol = symbols.setdefault(made.fndesc.llvm_func_name, f"tlismni_{plain}_{number}")
-            keys[entry.key(made.signature.return_type)] = symbol
-            compilations.append(made)
-        texts = [*texts_of(compilations), *libm]
-    return link(texts), symbols, keys
+@dataclass(frozen=True)
+class Recorded:
+    """Everything, not optimised."""
 
-
-def form_tables() -> dict[str, Any]:
+    module: Any
+    symbols: dict[str, str]
+    """Names in the library, by LLVM's."""
+    keys: dict[str, str]
+    """Names in the library, by what is asked for."""
+    forms: dict[str, Any]
     """What the library says of kernels that are made from formulas."""
-    return {
-        name: {"rows": form.constraint_rows, "tangent": form.tangent_pattern, "jacobian": form.jacobian_pattern}
-        for name, form in forms().items()
-    }
+    functions: dict[str, str]
+    """Names in the library of the functions of its own libm: none without ziglang."""
+
+
+def whole_module(only: Sequence[str]) -> Recorded:
+    """Everything whose name contains one of `only`, and the libm."""
+    with recorded(only) as made:
+        libm = libm_texts()
+        if not libm:
+            logger.warning("without ziglang the library takes the system's libm: its bits are those of this system")
+        parts = list(made)
+    symbols = {name: symbol for part in parts for name, symbol in part.symbols.items()}
+    keys = {key: symbols[name] for part in parts for key, name in part.keys.items()}
+    forms = {name: form for part in parts for name, form in part.forms.items()}
+    functions = {name: PREFIX + name for name in SEEN} if libm else {}
+    return Recorded(link([*(part.bitcode for part in parts), *libm]), symbols, keys, forms, functions)
 
 
 def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",)) -> list[Path]:
@@ -82,23 +86,19 @@ def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",
     if unknown:
         raise TlismniError(f"there is no target {sorted(unknown)}: known are {sorted(TARGETS)}")
     wanted = [TARGETS[name] for name in targets] or [own]
-    libm = libm_texts()
-    if not libm:
-        logger.warning("without ziglang the library takes the system's libm: its bits are those of this system")
-    whole, symbols, keys = whole_module(only, libm)
-    functions = {name: PREFIX + name for name in SEEN} if libm else {}
-    constants = {DIGEST: core_digest(), MANIFEST: manifest_text(keys, form_tables(), functions)}
-    logger.info("%d functions taken from numba in %.0f s", len(keys), time.perf_counter() - began)
+    whole = whole_module(only)
+    constants = {DIGEST: core_digest(), MANIFEST: manifest_text(whole.keys, whole.forms, whole.functions)}
+    logger.info("%d functions taken from numba in %.0f s", len(whole.keys), time.perf_counter() - began)
     made = []
     for target in wanted:
         began = time.perf_counter()
-        module, machine = optimised(whole, symbols, constants, target)
-        missing = sorted(set(undefined(module)) - (MEMORY if libm else ALLOWED))
+        module, machine = optimised(whole.module, whole.symbols, constants, target)
+        missing = sorted(set(undefined(module)) - (MEMORY if whole.functions else ALLOWED))
         if missing:
             raise UndefinedError(f"compiled code needs {missing}, which no C library has")
         beside = folder is None and target is own
         path = USUAL_PLACE if beside else (folder or Path("build")) / target.name / f"tlismni_core{target.suffix}"
-        link_shared(machine.emit_object(module), target, path, target is own, symbols.values(), c_sources())
+        link_shared(machine.emit_object(module), target, path, target is own, whole.symbols.values(), c_sources())
         logger.info("%s: %d bytes in %.0f s", path, path.stat().st_size, time.perf_counter() - began)
         made.append(path)
     return made

@@ -136,11 +136,11 @@ define weak_odr void @PyErr_SetString(ptr %kind, ptr %text) {
 _OF_LIBM = frozenset((*FUNCTIONS, *BESIDE))
 
 
-def link(texts: Iterable[str]) -> Any:
-    """One module of them all. The same helper in several of them is one."""
+def link(parts: Iterable[str | bytes]) -> Any:
+    """One module of them all, texts or LLVM's bitcode. The same helper in several of them is one."""
     whole = llvm.parse_assembly("")
-    for text in (*texts, _RUNTIME):
-        part = llvm.parse_assembly(text)
+    for given in (*parts, _RUNTIME):
+        part = llvm.parse_assembly(given) if isinstance(given, str) else llvm.parse_bitcode(given)
         for function in part.functions:
             if not function.is_declaration and function.linkage == llvm.Linkage.external:
                 function.linkage = "weak_odr"

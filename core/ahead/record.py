@@ -7,15 +7,21 @@ numba's internals, of 0.68 (`tests/core/test_ahead.py` looks whether they are st
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from itertools import count
 from typing import Any
 
 from numba.core import cgutils
+from numba.core.bytecode import FunctionIdentity
 from numba.core.codegen import JITCodeLibrary
 from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 
 from ..compiled.kept import KeptCode
 from ..errors import TlismniError
+from .front import quick_front_end, replaced
+
+PARTS = 1000
+"""More than there are parts."""
 
 
 class RecordError(TlismniError):
@@ -44,8 +50,11 @@ class RecordedLibrary(JITCodeLibrary):
 
 
 @contextmanager
-def recording() -> Iterator[None]:
-    """numba makes text instead of machine code meanwhile. What it has compiled before stays as it is."""
+def recording(part: int = 0) -> Iterator[None]:
+    """numba makes text instead of machine code meanwhile. What it has compiled before stays as it is.
+
+    `part`: a number of this process, so that what several record can be put together.
+    """
     context = cpu_target.target_context
     rtsys.initialize(context)  # its own helpers are machine code
     codegen = context.codegen()
@@ -55,10 +64,33 @@ def recording() -> Iterator[None]:
     KeptCode.load_overload = lambda self, sig, target_context: None  # type: ignore[method-assign]
     KeptCode.save_overload = lambda self, sig, data: None  # type: ignore[method-assign]
     try:
-        yield
+        with quick_front_end(), same_names(part):
+            yield
     finally:
         KeptCode.load_overload, KeptCode.save_overload = kept  # type: ignore[method-assign]
         del codegen._library_class, codegen.set_env
+
+
+@contextmanager
+def same_names(part: int) -> Iterator[None]:
+    """A function of a module has the same name in LLVM whenever it is compiled; others (made by functions, they may
+    differ although their names do not) have one that is of this part alone.
+
+    numba counts what it compiles, and the number is in the name.
+    """
+    numbers = count(1 + part, PARTS)
+    from_function = FunctionIdentity.from_function
+
+    def identity(function: Any) -> FunctionIdentity:
+        made = from_function(function)
+        found = getattr(made.module, made.func_qualname, None)
+        of_module = getattr(found, "py_func", found) is made.func
+        made.unique_id = 0 if of_module else next(numbers)
+        made.unique_name = f"{made.func_qualname}${made.unique_id}"
+        return made
+
+    with replaced(FunctionIdentity, "from_function", staticmethod(identity)):
+        yield
 
 
 def compile_for(function: Any, signature: Any) -> Any:
