@@ -9,7 +9,8 @@ from typing import Any
 import typer
 
 from ..core import METHODS, Model, ModelError, Simulation
-from ..models import Scenario, catalogue, load
+from ..models import Scenario, load
+from ..models.registry import entry_of
 from .options import pairs, value_of
 
 _MEANINGS = {
@@ -88,11 +89,9 @@ def is_file(source: str) -> bool:
 
 
 def _scenario(name: str, changes: dict[str, str]) -> Scenario:
-    tables = {entry.name: {p.name: p for p in entry.parameters} for entry in catalogue()}
-    table = tables.get(name, {})
-    if table and any(key not in table for key in changes):
+    table = {p.name: p for p in entry_of(name).parameters}
+    if any(key not in table for key in changes):
         _refuse_inputs(load(name).model, [key for key in changes if key not in table])
-    # `load` refuses unknown names, and says what there is
     return load(name, **{key: table[key].parse(text) if key in table else text for key, text in changes.items()})
 
 

@@ -1,168 +1,176 @@
-"""The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens."""
+"""The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens.
 
-from .compiled_model import CompiledModel, compile_model
-from .courses import Courses
-from .description import Model
-from .elements import (
-    AngleDriver3D,
-    AppliedForce2D,
-    AppliedForce3D,
-    AppliedTorque2D,
-    AppliedTorque3D,
-    Attachment,
-    AxialRod,
-    AxialSpring3D,
-    Belt2D,
-    BodyElement,
-    Bushing2D,
-    Bushing3D,
-    Cable2D,
-    Cable3D,
-    CableClamp3D,
-    Clamp2D,
-    ConstantVelocity3D,
-    CoordinateDriver,
-    CoordinateLoad,
-    CoordinateRelation,
-    Cylindrical3D,
-    Distance2D,
-    Distance3D,
-    Fixed3D,
-    FloatingBeam2D,
-    ForceElement,
-    Frame2D,
-    Gear2D,
-    Gear3D,
-    Interface3D,
-    InterfaceFrame3D,
-    Joint3D,
-    JointElement,
-    KnifeEdge2D,
-    LinearSystem,
-    MaterialPoint2D,
-    MaterialPoint3D,
-    MovingFrame2D,
-    PIDController2D,
-    Planar3D,
-    PointMass2D,
-    PointMass3D,
-    PointOnLine3D,
-    PointOnPlane3D,
-    PositionDriver3D,
-    Prismatic2D,
-    Prismatic3D,
-    Rack2D,
-    RackAndPinion3D,
-    ReducedBody2D,
-    ReducedBody3D,
-    ReducedPoint,
-    RelationTerm,
-    RelativeLoad2D,
-    RelativeMotor2D,
-    Revolute2D,
-    Revolute3D,
-    RevoluteFriction2D,
-    RevoluteSpherical3D,
-    RigidBody2D,
-    RigidBody3D,
-    RollingDisk3D,
-    RollingSphere3D,
-    ScalarForce2D,
-    ScalarJoint2D,
-    Screw3D,
-    Servo2D,
-    SlideFriction2D,
-    SlideSpring2D,
-    Spherical3D,
-    SpringDamper2D,
-    SpringDamper3D,
-    TableSpring2D,
-    TorsionSpring2D,
-    TorsionSpring3D,
-    Universal3D,
-    scalar_constraint,
-    scalar_force,
-)
-from .equations.errors import EquationError
-from .equations.system import EquationSystem, GapContact
-from .errors import ConsistencyError, ModelError, SimulationError, TlismniError
-from .events import Event
-from .flexible.section_loads import (
-    axial_force,
-    axial_strain,
-    bending_moment,
-    bending_stress,
-    curvature,
-    deformed_shape,
-    section,
-    stress,
-)
-from .laws import (
-    CarvalhoMartins,
-    Flores,
-    ForceLaw,
-    Gonthier,
-    HerbertMcWhannell,
-    Hertz,
-    HuGuo,
-    HuntCrossley,
-    KelvinVoigt,
-    KuwabaraKono,
-    LankaraniNikravesh,
-    LeeWang,
-    NewtonImpact,
-    PoissonImpact,
-    Tsuji,
-    ZhiyingQishao,
-    force_formula,
-)
-from .laws.friction import (
-    AmbrosioFriction,
-    BrownMcPheeFriction,
-    CoulombFriction,
-    FrictionLaw,
-    LuGreFriction,
-    StepFriction,
-    TanhFriction,
-    ThrelfallFriction,
-    TurningFriction,
-)
-from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
-from .methods.registry import METHODS
-from .model.attitude import Axes, AxisAngles, EulerParameters, RotationVector
-from .model.channels import Channel, Formula, Input, Parameter
-from .model.markers import Marker2D, Marker3D
-from .model.outputs import MarkerOutput2D, MarkerOutput3D
-from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
-from .results.result import Result
-from .results.stored import load_result
-from .run.simulation import Simulation
-from .run.state import State
-from .runs import Runs
-from .shapes.angle_stop2d import AngleStop2D
-from .shapes.box2d import Box2D, DiskOnBox2D
-from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
-from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
-from .shapes.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
-from .shapes.disk_on_cable import DiskOnCable2D
-from .shapes.disk_on_line import DiskOnLine2D, Line2D
-from .shapes.group2d import ContactGroup2D, contacts_between
-from .shapes.group3d import ContactGroup3D
-from .shapes.mesh3d import TriangleMesh3D, read_mesh
-from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
-from .shapes.ring2d import DiskInRing2D, Ring2D
-from .shapes.rope2d import Rope2D
-from .shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
-from .shapes.rounds3d import Ellipsoid3D, Torus3D
-from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
-from .shapes.segment2d import DiskOnSegment2D, Segment2D
-from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
-from .shapes.support3d import SmoothShape3D, support_formula
-from .simulate import simulate
-from .simulate_many import simulate_many
-from .tables.redundancy import RedundantRow
-from .tolerances import OfScales
+A name is imported when it is first asked for: what type checkers read, and the table at the end, say the same.
+"""
+
+from typing import TYPE_CHECKING
+
+from .late import late_names
+
+if TYPE_CHECKING:
+    from .compiled_model import CompiledModel, compile_model
+    from .courses import Courses
+    from .description import Model
+    from .elements import (
+        AngleDriver3D,
+        AppliedForce2D,
+        AppliedForce3D,
+        AppliedTorque2D,
+        AppliedTorque3D,
+        Attachment,
+        AxialRod,
+        AxialSpring3D,
+        Belt2D,
+        BodyElement,
+        Bushing2D,
+        Bushing3D,
+        Cable2D,
+        Cable3D,
+        CableClamp3D,
+        Clamp2D,
+        ConstantVelocity3D,
+        CoordinateDriver,
+        CoordinateLoad,
+        CoordinateRelation,
+        Cylindrical3D,
+        Distance2D,
+        Distance3D,
+        Fixed3D,
+        FloatingBeam2D,
+        ForceElement,
+        Frame2D,
+        Gear2D,
+        Gear3D,
+        Interface3D,
+        InterfaceFrame3D,
+        Joint3D,
+        JointElement,
+        KnifeEdge2D,
+        LinearSystem,
+        MaterialPoint2D,
+        MaterialPoint3D,
+        MovingFrame2D,
+        PIDController2D,
+        Planar3D,
+        PointMass2D,
+        PointMass3D,
+        PointOnLine3D,
+        PointOnPlane3D,
+        PositionDriver3D,
+        Prismatic2D,
+        Prismatic3D,
+        Rack2D,
+        RackAndPinion3D,
+        ReducedBody2D,
+        ReducedBody3D,
+        ReducedPoint,
+        RelationTerm,
+        RelativeLoad2D,
+        RelativeMotor2D,
+        Revolute2D,
+        Revolute3D,
+        RevoluteFriction2D,
+        RevoluteSpherical3D,
+        RigidBody2D,
+        RigidBody3D,
+        RollingDisk3D,
+        RollingSphere3D,
+        ScalarForce2D,
+        ScalarJoint2D,
+        Screw3D,
+        Servo2D,
+        SlideFriction2D,
+        SlideSpring2D,
+        Spherical3D,
+        SpringDamper2D,
+        SpringDamper3D,
+        TableSpring2D,
+        TorsionSpring2D,
+        TorsionSpring3D,
+        Universal3D,
+        scalar_constraint,
+        scalar_force,
+    )
+    from .equations.errors import EquationError
+    from .equations.system import EquationSystem, GapContact
+    from .errors import ConsistencyError, ModelError, SimulationError, TlismniError
+    from .events import Event
+    from .flexible.section_loads import (
+        axial_force,
+        axial_strain,
+        bending_moment,
+        bending_stress,
+        curvature,
+        deformed_shape,
+        section,
+        stress,
+    )
+    from .laws import (
+        CarvalhoMartins,
+        Flores,
+        ForceLaw,
+        Gonthier,
+        HerbertMcWhannell,
+        Hertz,
+        HuGuo,
+        HuntCrossley,
+        KelvinVoigt,
+        KuwabaraKono,
+        LankaraniNikravesh,
+        LeeWang,
+        NewtonImpact,
+        PoissonImpact,
+        Tsuji,
+        ZhiyingQishao,
+        force_formula,
+    )
+    from .laws.friction import (
+        AmbrosioFriction,
+        BrownMcPheeFriction,
+        CoulombFriction,
+        FrictionLaw,
+        LuGreFriction,
+        StepFriction,
+        TanhFriction,
+        ThrelfallFriction,
+        TurningFriction,
+    )
+    from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
+    from .many_runs import simulate_many
+    from .methods.registry import METHODS
+    from .model.attitude import Axes, AxisAngles, EulerParameters, RotationVector
+    from .model.channels import Channel, Formula, Input, Parameter
+    from .model.markers import Marker2D, Marker3D
+    from .model.outputs import MarkerOutput2D, MarkerOutput3D
+    from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
+    from .one_run import simulate
+    from .results.result import Result
+    from .results.stored import load_result
+    from .run.simulation import Simulation
+    from .run.state import State
+    from .runs import Runs
+    from .shapes.angle_stop2d import AngleStop2D
+    from .shapes.box2d import Box2D, DiskOnBox2D
+    from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+    from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
+    from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
+    from .shapes.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
+    from .shapes.disk_on_cable import DiskOnCable2D
+    from .shapes.disk_on_line import DiskOnLine2D, Line2D
+    from .shapes.group2d import ContactGroup2D, contacts_between
+    from .shapes.group3d import ContactGroup3D
+    from .shapes.mesh3d import TriangleMesh3D, read_mesh
+    from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
+    from .shapes.ring2d import DiskInRing2D, Ring2D
+    from .shapes.rope2d import Rope2D
+    from .shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
+    from .shapes.rounds3d import Ellipsoid3D, Torus3D
+    from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
+    from .shapes.segment2d import DiskOnSegment2D, Segment2D
+    from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
+    from .shapes.support3d import SmoothShape3D, support_formula
+    from .tables.redundancy import RedundantRow
+    from .tolerances import OfScales
 
 __all__ = [
     "METHODS",
@@ -366,3 +374,76 @@ __all__ = [
     "stress",
     "support_formula",
 ]
+
+__getattr__, __dir__ = late_names(
+    __name__,
+    {
+        ".compiled_model": "CompiledModel compile_model",
+        ".courses": "Courses",
+        ".description": "Model",
+        ".elements": (
+            "AngleDriver3D AppliedForce2D AppliedForce3D AppliedTorque2D AppliedTorque3D Attachment AxialRod "
+            "AxialSpring3D Belt2D BodyElement Bushing2D Bushing3D Cable2D Cable3D CableClamp3D Clamp2D "
+            "ConstantVelocity3D CoordinateDriver CoordinateLoad CoordinateRelation Cylindrical3D Distance2D "
+            "Distance3D Fixed3D FloatingBeam2D ForceElement Frame2D Gear2D Gear3D Interface3D InterfaceFrame3D "
+            "Joint3D JointElement KnifeEdge2D LinearSystem MaterialPoint2D MaterialPoint3D MovingFrame2D "
+            "PIDController2D Planar3D PointMass2D PointMass3D PointOnLine3D PointOnPlane3D PositionDriver3D "
+            "Prismatic2D Prismatic3D Rack2D RackAndPinion3D ReducedBody2D ReducedBody3D ReducedPoint RelationTerm "
+            "RelativeLoad2D RelativeMotor2D Revolute2D Revolute3D RevoluteFriction2D RevoluteSpherical3D "
+            "RigidBody2D RigidBody3D RollingDisk3D RollingSphere3D ScalarForce2D ScalarJoint2D Screw3D Servo2D "
+            "SlideFriction2D SlideSpring2D Spherical3D SpringDamper2D SpringDamper3D TableSpring2D "
+            "TorsionSpring2D TorsionSpring3D Universal3D scalar_constraint scalar_force"
+        ),
+        ".equations.errors": "EquationError",
+        ".equations.system": "EquationSystem GapContact",
+        ".errors": "ConsistencyError ModelError SimulationError TlismniError",
+        ".events": "Event",
+        ".flexible.section_loads": (
+            "axial_force axial_strain bending_moment bending_stress curvature deformed_shape section stress"
+        ),
+        ".laws": (
+            "CarvalhoMartins Flores ForceLaw Gonthier HerbertMcWhannell Hertz HuGuo HuntCrossley KelvinVoigt "
+            "KuwabaraKono LankaraniNikravesh LeeWang NewtonImpact PoissonImpact Tsuji ZhiyingQishao force_formula"
+        ),
+        ".laws.friction": (
+            "AmbrosioFriction BrownMcPheeFriction CoulombFriction FrictionLaw LuGreFriction StepFriction "
+            "TanhFriction ThrelfallFriction TurningFriction"
+        ),
+        ".laws.stiffness": "Material sphere_on_plane sphere_on_sphere",
+        ".many_runs": "simulate_many",
+        ".methods.registry": "METHODS",
+        ".model.attitude": "Axes AxisAngles EulerParameters RotationVector",
+        ".model.channels": "Channel Formula Input Parameter",
+        ".model.markers": "Marker2D Marker3D",
+        ".model.outputs": "MarkerOutput2D MarkerOutput3D",
+        ".model.signals": "Constant InputSignal Polynomial Ramp Sine Step Table",
+        ".one_run": "simulate",
+        ".results.result": "Result",
+        ".results.stored": "load_result",
+        ".run.simulation": "Simulation",
+        ".run.state": "State",
+        ".runs": "Runs",
+        ".shapes.angle_stop2d": "AngleStop2D",
+        ".shapes.box2d": "Box2D DiskOnBox2D",
+        ".shapes.contact2d": "Disk2D DiskOnDisk2D DiskOnHalfPlane2D HalfPlane2D",
+        ".shapes.contact3d": "HalfSpace3D Sphere3D SphereOnHalfSpace3D SphereOnSphere3D",
+        ".shapes.coordinate_contact": "CoordinateContact CoordinateTerm",
+        ".shapes.cornered3d": "Box3D Capsule3D ConvexPolyhedron3D Cylinder3D",
+        ".shapes.disk_on_cable": "DiskOnCable2D",
+        ".shapes.disk_on_line": "DiskOnLine2D Line2D",
+        ".shapes.group2d": "ContactGroup2D contacts_between",
+        ".shapes.group3d": "ContactGroup3D",
+        ".shapes.mesh3d": "TriangleMesh3D read_mesh",
+        ".shapes.polygon2d": "DiskOnPolygon2D Polygon2D",
+        ".shapes.ring2d": "DiskInRing2D Ring2D",
+        ".shapes.rope2d": "Rope2D",
+        ".shapes.round3d": "CapsuleOnCapsule3D SmoothOnHalfSpace3D SphereInSphere3D",
+        ".shapes.rounds3d": "Ellipsoid3D Torus3D",
+        ".shapes.scalar_contact2d": "ScalarContact2D scalar_contact",
+        ".shapes.segment2d": "DiskOnSegment2D Segment2D",
+        ".shapes.stop3d": "AngleStop3D Rope3D SlideStop3D",
+        ".shapes.support3d": "SmoothShape3D support_formula",
+        ".tables.redundancy": "RedundantRow",
+        ".tolerances": "OfScales",
+    },
+)

@@ -2,38 +2,21 @@
 
 import math
 
-from ..core.laws import (
-    CarvalhoMartins,
-    ContactLaw,
-    Flores,
-    Gonthier,
-    HerbertMcWhannell,
-    Hertz,
-    HuGuo,
-    HuntCrossley,
-    KelvinVoigt,
-    KuwabaraKono,
-    LankaraniNikravesh,
-    LeeWang,
-    NewtonImpact,
-    Tsuji,
-    ZhiyingQishao,
-)
-from ..core.laws.hunt_crossley import DissipativeFamily
+from ..core.laws import LAWS, ContactLaw, NewtonImpact
 from ..core.model.channels import Parameter
 from .parameters import ScenarioError, ScenarioParameter
 
 HUNT_CROSSLEY_FAMILY = {
-    "hunt_crossley": HuntCrossley,
-    "herbert_mcwhannell": HerbertMcWhannell,
-    "lee_wang": LeeWang,
-    "lankarani_nikravesh": LankaraniNikravesh,
-    "gonthier": Gonthier,
-    "gonthier_approximate": Gonthier,
-    "zhiying_qishao": ZhiyingQishao,
-    "flores": Flores,
-    "hu_guo": HuGuo,
-    "carvalho_martins": CarvalhoMartins,
+    "hunt_crossley": "HuntCrossley",
+    "herbert_mcwhannell": "HerbertMcWhannell",
+    "lee_wang": "LeeWang",
+    "lankarani_nikravesh": "LankaraniNikravesh",
+    "gonthier": "Gonthier",
+    "gonthier_approximate": "Gonthier",
+    "zhiying_qishao": "ZhiyingQishao",
+    "flores": "Flores",
+    "hu_guo": "HuGuo",
+    "carvalho_martins": "CarvalhoMartins",
 }
 LAW_NAMES = ("newton", "hertz", "kelvin_voigt", "kelvin_voigt_gap", "tsuji", "kuwabara_kono", *HUNT_CROSSLEY_FAMILY)
 """kelvin_voigt ends at zero force, kelvin_voigt_gap at zero penetration."""
@@ -88,7 +71,7 @@ def contact_law(
     relaxation_time: float | None = None,
     mass: float,
 ) -> ContactLaw:
-    """The contact law named `law`.
+    """The contact law named `law`. Only the module of that one is imported.
 
     `mass` (kg) is the effective mass at the contact, from which the damping of Kelvin-Voigt and Tsuji follows if not
     given.
@@ -104,30 +87,36 @@ def contact_law(
     if law == "newton":
         return NewtonImpact(restitution=restitution)
     if law == "hertz":
-        return Hertz(stiffness=stiffness, exponent=exponent)
+        return LAWS["Hertz"](stiffness=stiffness, exponent=exponent)
     if law == "kuwabara_kono":
         time = RELAXATION_TIME if relaxation_time is None else relaxation_time
-        return KuwabaraKono(stiffness=stiffness, relaxation_time=time)
+        return LAWS["KuwabaraKono"](stiffness=stiffness, relaxation_time=time)
     if law == "kelvin_voigt":
         if damping is None:
             damping = 2.0 * kelvin_voigt_damping_ratio(restitution) * math.sqrt(stiffness * mass)
-        return KelvinVoigt(stiffness=stiffness, damping=damping)
-    family = HUNT_CROSSLEY_FAMILY.get(law)
-    unbounded = family is None or issubclass(family, DissipativeFamily)
-    if unbounded and damping is None and restitution == 0.0:
+        return LAWS["KelvinVoigt"](stiffness=stiffness, damping=damping)
+    if restitution == 0.0 and damping is None and _dissipates_by_restitution(law):
         raise ScenarioError(f"law '{law}' cannot have restitution 0: its damping would be infinite")
     if law == "kelvin_voigt_gap":
         if damping is None:
             loss = -math.log(restitution)
             damping = 2.0 * loss / math.hypot(math.pi, loss) * math.sqrt(stiffness * mass)
-        return KelvinVoigt(stiffness=stiffness, damping=damping, release_rule="gap")
+        return LAWS["KelvinVoigt"](stiffness=stiffness, damping=damping, release_rule="gap")
     if law == "tsuji":
         if damping is None:
-            return Tsuji(stiffness=stiffness, mass=mass, restitution=restitution)
-        return Tsuji(stiffness=stiffness, damping=damping)
+            return LAWS["Tsuji"](stiffness=stiffness, mass=mass, restitution=restitution)
+        return LAWS["Tsuji"](stiffness=stiffness, damping=damping)
     if law == "gonthier_approximate":
-        return Gonthier(stiffness=stiffness, restitution=restitution, exponent=exponent, variant="approximate")
-    return HUNT_CROSSLEY_FAMILY[law](stiffness=stiffness, restitution=restitution, exponent=exponent)
+        return LAWS["Gonthier"](stiffness=stiffness, restitution=restitution, exponent=exponent, variant="approximate")
+    return LAWS[HUNT_CROSSLEY_FAMILY[law]](stiffness=stiffness, restitution=restitution, exponent=exponent)
+
+
+def _dissipates_by_restitution(law: str) -> bool:
+    """Whether the law's damping grows beyond all bounds as the restitution goes to zero."""
+    from ..core.laws.hunt_crossley import DissipativeFamily
+
+    family = HUNT_CROSSLEY_FAMILY.get(law)
+    return family is None or issubclass(LAWS[family], DissipativeFamily)
 
 
 def kelvin_voigt_damping_ratio(restitution: float) -> float:

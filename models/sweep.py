@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..core.compiled_model import CompiledModel, compile_model
 from ..core.errors import ModelError
+from ..core.one_run import check_times
 from ..core.run.simulation import Simulation
-from ..core.simulate import check_times
 from ..core.sweeps.problem import (
     KEPT_MODELS,
     Outcomes,

@@ -3,43 +3,36 @@
 A user's own law needs neither: a subclass of ForceLaw can stand in a contact as it is.
 """
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
+from ..late import LateClasses, late_names
 from ..model.open_union import OpenUnion
 from .base import LAW_SIGNATURE, ForceLaw, call_law, law_address
-from .hertz import Hertz
-from .hunt_crossley import (
-    CarvalhoMartins,
-    Flores,
-    Gonthier,
-    HerbertMcWhannell,
-    HuGuo,
-    HuntCrossley,
-    LankaraniNikravesh,
-    LeeWang,
-    ZhiyingQishao,
-)
-from .kelvin_voigt import KelvinVoigt
-from .own import force_formula
 from .restitution import ImpactLaw, NewtonImpact, PoissonImpact
-from .viscoelastic import KuwabaraKono, Tsuji
 
-FORCE_LAWS = (
-    Hertz,
-    KelvinVoigt,
-    Tsuji,
-    KuwabaraKono,
-    HuntCrossley,
-    HerbertMcWhannell,
-    LeeWang,
-    LankaraniNikravesh,
-    Gonthier,
-    ZhiyingQishao,
-    Flores,
-    HuGuo,
-    CarvalhoMartins,
+if TYPE_CHECKING:
+    from .hertz import Hertz
+    from .hunt_crossley import (
+        CarvalhoMartins,
+        Flores,
+        Gonthier,
+        HerbertMcWhannell,
+        HuGuo,
+        HuntCrossley,
+        LankaraniNikravesh,
+        LeeWang,
+        ZhiyingQishao,
+    )
+    from .kelvin_voigt import KelvinVoigt
+    from .own import force_formula
+    from .viscoelastic import KuwabaraKono, Tsuji
+
+FORCE_LAWS = LateClasses(
+    __name__,
+    "Hertz KelvinVoigt Tsuji KuwabaraKono HuntCrossley HerbertMcWhannell LeeWang LankaraniNikravesh Gonthier "
+    "ZhiyingQishao Flores HuGuo CarvalhoMartins",
 )
-LAWS = (NewtonImpact, PoissonImpact, *FORCE_LAWS)
+LAWS = LateClasses(__name__, f"NewtonImpact PoissonImpact {' '.join(FORCE_LAWS)}")
 
 ContactLaw = Annotated[ImpactLaw | ForceLaw, OpenUnion(LAWS, ForceLaw)]
 
@@ -69,3 +62,17 @@ __all__ = [
     "force_formula",
     "law_address",
 ]
+
+__getattr__, __dir__ = late_names(
+    __name__,
+    {
+        ".hertz": "Hertz",
+        ".hunt_crossley": (
+            "CarvalhoMartins Flores Gonthier HerbertMcWhannell HuGuo HuntCrossley LankaraniNikravesh LeeWang "
+            "ZhiyingQishao"
+        ),
+        ".kelvin_voigt": "KelvinVoigt",
+        ".own": "force_formula",
+        ".viscoelastic": "KuwabaraKono Tsuji",
+    },
+)

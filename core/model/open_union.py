@@ -52,15 +52,14 @@ def meant_now() -> Mapping[str, type[OpenRecord]]:
 
 
 class OpenUnion:
-    """Annotation of a field: one of the `known` records by its `type`, or an own subclass of `base`.
+    """Annotation of a field: one of the `known` records by their `type`, or an own subclass of `base`.
 
     Own records are found by the name of their class (the last definition of a name counts), so that a model with them
     can be read from JSON wherever their class is defined.
     """
 
-    def __init__(self, known: tuple[type[Record], ...], base: type[OpenRecord]) -> None:
+    def __init__(self, known: Mapping[str, type[Record]], base: type[OpenRecord]) -> None:
         self.known, self.base = known, base
-        self.names = {record.model_fields["type"].default: record for record in known}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         # not the schemas of all that is known: those are made when a record of their kind is first read
@@ -76,25 +75,25 @@ class OpenUnion:
     @cached_property
     def _union(self) -> TypeAdapter[Any]:
         """The known records, told apart by pydantic, which knows how to say what is wrong with one of none."""
-        union: Any = Annotated[reduce(or_, self.known), Field(discriminator="type")]
+        union: Any = Annotated[reduce(or_, self.known.values()), Field(discriminator="type")]
         return TypeAdapter(union)
 
     def _read(self, value: Any) -> Any:
         kind = type(value)
-        if self.names.get(getattr(value, "type", None)) is kind:
+        if isinstance(value, Record) and self.known.get(getattr(value, "type", "")) is kind:
             return value
-        if isinstance(value, self.base) and kind not in self.known:
+        if isinstance(value, self.base):
             name = kind.model_fields["type"].default
-            if name in self.names:
+            if name in self.known:
                 raise ValueError(
                     f"type '{name}' is taken by a record of this library, which a model file would be read as: "
                     "give your class another name"
                 )
             return value
         if isinstance(value, Mapping) and isinstance(value.get("type"), str):
-            if value["type"] not in self.names:
+            if value["type"] not in self.known:
                 return self._from_data(value)
-            record = self.names[value["type"]]
+            record = self.known[value["type"]]
             complete(record)
             try:
                 return record.__pydantic_validator__.validate_python(value)
@@ -107,12 +106,12 @@ class OpenUnion:
         own = {record.model_fields["type"].default: record for record in subclasses(self.base)}
         own |= {key: record for key, record in _meant.get().items() if issubclass(record, self.base)}
         if name not in own:
-            close = get_close_matches(name, self.names, 1)
+            close = get_close_matches(name, self.known, 1)
             if close:
                 raise ValueError(
                     f"there is no type '{name}'; did you mean '{close[0]}'? (An own class must have been imported)"
                 )
-            known = ", ".join(f"'{each}'" for each in self.names)
+            known = ", ".join(f"'{each}'" for each in self.known)
             raise ValueError(
                 f"type '{name}' is none of {known}, and no class of this name has been defined: "
                 f"import the module that defines it (a subclass of {self.base.__name__}) before the model is read"

@@ -13,7 +13,6 @@ from ..location.dense_output import interpolate
 from ..state.workspace_records import LEAST_CONDITION, OK, WORST_CONDITION
 from ..tables.evaluate import evaluate_power, evaluate_residuals
 from ..tables.redundancy import least_singular_value
-from .collocation import interpolation_matrix
 
 if TYPE_CHECKING:
     from ..run.engine import Engine
@@ -42,6 +41,8 @@ def smooth_query(sim: "Engine", status: int) -> int:
     """Replace what the query at `t` gave, and its `status`, if the point is too near a singular position."""
     # importing scipy costs more than most runs: only who needs it pays
     from scipy.interpolate import BarycentricInterpolator, KroghInterpolator
+
+    from .collocation import interpolation_matrix
 
     workspace, n, n_ext = sim.workspace, sim.assembly.n, sim.assembly.n_extended
     arrays = workspace.arrays

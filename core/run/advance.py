@@ -11,9 +11,7 @@ from ..events import Fallback
 from ..loop.loop import trial_step
 from ..methods.history import recall
 from ..repair.near_singular import STRAINED
-from ..repair.passage import pass_singular
 from ..repair.repair import repair
-from ..repair.singular_position import near_singular
 from ..rounding import NO_STEP, SHORTEST
 from ..state.run_records import (
     CHUNK,
@@ -203,6 +201,8 @@ def _violated(sim: "Simulation", h: float) -> None:
 
 def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
     """The constraints are nearly dependent where the step was to end: step over that position, if it is one."""
+    from ..repair.passage import pass_singular  # rare, and no small thing to import
+
     rate = sim.workspace.arrays["rate"]
     worst = float(rate[WORST_CONDITION])
     if sim.workspace.dropped:
@@ -225,6 +225,8 @@ def _pass_after_all(sim: "Simulation") -> bool:
 
 
 def _fail(sim: "Simulation", code: int) -> None:
+    from ..repair.singular_position import near_singular
+
     loop, reason = _REASONS.get(code, ("outer", f"status {code}"))
     t, h, settings = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.settings
     tried = f"fixed step {h:.3g} s" if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"

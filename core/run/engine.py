@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of
 from ..compiled.notices import compile_notices
 from ..description import Model
-from ..equations.system import EquationSystem
 from ..errors import CallbackError, ModelError, SimulationError
 from ..events import Event, Fallback
 from ..events.progress import Progress
@@ -70,6 +69,12 @@ def _own_error(assembly: Assembly) -> BaseException:
     return error
 
 
+def _is_equations(system: Any) -> bool:
+    from ..equations.system import EquationSystem  # fourteen modules that a Model has no use for
+
+    return isinstance(system, EquationSystem)
+
+
 class Engine(ContactSide):
     """Set-up of a run and the operations that event handling is made of. `Simulation` is the public face."""
 
@@ -105,7 +110,7 @@ class Engine(ContactSide):
             max_steps=max_steps, method_options=dict(method_options),
         )  # fmt: skip
         self.formula: Formula = get_formula(method, method_options)
-        if not isinstance(system, Model | EquationSystem):
+        if not isinstance(system, Model) and not _is_equations(system):
             raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
         self.system = system
         self.assembly: Assembly = system.assemble()

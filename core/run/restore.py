@@ -16,7 +16,6 @@ from ..state.run_records import HANDLED_AT, HERE
 from ..state.workspace_records import FACTOR_AGE, OK
 from .snapshot import Snapshot, snapshot_of, take_snapshot
 from .state import State
-from .state_check import check_state
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -48,6 +47,8 @@ def set_state(sim: "Simulation", state: State) -> None:
     if state.parts is not None:
         _take(sim, state.parts, state.events)
         return
+    from .state_check import check_state  # of states from outside this process alone
+
     own = get_state(sim)
     check_state(sim, state, own)
     try:

@@ -2,43 +2,37 @@
 
 from typing import Annotated
 
+from ..late import LateClasses, late_names
 from ..model.open_union import OpenUnion
-from .angle_stop2d import AngleStop2D
-from .box2d import DiskOnBox2D
-from .contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
-from .contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
-from .coordinate_contact import CoordinateContact
-from .disk_on_cable import DiskOnCable2D
-from .disk_on_line import DiskOnLine2D
 from .element import ContactElement
-from .polygon2d import DiskOnPolygon2D
-from .ring2d import DiskInRing2D
-from .rope2d import Rope2D
-from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
-from .segment2d import DiskOnSegment2D
-from .stop3d import AngleStop3D, Rope3D, SlideStop3D
 
-CONTACTS = (
-    DiskOnHalfPlane2D,
-    DiskOnDisk2D,
-    DiskOnBox2D,
-    DiskOnSegment2D,
-    DiskOnLine2D,
-    DiskOnCable2D,
-    DiskInRing2D,
-    DiskOnPolygon2D,
-    Rope2D,
-    AngleStop2D,
-    CoordinateContact,
-    SphereOnHalfSpace3D,
-    SphereOnSphere3D,
-    SmoothOnHalfSpace3D,
-    SphereInSphere3D,
-    CapsuleOnCapsule3D,
-    AngleStop3D,
-    SlideStop3D,
-    Rope3D,
+CONTACTS = LateClasses(
+    __name__,
+    "DiskOnHalfPlane2D DiskOnDisk2D DiskOnBox2D DiskOnSegment2D DiskOnLine2D DiskOnCable2D DiskInRing2D "
+    "DiskOnPolygon2D Rope2D AngleStop2D CoordinateContact SphereOnHalfSpace3D SphereOnSphere3D "
+    "SmoothOnHalfSpace3D SphereInSphere3D CapsuleOnCapsule3D AngleStop3D SlideStop3D Rope3D",
 )
 
 Contact = Annotated[ContactElement, OpenUnion(CONTACTS, ContactElement)]
 """Contacts: two shapes, a law along the normal, and friction; a user's own subclasses of Contact2D too."""
+
+__getattr__, __dir__ = late_names(
+    __name__,
+    {
+        ".angle_stop2d": "AngleStop2D",
+        ".box2d": "DiskOnBox2D",
+        ".contact2d": "DiskOnDisk2D DiskOnHalfPlane2D",
+        ".contact3d": "SphereOnHalfSpace3D SphereOnSphere3D",
+        ".coordinate_contact": "CoordinateContact",
+        ".disk_on_cable": "DiskOnCable2D",
+        ".disk_on_line": "DiskOnLine2D",
+        ".group2d": "ContactGroup2D",
+        ".group3d": "ContactGroup3D",
+        ".polygon2d": "DiskOnPolygon2D",
+        ".ring2d": "DiskInRing2D",
+        ".rope2d": "Rope2D",
+        ".round3d": "CapsuleOnCapsule3D SmoothOnHalfSpace3D SphereInSphere3D",
+        ".segment2d": "DiskOnSegment2D",
+        ".stop3d": "AngleStop3D Rope3D SlideStop3D",
+    },
+)

@@ -14,6 +14,7 @@ from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import add_product, along, bend_of, levels
 from ..laws.friction.lugre import lugre_formula
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from .geometry_kinds import DISKS, PLANE, are
 from .normal2d import act, evaluate_law
 from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
 
@@ -98,3 +99,7 @@ def bristle_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     for e in range(b.count):
         g, g_gradient, g_hessian, _, gradient, hessian = slide_on_disk(q, coord[e], par[e])
         act_bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+
+
+are(DISKS, bristle_disk_on_disk_kernel)
+are(PLANE, bristle_disk_on_half_plane_kernel)

@@ -14,6 +14,7 @@ from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..rounding import SAME_PARAMETER
 from .curve2d import arm_derivatives, foot_derivatives, length_derivatives
+from .geometry_kinds import CABLE, are
 from .normal2d import act
 
 VECTORS = 4  # r0, s0, r1, s1
@@ -186,3 +187,6 @@ def disk_on_cable_kernel(job: int, t: float, b: Any) -> None:
         d = length_derivatives(ex, ey, first, second, gradient, hessian)
         act(b, job, piece, d - par[piece, BOTH], gradient, hessian)
         e += extra[e, PIECES]
+
+
+are(CABLE, disk_on_cable_kernel)

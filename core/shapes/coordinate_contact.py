@@ -19,6 +19,7 @@ from ..model.markers import GROUND
 from ..model.units import UNKNOWN, parse_unit, product
 from .bristle2d import act_bristles
 from .contact2d import Contact2D
+from .geometry_kinds import LINEAR, are
 from .normal2d import act
 from .sliding2d import act_sliding
 
@@ -183,3 +184,6 @@ class CoordinateContact(Contact2D):
         return Row(
             (self.offset, *(0.0,) * 6, *law.parameters, *factors[0], *factors[1]), indices, law.extra
         )  # fmt: skip
+
+
+are(LINEAR, bristle_coordinate_contact_kernel, coordinate_contact_kernel, sliding_coordinate_contact_kernel)

@@ -16,6 +16,7 @@ from ..elements.measure3d import COLUMNS, product
 from ..laws.friction import call_friction
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
 from .normal2d import act, asleep, evaluate_law
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
@@ -147,3 +148,6 @@ def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
         g = gap_of(b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
         regularised(b, job, e, g, held, moves, gradient, hessian, work)
+
+
+are(SPHERE, rubbing_sphere3d_kernel)

@@ -8,6 +8,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import mat
 from ..elements.measure3d import COLUMNS
+from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
 from .normal2d import act, asleep
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold
@@ -28,3 +29,6 @@ def sphere3d_kernel(job: int, t: float, b: Any) -> None:
         hold(b, e, held, moves)
         g = gap_of(b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
+
+
+are(SPHERE, sphere3d_kernel)

@@ -24,6 +24,7 @@ from ..elements.measure3d import COLUMNS
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
+from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
 from .normal2d import act, asleep
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
@@ -223,3 +224,6 @@ def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
         g = gap_of(b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
         grip(b, job, e, gradient, held, moves, work)
+
+
+are(SPHERE, gripping_sphere3d_kernel)

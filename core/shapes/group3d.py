@@ -4,16 +4,16 @@ from typing import Literal
 
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
-from ..model.base import Name, Record
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
 from .group2d import GroupShape, contacts_between
+from .groups import ShapeGroup
 from .mesh3d import TriangleMesh3D
 from .round3d import Smooth3D
 
 
-class ContactGroup3D(Record):
+class ContactGroup3D(ShapeGroup):
     """Shapes in space of which each may touch each other: one record for all their contacts.
 
     A model makes the contacts of all pairs that can touch, as `contacts_between` does, and calls them
@@ -21,8 +21,6 @@ class ContactGroup3D(Record):
     """
 
     type: Literal["ContactGroup3D"] = "ContactGroup3D"
-    name: Name
-    """Names of its contacts begin with it."""
     spheres: tuple[Sphere3D, ...] = ()
     """They touch spheres, capsules and half-spaces."""
     boxes: tuple[Box3D, ...] = ()

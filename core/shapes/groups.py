@@ -1,12 +1,27 @@
 """Groups of shapes among the data of a model."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
 
-from .group2d import ContactGroup2D
-from .group3d import ContactGroup3D
+from ..late import LateClasses
+from ..model.base import Name
+from ..model.open_union import OpenRecord, OpenUnion
+from .element import ContactElement
 
-ContactGroup = ContactGroup2D | ContactGroup3D
+
+class ShapeGroup(OpenRecord):
+    """Base of the groups."""
+
+    name: Name
+    """Names of its contacts begin with it."""
+
+    def contacts(self) -> Sequence[ContactElement]:
+        """Its contacts."""
+        raise NotImplementedError(f"{type(self).__name__} must make its contacts")
+
+
+GROUPS = LateClasses(str(__package__), "ContactGroup2D ContactGroup3D")
+ContactGroup = Annotated[ShapeGroup, OpenUnion(GROUPS, ShapeGroup)]
 
 
 def with_groups(data: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -19,7 +34,7 @@ def with_groups(data: Mapping[str, Any]) -> Mapping[str, Any]:
     given = data.get("groups")
     if not given or not isinstance(given, list | tuple):
         return data
-    groups = [g if isinstance(g, ContactGroup) else _group(g) for g in given]
+    groups = [g if isinstance(g, ShapeGroup) else _group(g) for g in given]
     made = [contact for group in groups for contact in group.contacts()]
     names = {contact.name for contact in made}
     others = [c for c in data.get("contacts", ()) if _name(c) not in names]
@@ -30,6 +45,6 @@ def _name(contact: Any) -> Any:
     return contact.get("name") if isinstance(contact, Mapping) else getattr(contact, "name", None)
 
 
-def _group(data: Mapping[str, Any]) -> ContactGroup:
+def _group(data: Mapping[str, Any]) -> Any:
     """A group in the plane, unless it says otherwise."""
-    return ContactGroup3D(**data) if data.get("type") == "ContactGroup3D" else ContactGroup2D(**data)
+    return GROUPS["ContactGroup3D" if data.get("type") == "ContactGroup3D" else "ContactGroup2D"](**data)

@@ -19,6 +19,7 @@ from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along
 from .bristle2d import act_bristles
 from .curve2d import add_direction, arm_derivatives, foot_derivatives, length_derivatives, nearest_on_parabola
+from .geometry_kinds import LINE, are
 from .normal2d import act
 from .sliding2d import act_sliding
 
@@ -284,3 +285,6 @@ def bristle_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
             _add_curl(b, piece, force, by_rate, gradient, xi, by_node)
             _add_turn(b, piece, bristle, z_by_rate, xi, by_node)
         e += imat(b.extra, b.count, b.nextra)[e, PIECES]
+
+
+are(LINE, bristle_disk_on_line_kernel, disk_on_line_kernel, sliding_disk_on_line_kernel)

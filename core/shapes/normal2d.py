@@ -21,6 +21,7 @@ from ..elements.geometry2d import (
 )
 from ..laws import call_law
 from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MEMORY_SIZE, MODE
+from .geometry_kinds import DISKS, PLANE, are
 
 LAW_ADDRESS = 1
 """Column of `extra` with the address of a force law's formula; 0: the contact is a constraint."""
@@ -122,3 +123,7 @@ def disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
             continue
         d, gradient, hessian = distance(vec(b.q, b.n_extended), coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])
         act(b, job, e, d - par[e, 5], gradient, hessian)
+
+
+are(DISKS, disk_on_disk_kernel)
+are(PLANE, disk_on_half_plane_kernel)

@@ -14,7 +14,7 @@ from .held3d import HOLLOW, SEGMENTS, SUPPORT
 from .rounds3d import Ellipsoid3D, Torus3D
 from .support3d import SmoothShape3D, support_address
 
-Smooth3D = Annotated[SmoothShape3D, OpenUnion((Ellipsoid3D, Torus3D), SmoothShape3D)]
+Smooth3D = Annotated[SmoothShape3D, OpenUnion({"Ellipsoid3D": Ellipsoid3D, "Torus3D": Torus3D}, SmoothShape3D)]
 """Smooth shapes, a user's own too."""
 
 

@@ -20,6 +20,7 @@ from ..model.base import NonNegative, Positive, Record
 from ..model.markers import Marker2D
 from .bristle2d import act_bristles
 from .contact2d import Contact2D, Disk2D
+from .geometry_kinds import SEGMENT, are
 from .normal2d import act, asleep
 from .sliding2d import act_sliding
 
@@ -183,3 +184,6 @@ def refuse_point_on_line(name: str, line: str, disk_radius: float, line_radius: 
             f"contact '{name}': the disk's radius and the {line}'s are both 0, and a point would pass a line without "
             f"thickness unseen: give one of them a radius (the {line}'s is half its thickness)"
         )
+
+
+are(SEGMENT, bristle_disk_on_segment_kernel, disk_on_segment_kernel, sliding_disk_on_segment_kernel)

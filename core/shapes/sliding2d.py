@@ -25,6 +25,7 @@ from ..elements.geometry2d import (
 )
 from ..laws.friction import call_friction
 from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
+from .geometry_kinds import DISKS, PLANE, are
 from .normal2d import LAW_ADDRESS, act, asleep, evaluate_law
 
 FRICTION = 11
@@ -194,3 +195,7 @@ def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
             continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_disk(q, coord[e], par[e])
         act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * par[e, 5])
+
+
+are(DISKS, sliding_disk_on_disk_kernel)
+are(PLANE, sliding_disk_on_half_plane_kernel)

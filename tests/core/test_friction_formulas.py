@@ -146,7 +146,7 @@ def test_speeds_must_be_in_order():
 @pytest.mark.parametrize("law", [*LAWS, CoulombFriction(coefficient=0.3)], ids=lambda law: law.type)
 def test_friction_is_data(law):
     adapter = TypeAdapter(Friction)
-    assert type(law) in FRICTION_LAWS
+    assert type(law) in FRICTION_LAWS.values()
     assert adapter.validate_json(law.model_dump_json()) == law
     if isinstance(law, FrictionLaw):
         assert friction_address(law) != 0

@@ -85,8 +85,8 @@ def test_no_circle_of_imports(graph):
 def test_it_would_be_found(graph):
     """Imports inside functions count, and those of the real files are seen."""
     assert "core.tables.assembly" in graph["core.description"]
-    assert "core.run.simulation" in graph["core.simulate"]
-    assert circle({**graph, "core.errors": {"core.simulate"}}) is not None
+    assert "core.run.simulation" in graph["core.one_run"]
+    assert circle({**graph, "core.errors": {"core.one_run"}}) is not None
 
 
 def test_arrows_between_folders_point_one_way(folders):

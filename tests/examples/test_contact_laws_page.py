@@ -31,9 +31,9 @@ def test_the_code_runs() -> None:
 
 
 def test_every_law_stands_on_the_page() -> None:
-    for law in FORCE_LAWS:
+    for law in FORCE_LAWS.values():
         assert f"| `{law.__name__}`" in PAGE
-    for record in (*FRICTION_LAWS, LuGreFriction):
+    for record in (*FRICTION_LAWS.values(), LuGreFriction):
         fields = set(record.model_fields) - {"type"}
         (row,) = [line for line in PAGE.splitlines() if line.startswith(f"| `{record.model_fields['type'].default}` ")]
         assert all(f"`{name}`" in row for name in fields), (record, fields)

@@ -3,27 +3,26 @@
 LuGre friction has a state and therefore a signature and kernels of its own: `lugre.py`, `shapes/bristle2d.py`.
 """
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
+from ...late import LateClasses, late_names
 from ...model.open_union import OpenUnion
-from .ambrosio import AmbrosioFriction
 from .base import FRICTION_SIGNATURE, FrictionLaw, call_friction, friction_address
-from .brown_mcphee import BrownMcPheeFriction
 from .coulomb import CoulombFriction
 from .lugre import LuGreFriction
-from .step import StepFriction
-from .tanh import TanhFriction
-from .threlfall import ThrelfallFriction
-from .turning import TurningFriction
 
-FRICTION_LAWS = (
-    CoulombFriction,
-    TanhFriction,
-    ThrelfallFriction,
-    AmbrosioFriction,
-    StepFriction,
-    BrownMcPheeFriction,
-    LuGreFriction,
+if TYPE_CHECKING:
+    from .ambrosio import AmbrosioFriction
+    from .brown_mcphee import BrownMcPheeFriction
+    from .step import StepFriction
+    from .tanh import TanhFriction
+    from .threlfall import ThrelfallFriction
+    from .turning import TurningFriction
+
+FRICTION_LAWS = LateClasses(
+    __name__,
+    "Coulomb=CoulombFriction Tanh=TanhFriction Threlfall=ThrelfallFriction Ambrosio=AmbrosioFriction "
+    "Step=StepFriction BrownMcPhee=BrownMcPheeFriction LuGre=LuGreFriction",
 )
 
 Friction = Annotated[CoulombFriction | LuGreFriction | FrictionLaw, OpenUnion(FRICTION_LAWS, FrictionLaw)]
@@ -44,3 +43,15 @@ __all__ = [
     "call_friction",
     "friction_address",
 ]
+
+__getattr__, __dir__ = late_names(
+    __name__,
+    {
+        ".ambrosio": "AmbrosioFriction",
+        ".brown_mcphee": "BrownMcPheeFriction",
+        ".step": "StepFriction",
+        ".tanh": "TanhFriction",
+        ".threlfall": "ThrelfallFriction",
+        ".turning": "TurningFriction",
+    },
+)

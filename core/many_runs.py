@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from .batch import in_threads, run_into
 from .compiled_model import CompiledModel, compile_model
 from .errors import ModelError
+from .one_run import check_end, check_times
 from .runs import Runs
-from .simulate import check_end, check_times
 
 Columns = Mapping[str, ArrayLike]
 
