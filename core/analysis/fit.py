@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..batch import in_threads
 from ..compiled_model import CompiledModel, compile_model
 from ..errors import ModelError, SimulationError, TlismniError
-from ..simulate import check_times
+from ..one_run import check_times
 
 Floats = NDArray[np.float64]
 

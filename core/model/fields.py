@@ -129,9 +129,10 @@ def records(root: type[BaseModel]) -> dict[str, type[BaseModel]]:
             yield record
             yield from below(record)
 
+    names = root.model_json_schema()["$defs"]  # which imports all that it names
     classes = {record.__name__: record for record in below(BaseModel) if record.__module__.startswith(home)}
     found = {root.__name__: root}
-    for name in root.model_json_schema()["$defs"]:
+    for name in names:
         kind = classes[name].model_fields.get("type")
         found[name if kind is None or kind.default in found else str(kind.default)] = classes[name]
     return found

@@ -13,9 +13,9 @@ from ..batch import in_threads, run_into
 from ..compiled_model import CompiledModel, compile_model
 from ..description import Model
 from ..errors import ModelError, TlismniError
+from ..one_run import check_end, check_times
 from ..run.simulation import Simulation
 from ..runs import Runs
-from ..simulate import check_end, check_times
 from ..tolerances import OfScales
 
 Columns = dict[str, NDArray[Any]]
