@@ -23,7 +23,7 @@ from .model.own_types import find_classes, import_paths, own_classes
 from .model.places import inside
 from .model.signals import InputSignal
 from .shapes import Contact
-from .shapes.groups import ContactGroup, with_groups
+from .shapes.groups import Group, with_groups
 
 
 def _with_imports(schema: dict[str, Any]) -> None:
@@ -63,7 +63,7 @@ class Model(Record):
     """What acts on them."""
     contacts: tuple[Contact, ...] = ()
     """Where they may touch."""
-    groups: tuple[ContactGroup, ...] = ()
+    groups: tuple[Group, ...] = ()
     """Shapes of which each may touch each other; their contacts are made of them."""
     inputs: tuple[Input, ...] = ()
     """Numbers that come from outside during a run."""

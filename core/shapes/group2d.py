@@ -19,7 +19,7 @@ from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .cornered3d import Capsule3D, Cornered3D, Cylinder3D
-from .groups import ShapeGroup
+from .groups import ContactGroup
 from .polygon2d import DiskOnPolygon2D, Polygon2D
 from .ring2d import DiskInRing2D, Ring2D
 from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
@@ -84,7 +84,7 @@ def contacts_between(
     return tuple(made)
 
 
-class ContactGroup2D(ShapeGroup):
+class ContactGroup2D(ContactGroup):
     """Shapes of which each may touch each other: one record for all their contacts.
 
     A model makes the contacts of all pairs that can touch, as `contacts_between` does, and calls them

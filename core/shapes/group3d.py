@@ -8,12 +8,12 @@ from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
 from .group2d import GroupShape, contacts_between
-from .groups import ShapeGroup
+from .groups import ContactGroup
 from .mesh3d import TriangleMesh3D
 from .round3d import Smooth3D
 
 
-class ContactGroup3D(ShapeGroup):
+class ContactGroup3D(ContactGroup):
     """Shapes in space of which each may touch each other: one record for all their contacts.
 
     A model makes the contacts of all pairs that can touch, as `contacts_between` does, and calls them

@@ -9,7 +9,7 @@ from ..model.open_union import OpenRecord, OpenUnion
 from .element import ContactElement
 
 
-class ShapeGroup(OpenRecord):
+class ContactGroup(OpenRecord):
     """Base of the groups."""
 
     name: Name
@@ -21,7 +21,7 @@ class ShapeGroup(OpenRecord):
 
 
 GROUPS = LateClasses(str(__package__), "ContactGroup2D ContactGroup3D")
-ContactGroup = Annotated[ShapeGroup, OpenUnion(GROUPS, ShapeGroup)]
+Group = Annotated[ContactGroup, OpenUnion(GROUPS, ContactGroup)]
 
 
 def with_groups(data: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -34,7 +34,7 @@ def with_groups(data: Mapping[str, Any]) -> Mapping[str, Any]:
     given = data.get("groups")
     if not given or not isinstance(given, list | tuple):
         return data
-    groups = [g if isinstance(g, ShapeGroup) else _group(g) for g in given]
+    groups = [g if isinstance(g, ContactGroup) else _group(g) for g in given]
     made = [contact for group in groups for contact in group.contacts()]
     names = {contact.name for contact in made}
     others = [c for c in data.get("contacts", ()) if _name(c) not in names]
