@@ -12,7 +12,7 @@ from tlismni.core.shapes.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 METHODS = list(REGISTRY)
 """Items of `solver.method`: its values are 0, 1, ..."""
 
-LAW_NAMES = [law.__name__ for law in LAWS]
+LAW_NAMES = [law.__name__ for law in LAWS.values()]
 """Items of `CONTACT.law`."""
 
 
