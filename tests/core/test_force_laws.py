@@ -188,7 +188,11 @@ def test_penetration_under_weight_of_a_ball_laid_down_softly(law):
 
 
 @quick
-@given(st.sampled_from([law for law in LAWS.values() if issubclass(law, ForceLaw)]), st.floats(0.1, 3.0), st.floats(-1.0, 1.0))
+@given(
+    st.sampled_from([law for law in LAWS.values() if issubclass(law, ForceLaw)]),
+    st.floats(0.1, 3.0),
+    st.floats(-1.0, 1.0),
+)
 def test_law_derivatives_are_those_of_its_force(law, depth, rate):
     """dF/dd, dF/dd' and the elastic part against central differences of third-order-exact span."""
     fields = law.model_fields
