@@ -112,7 +112,7 @@ def enumerations(table: VariableTable) -> dict[str, tuple[str, ...]]:
 
 def add_items(parent: Any, items: tuple[str, ...]) -> None:
     """The items of an enumeration; methods and laws with their descriptions."""
-    laws = {law.__name__: inspect.getdoc(law) or "" for law in LAWS}
+    laws = {name: inspect.getdoc(law) or "" for name, law in LAWS.items()}
     for value, name in enumerate(items):
         text = METHODS[name].description if name in METHODS else laws.get(name, "").split("\n\n")[0]
         add(parent, "Item", name=name, value=value, description=" ".join(text.split()) or None)

@@ -26,7 +26,7 @@ def build_table(
     ModelError : for an unknown method.
     """
     scales = Scales.of(model, settings.t_end)
-    laws = tuple(dict.fromkeys([*(law.__name__ for law in LAWS), *(type(c.law).__name__ for c in model.contacts)]))
+    laws = tuple(dict.fromkeys([*LAWS, *(type(c.law).__name__ for c in model.contacts)]))
     channels = tuple(channels)
     number = count(1)  # value references: the index of each variable
     own = [
