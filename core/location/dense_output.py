@@ -20,30 +20,50 @@ BETWEEN = 100
 """`_find`: the point has been interpolated, and is to be projected."""
 APART = 0.1
 """Of the newest step: rows nearer to one another than this make divided differences of rounding."""
+ALIKE = 3
+"""Conditions of a coordinate at each node, value and two derivatives; a work account has the first two."""
 
 
 @internal
-def _divided_differences(z: Any, table: Any, count: int) -> None:
-    """Newton coefficients in place; table[j] holds f, and seeds for confluent nodes stand in `table[:, 1:3]`."""
-    # z has each node `repeat` times in a row; table[:, 0] = f, table[:, 1] = f', table[:, 2] = f''/2
-    for order in range(1, count):
-        for j in range(count - 1, order - 1, -1):
-            if z[j] != z[j - order]:
-                table[j, 0] = (table[j, 0] - table[j - 1, 0]) / (z[j] - z[j - order])
-            elif order == 1:
-                table[j, 0] = table[j, 1]
-            else:
-                table[j, 0] = table[j, 2]
+def _hermite(z: Any, rows: int, alike: int, s: float, values: Any, slopes: Any) -> None:
+    """Weights of what is known at the nodes z[:rows] for the polynomial's value at s, and for its slope there.
+
+    values[j, l], slopes[j, l] belong to the Taylor coefficient l < `alike` at node j. The polynomial of such a weight
+    is B^alike, B = product of (s - z_k)/(z_j - z_k) over the others, which is zero at those as often as it has to be,
+    times as much of the series of 1/B^alike at z_j as makes it one there: c0 + c1 u + c2 u^2, u = s - z_j.
+    """
+    for j in range(rows):
+        b, db, inverse_sum, square_sum = 1.0, 0.0, 0.0, 0.0
+        for k in range(rows):
+            if k != j:
+                inverse = 1.0 / (z[j] - z[k])
+                db = (db * (s - z[k]) + b) * inverse
+                b *= (s - z[k]) * inverse
+                inverse_sum += inverse
+                square_sum += inverse * inverse
+        u = s - z[j]
+        c1 = -alike * inverse_sum
+        c2 = 0.5 * alike * (square_sum + alike * inverse_sum * inverse_sum) if alike == ALIKE else 0.0
+        below = b if alike == 2 else b * b
+        power, dpower = below * b, alike * below * db
+        # u^l times the beginning of the series
+        first, dfirst = 1.0 + u * (c1 + u * c2), c1 + 2.0 * c2 * u
+        values[j, 0], slopes[j, 0] = power * first, dpower * first + power * dfirst
+        second, dsecond = (u, 1.0) if alike == 2 else (u * (1.0 + c1 * u), 1.0 + 2.0 * c1 * u)
+        values[j, 1], slopes[j, 1] = power * second, dpower * second + power * dsecond
+        values[j, 2], slopes[j, 2] = power * u * u, dpower * u * u + 2.0 * power * u
 
 
 @internal
-def _newton_value(z: Any, table: Any, count: int, s: float) -> Any:
-    """Value and derivative of the Newton form at s."""
-    f, df = table[count - 1, 0], 0.0
-    for j in range(count - 2, -1, -1):
-        df = df * (s - z[j]) + f
-        f = f * (s - z[j]) + table[j, 0]
-    return f, df
+def _add_row(row: Any, base: Any, n: int, h: float, values: Any, slopes: Any, q: Any, v: Any) -> None:
+    """What a row gives to the coordinates and velocities beyond the base, a row near to all others: so rounding of the
+    weights counts by how far rows are apart. The weights' unit of time is h."""
+    value, rate, curvature = values[0], h * values[1], 0.5 * h * h * values[2]
+    dvalue, drate, dcurvature = slopes[0] / h, slopes[1], 0.5 * h * slopes[2]
+    for i in range(len(q)):
+        difference, speed, acceleration = row[i] - base[i], row[n + i], row[2 * n + i]
+        q[i] += value * difference + rate * speed + curvature * acceleration
+        v[i] += dvalue * difference + drate * speed + dcurvature * acceleration
 
 
 @internal
@@ -100,34 +120,24 @@ def interpolate(ws: Any, ms: Any, t: float) -> None:
     rows = 2 if third == 0 else 3
     h = history_time(ms, 0) - history_time(ms, 1)
     s = (t - history_time(ms, 0)) / h
-    z, table = vec(ws.scratch, 9), mat(ws.scratch + 9 * 8, 9, 3)
+    z, values, slopes = vec(ws.scratch, 3), mat(ws.scratch + 3 * 8, 3, 3), mat(ws.scratch + 12 * 8, 3, 3)
+    for j in range(rows):
+        z[j] = (history_time(ms, third if j == 2 else j) - history_time(ms, 0)) / h
+    _hermite(z, rows, ALIKE, s, values, slopes)
+    newest, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
     q, v = vec(ws.q, n), vec(ws.v, n)
     for i in range(ws.n):
-        for j in range(rows):
-            back = third if j == 2 else j
-            row = history_row(ws, ms, back)
-            node = (history_time(ms, back) - history_time(ms, 0)) / h
-            for l in range(3):
-                z[3 * j + l] = node
-                table[3 * j + l, 0] = row[i]
-                table[3 * j + l, 1] = h * row[n + i]
-                table[3 * j + l, 2] = 0.5 * h * h * row[2 * n + i]
-        _divided_differences(z, table, 3 * rows)
-        f, df = _newton_value(z, table, 3 * rows, s)
-        q[i], v[i] = f, df / h
+        q[i], v[i] = older[i], 0.0
+    for j in range(rows):
+        row = history_row(ws, ms, third if j == 2 else j)
+        _add_row(row, older, n, h, values[j], slopes[j], q[: ws.n], v[: ws.n])
+    _hermite(z, rows, 2, s, values, slopes)
     for i in range(n - ws.n_work, n):
+        v[i] = older[n + i]
         for j in range(rows):
-            back = third if j == 2 else j
-            row = history_row(ws, ms, back)
-            node = (history_time(ms, back) - history_time(ms, 0)) / h
-            for l in range(2):
-                z[2 * j + l] = node
-                table[2 * j + l, 0] = row[n + i]
-                table[2 * j + l, 1] = h * row[2 * n + i]
-        _divided_differences(z, table, 2 * rows)
-        v[i], _ = _newton_value(z, table, 2 * rows, s)
+            row = history_row(ws, ms, third if j == 2 else j)
+            v[i] += values[j, 0] * (row[n + i] - older[n + i]) + h * values[j, 1] * row[2 * n + i]
     # linear: what is shown of a method that does not meet the constraints, a first guess for the others
-    newest, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
     a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
     for i in range(ws.n):
         a[i] = newest[2 * n + i] + s * (newest[2 * n + i] - older[2 * n + i])
