@@ -12,9 +12,9 @@ from ..compiled.views import mat, vec
 from ..methods.history import bridge_rows, history_row, history_time, recall
 from ..methods.multistep import rows_available
 from ..rounding import NO_STEP
-from ..stage.project import project, project_motion
 from ..state.workspace_records import OK, SINGULAR
 from ..tables.evaluate import evaluate_residuals
+from .other_pivots import project_between
 
 BETWEEN = 100
 """`_find`: the point has been interpolated, and is to be projected."""
@@ -170,13 +170,14 @@ def _find(ws: Any, ms: Any, t: float) -> int:
 
 @compiled_unlocked
 def query(ws: Any, ms: Any, t: float) -> int:
-    """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point."""
+    """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point.
+    REANALYZE: matrices need more memory (`Workspace.give_room`) before it is asked again."""
     status = _find(ws, ms, t)
-    return project(ws) if status == BETWEEN else status
+    return project_between(ws, False) if status == BETWEEN else status
 
 
 @compiled_unlocked
 def query_motion(ws: Any, ms: Any, t: float) -> int:
     """The same without its accelerations, multipliers and forces: coordinates and velocities, bit for bit."""
     status = _find(ws, ms, t)
-    return project_motion(ws) if status == BETWEEN else status
+    return project_between(ws, True) if status == BETWEEN else status

@@ -16,7 +16,6 @@ from ..errors import CallbackError, ModelError, SimulationError
 from ..events import Event, Fallback
 from ..events.progress import Progress
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
-from ..linalg import SingularMatrixError
 from ..location.dense_output import query
 from ..location.watch import remember
 from ..loop.sample import write_sample
@@ -32,7 +31,6 @@ from ..state.workspace_records import (
     OK,
     OUTER_LOOP,
     REANALYZE,
-    SINGULAR,
     STAGE_SIGNATURE,
 )
 from ..tables.assembly import Assembly
@@ -294,9 +292,7 @@ class Engine(ContactSide):
         ws = self.workspace.record
         row = np.zeros(self.buffer.shape[1])
         try:  # not `user_errors`: a context manager costs as much as the query, and samples are taken at every point
-            status = query(ws, self._method.record, self.t)
-            if status == REANALYZE:
-                status = self._query_with_other_pivots()
+            status = self.query()
             if strained(self):
                 status = smooth_query(self, status)
             if status == OK:
@@ -312,14 +308,9 @@ class Engine(ContactSide):
             )
         return row
 
-    def _query_with_other_pivots(self) -> int:
-        """The query with pivots for this very point; the usual ones are put back, so that asking leaves no trace."""
-        kkt, values = self.workspace.structure.kkt_query, self.workspace.arrays["values"]
-        permutations = kkt.analysis()
-        try:
-            kkt.analyze(values)
-            return int(query(self.workspace.record, self._method.record, self.t))
-        except SingularMatrixError:
-            return SINGULAR
-        finally:
-            kkt.analyze_with(*permutations)
+    def query(self) -> int:
+        """Let the present time `t`, which is no later than the newest row, be that of the workspace's point."""
+        ws, ms = self.workspace.record, self._method.record
+        while (status := int(query(ws, ms, self.t))) == REANALYZE:
+            self.workspace.give_room()
+        return status

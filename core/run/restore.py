@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
 from ..events import Event, Fallback
-from ..location.dense_output import query
 from ..methods.history import recall
 from ..stage.accelerations import solve_accelerations
 from ..state.run_records import HANDLED_AT, HERE
@@ -109,7 +108,7 @@ def restart_here(sim: "Simulation") -> None:
     ws, ms = sim.workspace.record, sim._method.record
     if sim.t == sim.t_internal:
         recall(ws, ms, 0)
-    elif query(ws, ms, sim.t) != OK:
+    elif sim.query() != OK:
         raise SimulationError(
             f"at t = {sim.t:.9g} s no state meets the constraints and the equations of motion with the inputs set: "
             "they ask for a position out of reach, or make a force that is not finite",

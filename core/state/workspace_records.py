@@ -34,6 +34,7 @@ WORKSPACE = np.dtype(
             "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
             # sizes of rows of Phi, of work accounts, and of coordinates for levels: (m_ext,), (n_ext,), (n,)
             "row_scale", "work_scale", "level_scale",
+            "query_kept",  # (2 n + 2 m_ext,) pivots that a query puts back (`location/other_pivots.py`)
             # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
             "basis", "n_basis",
             # 1: the constraints are so much cheaper to evaluate than the residuals that it is done without these

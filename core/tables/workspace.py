@@ -130,6 +130,7 @@ class Workspace:
             "work_scale": np.ones(n_ext),
             "level_scale": level_scale(a),
             "scratch": np.zeros(64),
+            "query_kept": np.zeros(2 * (a.n + m_ext)),
             "basis": np.zeros((1, n_ext)),
             "atol_q": np.zeros(n_ext),
             "atol_v": np.zeros(n_ext),

@@ -1,0 +1,81 @@
+"""Projection of a point between two steps, with pivots of its own where those of the newest step do not suit it.
+
+The ones from before are put back, and how far the entries of L may grow with them: asking leaves no trace.
+"""
+
+from typing import Any
+
+from ..compiled.jit import inlined, internal
+from ..compiled.views import ivec, vec
+from ..linalg import lu_at
+from ..linalg.analyze import call_analyze
+from ..linalg.record import ANALYZE_SPARSE, DENSE
+from ..linalg.record import WANT_ROOM as NO_MEMORY
+from ..stage.accelerations import solve_accelerations
+from ..stage.project import project_motion
+from ..state.workspace_records import OK, REANALYZE, SINGULAR
+from ..tables.evaluate import evaluate_power
+
+
+@internal
+def _take_own(ws: Any) -> int:
+    """Pivots for the matrix as it was last evaluated: OK, SINGULAR if there are none, REANALYZE if there is too little
+    memory for them."""
+    lu = lu_at(ws.kkt_query)
+    kept, pivots, limits = vec(ws.query_kept, 2 * lu.n), ivec(lu.perm_r, lu.n), _limits(lu)
+    for i in range(lu.n):
+        kept[i], kept[lu.n + i] = pivots[i], limits[i]
+    code = call_analyze(ws.analyze, lu, ws.values)
+    if code == NO_MEMORY:
+        return REANALYZE
+    return OK if code == OK else SINGULAR
+
+
+@internal
+def _put_back(ws: Any) -> None:
+    lu = lu_at(ws.kkt_query)
+    kept, wanted = vec(ws.query_kept, 2 * lu.n), ivec(lu.wanted, lu.n)
+    for i in range(lu.n):
+        wanted[i] = int(kept[i])
+    # they were there before, so there is room for them
+    call_analyze(ivec(lu.functions, ANALYZE_SPARSE + 1)[ANALYZE_SPARSE], lu, 0)
+    limits = _limits(lu)
+    for i in range(lu.n):
+        limits[i] = kept[lu.n + i]
+
+
+@internal
+def _limits(lu: Any) -> Any:
+    """How far the entries of L may grow, by column."""
+    return vec(lu.values + 8 * (lu.nl + lu.nu + lu.n), lu.n)
+
+
+@internal
+def project_between(ws: Any, motion: bool) -> int:
+    """The current point onto the constraints at every level, or its `motion` alone, with the same bits; REANALYZE where
+    pivots of its own would take more memory than there is."""
+    lu, own = lu_at(ws.kkt_query), False
+    chosen = lu.kind != DENSE and lu.ready != 0
+    status = project_motion(ws)
+    if status == REANALYZE and chosen:
+        status, own = _take_own(ws), True
+        if status == OK:
+            status = _unless_unfit(project_motion(ws))
+    if status == OK and not motion:
+        status = solve_accelerations(ws)
+        if own:
+            status = _unless_unfit(status)
+        elif status == REANALYZE and chosen:
+            status, own = _take_own(ws), True
+            if status == OK:
+                status = _unless_unfit(solve_accelerations(ws))
+        evaluate_power(ws)
+    if own:
+        _put_back(ws)
+    return status if chosen else _unless_unfit(status)
+
+
+@inlined
+def _unless_unfit(status: int) -> int:
+    """Where the pivots of this very point do not suit it, there are none."""
+    return SINGULAR if status == REANALYZE else status
