@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
+from time import process_time
 from typing import Any
 
 from .entries import Entry, entries, forms
@@ -34,6 +35,8 @@ class Part:
     """LLVM's names, by what the functions are asked for."""
     forms: dict[str, Any]
     """What the library says of kernels that are made from formulas."""
+    seconds: float
+    """Of the processor."""
 
 
 @contextmanager
@@ -65,7 +68,7 @@ def _record(only: Sequence[str], part: int) -> Part:
             keys[entry.key(made.signature.return_type)] = name
             compilations.append(made)
         texts = texts_of(compilations)
-    return Part(link(texts).as_bitcode(), symbols, keys, form_tables() if part == _OF_FORMS else {})
+    return Part(link(texts).as_bitcode(), symbols, keys, form_tables() if part == _OF_FORMS else {}, process_time())
 
 
 def form_tables() -> dict[str, Any]:
