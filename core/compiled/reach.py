@@ -21,8 +21,13 @@ def sources() -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in sorted(_CORE.rglob("*.py"))}
 
 
-def imported(path: Path) -> Iterator[Path]:
+@cache
+def imported(path: Path) -> tuple[Path, ...]:
     """The modules of the core that a source imports by relative imports, which are all that the core uses."""
+    return tuple(dict.fromkeys(_imported(path)))
+
+
+def _imported(path: Path) -> Iterator[Path]:
     for dots, module, names in _IMPORT.findall(sources()[path]):
         base = path.parents[len(dots) - 1].joinpath(*filter(None, module.decode().split(".")))
         if base.with_suffix(".py") in sources():
