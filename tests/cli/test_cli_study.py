@@ -14,7 +14,7 @@ PNG = b"\x89PNG"
 
 @pytest.fixture
 def once(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
-    """`once(name)`: this study is run at its first call; a second one, for the other form of its results, takes them."""
+    """`once(name)`: this study is run at its first call; later ones, for other forms of its results, take them."""
     from tlismni.validation import study
 
     def keep(name: str) -> None:
