@@ -14,8 +14,8 @@ from tlismni.core.ahead.module import TARGETS, undefined
 from tlismni.core.compiled.library import LIBRARY, PLACE
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
 
-PART = ("tsuji_formula", "position_level", "eliminate", "directions")
-"""Functions that take seconds to make a library of: numbers, a record, arrays."""
+PART = ("tsuji_formula", "position_level", "eliminate", "directions", "violates_redundant")
+"""Functions that take seconds to make a library of: numbers, a record, arrays; of both parts that are recorded."""
 
 
 def run(code: str, library: str | Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -103,6 +103,22 @@ def test_the_same_bits_as_compiled_in_the_process(part: Path) -> None:
     *here, needed = answer(run(CALLS, "none"))
     assert ahead == here
     assert (loaded, needed) == (False, True)
+
+
+def test_what_both_recording_processes_need_has_one_name() -> None:
+    """So it is in the module once: one of two functions, each of another part, calls the other."""
+    code = """
+import json
+import llvmlite.binding as llvm
+from tlismni.core.ahead.parts import recorded
+
+with recorded(("levels.position_level", "violates_redundant")) as made:
+    modules = [llvm.parse_bitcode(part.bitcode) for part in made]
+defined = [[x.name for x in module.functions if not x.is_declaration] for module in modules]
+print(json.dumps([[name for name in names if "position_level" in name] for names in defined]))
+"""
+    first, second = answer(run(code, "none", NUMBA_OPT="0"))
+    assert first == second and len(first) == 1
 
 
 def test_other_arguments_are_compiled_in_the_process(part: Path) -> None:
