@@ -1,9 +1,10 @@
 """numba's front end without work that leaves nothing in the texts: they are the same, in half of the time.
 
 Recording spends nearly all its time in Python code of numba. What is spared here: a search, which fails and writes a
-message, at each use of an array; the passes over an inlined helper at each of its calls; wrappers for Python of
-functions that others call; and walks of the collector over millions of objects that stay. This leans on numba's
-internals, of 0.68, as `record.py` does.
+message, at each use of an array; settings that are gathered one by one at each look-up; sizes of types, for which LLVM
+reads a text each time; the passes over an inlined helper at each of its calls; wrappers for Python of functions that
+others call; and walks of the collector over millions of objects that stay. This leans on numba's internals, of 0.68, as
+`record.py` does.
 """
 
 import gc
@@ -13,8 +14,10 @@ from functools import cache
 from typing import Any
 
 from numba import types
+from numba.core.base import BaseContext
 from numba.core.inline_closurecall import InlineWorker
 from numba.core.lowering import BaseLower
+from numba.core.targetconfig import TargetConfig
 from numba.np import arrayobj
 
 _COLLECTOR = (100_000, 50, 1000)
@@ -28,6 +31,8 @@ def quick_front_end() -> Iterator[None]:
         stack.enter_context(_rare_collections())
         stack.enter_context(replaced(arrayobj, "make_array", _array_structure(arrayobj.make_array)))
         stack.enter_context(replaced(InlineWorker, "run_untyped_passes", _kept(InlineWorker.run_untyped_passes)))
+        stack.enter_context(replaced(TargetConfig, "values", _settings))
+        stack.enter_context(replaced(BaseContext, "get_abi_sizeof", _kept_sizes(BaseContext.get_abi_sizeof)))
         for wrapper in ("create_cpython_wrapper", "create_cfunc_wrapper"):
             stack.enter_context(replaced(BaseLower, wrapper, lambda *arguments, **named: None))
         yield
@@ -54,6 +59,23 @@ def _rare_collections() -> Iterator[None]:
     finally:
         gc.set_threshold(*before)
         gc.unfreeze()
+
+
+def _settings(config: Any) -> dict[str, Any]:
+    """`TargetConfig.values`: all settings, those that are not set by their defaults."""
+    return {name: option.default for name, option in type(config).options.items()} | config._values
+
+
+def _kept_sizes(get_abi_sizeof: Callable[[Any, Any], int]) -> Callable[[Any, Any], int]:
+    """`get_abi_sizeof`, once for each type."""
+    kept: dict[Any, int] = {}
+
+    def size(context: Any, kind: Any) -> int:
+        if kind not in kept:
+            kept[kind] = get_abi_sizeof(context, kind)
+        return kept[kind]
+
+    return size
 
 
 def _array_structure(make_array: Callable[[Any], Any]) -> Callable[[Any], Any]:
