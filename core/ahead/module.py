@@ -137,15 +137,32 @@ _OF_LIBM = frozenset((*FUNCTIONS, *BESIDE))
 
 
 def link(parts: Iterable[str | bytes]) -> Any:
-    """One module of them all, texts or LLVM's bitcode. The same helper in several of them is one."""
-    whole = llvm.parse_assembly("")
+    """One module of them all, texts or LLVM's bitcode. The same helper in several of them is one.
+
+    LLVM walks through the whole module that it links into. So modules of about one size are linked with each other:
+    each is walked through a dozen times, not thousands of times.
+    """
+    row: list[tuple[Any, int]] = []  # with the numbers of parts, decreasing
     for given in (*parts, _RUNTIME):
-        part = llvm.parse_assembly(given) if isinstance(given, str) else llvm.parse_bitcode(given)
-        for function in part.functions:
-            if not function.is_declaration and function.linkage == llvm.Linkage.external:
-                function.linkage = "weak_odr"
-        whole.link_in(part)
-    return whole
+        module, number = _parsed(given), 1
+        while row and row[-1][1] == number:
+            larger, number = row[-1][0], 2 * number
+            larger.link_in(module)
+            module = larger
+            row.pop()
+        row.append((module, number))
+    while len(row) > 1:
+        module, _ = row.pop()
+        row[-1][0].link_in(module)
+    return row[0][0]
+
+
+def _parsed(given: str | bytes) -> Any:
+    module = llvm.parse_assembly(given) if isinstance(given, str) else llvm.parse_bitcode(given)
+    for function in module.functions:
+        if not function.is_declaration and function.linkage == llvm.Linkage.external:
+            function.linkage = "weak_odr"
+    return module
 
 
 def _text_constant(name: str, content: str) -> str:

@@ -18,7 +18,7 @@ from .entries import Entry, entries, forms
 from .module import link
 from .record import compile_for, recording, texts_of
 
-_FIRST = ("events", "loop", "location", "run", "repair", "methods", "stage", "analysis")
+_FIRST = ("events", "loop", "location", "run", "repair", "methods", "stage", "analysis", "tables")
 """Packages of the core whose functions are the first part: what runs and decides. The other: what is evaluated."""
 _OF_FORMS = 1
 """The part with the kernels that are made from formulas."""
