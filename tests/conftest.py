@@ -1,25 +1,86 @@
-"""Slow tests come last, and may be left out from some moment on: on a machine of which nobody knows how fast it is, the
-others are all run in any case."""
+"""Quick tests come first, and from some moment on those that are left are left out: how fast the machine is on which a
+change is looked at, nobody knows, but when it must end."""
 
+import json
+import math
 import time
+from collections import defaultdict
+from pathlib import Path
 
 import pytest
+
+DURATIONS = Path(__file__).with_name("durations.json")
+"""Mean seconds of the tests of a function, of those above LISTED; written by `pytest --store-durations`."""
+LISTED = 0.1
+LEAST_SHARE = 0.7
+"""Of the tests that must have run: with fewer the session fails."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--slow-until",
+        "--until",
         type=float,
         metavar="SECONDS",
-        help="tests marked slow that have not begun by then (seconds since 1970, as `date +%%s` prints) are skipped",
+        help="leave out what has not begun by then (seconds since 1970, as `date +%%s` prints)",
     )
+    parser.addoption("--store-durations", action="store_true", help=f"write {DURATIONS.name}")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    # workers of xdist hand on what they see
+    if getattr(config, "workerinput", None) is None:
+        config.pluginmanager.register(Watch(config.getoption("--store-durations")))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    items.sort(key=lambda item: item.get_closest_marker("slow") is not None)
+    """By powers of two of seconds, so that tests which share what is made for a module stay together."""
+    known = json.loads(DURATIONS.read_text())
+    items.sort(key=lambda item: max(math.ceil(math.log2(known.get(_function(item.nodeid), LISTED) / LISTED)), 0))
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    until = item.config.getoption("--slow-until")
-    if until is not None and time.time() > until and item.get_closest_marker("slow"):
-        pytest.skip("slow, and time is out (--slow-until)")
+    until = item.config.getoption("--until")
+    if until is not None and time.time() > until:
+        pytest.skip(Watch.REASON)
+
+
+def _function(nodeid: str) -> str:
+    return nodeid.partition("[")[0]
+
+
+class Watch:
+    """What has run, in all workers."""
+
+    REASON = "time is out (--until)"
+
+    def __init__(self, stores: bool) -> None:
+        self._stores = stores
+        self._seconds: dict[str, float] = defaultdict(float)
+        self._left_out = 0
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self._seconds[report.nodeid] += report.duration
+        self._left_out += report.skipped and self.REASON in str(report.longrepr)
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
+        if self._left_out > (1.0 - LEAST_SHARE) * len(self._seconds):
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED
+        if self._stores:
+            self._store()
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        if self._left_out:
+            most = f"at least {LEAST_SHARE:.0%} must run"
+            text = f"{self._left_out} of {len(self._seconds)} tests were left out, the longest: {self.REASON}; {most}"
+            terminalreporter.write_line(text)
+
+    def _store(self) -> None:
+        """What was run takes the place of what is known; other functions stay as they are."""
+        ran: dict[str, list[float]] = defaultdict(list)
+        for nodeid, seconds in self._seconds.items():
+            ran[_function(nodeid)].append(seconds)
+        known = {name: seconds for name, seconds in json.loads(DURATIONS.read_text()).items() if name not in ran}
+        known |= {name: round(sum(each) / len(each), 1) for name, each in ran.items()}
+        listed = {name: known[name] for name in sorted(known) if known[name] > LISTED}
+        DURATIONS.write_text(json.dumps(listed, indent=0) + "\n")

@@ -2,6 +2,7 @@
 
 import argparse
 import logging
+import math
 import os
 import subprocess
 import sys
@@ -26,6 +27,10 @@ def main() -> int:
     parser.add_argument("--target", action="append", help="platform, of this machine unless given; can be repeated")
     parser.add_argument("--output", type=Path, help=f"folder for the libraries; '{USUAL_PLACE}' unless given")
     parser.add_argument("--only", action="append", help="only functions whose names contain this text, for trying")
+    parser.add_argument(
+        "--patience", type=float, default=math.inf, metavar="SECONDS",
+        help="if recording takes longer, as on slow machines, code is made in less time, which runs slower",
+    )  # fmt: skip
     given = parser.parse_args()
     if any(os.environ.get(name) != value for name, value in FRESH.items()):
         # numba reads its settings, and the core looks for a library, when they are imported
@@ -34,7 +39,7 @@ def main() -> int:
     from .make import make
 
     try:
-        make(given.target or [], given.output, given.only or [""])
+        make(given.target or [], given.output, given.only or [""], given.patience)
     except TlismniError as error:
         print(error, file=sys.stderr)
         return 1

@@ -1,6 +1,7 @@
 """The way from the sources to the libraries of all platforms."""
 
 import logging
+import math
 import platform
 import sys
 import time
@@ -13,7 +14,7 @@ from ..compiled.library import USUAL_PLACE, core_digest
 from ..errors import TlismniError
 from ..native.c_sources import c_sources
 from .libm import BESIDE, FUNCTIONS, PREFIX, SEEN, libm_texts
-from .module import DIGEST, MANIFEST, TARGETS, Target, link, manifest_text, optimised, undefined
+from .module import DIGEST, MANIFEST, QUICK, TARGETS, Target, link, manifest_text, optimised, undefined
 from .parts import recorded
 from .shared import link_shared
 
@@ -70,13 +71,16 @@ def whole_module(only: Sequence[str]) -> Recorded:
     return Recorded(link([*(part.bitcode for part in parts), *libm]), symbols, keys, forms, functions)
 
 
-def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",)) -> list[Path]:
+def make(
+    targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",), patience: float = math.inf
+) -> list[Path]:
     """Make the libraries of these targets, or that of this machine.
 
     Parameters
     ----------
     folder : where to write them; beside the sources unless given, those of other platforms to `build`.
     only : functions whose names contain one of these.
+    patience : seconds; if recording has taken longer, little is done for the speed of the code, which takes as long.
 
     Raises
     ------
@@ -90,11 +94,14 @@ def make(targets: Sequence[str], folder: Path | None, only: Sequence[str] = ("",
     wanted = [TARGETS[name] for name in targets] or [own]
     whole = whole_module(only)
     constants = {DIGEST: core_digest(), MANIFEST: manifest_text(whole.keys, whole.forms, whole.functions)}
-    logger.info("one module of them all after %.0f s", time.perf_counter() - began)
+    taken = time.perf_counter() - began
+    quick = taken > patience
+    constants |= {QUICK: f"recording took {taken:.0f} s"} if quick else {}
+    logger.info("one module of them all after %.0f s%s", taken, ": little is done for its speed" if quick else "")
     made = []
     for target in wanted:
         began = time.perf_counter()
-        module, machine = optimised(whole.module, whole.symbols, constants, target)
+        module, machine = optimised(whole.module, whole.symbols, constants, target, quick)
         missing = sorted(set(undefined(module)) - (MEMORY if whole.functions else ALLOWED))
         if missing:
             raise UndefinedError(f"compiled code needs {missing}, which no C library has")

@@ -9,7 +9,7 @@ import llvmlite.binding as llvm
 
 from .libm import BESIDE, FUNCTIONS, PREFIX
 
-DIGEST, MANIFEST = "tlismni_digest", "tlismni_manifest"
+DIGEST, MANIFEST, QUICK = "tlismni_digest", "tlismni_manifest", "tlismni_quick"
 
 
 @dataclass(frozen=True)
@@ -171,13 +171,16 @@ def _text_constant(name: str, content: str) -> str:
     return f'@{name} = constant [{len(data)} x i8] c"{codes}"\n'
 
 
-def optimised(whole: Any, symbols: Mapping[str, str], texts: Mapping[str, str], target: Target) -> tuple[Any, Any]:
+def optimised(
+    whole: Any, symbols: Mapping[str, str], texts: Mapping[str, str], target: Target, quick: bool = False
+) -> tuple[Any, Any]:
     """The module for a target, of which only `symbols` (new names by LLVM's) and `texts` (constants) are seen from
-    outside; and LLVM's machine of that target."""
+    outside; and LLVM's machine of that target. `quick`: with little done for its speed, and nothing inlined that need
+    not be."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     machine = llvm.Target.from_triple(target.triple).create_target_machine(
-        cpu=target.cpu, features=target.features, opt=3, reloc="pic", codemodel="default"
+        cpu=target.cpu, features=target.features, opt=1 if quick else 3, reloc="pic", codemodel="default"
     )
     module = whole.clone()
     module.triple, module.data_layout = target.triple, str(machine.target_data)
@@ -200,8 +203,15 @@ def optimised(whole: Any, symbols: Mapping[str, str], texts: Mapping[str, str], 
     # what nobody calls goes first: half of it makes Python objects
     first = llvm.create_new_module_pass_manager()
     first.add_global_dead_code_eliminate_pass()
+    if quick:
+        first.add_always_inliner_pass()
+        first.add_sroa_pass()
+        first.add_simplify_cfg_pass()
+        first.add_instruction_combine_pass()
+        first.add_global_dead_code_eliminate_pass()
     first.run(module, builder)
-    builder.getModulePassManager().run(module, builder)
+    if not quick:
+        builder.getModulePassManager().run(module, builder)
     module.verify()
     return module, machine
 
