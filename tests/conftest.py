@@ -12,7 +12,7 @@ import pytest
 DURATIONS = Path(__file__).with_name("durations.json")
 """Mean seconds of the tests of a function, of those above LISTED; written by `pytest --store-durations`."""
 LISTED = 0.1
-LEAST_SHARE = 0.7
+LEAST_SHARE = 0.5
 """Of the tests that must have run: with fewer the session fails."""
 
 
