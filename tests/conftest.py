@@ -8,6 +8,10 @@ from collections import defaultdict
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+settings.register_profile("no clock", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("no clock")
 
 DURATIONS = Path(__file__).with_name("durations.json")
 """Mean seconds of the tests of a function, of those above LISTED; written by `pytest --store-durations`."""
