@@ -56,7 +56,7 @@ def process() -> Callable[..., Outcome]:
             [sys.executable, "-m", "tlismni.cli", *(str(a) for a in arguments)],
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=1200,
             check=False,
         )
         return Outcome(result.returncode, result.stdout, result.stderr)

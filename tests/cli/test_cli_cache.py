@@ -92,7 +92,7 @@ RUN = "from tlismni.core import simulate; result = simulate(ball.model, 0.1); "
 )
 def test_an_absent_extra_says_what_to_install(absent: str, code: str, extra: str, tmp_path: Path) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", WITHOUT, absent, code], capture_output=True, text=True, timeout=300, check=False,
+        [sys.executable, "-c", WITHOUT, absent, code], capture_output=True, text=True, timeout=1200, check=False,
         cwd=tmp_path,
     )  # fmt: skip
     said = done.stdout.strip().splitlines()[-1] if done.stdout.strip() else done.stderr

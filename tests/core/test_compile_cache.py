@@ -203,7 +203,7 @@ def test_processes_that_start_together_compile_once(folder, fresh):
     for process in processes:
         process.start()
     start.set()
-    found = [queue.get(timeout=60.0) for _ in processes]
+    found = [queue.get(timeout=1200) for _ in processes]
     for process in processes:
         process.join()
     assert [result for result, _ in found] == [7] * 8
@@ -222,7 +222,7 @@ def test_a_dead_process_holds_no_lock(tmp_path):
     queue = fork.Queue()
     holder = fork.Process(target=_hold, args=(ProcessLock(path), queue))
     holder.start()
-    assert queue.get(timeout=20.0) == "held"
+    assert queue.get(timeout=200.0) == "held"
     assert ProcessLock(path, patience=0.05).acquire()  # held beyond our patience: we go on without
     holder.kill()
     holder.join()

@@ -38,7 +38,7 @@ print(json.dumps(failed))
 
 
 def _said(code: str) -> list:
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=300)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=1200)
     return json.loads(done.stdout.splitlines()[-1])
 
 

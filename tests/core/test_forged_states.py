@@ -172,7 +172,7 @@ def scramble(name, seed, count):
 
 def in_a_process(*arguments):
     command = [sys.executable, __file__, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, f"ended with {done.returncode}: {done.stderr[-2000:]}"
     return [int(line) for line in done.stdout.split()]
 

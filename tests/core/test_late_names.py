@@ -72,7 +72,7 @@ def test_records_are_known_by_their_type(of: str, kinds: tuple[str, ...]) -> Non
 
 
 def test_a_model_imports_what_is_in_it() -> None:
-    done = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, check=True, timeout=300)
+    done = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, check=True, timeout=1200)
     found = json.loads(done.stdout.splitlines()[-1])
     assert "tlismni.core.elements.planar_body" in found
     others = ("tlismni.core.elements.spatial_body", "tlismni.core.shapes.group2d", "tlismni.core.run", "scipy")

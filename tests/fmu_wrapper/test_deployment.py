@@ -173,7 +173,7 @@ def test_a_bundled_fmu_needs_no_tlismni(bundled, tmp_path):
     machine code ahead of time nothing is compiled."""
     moved = elsewhere(bundled, tmp_path)
     command = [str(bare_python(tmp_path / "venv")), "-c", STEPPING.replace("{steps}", str(STEPS)), moved.unzipped]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stdout + done.stderr
     fmu, expected = bundled.instance(), []
     for k in range(STEPS):
@@ -199,7 +199,7 @@ def library_of(folder, bundle=None, **files):
         (folder / "carried" / "core" / "compiled" / name).write_bytes(data)
     environment = {k: v for k, v in os.environ.items() if k not in (PLACE, LIBM)}
     command = [sys.executable, "-c", WHICH, str(folder)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, env=environment)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200, env=environment)
     assert done.returncode == 0, done.stderr
     there, numba, *why = done.stdout.split(maxsplit=2)
     return there == "True", numba == "True", "".join(why).strip()
@@ -378,5 +378,5 @@ print(type(calls).__name__)
 """
     packages, resources = sysconfig.get_path("purelib"), str(tmp_path / "unzipped" / "resources")
     command = [sys.executable, "-S", "-c", script, packages, resources, token]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.stdout.strip() == "Fmi2Calls", done.stderr[-1500:]

@@ -210,7 +210,7 @@ print(json.dumps([[x.hex() for x in row] for row in ball.step(instance, 5, STEPS
     (tmp_path / "state").write_bytes(fmu.serializeFMUState(fmu.getFMUState()))
     rows = ball.step(fmu, 5, STEPS)
     command = [sys.executable, "-c", script, str(HERE), ball.unzipped, str(tmp_path / "state")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == [[x.hex() for x in row] for row in rows]
 
@@ -218,7 +218,7 @@ print(json.dumps([[x.hex() for x in row] for row in ball.step(instance, 5, STEPS
 def test_the_command_of_fmpy(pendulum, tmp_path):
     table = tmp_path / "x.csv"
     command = [sys.executable, "-m", "fmpy", "simulate", str(pendulum.path), "--output-file", str(table)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stdout + done.stderr
     result = np.genfromtxt(table, delimiter=",", names=True, deletechars="")
     assert result["time"][-1] == pytest.approx(load("pendulum_stop").t_end)
@@ -244,7 +244,7 @@ def run_host(host, fmu, token=None):
     resources = os.path.join(fmu.unzipped, "resources") + os.sep
     arguments = [host, library, resources, token or fmu.description.guid, fmu.vr["ball.y"], STEP, STEPS]
     kept = {k: v for k, v in os.environ.items() if k in ("HOME", "NUMBA_CACHE_DIR")}  # nothing of this Python
-    return subprocess.run(list(map(str, arguments)), capture_output=True, text=True, timeout=300, env=kept)
+    return subprocess.run(list(map(str, arguments)), capture_output=True, text=True, timeout=1200, env=kept)
 
 
 def test_a_host_without_python(host, ball):

@@ -149,7 +149,7 @@ print(json.dumps([[x.hex() for x in row] for row in fmu.step(instance, 5, STEPS)
     (tmp_path / "state").write_bytes(fmu.serializeFMUstate(fmu.getFMUstate()))
     rows = ball.step(fmu, 5, STEPS)
     command = [sys.executable, "-c", script, str(HERE), ball.unzipped, str(tmp_path / "state")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == [[x.hex() for x in row] for row in rows]
 
@@ -161,7 +161,7 @@ def test_scenarios_of_the_catalogue_by_the_command_of_fmpy(tmp_path, name):
     export_fmu(scenario, path)
     assert validate_fmu(str(path)) == []
     command = [sys.executable, "-m", "fmpy", "simulate", str(path), "--output-file", str(table)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stdout + done.stderr
     result = np.genfromtxt(table, delimiter=",", names=True, deletechars="")
     assert result["time"][-1] == pytest.approx(scenario.t_end)
@@ -199,7 +199,7 @@ def run_host(host, ball, folder, guid=None, **environment):
     # nothing of this Python in the environment
     kept = {k: v for k, v in os.environ.items() if k in ("HOME", "NUMBA_CACHE_DIR")}
     return subprocess.run(
-        list(map(str, command)), capture_output=True, text=True, timeout=300, env={**kept, **environment}
+        list(map(str, command)), capture_output=True, text=True, timeout=1200, env={**kept, **environment}
     )
 
 

@@ -52,5 +52,5 @@ print("done")
 def test_messages_after_the_end_of_a_listener(unzipped):
     """Those of FMUs that somebody else in the process drives come through the same function of fmpy's."""
     command = [sys.executable, "-c", AFTERWARDS, unzipped("2.0")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert (done.returncode, done.stdout.split()) == (0, ["done"]), done.stderr

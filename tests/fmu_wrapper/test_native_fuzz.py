@@ -48,7 +48,7 @@ def test_random_calls(program, name, tmp_path):
     description = fmpy.read_model_description(str(unzipped))
     arguments = [(unzipped / "resources").as_uri(), description.instantiationToken, 7, SEQUENCES,
                  len(description.modelVariables)]  # fmt: skip
-    done = subprocess.run([str(program), *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    done = subprocess.run([str(program), *map(str, arguments)], capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stderr[-3000:]
     calls, _, refused, _ = done.stdout.replace(",", "").split()
     assert int(calls) > 5 * SEQUENCES and 0.1 < int(refused) / int(calls) < 0.9

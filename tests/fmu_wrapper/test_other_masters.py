@@ -62,7 +62,7 @@ def ecos(tmp_path_factory):
             "--stopTime",
             repr(stop),
         ]
-        done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=where, timeout=120)
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=where, timeout=1200)
         assert done.returncode == 0, done.stdout + done.stderr
         table = np.genfromtxt(path.with_suffix(".csv"), delimiter=",", names=True, deletechars="", autostrip=True)
         return {name.partition("[")[0]: table[name] for name in table.dtype.names}

@@ -100,7 +100,7 @@ found = fmpy.simulate_fmu(
 kind = type(instance.slave.model.joints[0])
 print(json.dumps([*map(float, found[-1]), kind.__name__, "own_kit" in sys.modules]))
 """
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, cwd="/", timeout=400)
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, cwd="/", timeout=1200)
     assert done.returncode == 0, done.stderr[-3000:]
     return json.loads(done.stdout.splitlines()[-1])
 

@@ -186,5 +186,5 @@ def test_a_bundle_carries_the_catalogue(tmp_path):
     with zipfile.ZipFile(io.BytesIO(package_archive()[0])) as archive:
         archive.extractall(tmp_path)
     command = [sys.executable, "-c", CARRIED, str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.stdout.split() == ["True", "False"], done.stderr

@@ -50,7 +50,7 @@ def run_host(host, fmus, threads, steps):
     command = list(map(str, [host, threads, steps, STEP, *arguments]))
     # nothing of this Python in the environment
     kept = {k: v for k, v in os.environ.items() if k in ("HOME", "NUMBA_CACHE_DIR")}
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=kept)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200, env=kept)
     assert done.returncode == 0, f"ended with {done.returncode}: {done.stdout}{done.stderr}"
     return [(int(line.split()[0]), float.fromhex(line.split()[1])) for line in done.stdout.splitlines()]
 

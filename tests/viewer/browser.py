@@ -56,7 +56,7 @@ def probe(
             f"--user-data-dir={page.parent / 'profile'}", f"--window-size={size[0]},{size[1]}",
             "--virtual-time-budget=6000", "--dump-dom", f"{probed.as_uri()}#t=0",
         ],
-        capture_output=True, text=True, timeout=120, check=False,
+        capture_output=True, text=True, timeout=1200, check=False,
     )  # fmt: skip
     found = re.search(r'<pre id="found">(.*?)</pre>', done.stdout, re.S)
     assert found, done.stderr[-2000:]
