@@ -14,9 +14,10 @@ settings.register_profile("no clock", deadline=None, suppress_health_check=[Heal
 settings.load_profile("no clock")
 
 DURATIONS = Path(__file__).with_name("durations.json")
-"""Mean seconds of the tests of a function, of those above LISTED; written by `pytest --store-durations`."""
+"""Mean seconds of the tests of a function, of those above LISTED; written by `pytest --store-durations`. Of functions
+that have not been stored, their folder's, if it is there: a guess."""
 LISTED = 0.1
-LEAST_SHARE = 0.5
+LEAST_SHARE = 0.4
 """Of the tests that must have run: with fewer the session fails."""
 
 
@@ -39,7 +40,13 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """By powers of two of seconds, so that tests which share what is made for a module stay together."""
     known = json.loads(DURATIONS.read_text())
-    items.sort(key=lambda item: max(math.ceil(math.log2(known.get(_function(item.nodeid), LISTED) / LISTED)), 0))
+
+    def level(item: pytest.Item) -> int:
+        function = _function(item.nodeid)
+        seconds = known.get(function, known.get("/".join(function.split("/")[:2]), LISTED))
+        return max(math.ceil(math.log2(seconds / LISTED)), 0)
+
+    items.sort(key=level)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
