@@ -31,15 +31,24 @@ def main() -> int:
         "--patience", type=float, default=math.inf, metavar="SECONDS",
         help="if recording takes longer, as on slow machines, code is made in less time, which runs slower",
     )  # fmt: skip
+    parser.add_argument(
+        "--take", type=Path, metavar="FOLDER", help="unpack that of this folder, if it is of these sources"
+    )
+    parser.add_argument("--put", type=Path, metavar="FOLDER", help="pack that of this machine into this folder, too")
     given = parser.parse_args()
     if any(os.environ.get(name) != value for name, value in FRESH.items()):
         # numba reads its settings, and the core looks for a library, when they are imported
         return subprocess.call([sys.executable, "-m", str(__package__), *sys.argv[1:]], env={**os.environ, **FRESH})
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     from .make import make
+    from .packed import put, take
 
     try:
-        make(given.target or [], given.output, given.only or [""], given.patience)
+        if given.take and take(given.take):
+            return 0
+        made = make(given.target or [], given.output, given.only or [""], given.patience)
+        if given.put:
+            put(made[0], given.put)
     except TlismniError as error:
         print(error, file=sys.stderr)
         return 1

@@ -2,8 +2,6 @@
 
 import logging
 import math
-import platform
-import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,9 +12,10 @@ from ..compiled.library import USUAL_PLACE, core_digest
 from ..errors import TlismniError
 from ..native.c_sources import c_sources
 from .libm import BESIDE, FUNCTIONS, PREFIX, SEEN, libm_texts
-from .module import DIGEST, MANIFEST, QUICK, TARGETS, Target, link, manifest_text, optimised, undefined
+from .module import DIGEST, MANIFEST, QUICK, link, manifest_text, optimised, undefined
 from .parts import recorded
 from .shared import link_shared
+from .targets import TARGETS, own_target
 
 logger = logging.getLogger(__name__)
 
@@ -28,16 +27,6 @@ ALLOWED = MEMORY | set(FUNCTIONS) | set(BESIDE)
 
 class UndefinedError(TlismniError):
     """Compiled code needs something that is in no C library."""
-
-
-def own_target() -> Target:
-    """That of this machine. Raises TlismniError for one that is unknown."""
-    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
-    system = {"win32": "windows", "darwin": "macos"}.get(sys.platform, "linux")
-    name = f"{system}-{machine}"
-    if name not in TARGETS:
-        raise TlismniError(f"there is no target '{name}': known are {sorted(TARGETS)}")
-    return TARGETS[name]
 
 
 @dataclass(frozen=True)

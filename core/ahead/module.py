@@ -2,43 +2,15 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import llvmlite.binding as llvm
 
 from .libm import BESIDE, FUNCTIONS, PREFIX
+from .targets import Target
 
 DIGEST, MANIFEST, QUICK = "tlismni_digest", "tlismni_manifest", "tlismni_quick"
 
-
-@dataclass(frozen=True)
-class Target:
-    """What machine code is for."""
-
-    name: str
-    triple: str
-    cpu: str
-    features: str
-    suffix: str
-    """Of a shared library there."""
-    linker: str
-    """Name of the target as zig writes it."""
-
-
-TARGETS = {
-    target.name: target
-    for target in (
-        Target("linux-x86_64", "x86_64-unknown-linux-gnu", "x86-64-v2", "", ".so", "x86_64-linux-gnu.2.17"),
-        Target("linux-aarch64", "aarch64-unknown-linux-gnu", "generic", "", ".so", "aarch64-linux-gnu.2.17"),
-        Target("musl-x86_64", "x86_64-unknown-linux-musl", "x86-64-v2", "", ".so", "x86_64-linux-musl"),
-        Target("musl-aarch64", "aarch64-unknown-linux-musl", "generic", "", ".so", "aarch64-linux-musl"),
-        Target("windows-x86_64", "x86_64-pc-windows-gnu", "x86-64-v2", "", ".dll", "x86_64-windows-gnu"),
-        Target("windows-aarch64", "aarch64-pc-windows-gnu", "generic", "", ".dll", "aarch64-windows-gnu"),
-        Target("macos-x86_64", "x86_64-apple-macosx11.0.0", "x86-64-v2", "", ".dylib", "x86_64-macos.11.0"),
-        Target("macos-aarch64", "arm64-apple-macosx11.0.0", "apple-m1", "", ".dylib", "aarch64-macos.11.0"),
-    )
-}
 
 # What compiled code takes from numba's runtime. The few arrays that it allocates come from a stack of the thread
 # (`native/pieces.c`) and are counted as numba does it; those of views have no owner. They never leave the call that

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..errors import TlismniError
 from ..native.c_sources import c_digest
-from .module import Target
+from .targets import Target
 
 LINKERS = ("cc", "gcc", "clang")
 FLAGS = ("-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-Wall", "-Wextra")

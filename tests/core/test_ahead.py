@@ -2,6 +2,7 @@
 
 import json
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -10,8 +11,10 @@ from typing import Any
 
 import pytest
 from tlismni.core.ahead.make import MEMORY
-from tlismni.core.ahead.module import QUICK, TARGETS, undefined
-from tlismni.core.compiled.library import LIBRARY, PLACE
+from tlismni.core.ahead.module import QUICK, undefined
+from tlismni.core.ahead.packed import put, take
+from tlismni.core.ahead.targets import TARGETS
+from tlismni.core.compiled.library import LIBRARY, PLACE, core_digest
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
 
 PART = ("tsuji_formula", "position_level", "eliminate", "directions", "violates_redundant")
@@ -110,6 +113,18 @@ def test_code_that_is_made_in_less_time_gives_the_same_bits(part: Path, tmp_path
     quick = make(tmp_path, *only, "--patience", "0")
     assert QUICK.encode() in quick.read_bytes() and QUICK.encode() not in part.read_bytes()
     assert answer(run(CALLS, quick)) == answer(run(CALLS, part))
+
+
+def test_a_packed_library_is_taken_if_it_is_of_these_sources(tmp_path: Path) -> None:
+    library, place = tmp_path / "library", tmp_path / "there.so"
+    library.write_bytes(b"\x7fELF" + b"0" * 64)
+    put(library, tmp_path)
+    assert not take(tmp_path / "nothing", place)
+    assert not take(tmp_path, place) and not place.exists()
+    library.write_bytes(b"\x7fELF" + core_digest().encode())
+    put(library, tmp_path)
+    assert take(tmp_path, place) == (sys.platform != "linux" or platform.libc_ver()[0] == "glibc")
+    assert not place.exists() or place.read_bytes() == library.read_bytes()
 
 
 def test_what_both_recording_processes_need_has_one_name() -> None:

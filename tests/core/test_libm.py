@@ -75,7 +75,8 @@ def test_code_compiled_in_this_process_calls_it():
 @pytest.mark.skipif(find_spec("ziglang") is None, reason="needs ziglang")
 def test_its_sources_need_nothing_and_are_of_no_machine(tmp_path: Path):
     from tlismni.core.ahead.libm import FUNCTIONS, PREFIX, libm_texts
-    from tlismni.core.ahead.module import TARGETS, link, optimised, undefined
+    from tlismni.core.ahead.module import link, optimised, undefined
+    from tlismni.core.ahead.targets import TARGETS
 
     texts = libm_texts()
     assert not any(word in text for text in texts for word in ("target-cpu", "target-features", "target triple", "x86"))

@@ -16,8 +16,8 @@ FMI = Path(__file__).parents[2] / "fmu_wrapper" / "native"
 def test_all_functions_for_others_are_shown(name: str, tmp_path: Path) -> None:
     import lief
     import llvmlite.binding as llvm
-    from tlismni.core.ahead.module import TARGETS
     from tlismni.core.ahead.shared import link_shared
+    from tlismni.core.ahead.targets import TARGETS
 
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()

@@ -1,0 +1,43 @@
+"""Libraries in the repository, packed: whoever has these very sources need not make one."""
+
+import logging
+import lzma
+import platform
+import sys
+from pathlib import Path
+
+from ..compiled.library import USUAL_PLACE, core_digest
+from .targets import own_target
+
+logger = logging.getLogger(__name__)
+
+
+def _packed(folder: Path) -> Path:
+    return folder / f"{own_target().name}.xz"
+
+
+def put(library: Path, folder: Path) -> Path:
+    """Pack a library of this machine into a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = _packed(folder)
+    path.write_bytes(lzma.compress(library.read_bytes(), preset=9 | lzma.PRESET_EXTREME))
+    return path
+
+
+def take(folder: Path, place: Path = USUAL_PLACE) -> bool:
+    """Unpack the library for this machine to its usual place; False if there is none of these sources."""
+    path = _packed(folder)
+    if not path.is_file() or (sys.platform == "linux" and platform.libc_ver()[0] != "glibc"):
+        logger.info("'%s' has no library for this machine", folder)
+        return False
+    content = lzma.decompress(path.read_bytes())
+    if core_digest().encode() not in content:
+        logger.info("the library '%s' is of other sources", path)
+        return False
+    new = place.with_name(f"{place.name}.new")
+    new.write_bytes(content)
+    new.chmod(0o755)
+    # a process that has the old one open keeps it
+    new.replace(place)
+    logger.info("the library '%s' is of these sources, and is taken", path)
+    return True
