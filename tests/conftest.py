@@ -17,7 +17,7 @@ DURATIONS = Path(__file__).with_name("durations.json")
 """Mean seconds of the tests of a function, of those above LISTED; written by `pytest --store-durations`. Of functions
 that have not been stored, their folder's, if it is there: a guess."""
 LISTED = 0.1
-LEAST_SHARE = 0.4
+LEAST_SHARE = 0.25
 """Of the tests that must have run: with fewer the session fails."""
 
 
