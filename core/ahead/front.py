@@ -1,4 +1,4 @@
-"""numba's front end without work that leaves nothing in the texts: they are the same, in half of the time.
+"""numba's front end without work that leaves nothing in the texts: they are the same, in two thirds of the time.
 
 Recording spends nearly all its time in Python code of numba. What is spared here: a search, which fails and writes a
 message, at each use of an array; settings that are gathered one by one at each look-up; sizes of types, for which LLVM

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from ..compiled.library import USUAL_PLACE, core_digest
+from ..native.c_sources import c_digest
 from .targets import own_target
 
 logger = logging.getLogger(__name__)
@@ -31,7 +32,8 @@ def take(folder: Path, place: Path = USUAL_PLACE) -> bool:
         logger.info("'%s' has no library for this machine", folder)
         return False
     content = lzma.decompress(path.read_bytes())
-    if core_digest().encode() not in content:
+    # the second as `shared.py` writes it into the library: its C may have changed alone
+    if any(digest.encode() not in content for digest in (core_digest(), c_digest())):
         logger.info("the library '%s' is of other sources", path)
         return False
     new = place.with_name(f"{place.name}.new")

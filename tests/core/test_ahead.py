@@ -16,6 +16,7 @@ from tlismni.core.ahead.packed import put, take
 from tlismni.core.ahead.targets import TARGETS
 from tlismni.core.compiled.library import LIBRARY, PLACE, core_digest
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
+from tlismni.core.native.c_sources import c_digest
 
 PART = ("tsuji_formula", "position_level", "eliminate", "directions", "violates_redundant")
 """Functions that take seconds to make a library of: numbers, a record, arrays; of both parts that are recorded."""
@@ -121,7 +122,11 @@ def test_a_packed_library_is_taken_if_it_is_of_these_sources(tmp_path: Path) -> 
     put(library, tmp_path)
     assert not take(tmp_path / "nothing", place)
     assert not take(tmp_path, place) and not place.exists()
-    library.write_bytes(b"\x7fELF" + core_digest().encode())
+    for digest in (core_digest(), c_digest()):
+        library.write_bytes(b"\x7fELF" + digest.encode())
+        put(library, tmp_path)
+        assert not take(tmp_path, place) and not place.exists()
+    library.write_bytes(b"\x7fELF" + core_digest().encode() + c_digest().encode())
     put(library, tmp_path)
     assert take(tmp_path, place) == (sys.platform != "linux" or platform.libc_ver()[0] == "glibc")
     assert not place.exists() or place.read_bytes() == library.read_bytes()
