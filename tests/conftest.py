@@ -1,11 +1,13 @@
 """Quick tests come first, and from some moment on those that are left are left out: how fast the machine is on which a
 change is looked at, nobody knows, but when it must end."""
 
+import faulthandler
 import json
 import math
 import time
 from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -19,6 +21,9 @@ that have not been stored, their folder's, if it is there: a guess."""
 LISTED = 0.1
 LEAST_SHARE = 0.25
 """Of the tests that must have run: with fewer the session fails."""
+LONGEST = 900.0
+"""Seconds after --until: a test that has not ended by then hangs."""
+LEFT_OUT = pytest.StashKey[int]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -31,10 +36,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--store-durations", action="store_true", help=f"write {DURATIONS.name}")
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
+    config.stash[LEFT_OUT] = 0
+    until = config.getoption("--until")
+    distributes = getattr(config, "workerinput", None) is None and config.getoption("numprocesses", None)
+    if until is not None and not distributes:
+        # xdist then names the test, which fails
+        faulthandler.dump_traceback_later(max(until - time.time(), 0.0) + LONGEST, exit=True)
     # workers of xdist hand on what they see
     if getattr(config, "workerinput", None) is None:
-        config.pluginmanager.register(Watch(config.getoption("--store-durations")))
+        config.pluginmanager.register(Watch(config))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -49,10 +61,20 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=level)
 
 
-def pytest_runtest_setup(item: pytest.Item) -> None:
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item) -> bool | None:
+    """True says that the test has been dealt with: there is no report of it, which for thousands takes minutes."""
     until = item.config.getoption("--until")
-    if until is not None and time.time() > until:
-        pytest.skip(Watch.REASON)
+    if until is None or time.time() < until:
+        return None
+    item.config.stash[LEFT_OUT] += 1
+    return True
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None:
+        output["left out"] = session.config.stash[LEFT_OUT]
 
 
 def _function(nodeid: str) -> str:
@@ -62,29 +84,33 @@ def _function(nodeid: str) -> str:
 class Watch:
     """What has run, in all workers."""
 
-    REASON = "time is out (--until)"
-
-    def __init__(self, stores: bool) -> None:
-        self._stores = stores
+    def __init__(self, config: pytest.Config) -> None:
+        self._config = config
         self._seconds: dict[str, float] = defaultdict(float)
-        self._left_out = 0
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self._seconds[report.nodeid] += report.duration
-        self._left_out += report.skipped and self.REASON in str(report.longrepr)
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_testnodedown(self, node: Any) -> None:
+        """Of xdist. A worker that was lost hands on nothing; that is a failure already."""
+        self._config.stash[LEFT_OUT] += getattr(node, "workeroutput", {}).get("left out", 0)
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        if self._left_out > (1.0 - LEAST_SHARE) * len(self._seconds):
+        if self._config.stash[LEFT_OUT] > (1.0 - LEAST_SHARE) * self._all():
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
-        if self._stores:
+        if self._config.getoption("--store-durations"):
             self._store()
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        if self._left_out:
-            most = f"at least {LEAST_SHARE:.0%} must run"
-            text = f"{self._left_out} of {len(self._seconds)} tests were left out, the longest: {self.REASON}; {most}"
-            terminalreporter.write_line(text)
+        left_out = self._config.stash[LEFT_OUT]
+        if left_out:
+            text = f"{left_out} of {self._all()} tests were left out, the longest: time is out (--until)"
+            terminalreporter.write_line(f"{text}; at least {LEAST_SHARE:.0%} must run")
+
+    def _all(self) -> int:
+        return len(self._seconds) + self._config.stash[LEFT_OUT]
 
     def _store(self) -> None:
         """What was run takes the place of what is known; other functions stay as they are."""

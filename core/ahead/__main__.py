@@ -34,6 +34,7 @@ def main() -> int:
     parser.add_argument(
         "--take", type=Path, metavar="FOLDER", help="unpack that of this folder, if it is of these sources"
     )
+    parser.add_argument("--no-make", action="store_true", help="with --take: fail where there is none to take")
     parser.add_argument("--put", type=Path, metavar="FOLDER", help="pack that of this machine into this folder, too")
     given = parser.parse_args()
     if any(os.environ.get(name) != value for name, value in FRESH.items()):
@@ -46,6 +47,8 @@ def main() -> int:
     try:
         if given.take and take(given.take):
             return 0
+        if given.no_make:
+            return 1
         made = make(given.target or [], given.output, given.only or [""], given.patience)
         if given.put:
             put(made[0], given.put)
