@@ -341,7 +341,7 @@ def jail_of(folder, *programs):
     assert not [p for p in folder.rglob("*") if "python" in p.name.lower() and "pytest" not in str(p)]
 
 
-TAKE_PYTHON = ("split_wall", "four_bar", "tippe_top", "rolling_disk")
+TAKE_PYTHON = ("split_wall", "four_bar", "tippe_top")
 """Scenarios that cannot be FMUs without Python."""
 ALONE = [
     "woodpecker",
