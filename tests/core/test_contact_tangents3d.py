@@ -184,7 +184,11 @@ def test_rates_of_the_tangents_rows_fit_their_velocities(shape, slides):
     def check(seed):
         state = draw(point, seed)
         _, q, v, a, lam = state
-        second = point.derivative(2, (1.0, v, a, np.zeros_like(q), np.zeros_like(lam)), state, 4e-3)
-        assert np.abs(point.at(*state)[3][rows] - second[rows]).max() < 1e-8
+        along = (1.0, v, a, np.zeros_like(q), np.zeros_like(lam))
+        wide, narrow = (point.derivative(2, along, state, h)[rows] for h in (4e-3, 2e-3))
+        # the error of the differences, of order 8; where the spheres' centres are near each other it is large
+        size, error = max(1.0, np.abs(narrow).max()), np.abs(wide - narrow).max()
+        assume(error < 1e-6 * size)
+        assert np.abs(point.at(*state)[3][rows] - narrow).max() < 1e-9 * size + 0.1 * error
 
     check()
