@@ -206,7 +206,7 @@ except ModelError as error:
     done = run(code, part)
     assert done.returncode == 0, done.stderr[-2000:]
     assert "tlismni[own]" in done.stdout
-    nothing = run("import sys; sys.modules['numba'] = None; import tlismni.core", "none")
+    nothing = run("import sys; sys.modules['numba'] = None; from tlismni.core import Model", "none")
     assert nothing.returncode != 0 and "tlismni[own]" in nothing.stderr
 
 
