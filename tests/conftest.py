@@ -40,12 +40,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     config.stash[LEFT_OUT] = 0
     until = config.getoption("--until")
-    distributes = getattr(config, "workerinput", None) is None and config.getoption("numprocesses", None)
-    if until is not None and not distributes:
+    works_for_another = getattr(config, "workerinput", None) is not None
+    if until is not None and (works_for_another or not config.getoption("numprocesses", None)):
         # xdist then names the test, which fails
         faulthandler.dump_traceback_later(max(until - time.time(), 0.0) + LONGEST, exit=True)
     # workers of xdist hand on what they see
-    if getattr(config, "workerinput", None) is None:
+    if not works_for_another:
         config.pluginmanager.register(Watch(config))
 
 

@@ -222,8 +222,8 @@ def differences(point, index, ways, state, h=4e-3):
     """
     wide, narrow = (np.array([point.derivative(index, way, state, width) for way in ways]).T for width in (h, 0.5 * h))
     size, error = max(1.0, np.abs(narrow).max()), np.abs(wide - narrow).max()
-    assume(error < 1e-6 * size)
-    return narrow, 1e-9 * size + 0.1 * error
+    assume(error < 1e-7 * size)
+    return narrow, 1e-9 * size + 0.05 * error
 
 
 def draw(point, seed):
