@@ -160,6 +160,7 @@ if TYPE_CHECKING:
     from .shapes.group2d import ContactGroup2D, contacts_between
     from .shapes.group3d import ContactGroup3D
     from .shapes.mesh3d import TriangleMesh3D, read_mesh
+    from .shapes.on_cable3d import CableLine3D, CableOnHalfSpace3D, SphereOnCable3D
     from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
     from .shapes.ring2d import DiskInRing2D, Ring2D
     from .shapes.rope2d import Rope2D
@@ -197,6 +198,8 @@ __all__ = [
     "Cable2D",
     "Cable3D",
     "CableClamp3D",
+    "CableLine3D",
+    "CableOnHalfSpace3D",
     "Capsule3D",
     "CapsuleOnCapsule3D",
     "CarvalhoMartins",
@@ -331,6 +334,7 @@ __all__ = [
     "SmoothShape3D",
     "Sphere3D",
     "SphereInSphere3D",
+    "SphereOnCable3D",
     "SphereOnHalfSpace3D",
     "SphereOnSphere3D",
     "Spherical3D",
@@ -434,6 +438,7 @@ __getattr__, __dir__ = late_names(
         ".shapes.group2d": "ContactGroup2D contacts_between",
         ".shapes.group3d": "ContactGroup3D",
         ".shapes.mesh3d": "TriangleMesh3D read_mesh",
+        ".shapes.on_cable3d": "CableLine3D CableOnHalfSpace3D SphereOnCable3D",
         ".shapes.polygon2d": "DiskOnPolygon2D Polygon2D",
         ".shapes.ring2d": "DiskInRing2D Ring2D",
         ".shapes.rope2d": "Rope2D",

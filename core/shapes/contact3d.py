@@ -44,13 +44,15 @@ class Contact3D(ContactElement):
     """Base of the contacts in space.
 
     Class attributes: `kernel` without friction, `rubbing_kernel` with a regularised law, `gripping_kernel` with
-    Coulomb's; `kind`, the measure of both markers that the gap is, less the radii.
+    Coulomb's; `kind`, the measure of both markers that the gap is, less the radii; `width`, the number of coordinates
+    that it depends on.
     """
 
     kernel: ClassVar[Any] = sphere3d_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_sphere3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_sphere3d_kernel
     kind: ClassVar[int]
+    width: ClassVar[int] = SIZE
 
     turning: TurningFriction | None = None
     """What resists rolling and spinning; left out: nothing."""
@@ -85,12 +87,12 @@ class Contact3D(ContactElement):
     def form(self) -> Form:
         """A contact with Coulomb friction has rows of both tangents behind that of the gap, with another law of
         friction one of the sliding speed."""
-        kind = type(self)
-        full = tuple((i, j) for i in range(SIZE) for j in range(SIZE))
+        kind, n = type(self), self.width
+        full = tuple((i, j) for i in range(n) for j in range(n))
         if isinstance(self.friction, CoulombFriction):
-            return Form(kind.gripping_kernel, 3, full, tuple((k, j) for k in range(3) for j in range(SIZE)), (1, 2))
+            return Form(kind.gripping_kernel, 3, full, tuple((k, j) for k in range(3) for j in range(n)), (1, 2))
         kernel, rows = (kind.kernel, 1) if self.friction is None else (kind.rubbing_kernel, 2)
-        return Form(kernel, rows, full, tuple((0, j) for j in range(SIZE)))
+        return Form(kernel, rows, full, tuple((0, j) for j in range(n)))
 
     def lengths(self) -> Sequence[float]:
         return tuple(sphere.radius for sphere in self.spheres())

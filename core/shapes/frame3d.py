@@ -12,7 +12,7 @@ from ..compiled.jit import inlined, internal
 from ..elements.measure3d import AXES_A
 from ..model.rotation3d import columns_at, constant, cross, dot, less, plus, times
 from .held3d import on_plane
-from .tangent3d import NORMAL, SIZE, column, put
+from .tangent3d import NORMAL, column, put
 
 T1, T2 = 19, 22
 """Rows of the work matrix behind those of `tangent3d`: derivatives of the tangents."""
@@ -48,7 +48,7 @@ def tangents(b: Any, coord: Any, pair: Any, axis: int, angle: float, n: Any, wor
     e1 = times(1.0 / size, t)
     e2 = cross(n, e1)
     c, s = math.cos(angle), math.sin(angle)
-    for j in range(SIZE):
+    for j in range(work.shape[1]):
         by_n = column(work, NORMAL, j)
         by_t = times(-1.0, plus(times(across, by_n), times(dot(by_n, z), n)))
         if 3 <= j < 7:

@@ -12,7 +12,8 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..elements.measure3d import COLUMNS, product
+from ..elements.geometry2d import along as rate_along
+from ..elements.measure3d import COLUMNS
 from ..laws.friction import call_friction
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
@@ -21,8 +22,9 @@ from .held3d import MOVES, moves_on
 from .normal2d import act, asleep, evaluate_law
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
 from .sliding2d import FRICTION, FRICTION_ADDRESS
+from .slip3d import add_slip, slip_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres
-from .tangent3d import NORMAL, ROWS, U, W, add_directions, column, tangent_of_batch
+from .tangent3d import NORMAL, ROWS, U, W, column
 from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_arms
 
 SLOW = 1e-150
@@ -66,13 +68,13 @@ def rub_spheres(b: Any, e: int) -> None:
 
 @internal
 def regularised(
-    b: Any, job: int, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any, work: Any
+    kind: int, b: Any, job: int, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any, work: Any
 ) -> None:
-    """The friction of element e of a batch, whose gap has been evaluated."""
+    """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
-    coord, k = imat(b.coord, b.count, SIZE)[e], extra[0]
+    width, coord, k = b.ncoord, imat(b.coord, b.count, b.ncoord)[e], extra[0]
     v = vec(b.v, b.n_extended)
-    n, u, beta_a, beta_b, size = tangent_of_batch(b, par, coord, held, moves, work)
+    n, u, beta_a, beta_b, size = slip_of_batch(kind, b, par, coord, held, moves, work)
     across = dot(n, u)
     slide = less(u, times(across, n))
     speed = math.sqrt(dot(slide, slide))
@@ -83,7 +85,7 @@ def regularised(
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
         return
-    found, normal_d, normal_dd, _, _ = evaluate_law(b, e, k, g, product(gradient, v, coord))
+    found, normal_d, normal_dd, _, _ = evaluate_law(b, e, k, g, rate_along(gradient, v, coord))
     normal = max(found, 0.0)
     force, by_rate, by_normal = _law(b, e, speed, normal)
     along = times(1.0 / speed, slide) if speed > SLOW else (0.0, 0.0, 0.0)
@@ -94,7 +96,7 @@ def regularised(
         m, power = turning_arms(b, par, coord, held, n)
     if job == RESIDUAL:
         r = vec(b.r, b.n_extended)
-        for i in range(SIZE):
+        for i in range(width):
             r[coord[i]] -= dot(column(work, W, i), pull)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = -force
         if turns_hard:
@@ -102,21 +104,21 @@ def regularised(
     elif job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * speed - normal * power
     elif job == TANGENT:
-        values, slot, coef = vec(b.values, b.n_values), imat(b.slot_s + 8 * SIZE * SIZE * e, SIZE, SIZE), vec(b.coef, 2)
+        values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
+        slot = imat(b.slot_s + 8 * width * width * e, width, width)
         if not found > 0.0:
             by_normal = 0.0
-        add_directions(
-            int(par[KIND]), values, slot, vec(b.q, b.n_extended), coord, held, moves, work, beta_a, beta_b, size,
-            pull, -coef[0],
+        add_slip(
+            kind, b, par, values, slot, coord, held, moves, work, beta_a, beta_b, size, pull, -coef[0],
         )  # fmt: skip
-        changes = np.empty(SIZE)
-        for j in range(SIZE):
+        changes = np.empty(width)
+        for j in range(width):
             by_n, of_v = column(work, NORMAL, j), column(work, W, j)
             of_q = less(column(work, U, j), times(across, by_n))
             of_q = less(of_q, times(dot(by_n, u) + dot(n, column(work, U, j)), n))
             of_v = less(of_v, times(dot(n, of_v), n))
             turn = 0.0
-            for i in range(SIZE):
+            for i in range(width):
                 turn += hessian[i, j] * v[coord[i]]
             # penetration and its rate are less the gap and its rate
             of_normal = -coef[0] * (normal_d * gradient[j] + normal_dd * turn) - coef[1] * normal_dd * gradient[j]
@@ -127,7 +129,7 @@ def regularised(
                 times(over_speed, less(slides, times(forward, along))),
                 times(by_rate * forward + by_normal * of_normal, along),
             )
-            for i in range(SIZE):
+            for i in range(width):
                 values[slot[i, j]] -= dot(column(work, W, i), change)
         if turns_hard:
             add_torque_tangent(b, par, coord, held, slot, work, n, m, -normal, changes)
@@ -144,10 +146,10 @@ def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
             rub_spheres(b, e)
             continue
-        hold(b, e, held, moves)
-        g = gap_of(b, e, held, moves, gradient, hessian, packed)
+        kind = hold(b, e, held, moves)
+        g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        regularised(b, job, e, g, held, moves, gradient, hessian, work)
+        regularised(kind, b, job, e, g, held, moves, gradient, hessian, work)
 
 
 are(SPHERE, rubbing_sphere3d_kernel)

@@ -26,8 +26,8 @@ def sphere3d_kernel(job: int, t: float, b: Any) -> None:
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
             press_spheres(b, e)
             continue
-        hold(b, e, held, moves)
-        g = gap_of(b, e, held, moves, gradient, hessian, packed)
+        kind = hold(b, e, held, moves)
+        g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
 
 

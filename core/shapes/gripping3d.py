@@ -28,8 +28,9 @@ from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
 from .normal2d import act, asleep
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
+from .slip3d import add_slip, slip_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres, tangents_in_motion
-from .tangent3d import U, W, add_directions, column, product_with, tangent_of_batch
+from .tangent3d import U, W, column, product_with
 from .turning3d import add_torque, add_torque_by, add_torque_tangent, resists_turning, turning_arms
 
 STILL_SPEED = 3
@@ -134,20 +135,21 @@ def grip_spheres(b: Any, e: int) -> None:
 
 
 @internal
-def grip(b: Any, job: int, e: int, gradient: Any, held: Any, moves: Any, work: Any) -> None:
-    """The friction of element e of a batch, whose gap has been evaluated."""
+def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: Any, work: Any) -> None:
+    """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
     memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
     closed = memory[MODE] == CLOSED
     if job != RESIDUAL and not (closed and (job == TANGENT or job == POWER)):
         return
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
-    coord, k, kind = imat(b.coord, b.count, SIZE)[e], extra[0], int(par[KIND])
+    width, coord, k = b.ncoord, imat(b.coord, b.count, b.ncoord)[e], extra[0]
     row, lam, v = imat(b.row, b.count, 3)[e], vec(b.lam, b.m_extended), vec(b.v, b.n_extended)
-    n, u, beta_a, beta_b, size = tangent_of_batch(b, par, coord, held, moves, work)
+    pair = pair_of(b, e)  # its axes, which those that are held may not be
+    n, u, beta_a, beta_b, size = slip_of_batch(kind, b, par, coord, held, moves, work)
     axis, angle = int(memory[AXIS]), memory[WAY]
     if not closed or axis == 0:
-        axis, angle = farthest_axis(b, coord, held, kind, n), 0.0
-    t1, t2 = tangents(b, coord, held, axis, angle, n, work)
+        axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
+    t1, t2 = tangents(b, coord, pair, axis, angle, n, work)
     x, y = dot(u, t1), dot(u, t2)
     state = _state(par, memory, closed)
     _, both, one, slow = state
@@ -163,7 +165,7 @@ def grip(b: Any, job: int, e: int, gradient: Any, held: Any, moves: Any, work: A
         force = math.sqrt(dot(pull, pull))
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = force if closed else _says_of_tangents(par, axis)
         r = vec(b.r, b.n_extended)
-        for i in range(SIZE):
+        for i in range(width):
             r[coord[i]] -= dot(column(work, W, i), pull)
         if turns_hard:
             add_torque(b, coord, held, times(lam[row[0]], m))
@@ -172,29 +174,27 @@ def grip(b: Any, job: int, e: int, gradient: Any, held: Any, moves: Any, work: A
     else:
         values, slot, c_q = (
             vec(b.values, b.n_values),
-            imat(b.slot_s + 8 * SIZE * SIZE * e, SIZE, SIZE),
+            imat(b.slot_s + 8 * width * width * e, width, width),
             vec(b.coef, 2)[0],
         )
-        slot_j, slot_jt = imat(b.slot_j, b.count, 3 * SIZE)[e], imat(b.slot_jt, b.count, 3 * SIZE)[e]
-        add_directions(
-            kind, values, slot, vec(b.q, b.n_extended), coord, held, moves, work, beta_a, beta_b, size, pull, -c_q
-        )
+        slot_j, slot_jt = imat(b.slot_j, b.count, 3 * width)[e], imat(b.slot_jt, b.count, 3 * width)[e]
+        add_slip(kind, b, par, values, slot, coord, held, moves, work, beta_a, beta_b, size, pull, -c_q)
         if turns_hard:
-            for j in range(SIZE):
+            for j in range(width):
                 gradient[j] = 0.0
             add_torque_tangent(b, par, coord, held, slot, work, n, m, lam[row[0]], gradient)
             add_torque_by(b, coord, held, slot_jt, m)
         across, load = plus(times(-s, t1), times(c, t2)), -memory[RATIO] * lam[row[0]]
-        for j in range(SIZE):
+        for j in range(width):
             of_v, by_t1, by_t2 = column(work, W, j), column(work, T1, j), column(work, T2, j)
             along_1, along_2 = dot(of_v, t1), dot(of_v, t2)
             if both or one:
-                values[slot_j[SIZE + j]] += along_1
-                values[slot_jt[SIZE + j]] += along_1
+                values[slot_j[width + j]] += along_1
+                values[slot_jt[width + j]] += along_1
                 change = times(-c_q * lam[row[1]], by_t1)
                 if both:
-                    values[slot_j[2 * SIZE + j]] += along_2
-                    values[slot_jt[2 * SIZE + j]] += along_2
+                    values[slot_j[2 * width + j]] += along_2
+                    values[slot_jt[2 * width + j]] += along_2
                     change = less(change, times(c_q * lam[row[2]], by_t2))
                 else:
                     values[slot_jt[j]] -= dot(of_v, share)
@@ -205,7 +205,7 @@ def grip(b: Any, job: int, e: int, gradient: Any, held: Any, moves: Any, work: A
                 turn = c_q * (by_x * (dot(of_q, t1) + dot(u, by_t1)) + by_y * (dot(of_q, t2) + dot(u, by_t2)))
                 turn += vec(b.coef, 2)[1] * (by_x * along_1 + by_y * along_2)
                 change = plus(times(load * turn, across), times(c_q * load, plus(times(c, by_t1), times(s, by_t2))))
-            for i in range(SIZE):
+            for i in range(width):
                 values[slot[i, j]] -= dot(column(work, W, i), change)
 
 
@@ -220,10 +220,10 @@ def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
             grip_spheres(b, e)
             continue
-        hold(b, e, held, moves)
-        g = gap_of(b, e, held, moves, gradient, hessian, packed)
+        kind = hold(b, e, held, moves)
+        g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        grip(b, job, e, gradient, held, moves, work)
+        grip(kind, b, job, e, gradient, held, moves, work)
 
 
 are(SPHERE, gripping_sphere3d_kernel)

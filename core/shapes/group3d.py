@@ -10,6 +10,7 @@ from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
 from .group2d import GroupShape, contacts_between
 from .groups import ContactGroup
 from .mesh3d import TriangleMesh3D
+from .on_cable3d import CableLine3D
 from .round3d import Smooth3D
 
 
@@ -35,6 +36,8 @@ class ContactGroup3D(ContactGroup):
     """They touch half-spaces, by the corners of their hulls."""
     smooth: tuple[Smooth3D, ...] = ()
     """Ellipsoids, tori and own smooth shapes; they touch half-spaces."""
+    cables: tuple[CableLine3D, ...] = ()
+    """They touch spheres anywhere, and half-spaces by points."""
     half_spaces: tuple[HalfSpace3D, ...] = ()
     """They touch all shapes but half-spaces."""
     law: ContactLaw
@@ -51,6 +54,7 @@ class ContactGroup3D(ContactGroup):
         corners and spheres, or other shapes with corners."""
         cornered: tuple[GroupShape, ...] = (
             *self.boxes, *self.polyhedra, *self.capsules, *self.cylinders, *self.meshes, *self.smooth,
+            *self.cables,
         )  # fmt: skip
         return contacts_between(
             self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,

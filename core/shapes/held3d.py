@@ -16,9 +16,9 @@ from ..model.rotation3d import constant, dot, four, onto, plus, times, turned, t
 from .support3d import call_support
 
 SIZE = 14
-HOLLOW, SUPPORT, SEGMENTS = ANGLE + 1, ANGLE + 2, ANGLE + 3
+HOLLOW, SUPPORT, SEGMENTS, ON_CABLE, POINT_OF_CABLE = range(ANGLE + 1, ANGLE + 6)
 """Kinds of gaps beside DISTANCE and PLACE of `measure3d`: a sphere within the first one, a smooth shape on a
-half-space, segments along the z axes of both markers."""
+half-space, segments along the z axes of both markers, a cable against a sphere, a point of one against a half-space."""
 MOVE_A, MOVE_B, CHOICE, MOVED = 0, 3, 6, 9
 """Rows of the matrix of moves: derivatives of both points as they move along their bodies, in space; c_k and m_k: the
 latter along the axes of the second marker, or along the z axes of the first and of the second one."""
@@ -30,7 +30,13 @@ PARALLEL = 1e-10
 @inlined
 def on_plane(kind: int) -> bool:
     """True where the first shape is a half-space."""
-    return kind == PLACE or kind == SUPPORT
+    return kind == PLACE or kind == SUPPORT or kind == POINT_OF_CABLE
+
+
+@inlined
+def on_cable(kind: int) -> bool:
+    """True where the second shape is a cable."""
+    return kind == ON_CABLE or kind == POINT_OF_CABLE
 
 
 @inlined

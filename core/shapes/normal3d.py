@@ -31,15 +31,15 @@ def pair_of(b: Any, e: int) -> Any:
 
 
 @internal
-def hold(b: Any, e: int, held: Any, moves: Any) -> None:
+def hold(b: Any, e: int, held: Any, moves: Any) -> int:
     """The pair of markers of element e of a batch with the points of contact in place of their points, to held
-    (COLUMNS,), and how these move on their bodies, to moves (MOVES, 14)."""
+    (COLUMNS,), and how these move on their bodies, to moves (MOVES, 14). Returns the kind of their gap."""
     par, pair = mat(b.par, b.count, b.npar)[e], pair_of(b, e)
     for i in range(COLUMNS):
         held[i] = pair[i]
     kind = int(par[KIND])
     if not moves_on(kind):
-        return
+        return kind
     moves[:, :] = 0.0
     q, coord = vec(b.q, b.n_extended), imat(b.coord, b.count, SIZE)[e]
     if kind == SUPPORT:
@@ -47,14 +47,15 @@ def hold(b: Any, e: int, held: Any, moves: Any) -> None:
         hold_support(q, coord, address, vec(b.par + 8 * (e * b.npar + NUMBERS), 4), held, moves)
     else:
         hold_segments(q, coord, par[EXTENT_A], par[EXTENT_B], held, moves)
+    return kind
 
 
 @internal
-def gap_of(b: Any, e: int, held: Any, moves: Any, gradient: Any, hessian: Any, packed: Any) -> float:
-    """Gap of element e of a batch, m, whose points are held; its derivatives go into gradient (14,), hessian (14, 14)
-    and its upper triangle row by row (105,)."""
+def gap_of(kind: int, b: Any, e: int, held: Any, moves: Any, gradient: Any, hessian: Any, packed: Any) -> float:
+    """Gap of this kind of element e of a batch, m, whose points are held; its derivatives go into gradient (14,),
+    hessian (14, 14) and its upper triangle row by row (105,)."""
     par = mat(b.par, b.count, b.npar)[e]
-    coord, kind = imat(b.coord, b.count, SIZE)[e], int(par[KIND])
+    coord = imat(b.coord, b.count, SIZE)[e]
     g = measure(measured(kind), vec(b.q, b.n_extended), coord, held, 0.0, gradient, hessian)
     if moves_on(kind):
         bend_held(hessian, moves)

@@ -13,7 +13,6 @@ import math
 from typing import Any
 
 from ..compiled.jit import inlined, internal
-from ..compiled.views import vec
 from ..elements.measure3d import AXES_A, AXES_B, POINT_A, POINT_B, offset
 from ..model.rotation3d import (
     along,
@@ -31,7 +30,7 @@ from ..model.rotation3d import (
     turning,
 )
 from .held3d import HOLLOW, MOVE_A, MOVE_B, MOVED, SUPPORT, moves_on, on_plane
-from .normal3d import KIND, RADIUS_A, RADIUS_B, SIZE
+from .normal3d import SIZE
 
 W, U, NORMAL, OFFSET, ARM_A, ARM_B, GROWTH = 0, 3, 6, 9, 12, 15, 18
 """Rows of the work matrix: W, U, and derivatives of the normal, of d, of beta_a and beta_b, and of s."""
@@ -214,18 +213,9 @@ def add_directions(
 def product_with(work: Any, first: int, x: Any, coord: Any) -> Any:
     """The three rows from `first` times x at the local coordinates."""
     a = b = c = 0.0
-    for j in range(SIZE):
+    for j in range(work.shape[1]):
         y = x[coord[j]]
         a += work[first, j] * y
         b += work[first + 1, j] * y
         c += work[first + 2, j] * y
     return a, b, c
-
-
-@internal
-def tangent_of_batch(b: Any, par: Any, coord: Any, held: Any, moves: Any, work: Any) -> Any:
-    """`tangent_motion` of an element with the parameters par at the current point of a batch."""
-    return tangent_motion(
-        int(par[KIND]), vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, held, moves, par[RADIUS_A],
-        par[RADIUS_B], work,
-    )  # fmt: skip

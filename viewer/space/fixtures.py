@@ -32,6 +32,7 @@ from ...core.elements import (
 from ...core.elements.cable_clamp3d import CableClamp3D
 from ...core.model.markers import GROUND, Marker3D
 from ...core.shapes.contact3d import HalfSpace3D, SphereOnHalfSpace3D
+from ...core.shapes.on_cable3d import CableOnHalfSpace3D
 from ...core.shapes.round3d import SmoothOnHalfSpace3D
 from ...core.shapes.stop3d import Rope3D
 from ..scene import Floats
@@ -177,7 +178,7 @@ def _(element: Rope3D, stage: Stage3D) -> None:
 
 
 @place.register
-def _(element: SphereOnHalfSpace3D | SmoothOnHalfSpace3D, stage: Stage3D) -> None:
+def _(element: SphereOnHalfSpace3D | SmoothOnHalfSpace3D | CableOnHalfSpace3D, stage: Stage3D) -> None:
     _ground_under(stage, element.plane.marker)
 
 

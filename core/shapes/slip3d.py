@@ -1,0 +1,33 @@
+"""How two shapes in space slide on each other, whatever the coordinates of the second one are."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import vec
+from .cable_slip3d import add_cable_slip, slip_on_cable
+from .held3d import on_cable
+from .normal3d import RADIUS_A, RADIUS_B
+from .tangent3d import add_directions, tangent_motion
+
+
+@internal
+def slip_of_batch(kind: int, b: Any, par: Any, coord: Any, held: Any, moves: Any, work: Any) -> Any:
+    """`tangent_motion` of an element with the parameters par at the current point of a batch."""
+    if on_cable(kind):
+        return slip_on_cable(kind, b, par, coord, held, moves, work)
+    return tangent_motion(
+        kind, vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, held, moves, par[RADIUS_A], par[RADIUS_B], work
+    )
+
+
+@internal
+def add_slip(
+    kind: int, b: Any, par: Any, values: Any, slot: Any, coord: Any, held: Any, moves: Any, work: Any, beta_a: Any,
+    beta_b: Any, size: float, force: Any, factor: float,
+) -> None:  # fmt: skip
+    """values += factor d(W^T force)/dq, the force held."""
+    if on_cable(kind):
+        add_cable_slip(kind, b, par, values, slot, coord, held, moves, force, factor)
+        return
+    q = vec(b.q, b.n_extended)
+    add_directions(kind, values, slot, q, coord, held, moves, work, beta_a, beta_b, size, force, factor)
