@@ -159,7 +159,7 @@ class CableOnHalfSpace3D(CableContact3D):
     plane: HalfSpace3D
     """The half-space."""
     place: Annotated[float, Field(ge=0.0, le=1.0)]
-    """Where the point is along the undeformed cable, in parts of its length: 0 is its first end, 1 its last."""
+    """Where the point is along the undeformed cable, in parts of its length, dimensionless: from 0 to 1."""
 
     def spheres(self) -> Sequence[Sphere3D]:
         return ()

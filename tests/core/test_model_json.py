@@ -26,6 +26,7 @@ from tlismni.core import (
     Cable2D,
     Cable3D,
     CableClamp3D,
+    CableOnHalfSpace3D,
     Capsule3D,
     CapsuleOnCapsule3D,
     Clamp2D,
@@ -121,6 +122,7 @@ from tlismni.core import (
     SmoothOnHalfSpace3D,
     Sphere3D,
     SphereInSphere3D,
+    SphereOnCable3D,
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
     Spherical3D,
@@ -418,6 +420,13 @@ ELEMENTS["contacts"] += [
         sphere=st.builds(Sphere3D, marker=marker3d, radius=st.floats(0.0, 1e3)),
     ),
     st.builds(
+        SphereOnCable3D, name=st.just("x"), law=law, cable=st.just("line"), thickness=positive, sphere=sphere,
+    ),
+    st.builds(
+        CableOnHalfSpace3D, name=st.just("x"), law=law, cable=st.just("line"), thickness=positive,
+        place=st.floats(0.0, 1.0), plane=st.builds(HalfSpace3D, marker=st.builds(Marker3D, point=vector3)),
+    ),
+    st.builds(
         CapsuleOnCapsule3D, name=st.just("x"), law=law, b=sphere,
         a=st.builds(Capsule3D, marker=st.builds(Marker3D, point=vector3), length=positive, radius=positive),
     ),
@@ -462,7 +471,8 @@ SPATIAL = {
     "Cylindrical3D", "Prismatic3D", "Planar3D", "PointOnLine3D", "PointOnPlane3D", "Distance3D", "RevoluteSpherical3D",
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
     "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
-    "SphereOnSphere3D", "SmoothOnHalfSpace3D", "SphereInSphere3D", "CapsuleOnCapsule3D", "Cable3D", "MaterialPoint3D",
+    "SphereOnSphere3D", "SmoothOnHalfSpace3D", "SphereInSphere3D", "CapsuleOnCapsule3D", "SphereOnCable3D",
+    "CableOnHalfSpace3D", "Cable3D", "MaterialPoint3D",
     "CableClamp3D",
     "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
 }  # fmt: skip
