@@ -76,8 +76,9 @@ def contacts_between(
         named.setdefault(f"{name}_{bodies[0]}_{bodies[1]}", []).extend(found)
     made = []
     for label, touching in named.items():
-        for k, (a, b) in enumerate(touching):
-            made.append(_contact(label if len(touching) == 1 else f"{label}_{k + 1}", a, b, law, friction, turning))
+        for k, (one, other) in enumerate(touching):
+            own = label if len(touching) == 1 else f"{label}_{k + 1}"
+            made.append(_contact(own, one, other, law, friction, turning))
     if not made:
         raise ModelError(
             f"group '{name}' has no two shapes that can touch: disks touch all shapes, boxes touch boxes and "

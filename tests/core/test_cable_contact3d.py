@@ -103,13 +103,17 @@ def fallen(law, friction, points=5, elements=2):
     return Model(name="fallen", gravity=DOWN, bodies=[cable], groups=[group])
 
 
-def check_rest(result, points, height, tolerance):
-    """It lies, and the floor carries its weight; the ledger holds."""
+def check_rest(result, points, height, tolerance, trembling):
+    """It lies, and the floor carries its weight; the ledger holds. Nothing damps the bending of what does not touch:
+    of the 0.3 J that it fell with, what `trembling` says in J goes on."""
     for k in range(3):
         assert result[f"cable.z{k}"][-1] == pytest.approx(height, abs=tolerance)
-    forces = [result[f"floor_ground_cable_{k + 1}.normal_force"][-1] for k in range(points)]
-    assert sum(forces) == pytest.approx(0.3 * G, rel=0.02)
-    assert result["energy.kinetic"][-1] < 1e-5
+    late = result.t >= 0.5 * result.t[-1]
+    forces = sum(result[f"floor_cable_ground_{k + 1}.normal_force"] for k in range(points))
+    blows = sum(e.impulse for e in result.events if e.t > result.t[late][0])
+    pushed = np.trapezoid(forces[late], result.t[late]) + blows
+    assert pushed / np.ptp(result.t[late]) == pytest.approx(0.3 * G, rel=0.02)
+    assert result["energy.kinetic"][-1] < trembling
     assert np.abs(result["energy.balance"]).max() < 1e-4
 
 
@@ -117,7 +121,7 @@ def test_a_cable_falls_on_a_floor_and_comes_to_rest_by_forces(tmp_path):
     law = KelvinVoigt(stiffness=3e3, damping=6.0)
     model = fallen(law, TanhFriction(coefficient=0.4, transition_speed=0.01))
     result = simulate(model, 2.0, rtol=1e-6)
-    check_rest(result, 5, 0.02, 0.3 * G / 3e3)
+    check_rest(result, 5, 0.02, 0.3 * G / 3e3, 1e-4)
     assert Model.model_validate_json(model.model_dump_json()) == model
     file = tmp_path / "cable.html"
     result.animate(file)
@@ -126,7 +130,7 @@ def test_a_cable_falls_on_a_floor_and_comes_to_rest_by_forces(tmp_path):
 
 def test_a_cable_falls_on_a_floor_and_comes_to_rest_by_constraints():
     result = simulate(fallen(NewtonImpact(restitution=0.0), CoulombFriction(coefficient=0.4)), 1.0, rtol=1e-6)
-    check_rest(result, 5, 0.02, 1e-3)
+    check_rest(result, 5, 0.02, 1e-3, 2e-3)
     assert events(result, "impact") and events(result, "stick")
 
 
@@ -155,13 +159,17 @@ def cantilever(law, friction=None, stiffness=0.7, **ball):
 
 
 def test_a_constraint_is_the_limit_of_stiff_forces():
-    hard = simulate(cantilever(NewtonImpact(restitution=0.0)), 0.05, rtol=1e-8)["ball.z"][-1]
+    """While it lasts, before the cable throws the ball up; place and force."""
+    hard = simulate(cantilever(NewtonImpact(restitution=0.0)), 0.009, rtol=1e-9)
+    assert hard["c.normal_force"][-1] > 0.02
     errors = []
-    for stiffness in (1e3, 1e4, 1e5):
+    for stiffness in (1e5, 1e6, 1e7):
         law = KelvinVoigt(stiffness=stiffness, damping=0.5 * np.sqrt(stiffness))
-        errors.append(abs(simulate(cantilever(law), 0.05, rtol=1e-8)["ball.z"][-1] - hard))
-    assert errors[1] < 0.3 * errors[0] and errors[2] < 0.3 * errors[1]
-    assert errors[2] < 1e-5
+        soft = simulate(cantilever(law), 0.009, rtol=1e-9)
+        errors.append([abs(soft[name][-1] - hard[name][-1]) for name in ("ball.z", "c.normal_force")])
+    errors = np.array(errors)
+    assert (errors[1:] < 0.2 * errors[:-1]).all()
+    assert errors[-1, 0] < 1e-8 and errors[-1, 1] < 1e-3 * hard["c.normal_force"][-1]
 
 
 def test_a_ball_slides_and_rolls_along_a_stiff_cable():
