@@ -82,8 +82,9 @@ instant_at = record_view(INSTANT_TYPE)
     COS_WAY, SIN_WAY,                  # direction of sliding, from the first tangent
     AXIS_NOW,                          # that angles are counted from (`shapes/frame3d.py`)
     LOST_BEFORE,                       # J: of STOP_LOSS, before the last that stopped
-) = range(80)  # fmt: skip
-COLUMNS = 80
+    EARLY,                             # of contacts that stick, the larger, the earlier in their order
+) = range(81)  # fmt: skip
+COLUMNS = 81
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

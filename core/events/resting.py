@@ -27,6 +27,7 @@ from .records import (
     CLOSES,
     COUNT,
     DIRECTION,
+    EARLY,
     F_N,
     F_T,
     FIRST,
@@ -86,6 +87,9 @@ NEARLY_SINGULAR = 1e-6
 RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
 """Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and at an instant that
 does not settle. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
+CLOSES_FROM, CLOSES_TO = 3, 12
+"""Looks at one instant in which contacts that carry nothing close. Before, they stay as they are; after, those that
+have pulled by rounding stay open, or some would open and others close in turns: bodies that fall side by side."""
 PULLING = 1e-3
 """Of the largest force of the contacts: one that pulls by more has been kept together with the wrong others."""
 AHEAD, FARTHEST_AHEAD = 1e-9, 1e-6
@@ -449,8 +453,10 @@ def _loaded(ev: Any, i: int) -> bool:
 @internal
 def sticking(ev: Any) -> int:
     """Contacts with friction below its limit (or below it in any case: the least distribution was found), to `order`;
-    those with the highest limits first. Returns their number."""
+    those with the highest limits first, and those at their limits last: where some are to carry a constant share, it is
+    these, for as constraints they would be beyond their limits at once. Returns their number."""
     count, static, order, found = whole(ev)[COUNT], col(ev, STATIC), ivec(ev.order, 2 * ev.most), 0
+    early = col(ev, EARLY)
     slipping, f_n, f_t = whole(ev)[SLIPPING] != 0, col(ev, F_N), col(ev, F_T)
     fastest = _fastest(ev)
     for i in range(count):
@@ -463,7 +469,9 @@ def sticking(ev: Any) -> int:
         free = static[i] > 0.0 and col(ev, DIRECTION)[i] == 0.0 and col(ev, FULL)[i] == 0.0
         if below and free and col(ev, AT_REST)[i] != 0.0:
             at = found
-            while at > 0 and static[order[at - 1]] * f_n[order[at - 1]] < limit:
+            at_limit = limit > 0.0 and abs(f_t[i]) >= limit * (1.0 - REACHES_LIMIT)
+            early[i] = -1.0 / limit if at_limit else limit
+            while at > 0 and early[order[at - 1]] < early[i]:
                 order[at] = order[at - 1]
                 at -= 1
             order[at] = i
@@ -543,7 +551,18 @@ def choose(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         idle = idle or (col(ev, AT_REST)[i] != 0.0 and closes[i] == 0.0 and not leaves)
     if idle:
         _close_idle(ev, dr, ws, closes)
+    _slide_unloaded(ev, closes)
     return SETTLED
+
+
+@internal
+def _slide_unloaded(ev: Any, closes: Any) -> None:
+    """Contacts that stay closed without force begin to slide where nothing holds them: no friction does."""
+    least, direction = PRESSING * _fastest(ev), col(ev, DIRECTION)
+    for i in range(whole(ev)[COUNT]):
+        free = col(ev, STATIC)[i] > 0.0 and direction[i] == 0.0 and col(ev, F_N)[i] == 0.0
+        if free and closes[i] != 0.0 and abs(col(ev, W_T)[i]) > least:
+            direction[i] = np.sign(col(ev, W_T)[i])
 
 
 @internal
@@ -556,7 +575,7 @@ def _close_idle(ev: Any, dr: Any, ws: Any, closes: Any) -> None:
             continue
         motion = col(ev, W_N)[i]
         # nothing presses it, or others carry all: a table on two feet in balance, whose third one touches
-        again = abs(motion) <= none * col(ev, SIZE)[i] and looks_again(dr) > 2
+        again = abs(motion) <= none * col(ev, SIZE)[i] and CLOSES_FROM <= looks_again(dr) <= CLOSES_TO
         if again or comes_back(ws, contacts[i], jerks[i], motion):
             closes[i] = 1.0
 

@@ -8,7 +8,7 @@ from ..rounding import FORCE_ROUNDING, GAP_MOVES, GAP_ROUNDING, RATE_ROUNDING, S
 from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE
 from ..state.run_records import WATCH
 from ..tables.held import held_friction, is_held
-from ..tables.levels import force_level, position_level, rate_level, rate_size
+from ..tables.levels import force_level, position_level, rate_size
 from .asleep import sleeps_on
 from .certain import first_root, way_of_gap
 from .force_watch import forces_may_vanish, forces_vanish, sliding_turns
@@ -46,9 +46,9 @@ def friction_margin(ws: Any, k: int) -> float:
 
 @internal
 def _no_sliding(ws: Any, k: int) -> float:
-    """Rounding of the sliding velocity of contact k, m/s."""
-    row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    return RATE_ROUNDING * rate_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+    """Rounding of the sliding velocity of contact k, m/s: what decides at events (`reading.py`) takes the same for
+    none, or a contact that this sees turn, and that does not, has its event for ever."""
+    return RATE_ROUNDING * rate_size(ws, k)
 
 
 @internal
