@@ -158,6 +158,8 @@ struck again."""
 FRICTION_MOTION = 1e-6
 """Of the largest motion without forces: what may be left of it where forces have been found. Forces that grow without
 bound, because there are none, change little against themselves."""
+FRICTION_FOLLOWED = 1e-11
+"""Of the largest force: what is left at each point of a path of forces."""
 FRICTION_RANK = 1e-13
 """Of the largest singular value in that Newton's method: a smaller one is zero."""
 STILL = 1e-9

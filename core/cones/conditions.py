@@ -142,7 +142,7 @@ def solve_for(cn: Any, state: Any, ratio: Any, normal: Any, friction: Any, eps: 
     change = mat(work + 8 * size * (size + 1), size, 1)
     _equations(cn, some, stuck, ratio, w_n, w_t, eps, matrix, wanted)
     # where contacts give way the matrix is regular, but for friction that makes contacts jam
-    if eps > 0.0 and solve_square(matrix, vec(work + 8 * size * size, size)):
+    if eps > 0.0 and solve_square(matrix, vec(work + 8 * size * size, size)) != 0:
         change = wanted
     else:
         _equations(cn, some, stuck, ratio, w_n, w_t, eps, matrix, wanted)

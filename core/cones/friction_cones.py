@@ -8,48 +8,39 @@ One contact is solved by itself: it separates, sticks, or slides with the angle 
 root of one scalar function (`one_cone.py`). Several: sweeps of that over all contacts, and Newton's method on the
 projections of Alart and Curnier (1991), P_N = max(base, P_N - r w_N), P_T = projection of P_T - r w_T on the disk
 mu P_N, which is semismooth and ends in few steps; where it does not get nearer, sweeps go on, in smaller steps, until
-nothing changes (Jourdan, Alart, Jean 1998). What these do not find is followed from the forces without friction, while
-that grows.
+nothing changes (Jourdan, Alart, Jean 1998). What these do not find is followed from forces of contacts that give way
+(`giving_way.py`).
 """
 
 import math
 from typing import Any
-
-import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..linalg.small import call_least_norm, least_norm_size
 from ..rounding import (
     FRICTION_ENOUGH,
+    FRICTION_FOLLOWED,
     FRICTION_GOOD,
     FRICTION_MOTION,
     FRICTION_NEAR,
     FRICTION_RANK,
     FRICTION_ROUGH,
 )
+from .giving_way import EARLIER, FINER, FIRST, MOST_LENGTH, TIMES, follow_cones, giving_way_size
 from .one_cone import one_cone
+from .projections import motion_left, motion_of, residual_of_cones
 
 FAILED, FOUND = 0, 1
 SWEEPS, MOST_SWEEPS = 20, 5000
 NEWTON, HALVINGS = 60, 8
 LEAST_PART = 0.125
-GROWTH_SWEEPS, MOST_GROWTHS, FIRST_GROWTH, LEAST_GROWTH = 500, 100, 0.25, 1e-6
-"""Where sweeps come to no end: friction grows in such parts of its coefficients."""
 
 
 def friction_cones_size(n: int) -> int:
     """Numbers (of 8 bytes) in the scratch of `solve_friction_cones` for n contacts."""
     m = 3 * n
-    return m * m + 5 * m + least_norm_size(m, m, 1)
-
-
-@internal
-def _motion(a: Any, b: Any, p: Any, i: int) -> float:
-    total = b[i]
-    for j in range(len(b)):
-        total += a[i, j] * p[j]
-    return total
+    return m + max(m * m + 5 * m + least_norm_size(m, m, 1), giving_way_size(n))
 
 
 @internal
@@ -60,7 +51,7 @@ def _sweep(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: 
         j, k = n + i, 2 * n + i
         own = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k])
         old = p[i], p[j], p[k]
-        rest_n, rest_1, rest_2 = _motion(a, b, p, i), _motion(a, b, p, j), _motion(a, b, p, k)
+        rest_n, rest_1, rest_2 = motion_of(a, b, p, i), motion_of(a, b, p, j), motion_of(a, b, p, k)
         rest_n -= own[0] * old[0] + own[1] * old[1] + own[2] * old[2]
         rest_1 -= own[1] * old[0] + own[3] * old[1] + own[4] * old[2]
         rest_2 -= own[2] * old[0] + own[4] * old[1] + own[5] * old[2]
@@ -86,76 +77,6 @@ def _sweep(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: 
 
 
 @internal
-def _residual(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, r: Any, jac: Any) -> float:
-    """P less its projection, and its derivative by P; the largest of it."""
-    m, worst = 3 * n, 0.0
-    for i in range(m):
-        for j in range(m):
-            jac[i, j] = 1.0 if i == j else 0.0
-    for i in range(n):
-        j, k = n + i, 2 * n + i
-        step = 1.0 / a[i, i]
-        trial = p[i] - step * _motion(a, b, p, i)
-        if trial > base[i]:
-            r[i] = p[i] - trial
-            for l in range(m):
-                jac[i, l] = step * a[i, l]
-        else:
-            r[i] = p[i] - base[i]
-        if known[i] != 0.0:
-            r[j], r[k] = p[j] + mu[i] * p[i] * way[0, i], p[k] + mu[i] * p[i] * way[1, i]
-            jac[j, i], jac[k, i] = mu[i] * way[0, i], mu[i] * way[1, i]
-        else:
-            size = a[j, j] + a[k, k]
-            step = 1.0 / size if size > 0.0 else 0.0
-            x, y = p[j] - step * _motion(a, b, p, j), p[k] - step * _motion(a, b, p, k)
-            length, limit = math.sqrt(x * x + y * y), mu[i] * max(p[i], 0.0)
-            if step == 0.0 or limit == 0.0:
-                r[j], r[k] = p[j], p[k]
-            elif length <= limit:
-                r[j], r[k] = p[j] - x, p[k] - y
-                for l in range(m):
-                    jac[j, l], jac[k, l] = step * a[j, l], step * a[k, l]
-            else:
-                c, s = x / length, y / length
-                r[j], r[k] = p[j] - limit * c, p[k] - limit * s
-                part = limit / length
-                for l in range(m):
-                    d_x = (1.0 if l == j else 0.0) - step * a[j, l]
-                    d_y = (1.0 if l == k else 0.0) - step * a[k, l]
-                    turn = part * (c * d_y - s * d_x)
-                    jac[j, l] += s * turn
-                    jac[k, l] -= c * turn
-                jac[j, i] -= mu[i] * c
-                jac[k, i] -= mu[i] * s
-        worst = max(worst, abs(r[i]), abs(r[j]), abs(r[k]))
-    return worst
-
-
-@internal
-def _motion_left(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any) -> float:
-    """What is left of the motion that the conditions want otherwise, in parts of the largest motion without forces."""
-    worst, largest = 0.0, 0.0
-    for i in range(n):
-        j, k = n + i, 2 * n + i
-        largest = max(largest, abs(b[i]), abs(b[j]), abs(b[k]))
-        trial = max(base[i], p[i] - _motion(a, b, p, i) / a[i, i])
-        worst = max(worst, a[i, i] * abs(p[i] - trial))
-        size, limit = a[j, j] + a[k, k], mu[i] * max(p[i], 0.0)
-        if size == 0.0:
-            continue
-        if known[i] != 0.0:
-            x, y = -limit * way[0, i], -limit * way[1, i]
-        else:
-            x, y = p[j] - _motion(a, b, p, j) / size, p[k] - _motion(a, b, p, k) / size
-            length = math.sqrt(x * x + y * y)
-            part = limit / length if length > limit else 1.0
-            x, y = part * x, part * y
-        worst = max(worst, size * abs(p[j] - x), size * abs(p[k] - y))
-    return worst / largest if largest > 0.0 else 0.0
-
-
-@internal
 def _newton(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
 ) -> float:
@@ -166,7 +87,7 @@ def _newton(
     space, least = work + 8 * (m * m + 5 * m), math.inf
     tried = 0
     for _ in range(NEWTON):
-        worst = _residual(n, a, b, mu, base, known, way, p, left, jac)
+        worst = residual_of_cones(n, a, b, mu, base, known, way, p, left, jac)
         if worst < least:
             least, tried = worst, 0
             for i in range(m):
@@ -186,37 +107,31 @@ def _newton(
 
 
 @internal
-def _grow(least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int) -> bool:
-    """True if p, the forces, are found by Newton's method while friction grows from nothing to its coefficients."""
-    less, before, grown, step = np.empty(n), np.empty(3 * n), 0.0, FIRST_GROWTH
-    for i in range(n):
-        less[i] = 0.0
-        p[i], p[n + i], p[2 * n + i] = base[i], 0.0, 0.0
-    for _ in range(GROWTH_SWEEPS):
-        found, change, largest = _sweep(n, a, b, less, base, known, way, p, 1.0)
-        if not found:
-            return False
-        if change <= FRICTION_ENOUGH * largest:
-            break
-    for _ in range(MOST_GROWTHS):
-        for i in range(3 * n):
-            before[i] = p[i]
-        reached = min(grown + step, 1.0)
-        for i in range(n):
-            less[i] = reached * mu[i]
-        _newton(least_norm, n, a, b, less, base, known, way, p, work)
-        for i in range(n):
-            p[i] = max(p[i], base[i])
-        if _motion_left(n, a, b, less, base, known, way, p) <= FRICTION_GOOD:
-            grown, step = reached, 2.0 * step
-            if grown == 1.0:
+def _give_way(
+    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
+) -> bool:
+    """True if p, the forces, are found as those of contacts that give way less and less."""
+    m, first, longest = 3 * n, FIRST, MOST_LENGTH
+    soft = mat(work, m, m)
+    for _ in range(TIMES):
+        for i in range(m):
+            p[i] = base[i] if i < n else 0.0
+            for j in range(m):
+                soft[i, j] = a[i, j]
+            soft[i, i] += first * a[i, i]
+        for _ in range(MOST_SWEEPS):
+            found, change, largest = _sweep(n, soft, b, mu, base, known, way, p, 1.0)
+            if not found:
+                return False
+            if change <= FRICTION_FOLLOWED * largest:
+                break
+        if follow_cones(n, a, b, mu, base, known, way, p, first, longest, work):
+            _newton(least_norm, n, a, b, mu, base, known, way, p, work)
+            for i in range(n):
+                p[i] = max(p[i], base[i])
+            if motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_GOOD:
                 return True
-            continue
-        step *= 0.5
-        if step < LEAST_GROWTH:
-            break
-        for i in range(3 * n):
-            p[i] = before[i]
+        first, longest = EARLIER * first, FINER * longest
     return False
 
 
@@ -241,6 +156,7 @@ def solve_friction_cones(
         p[i] = base[i]
     # one whose normal force comes with a torque is solved by sweeps too, which have a symmetric matrix for it
     alone = n == 1 and a[0, 1] == a[1, 0] and a[0, 2] == a[2, 0]
+    kept, work = vec(work, 3 * n), work + 24 * n
     sweeps, wait, part, before, change, largest = 0, SWEEPS, 1.0, math.inf, 0.0, 0.0
     while sweeps < MOST_SWEEPS:
         for _ in range(wait):
@@ -250,7 +166,6 @@ def solve_friction_cones(
                 return FAILED
             if alone or change <= FRICTION_ENOUGH * largest:
                 return FOUND
-        kept = vec(work + 8 * (9 * n * n + 12 * n), 3 * n)
         for i in range(3 * n):
             kept[i] = p[i]
         largest = 0.0
@@ -262,19 +177,18 @@ def solve_friction_cones(
             # less than the least by rounding would pull in the next problem
             p[i] = max(p[i], base[i])
         near = left <= FRICTION_NEAR * largest or (left <= FRICTION_GOOD * largest and left > 0.5 * before)
-        if near and _motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_MOTION:
+        if near and motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_MOTION:
             return FOUND
         before = left
         for i in range(3 * n):
             p[i] = kept[i]
         # sweeps that go round in circles come to rest with smaller steps
         wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
-    kept = vec(work + 8 * (9 * n * n + 12 * n), 3 * n)
     for i in range(3 * n):
         kept[i] = p[i]
-    if _grow(least_norm, n, a, b, mu, base, known, way, p, work):
+    if _give_way(least_norm, n, a, b, mu, base, known, way, p, work):
         return FOUND
     for i in range(3 * n):
         p[i] = kept[i]
     rough = change <= FRICTION_ROUGH * largest
-    return FOUND if rough and _motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_ROUGH else FAILED
+    return FOUND if rough and motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_ROUGH else FAILED

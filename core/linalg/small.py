@@ -57,17 +57,21 @@ def add(x: Any, factor: float, y: Any) -> None:
 
 
 @internal
-def solve_square(a: Any, b: Any) -> bool:
-    """b (n,) -> x of a x = b with a (n, n), which is overwritten: LU with partial pivoting. False if a is singular."""
-    n = len(b)
+def solve_square(a: Any, b: Any) -> int:
+    """b (n,) -> x of a x = b with a (n, n), which is overwritten: LU with partial pivoting. Returns the sign of a's
+    determinant, 0 if a is singular."""
+    n, sign = len(b), 1
     for k in range(n):
         at = k
         for i in range(k + 1, n):
             if abs(a[i, k]) > abs(a[at, k]):
                 at = i
         if a[at, k] == 0.0:
-            return False
+            return 0
+        if a[at, k] < 0.0:
+            sign = -sign
         if at != k:
+            sign = -sign
             for j in range(k, n):
                 a[k, j], a[at, j] = a[at, j], a[k, j]
             b[k], b[at] = b[at], b[k]
@@ -78,7 +82,7 @@ def solve_square(a: Any, b: Any) -> bool:
                 b[i] -= factor * b[k]
     for k in range(n - 1, -1, -1):
         b[k] = (b[k] - dot(a[k, k + 1 :], b[k + 1 :])) / a[k, k]
-    return True
+    return sign
 
 
 @internal
