@@ -34,6 +34,8 @@ from .projections import motion_left, motion_of, residual_of_cones
 FAILED, FOUND = 0, 1
 SWEEPS, MOST_SWEEPS = 20, 5000
 NEWTON, HALVINGS = 60, 8
+FOLLOWED_AFTER = 60
+"""Sweeps, after which the path is tried once before more of them."""
 LEAST_PART = 0.125
 
 
@@ -157,7 +159,7 @@ def solve_friction_cones(
     # one whose normal force comes with a torque is solved by sweeps too, which have a symmetric matrix for it
     alone = n == 1 and a[0, 1] == a[1, 0] and a[0, 2] == a[2, 0]
     kept, work = vec(work, 3 * n), work + 24 * n
-    sweeps, wait, part, before, change, largest = 0, SWEEPS, 1.0, math.inf, 0.0, 0.0
+    sweeps, wait, part, before, change, largest, followed = 0, SWEEPS, 1.0, math.inf, 0.0, 0.0, False
     while sweeps < MOST_SWEEPS:
         for _ in range(wait):
             found, change, largest = _sweep(n, a, b, mu, base, known, way, p, part)
@@ -180,15 +182,13 @@ def solve_friction_cones(
         if near and motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_MOTION:
             return FOUND
         before = left
+        if not followed and sweeps >= FOLLOWED_AFTER:
+            followed = True
+            if _give_way(least_norm, n, a, b, mu, base, known, way, p, work):
+                return FOUND
         for i in range(3 * n):
             p[i] = kept[i]
         # sweeps that go round in circles come to rest with smaller steps
         wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
-    for i in range(3 * n):
-        kept[i] = p[i]
-    if _give_way(least_norm, n, a, b, mu, base, known, way, p, work):
-        return FOUND
-    for i in range(3 * n):
-        p[i] = kept[i]
     rough = change <= FRICTION_ROUGH * largest
     return FOUND if rough and motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_ROUGH else FAILED

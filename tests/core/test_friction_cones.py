@@ -146,3 +146,53 @@ def test_a_sliding_contact_near_jamming_is_found():
         assert off(p, w, mu) < 1e-8 * max(1.0, p[0]) ** 2
         found += 1
     assert found > 100
+
+
+def spheres(seed):
+    """Inverse masses and motion of contacts of spheres of different size with each other and with walls, of which many
+    hold each other in rings."""
+    random = np.random.default_rng(seed)
+    count, most = int(random.integers(3, 12)), random.integers(2, 4)
+    radii = random.uniform(0.03, 0.05, count)
+    mass, pairs = 2000.0 * 4.0 / 3.0 * np.pi * radii**3, []
+    for i in range(count):
+        for _ in range(int(random.integers(1, most + 1))):
+            j, normal = int(random.integers(-2, i)) if i else -1, random.normal(size=3)
+            normal[2] = abs(normal[2]) + 0.3
+            pairs.append((i, j, normal / np.linalg.norm(normal)))
+    n = len(pairs)
+    g, inverse = np.zeros((3, n, count, 6)), np.repeat(1.0 / mass, 6).reshape(count, 6)
+    inverse[:, 3:] /= 0.4 * radii[:, None] ** 2
+    for k, (i, j, normal) in enumerate(pairs):
+        first = np.cross(normal, [1.0, 0.0, 0.3])
+        first /= np.linalg.norm(first)
+        for block, along in enumerate((normal, first, np.cross(normal, first))):
+            g[block, k, i] = np.r_[along, np.cross(-radii[i] * normal, along)]
+            if j >= 0:
+                g[block, k, j] = -np.r_[along, np.cross(radii[j] * normal, along)]
+    g = g.reshape(3 * n, 6 * count)
+    v = np.tile([0.0, 0.0, -9.81, 0.0, 0.0, 0.0], count)
+    v += 0.5 * random.normal(size=6 * count) * np.tile([1.0] * 3 + [20.0] * 3, count)
+    return (g * inverse.ravel()) @ g.T, g @ v, np.full(n, 0.4)
+
+
+HARD = (152, 491, 1085, 1273, 1602, 2441, 2516, 2695, 2761)
+"""Of the first 3000, those in which contacts wedge each other so that sweeps, Newton's method, and forces that grow
+with friction find nothing."""
+
+
+@pytest.mark.parametrize("seeds", [range(100), range(100, 200), HARD], ids=["100", "200", "hard"])
+def test_rings_of_spheres_that_wedge_each_other(seeds):
+    for seed in seeds:
+        a, b, friction = spheres(seed)
+        p, w = solve(a, b, friction)
+        assert off(p, w, friction) < 1e-8, seed
+
+
+def test_forces_that_do_not_exist_are_not_found():
+    """Sliding along the known way, friction presses more than the normal force lifts (Painleve)."""
+    a = np.array([[1.0, 3.0, 0.0], [3.0, 10.0, 0.0], [0.0, 0.0, 10.0]])
+    args = np.array([-1.0, 0.0, 0.0]), np.array([0.5]), np.zeros(1), np.ones(1), np.array([[1.0], [0.0]])
+    p, work = np.zeros(3), np.zeros(friction_cones_size(1))
+    address = address_of(least_norm, LEAST_NORM_SIGNATURE)
+    assert _solve(address, 1, a, *args, p, work.ctypes.data) != FOUND

@@ -87,7 +87,7 @@ def test_square_systems():
     for n in (1, 2, 5, 30):
         a, b = rng.normal(size=(n, n)), rng.normal(size=n)
         x = b.copy()
-        assert square(a.copy(), x)
+        assert square(a.copy(), x) == np.sign(np.linalg.det(a))
         assert np.max(np.abs(a @ x - b)) < 1e-13 * n * max(1.0, np.max(np.abs(x)))
     assert not square(np.zeros((2, 2)), np.ones(2))
     assert not square(np.ones((3, 3)), np.ones(3))
