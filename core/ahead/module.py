@@ -165,6 +165,10 @@ def optimised(
             function.linkage, function.visibility = "external", "hidden"
         elif not function.is_declaration and not function.name.startswith(PREFIX):
             function.linkage = "internal"
+        if not function.is_declaration and target.suffix != ".dll":
+            # nothing is thrown through it, and tables that say how to would be a fortieth of the library; Windows wants
+            # them to walk any stack
+            function.add_function_attribute("nounwind")
     for variable in module.global_variables:
         if not variable.is_declaration:
             variable.linkage = "internal"

@@ -15,7 +15,9 @@ from .targets import Target
 LINKERS = ("cc", "gcc", "clang")
 FLAGS = ("-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-Wall", "-Wextra")
 """For C: nothing is seen from outside but what says so, and numbers come out as they are written."""
-OF_SYSTEM = {".so": ("-fPIC", "-Wl,-Bsymbolic"), ".dylib": ("-fPIC",), ".dll": ()}
+NO_TABLES = ("-fno-unwind-tables", "-fno-asynchronous-unwind-tables")
+"""Nothing is thrown through these functions."""
+OF_SYSTEM = {".so": ("-fPIC", "-Wl,-Bsymbolic", *NO_TABLES), ".dylib": ("-fPIC", *NO_TABLES), ".dll": ()}
 """By the library's suffix; two libraries in one process must not take functions from each other."""
 
 

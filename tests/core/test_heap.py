@@ -94,3 +94,10 @@ def test_disks_that_wedge_each_other():
     values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
     assert abs(values["energy.balance"]) < 1e-7 * values["energy.impact_loss"]
     assert min(sim.gap(k) for k in range(len(sim.assembly.contacts))) > -1e-9
+
+
+@pytest.mark.full
+def test_thirty_disks_that_hold_each_other_at_their_limits():
+    """Contacts without force beside each other, contacts that stick at their limits, sliding that is none."""
+    count = 30
+    check_rest(Simulation(heap(count, 0.3, 0.4, 0, 1e-2), "ebdf"), count, 1.5, 1e-7)
