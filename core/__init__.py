@@ -161,6 +161,7 @@ if TYPE_CHECKING:
     from .shapes.group3d import ContactGroup3D
     from .shapes.mesh3d import TriangleMesh3D, read_mesh
     from .shapes.on_cable3d import CableLine3D, CableOnHalfSpace3D, SphereOnCable3D
+    from .shapes.on_mesh3d import SphereOnMesh3D, mesh_parts
     from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
     from .shapes.ring2d import DiskInRing2D, Ring2D
     from .shapes.rope2d import Rope2D
@@ -336,6 +337,7 @@ __all__ = [
     "SphereInSphere3D",
     "SphereOnCable3D",
     "SphereOnHalfSpace3D",
+    "SphereOnMesh3D",
     "SphereOnSphere3D",
     "Spherical3D",
     "SpringDamper2D",
@@ -366,6 +368,7 @@ __all__ = [
     "deformed_shape",
     "force_formula",
     "load_result",
+    "mesh_parts",
     "read_mesh",
     "scalar_constraint",
     "scalar_contact",
@@ -439,6 +442,7 @@ __getattr__, __dir__ = late_names(
         ".shapes.group3d": "ContactGroup3D",
         ".shapes.mesh3d": "TriangleMesh3D read_mesh",
         ".shapes.on_cable3d": "CableLine3D CableOnHalfSpace3D SphereOnCable3D",
+        ".shapes.on_mesh3d": "SphereOnMesh3D mesh_parts",
         ".shapes.polygon2d": "DiskOnPolygon2D Polygon2D",
         ".shapes.ring2d": "DiskInRing2D Ring2D",
         ".shapes.rope2d": "Rope2D",

@@ -11,7 +11,7 @@ CONTACTS = LateClasses(
     "DiskOnHalfPlane2D DiskOnDisk2D DiskOnBox2D DiskOnSegment2D DiskOnLine2D DiskOnCable2D DiskInRing2D "
     "DiskOnPolygon2D Rope2D AngleStop2D CoordinateContact SphereOnHalfSpace3D SphereOnSphere3D "
     "SmoothOnHalfSpace3D SphereInSphere3D CapsuleOnCapsule3D SphereOnCable3D "
-    "CableOnHalfSpace3D AngleStop3D SlideStop3D Rope3D",
+    "CableOnHalfSpace3D SphereOnMesh3D AngleStop3D SlideStop3D Rope3D",
 )
 
 Contact = Annotated[ContactElement, OpenUnion(CONTACTS, ContactElement)]
@@ -30,6 +30,7 @@ __getattr__, __dir__ = late_names(
         ".group2d": "ContactGroup2D",
         ".group3d": "ContactGroup3D",
         ".on_cable3d": "CableOnHalfSpace3D SphereOnCable3D",
+        ".on_mesh3d": "SphereOnMesh3D",
         ".polygon2d": "DiskOnPolygon2D",
         ".ring2d": "DiskInRing2D",
         ".rope2d": "Rope2D",

@@ -4,8 +4,8 @@ from typing import Any
 
 OWN, DISKS, PLANE, SEGMENT, LINEAR, LINE, CABLE, EQUATIONS, SPHERE = range(9)
 """OWN: a kernel of which nothing is known; LINEAR: a gap that is linear in the coordinates; EQUATIONS: a gap function
-of an `EquationSystem`, which is asked for through the whole system; SPHERE: a sphere in space, on another or on a
-half-space."""
+of an `EquationSystem`, which is asked for through the whole system; SPHERE: a sphere in space, on another, on a
+half-space or a mesh."""
 
 _KINDS: dict[Any, int] = {}
 MAY_SLEEP = (DISKS, PLANE, SEGMENT, SPHERE)

@@ -3,7 +3,7 @@
 Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box, a polygon, a segment or a ring
 around it; a box or polygon with a half-plane and with others by the corners; in space a sphere or a capsule with a
 half-space, a sphere and a capsule, what has corners or is smooth with a half-space, a cable with a sphere or a
-half-space. Pairs on one body are left out.
+half-space, a mesh with a sphere. Pairs on one body are left out.
 Pairs that are far from touching cost nothing during a run: contacts sleep until their margin is used up
 (`location/asleep.py`).
 """
@@ -21,7 +21,9 @@ from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfP
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .cornered3d import Capsule3D, Cornered3D, Cylinder3D
 from .groups import ContactGroup
+from .mesh3d import TriangleMesh3D
 from .on_cable3d import CableLine3D, CableOnHalfSpace3D, CableSpot, SphereOnCable3D
+from .on_mesh3d import MeshPart, SphereOnMesh3D, mesh_parts
 from .polygon2d import DiskOnPolygon2D, Polygon2D
 from .ring2d import DiskInRing2D, Ring2D
 from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
@@ -67,7 +69,7 @@ def contacts_between(
         raise ModelError(f"group '{name}' has {count} pairs of shapes, more than {MOST_PAIRS}: make smaller groups")
     pairs = combinations(first, 2) if second is None else product(first, second)
     apart = {frozenset(pair) for pair in except_bodies}
-    named: dict[str, list[tuple[GroupShape, GroupShape | CableSpot]]] = {}
+    named: dict[str, list[tuple[GroupShape, GroupShape | CableSpot | MeshPart]]] = {}
     for a, b in pairs:
         bodies = _body(a), _body(b)
         if bodies[0] == bodies[1] or frozenset(bodies) in apart:
@@ -128,7 +130,7 @@ def _body(shape: GroupShape) -> str:
     return shape.cable if isinstance(shape, CableLine3D) else str(shape.marker.body)
 
 
-def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | CableSpot]]:
+def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | CableSpot | MeshPart]]:
     """Pairs (what, disk or sphere, or place on a cable) that say the contact of two shapes."""
     if isinstance(a, SpatialShape) or isinstance(b, SpatialShape):
         return _touching_in_space(a, b)
@@ -155,7 +157,7 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
     )
 
 
-def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | CableSpot]]:
+def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | CableSpot | MeshPart]]:
     if isinstance(a, Sphere3D) and isinstance(b, Sphere3D):
         # two points never touch
         return ((a, b),) if a.radius + b.radius > 0.0 else ()
@@ -167,8 +169,10 @@ def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShap
         return tuple((a, rim) for rim in b.rims())
     if isinstance(a, HalfSpace3D) and isinstance(b, Cornered3D):
         return tuple((a, corner) for corner in b.corners())
-    if isinstance(b, CableLine3D):
+    if isinstance(b, CableLine3D | TriangleMesh3D):
         a, b = b, a
+    if isinstance(a, TriangleMesh3D) and isinstance(b, Sphere3D):
+        return tuple((b, MeshPart(a, k)) for k in range(len(mesh_parts(a))))
     if isinstance(a, CableLine3D) and isinstance(b, Sphere3D):
         return ((a, b),)
     if isinstance(a, CableLine3D) and isinstance(b, HalfSpace3D):
@@ -181,15 +185,20 @@ def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShap
         return ()
     raise ModelError(
         f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: in space a "
-        "sphere or capsule touches spheres, capsules and half-spaces, all others touch half-spaces, cables spheres "
-        "too; give it spheres or capsules in their place"
+        "sphere or capsule touches spheres, capsules and half-spaces, all others touch half-spaces, cables and meshes "
+        "spheres too; give it spheres or capsules in their place"
     )
 
 
 def _contact(
-    name: str, a: GroupShape, disk: GroupShape | CableSpot, law: ContactLaw, friction: Friction | None,
+    name: str, a: GroupShape, disk: GroupShape | CableSpot | MeshPart, law: ContactLaw, friction: Friction | None,
     turning: TurningFriction | None,
 ) -> Contact2D | Contact3D:  # fmt: skip
+    if isinstance(disk, MeshPart):
+        assert isinstance(a, Sphere3D)
+        return SphereOnMesh3D(
+            name=name, mesh=disk.mesh, part=disk.part, sphere=a, law=law, friction=friction, turning=turning
+        )
     if isinstance(disk, CableSpot):
         assert isinstance(a, HalfSpace3D)
         on = disk.line

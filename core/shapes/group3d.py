@@ -23,7 +23,7 @@ class ContactGroup3D(ContactGroup):
 
     type: Literal["ContactGroup3D"] = "ContactGroup3D"
     spheres: tuple[Sphere3D, ...] = ()
-    """They touch spheres, capsules and half-spaces."""
+    """They touch spheres, capsules, cables, meshes and half-spaces."""
     boxes: tuple[Box3D, ...] = ()
     """They touch half-spaces, by their corners."""
     polyhedra: tuple[ConvexPolyhedron3D, ...] = ()
@@ -33,7 +33,7 @@ class ContactGroup3D(ContactGroup):
     cylinders: tuple[Cylinder3D, ...] = ()
     """They touch half-spaces, by their rims."""
     meshes: tuple[TriangleMesh3D, ...] = ()
-    """They touch half-spaces, by the corners of their hulls."""
+    """They touch spheres, and half-spaces by the corners of their hulls."""
     smooth: tuple[Smooth3D, ...] = ()
     """Ellipsoids, tori and own smooth shapes; they touch half-spaces."""
     cables: tuple[CableLine3D, ...] = ()

@@ -19,7 +19,8 @@ FEWEST_FACES = 4
 
 
 class TriangleMesh3D(Cornered3D):
-    """A closed surface of triangles about the marker. It touches half-spaces, by the corners of its convex hull.
+    """A closed surface of triangles about the marker. It touches spheres, and half-spaces by the
+    corners of its convex hull.
 
     The corners of each triangle go round counter-clockwise, seen from outside. `read_mesh` reads one from a file.
     """

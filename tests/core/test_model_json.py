@@ -124,6 +124,7 @@ from tlismni.core import (
     SphereInSphere3D,
     SphereOnCable3D,
     SphereOnHalfSpace3D,
+    SphereOnMesh3D,
     SphereOnSphere3D,
     Spherical3D,
     SpringDamper2D,
@@ -134,6 +135,7 @@ from tlismni.core import (
     TorsionSpring2D,
     TorsionSpring3D,
     Torus3D,
+    TriangleMesh3D,
     Universal3D,
     simulate,
 )
@@ -152,6 +154,10 @@ attitude = st.one_of(
     st.builds(Axes, z=st.tuples(number, number, positive)),
     st.just(Axes(z=(0.0, 1.0, 0.0), x=(1.0, 0.0, 1.0))),
 )
+TETRAHEDRON = TriangleMesh3D(
+    marker=Marker3D(), vertices=((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    faces=((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)),
+)  # fmt: skip
 marker3d = st.builds(Marker3D, body=st.just("s"), point=vector3, attitude=attitude)
 signal = st.one_of(
     st.builds(Constant, value=number),
@@ -420,6 +426,10 @@ ELEMENTS["contacts"] += [
         sphere=st.builds(Sphere3D, marker=marker3d, radius=st.floats(0.0, 1e3)),
     ),
     st.builds(
+        SphereOnMesh3D, name=st.just("x"), law=law, sphere=st.builds(Sphere3D, marker=marker3d, radius=positive),
+        mesh=st.just(TETRAHEDRON),
+    ),
+    st.builds(
         SphereOnCable3D, name=st.just("x"), law=law, cable=st.just("line"), thickness=positive, sphere=sphere,
     ),
     st.builds(
@@ -472,7 +482,7 @@ SPATIAL = {
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
     "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
     "SphereOnSphere3D", "SmoothOnHalfSpace3D", "SphereInSphere3D", "CapsuleOnCapsule3D", "SphereOnCable3D",
-    "CableOnHalfSpace3D", "Cable3D", "MaterialPoint3D",
+    "SphereOnMesh3D", "CableOnHalfSpace3D", "Cable3D", "MaterialPoint3D",
     "CableClamp3D",
     "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
 }  # fmt: skip

@@ -1,0 +1,129 @@
+"""The point of a part of a mesh that is nearest to a place: on a triangle, an edge or a corner.
+
+Over a triangle the gap is the height over its plane, as over a half-space; beside it the distance from an edge, as of a
+capsule without radius, whose ends are the corners. Triangles stand in the pool of numbers, `STRIDE` each: corners,
+normal, whether an edge is flat, and a ball around it.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import inlined, internal
+from ..compiled.views import imat, vec
+from ..elements.measure3d import AXES_A, PLACE, POINT_A, offset
+from ..model.rotation3d import dot, four, less, turned, turning
+from .held3d import POINT_OF_CABLE, SEGMENTS, hold_segments
+from .mesh_parts import Faces, Points, flat_edges, normals_of
+from .normal3d import SIZE, pair_of
+
+ON_MESH = POINT_OF_CABLE + 1
+"""Kind of the gap, beside those of `held3d.py`: of the nearest triangle PLACE, of the nearest edge SEGMENTS."""
+NORMAL_AT, FLAT_AT, MIDDLE_AT, REACH_AT, STRIDE = 9, 12, 15, 18, 19
+FIRST, COUNT = 7, 8
+"""Columns of `extra`: where the part's triangles begin in the pool, and how many they are."""
+ON_FACE = 3
+"""Beside the numbers 0, 1, 2 of the edges."""
+WITHIN = 1e-18
+"""Of the squared size of a triangle: so little beyond a flat edge the foot is still on the triangle."""
+
+
+def table_of(vertices: Points, faces: Faces, part: Sequence[int]) -> list[float]:
+    """The triangles of a part for the pool; vertices in the frame of the body."""
+    points, triangles = np.array(vertices), np.array(faces)
+    corners = points[triangles]
+    normals, flat, middle = normals_of(points, triangles), flat_edges(vertices, faces), corners.mean(axis=1)
+    reach = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
+    rows = np.hstack([corners.reshape(-1, 9), normals, flat, middle, reach[:, None]])
+    return [float(x) for x in rows[list(part)].ravel()]
+
+
+@inlined
+def _corner(pool: Any, at: int, k: int) -> Any:
+    return pool[at + 3 * k], pool[at + 3 * k + 1], pool[at + 3 * k + 2]
+
+
+@inlined
+def _from_edge(y: Any, a: Any, ab: Any) -> float:
+    """Squared distance of y from the edge a + t ab, t in [0, 1]."""
+    away = less(y, a)
+    t = min(max(dot(ab, away) / dot(ab, ab), 0.0), 1.0)
+    e = (away[0] - t * ab[0], away[1] - t * ab[1], away[2] - t * ab[2])
+    return dot(e, e)
+
+
+@internal
+def _on_triangle(pool: Any, at: int, y: Any) -> Any:
+    """(edge or ON_FACE, squared distance) of the point of a triangle nearest to y."""
+    n, a = _corner(pool, at + NORMAL_AT, 0), _corner(pool, at, 0)
+    height = dot(n, less(y, a))
+    edge, least, outside = ON_FACE, np.inf, False
+    for k in range(3):
+        p, q = _corner(pool, at, k), _corner(pool, at, (k + 1) % 3)
+        side, away = less(q, p), less(y, p)
+        # along n x side, which points into the triangle
+        inward = (
+            (n[1] * side[2] - n[2] * side[1]) * away[0]
+            + (n[2] * side[0] - n[0] * side[2]) * away[1]
+            + (n[0] * side[1] - n[1] * side[0]) * away[2]
+        )
+        if inward < 0.0:
+            outside = True
+            square = _from_edge(y, p, side)
+            if square < least:
+                edge, least = k, square
+    if not outside:
+        return ON_FACE, height * height
+    if pool[at + FLAT_AT + edge] > 0.0 and least - height * height <= WITHIN * pool[at + REACH_AT] ** 2:
+        return ON_FACE, height * height
+    return edge, least
+
+
+@internal
+def _nearest(pool: Any, first: int, count: int, y: Any) -> Any:
+    """(where the nearest triangle stands, its edge or ON_FACE)."""
+    best, edge, least = first, ON_FACE, np.inf
+    for i in range(count):
+        at = first + STRIDE * i
+        away = less(_corner(pool, at, MIDDLE_AT // 3), y)
+        if math.sqrt(dot(away, away)) - pool[at + REACH_AT] > math.sqrt(least):
+            continue
+        found, square = _on_triangle(pool, at, y)
+        # of a triangle and its own edge the triangle
+        if square < least or (square == least and found == ON_FACE):
+            best, edge, least = at, found, square
+    return best, edge
+
+
+@internal
+def hold_on_mesh(b: Any, e: int, held: Any, moves: Any) -> int:
+    """The pair of markers of element e of a batch, a mesh and a sphere, with the nearest triangle or edge in place of
+    the mesh, to held, and how the point of an edge moves, to moves. Returns the kind of their gap."""
+    pair, extra = pair_of(b, e), imat(b.extra, b.count, b.nextra)[e]
+    for i in range(len(pair)):
+        held[i] = pair[i]
+    moves[:, :] = 0.0
+    q, coord, pool = vec(b.q, b.n_extended), imat(b.coord, b.count, SIZE)[e], vec(b.signals, b.n_signals)
+    for i in range(3):
+        held[POINT_A + i] = 0.0
+    p, s = four(q, coord, 3, held[0]), four(q, coord, 10, held[1])
+    d, _, _ = offset(q, coord, held, p, s)
+    y = (
+        dot(turned(turning(p, (1.0, 0.0, 0.0)), p), d),
+        dot(turned(turning(p, (0.0, 1.0, 0.0)), p), d),
+        dot(turned(turning(p, (0.0, 0.0, 1.0)), p), d),
+    )
+    at, edge = _nearest(pool, extra[FIRST], extra[COUNT], y)
+    if edge == ON_FACE:
+        for i in range(3):
+            held[POINT_A + i], held[AXES_A + 6 + i] = pool[at + i], pool[at + NORMAL_AT + i]
+        return PLACE
+    a, b_ = _corner(pool, at, edge), _corner(pool, at, (edge + 1) % 3)
+    way = less(b_, a)
+    length = math.sqrt(dot(way, way))
+    for i in range(3):
+        held[POINT_A + i], held[AXES_A + 6 + i] = 0.5 * (a[i] + b_[i]), way[i] / length
+    hold_segments(q, coord, 0.5 * length, 0.0, held, moves)
+    return SEGMENTS
