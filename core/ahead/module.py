@@ -6,6 +6,7 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
+from ..compiled.library import packed
 from .libm import BESIDE, FUNCTIONS, PREFIX
 from .targets import Target
 
@@ -200,4 +201,4 @@ def undefined(module: Any) -> list[str]:
 def manifest_text(entries: Mapping[str, str], forms: Mapping[str, Any], functions: Mapping[str, str]) -> str:
     """What `compiled/library.py` reads; `functions`: symbols of the functions of its own libm, by name."""
     content = {"entries": dict(entries), "forms": dict(forms), "libm": dict(functions)}
-    return json.dumps(content, separators=(",", ":"))
+    return packed(json.dumps(content, separators=(",", ":")))

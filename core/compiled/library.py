@@ -4,12 +4,14 @@
 alone, and functions are compiled when they are first used, as where there is no library.
 """
 
+import binascii
 import ctypes
 import hashlib
 import json
 import logging
 import os
 import sys
+import zlib
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -28,6 +30,16 @@ SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 USUAL_PLACE = Path(__file__).with_name(f"tlismni_core{SUFFIX}")
 _CORE = Path(__file__).resolve().parents[1]
 _PACKAGE = __name__.partition(".core.")[0]
+
+
+def packed(text: str) -> str:
+    """A text for a constant of the library, in a fifth of its letters."""
+    return binascii.b2a_base64(zlib.compress(text.encode(), 9), newline=False).decode()
+
+
+def unpacked(text: str) -> str:
+    """What `packed` was given. A library of earlier sources, whose libm is asked for, has JSON as it is."""
+    return text if text.startswith("{") else zlib.decompress(binascii.a2b_base64(text)).decode()
 
 
 def known_as(module: str | None) -> str:
@@ -66,7 +78,7 @@ class Library:
         self.path = path
         self._holding, self._releasing = ctypes.PyDLL(str(path)), ctypes.CDLL(str(path))
         self.digest = self._text("tlismni_digest")
-        manifest = json.loads(self._text("tlismni_manifest"))
+        manifest = json.loads(unpacked(self._text("tlismni_manifest")))
         self.entries: dict[str, str] = manifest["entries"]
         self.forms: dict[str, dict[str, Any]] = manifest["forms"]
         self.libm: dict[str, str] = manifest.get("libm", {})

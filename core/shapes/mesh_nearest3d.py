@@ -115,15 +115,18 @@ def hold_on_mesh(b: Any, e: int, held: Any, moves: Any) -> int:
         dot(turned(turning(p, (0.0, 1.0, 0.0)), p), d),
         dot(turned(turning(p, (0.0, 0.0, 1.0)), p), d),
     )
-    at, edge = _nearest(pool, extra[FIRST], extra[COUNT], y)
+    where, edge = _nearest(pool, extra[FIRST], extra[COUNT], y)
     if edge == ON_FACE:
         for i in range(3):
-            held[POINT_A + i], held[AXES_A + 6 + i] = pool[at + i], pool[at + NORMAL_AT + i]
+            held[POINT_A + i], held[AXES_A + 6 + i] = pool[where + i], pool[where + NORMAL_AT + i]
         return PLACE
-    a, b_ = _corner(pool, at, edge), _corner(pool, at, (edge + 1) % 3)
+    a, b_ = _corner(pool, where, edge), _corner(pool, where, (edge + 1) % 3)
     way = less(b_, a)
-    length = math.sqrt(dot(way, way))
+    length, along = math.sqrt(dot(way, way)), dot(way, less(y, a)) / dot(way, way)
+    # a corner is held as such, and not as the end of one of its edges, which rounding would choose
+    half = 0.0 if along <= 0.0 or along >= 1.0 else 0.5 * length
+    at = 0.5 if half > 0.0 else (0.0 if along <= 0.0 else 1.0)
     for i in range(3):
-        held[POINT_A + i], held[AXES_A + 6 + i] = 0.5 * (a[i] + b_[i]), way[i] / length
-    hold_segments(q, coord, 0.5 * length, 0.0, held, moves)
+        held[POINT_A + i], held[AXES_A + 6 + i] = a[i] + at * way[i], way[i] / length
+    hold_segments(q, coord, half, 0.0, held, moves)
     return SEGMENTS

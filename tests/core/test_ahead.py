@@ -14,7 +14,7 @@ from tlismni.core.ahead.make import MEMORY
 from tlismni.core.ahead.module import QUICK, undefined
 from tlismni.core.ahead.packed import put, take
 from tlismni.core.ahead.targets import TARGETS
-from tlismni.core.compiled.library import LIBRARY, PLACE, core_digest
+from tlismni.core.compiled.library import LIBRARY, PLACE, core_digest, packed, unpacked
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
 from tlismni.core.native.c_sources import c_digest
 
@@ -319,3 +319,10 @@ def test_the_library_takes_nothing_but_memory_and_texts_from_elsewhere() -> None
     assert strong <= (MEMORY - {"tlismni_take", "tlismni_give"}) | set(of_c.split()) | set(printed.split())
     if QUICK.encode() not in LIBRARY.path.read_bytes():
         assert LIBRARY.path.stat().st_size < 2_000_000
+
+
+def test_texts_of_a_library_are_packed():
+    """And those of earlier ones, whose libm may be asked for, are read as they are."""
+    text = json.dumps({"entries": {f"f{k}": f"tlismni_f{k}" for k in range(200)}, "u": "ü"})
+    assert unpacked(packed(text)) == text == unpacked(text)
+    assert packed(text).isascii() and len(packed(text)) < 0.5 * len(text)
