@@ -22,8 +22,9 @@ from .normal3d import SIZE, pair_of
 ON_MESH = POINT_OF_CABLE + 1
 """Kind of the gap, beside those of `held3d.py`: of the nearest triangle PLACE, of the nearest edge SEGMENTS."""
 NORMAL_AT, FLAT_AT, MIDDLE_AT, REACH_AT, STRIDE = 9, 12, 15, 18, 19
-FIRST, COUNT = 7, 8
-"""Columns of `extra`: where the part's triangles begin in the pool, and how many they are."""
+FIRST, COUNT, OPEN = 7, 8, 9
+"""Columns of `extra`: where the part's triangles begin in the pool, how many they are, and whether they are not the
+whole surface: then what is behind one of them is not within the body."""
 ON_FACE = 3
 """Beside the numbers 0, 1, 2 of the edges."""
 WITHIN = 1e-18
@@ -117,8 +118,10 @@ def hold_on_mesh(b: Any, e: int, held: Any, moves: Any) -> int:
     )
     where, edge = _nearest(pool, extra[FIRST], extra[COUNT], y)
     if edge == ON_FACE:
+        behind = dot(_corner(pool, where + NORMAL_AT, 0), less(y, _corner(pool, where, 0))) < 0.0
+        side = -1.0 if behind and extra[OPEN] != 0 else 1.0
         for i in range(3):
-            held[POINT_A + i], held[AXES_A + 6 + i] = pool[where + i], pool[where + NORMAL_AT + i]
+            held[POINT_A + i], held[AXES_A + 6 + i] = pool[where + i], side * pool[where + NORMAL_AT + i]
         return PLACE
     a, b_ = _corner(pool, where, edge), _corner(pool, where, (edge + 1) % 3)
     way = less(b_, a)

@@ -46,7 +46,8 @@ class SphereOnMesh3D(Contact3D):
 
     The part is a convex piece of the surface, over whose faces, edges and corners the sphere rolls without a jump. A
     convex mesh is one part; of another mesh each part has a contact of its own: `contacts_between` and
-    `ContactGroup3D` make them. In a hollow the sphere touches several.
+    `ContactGroup3D` make them. In a hollow the sphere touches several. By a force law a sphere may sink into a part
+    by less than its radius: with its centre behind it, it would be beside another side of the body.
 
     Raises
     ------
@@ -94,12 +95,12 @@ class SphereOnMesh3D(Contact3D):
         return (self.mesh.marker, self.sphere.marker)
 
     def row(self, numbering: Numbering) -> Row:
-        marker, part = self.mesh.marker, mesh_parts(self.mesh)[self.part]
+        marker, parts = self.mesh.marker, mesh_parts(self.mesh)
         placed = np.array(marker.point) + np.array(self.mesh.vertices) @ marker.axes().T
-        table = table_of(cast(Points, tuple(map(tuple, placed.tolist()))), self.mesh.faces, part)
+        table = table_of(cast(Points, tuple(map(tuple, placed.tolist()))), self.mesh.faces, parts[self.part])
         first = numbering.signal(cast(Signal, _Numbers(table)))
         row = self._row_of(numbering, marker, self.sphere.marker, 0.0, self.sphere.radius, extents=(self._reach(), 0.0))
-        return Row(row.parameters, row.coordinates, (*row.extra, first, len(table) // STRIDE))
+        return Row(row.parameters, row.coordinates, (*row.extra, first, len(table) // STRIDE, int(len(parts) > 1)))
 
     def _reach(self) -> float:
         """How far a corner of the mesh is from its marker, m."""

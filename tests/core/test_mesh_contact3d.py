@@ -212,3 +212,36 @@ def test_what_cannot_touch_is_refused():
     assert math.isclose(made[0].extent(), 0.1)
     model = Model(gravity=DOWN, bodies=[ball()], contacts=made)
     assert Model.model_validate_json(model.model_dump_json()) == model
+
+
+def from_triangle(y, a, b, c):
+    """Distance of y from a triangle, by its plane and its edges."""
+    n = np.cross(b - a, c - a)
+    n /= np.linalg.norm(n)
+    foot = y - n * (n @ (y - a))
+    edges = ((a, b), (b, c), (c, a))
+    if all(np.cross(q - p, foot - p) @ n >= 0.0 for p, q in edges):
+        return abs(n @ (y - a))
+    ends = [p + np.clip((y - p) @ (q - p) / ((q - p) @ (q - p)), 0.0, 1.0) * (q - p) for p, q in edges]
+    return min(np.linalg.norm(y - end) for end in ends)
+
+
+def hilly(x, y):
+    return 0.25 * math.sin(3.0 * x) * math.cos(2.0 * y)
+
+
+@pytest.mark.parametrize("bump", [None, hilly], ids=["flat", "hilly"])
+def test_the_least_gap_is_the_distance_from_the_surface(bump):
+    """Over, beside and under a plate with hills and hollows, of which each convex part is a contact."""
+    mesh = plate(fields=4, thick=0.6, bump=bump)
+    model = on_mesh(mesh, HARD)
+    point, corners = Point(model), np.array(mesh.vertices)[np.array(mesh.faces)]
+    rows = [contact.row for contact in point.workspace.assembly.contacts]
+    q, none, rng = point.workspace.assembly.q0.copy(), np.zeros(point.n), np.random.default_rng(0)
+    for place in rng.uniform((-1.4, -1.4, -0.9), (1.4, 1.4, 0.7), (300, 3)):
+        if abs(place[0]) < 1.0 and abs(place[1]) < 1.0 and -0.6 < place[2] < 0.25:
+            continue  # perhaps within
+        q[:3] = place
+        gaps = point.at(0.0, q, none, none, np.zeros(point.m))[1][rows]
+        distance = min(from_triangle(place, *triangle) for triangle in corners)
+        assert gaps.min() == pytest.approx(distance - 0.1, abs=1e-12)
