@@ -11,7 +11,7 @@ world.add(new THREE.HemisphereLight(0xffffff, 0xb9c4d0, 1.9), sun, sun.target);
 const upper = new THREE.Group(); // of what is drawn in the model's axes
 upper.matrixAutoUpdate = false;
 upper.matrix.makeBasis(...[0, 1, 2].map((k) => new THREE.Vector3(RIGHT_AXIS[k], UP_AXIS[k], TOWARDS_AXIS[k])));
-upper.add(...tubes);
+for (const tube of tubes) upper.add(tube);
 world.add(upper);
 try {
   renderer = new THREE.WebGLRenderer({ canvas: solid, antialias: true });

@@ -18,7 +18,7 @@ from ..tracks import Tracks
 from . import meshes
 from .fixtures import add_planes, place
 from .forces import add_forces
-from .shapes import add_body, single_balls
+from .shapes import add_body, add_shapes, single_balls
 from .stage import Stage3D, pose_of
 from .turning import matrices
 
@@ -53,6 +53,7 @@ def spatial_scene(
         for plane in getattr(group, "half_spaces", ()):
             place(plane, stage)
     stage.shaped |= _shaped(model)
+    add_shapes(stage, GROUND)
     for body in model.bodies:
         if isinstance(body, SpatialFrame) and not isinstance(body, MaterialPoint3D):
             add_body(stage, body)

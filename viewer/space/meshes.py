@@ -8,6 +8,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.shapes.mesh_parts import normals_of
+
 Floats = NDArray[np.float64]
 AROUND = 24
 """Sides of what is round."""
@@ -102,6 +104,14 @@ def hull(points: tuple[tuple[float, float, float], ...]) -> Mesh:
     vertices = found.points[found.simplices].reshape(-1, 3)
     normals = np.repeat(found.equations[:, :3], 3, axis=0)
     return _outward(Mesh(vertices, normals, np.arange(len(vertices)).reshape(-1, 3)))
+
+
+@cache
+def surface(points: tuple[tuple[float, float, float], ...], faces: tuple[tuple[int, int, int], ...]) -> Mesh:
+    """A closed surface of triangles as it is, hollows too, with flat faces."""
+    places, triangles = np.array(points), np.array(faces)
+    normals = np.repeat(normals_of(places, triangles), 3, axis=0)
+    return Mesh(places[triangles].reshape(-1, 3), normals, np.arange(3 * len(triangles)).reshape(-1, 3))
 
 
 @cache

@@ -12,6 +12,8 @@ from ...core.model.markers import Marker3D
 from ...core.shapes.contact3d import Contact3D, Sphere3D
 from ...core.shapes.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
 from ...core.shapes.group3d import ContactGroup3D
+from ...core.shapes.mesh3d import TriangleMesh3D
+from ...core.shapes.on_mesh3d import SphereOnMesh3D
 from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
 from ...core.shapes.support3d import SmoothShape3D
 from ..scene import Floats, Solid
@@ -58,17 +60,8 @@ def attached(model: Model, body: str) -> list[tuple[float, float, float]]:
 
 def _touching(stage: Stage3D, body: str) -> bool:
     """The shapes that a body touches with; False if there are none."""
-    model = stage.motion.model
-    grouped = [shape for shape in (*_grouped(model), *_single_shapes(model)) if shape.marker.body == body]
-    for shape in grouped:
-        if isinstance(shape, SmoothShape3D):
-            stage.solid(shape.marker, smooth_mesh(shape), (1.0, 1.0, 1.0))
-        elif isinstance(shape, Cornered3D):
-            add_cornered(stage, shape)
-        else:
-            add_ball(stage, shape)
+    model, found = stage.motion.model, add_shapes(stage, body)
     points: list[Floats] = []
-    found = bool(grouped)
     for ball in single_balls(model):
         if ball.marker.body == body and ball.radius > 0.0:
             add_ball(stage, ball)
@@ -80,6 +73,20 @@ def _touching(stage: Stage3D, body: str) -> bool:
         stage.solid(Marker3D(body=body), meshes.hull(corners), (1.0, 1.0, 1.0))
         found = True
     return found
+
+
+def add_shapes(stage: Stage3D, body: str) -> bool:
+    """The shapes of groups on a body or the ground, and of single contacts those that are no balls; False: none."""
+    model = stage.motion.model
+    shapes = [shape for shape in (*_grouped(model), *_single_shapes(model)) if shape.marker.body == body]
+    for shape in shapes:
+        if isinstance(shape, SmoothShape3D):
+            stage.solid(shape.marker, smooth_mesh(shape), (1.0, 1.0, 1.0))
+        elif isinstance(shape, Cornered3D):
+            add_cornered(stage, shape)
+        else:
+            add_ball(stage, shape)
+    return bool(shapes)
 
 
 def _grouped(model: Model) -> Iterator[Sphere3D | Cornered3D | SmoothShape3D]:
@@ -100,12 +107,14 @@ def _single(model: Model) -> list[Contact3D]:
     return [c for c in model.contacts if isinstance(c, Contact3D) and c.name not in made]
 
 
-def _single_shapes(model: Model) -> list[Capsule3D | SmoothShape3D]:
+def _single_shapes(model: Model) -> list[Capsule3D | TriangleMesh3D | SmoothShape3D]:
     """Their shapes other than balls, each once."""
-    found: list[Capsule3D | SmoothShape3D] = []
+    found: list[Capsule3D | TriangleMesh3D | SmoothShape3D] = []
     for contact in _single(model):
         if isinstance(contact, SmoothOnHalfSpace3D):
             found.append(contact.shape)
+        elif isinstance(contact, SphereOnMesh3D):
+            found.append(contact.mesh)
         elif isinstance(contact, CapsuleOnCapsule3D):
             found += [shape for shape in (contact.a, contact.b) if isinstance(shape, Capsule3D)]
     return [shape for k, shape in enumerate(found) if shape not in found[:k]]
@@ -124,7 +133,7 @@ def add_ball(stage: Stage3D, ball: Sphere3D) -> None:
 
 
 def add_cornered(stage: Stage3D, shape: Cornered3D) -> None:
-    """A box, a capsule, a cylinder, or the hull of rounded corners."""
+    """A box, a capsule, a cylinder, a mesh, or the hull of rounded corners."""
     if isinstance(shape, Box3D):
         stage.solid(shape.marker, meshes.box(), shape.size)
     elif isinstance(shape, Capsule3D):
@@ -134,6 +143,8 @@ def add_cornered(stage: Stage3D, shape: Cornered3D) -> None:
             stage.solid(shape.marker, meshes.ball(), (r, r, r), shift=(0.0, 0.0, end * shape.length))
     elif isinstance(shape, Cylinder3D):
         stage.solid(shape.marker, meshes.cylinder(marked=True), (shape.radius, shape.radius, shape.length))
+    elif isinstance(shape, TriangleMesh3D):
+        stage.solid(shape.marker, meshes.surface(shape.vertices, shape.faces), (1.0, 1.0, 1.0))
     else:
         places = shape.places()
         if shape.rounding() > 0.0:
