@@ -55,8 +55,9 @@ from .touching import push, read_rates
 
 MOST_BLOWS = 100_000
 """Of a sequential impact, before it is given up."""
-MOST_ROUNDS = 2000
-"""Of impacts at one instant, each of the contacts that approach then."""
+MOST_BOUNCES, MOST_ROUNDS = 50, 2000
+"""Of impacts at one instant, each of the contacts that approach then: with restitution, and at all. Contacts that slide
+fast can feed bounces that go to and fro between the others and do not become lower."""
 
 
 @internal
@@ -92,7 +93,7 @@ def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         for i in range(count):
             approach[i] = approach[i] if approach[i] > rounding[i] else -rate[i]
             before_n[i], before_t[i] = rate[i], slide_rate[i]
-        status = _sequence(ev, ws, low) if sequential else _at_once(ev, dr, ws, low)
+        status = _sequence(ev, ws, low) if sequential else _at_once(ev, dr, ws, low, turn >= MOST_BOUNCES)
         if status != SETTLED:
             return status
         for i in range(count):
@@ -110,30 +111,31 @@ def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
-def _restitution(ev: Any, low: bool, i: int) -> float:
+def restitution(ev: Any, low: bool, i: int) -> float:
+    """Of touching contact i; `low`: those that are `LOW` are struck without it."""
     return 0.0 if low and col(ev, LOW)[i] != 0.0 else col(ev, RESTITUTION)[i]
 
 
 @internal
-def _at_once(ev: Any, dr: Any, ws: Any, low: bool) -> int:
+def _at_once(ev: Any, dr: Any, ws: Any, low: bool, last: bool) -> int:
     """One complementarity problem of the contacts that do not separate, and a second one for the expansion of
-    Poisson's contacts."""
+    Poisson's contacts. `last`: one of all contacts, without restitution, after which none approaches."""
     count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
     part, p_n, p_t, base = col(ev, PART), col(ev, P_N), col(ev, P_T), col(ev, BASE)
     rate, rounding, wanted, back = col(ev, RATE), col(ev, ROUNDING), col(ev, WANTED), False
     for i in range(count):
-        part[i] = rate[i] <= rounding[i]
+        part[i] = last or rate[i] <= rounding[i]
         poisson = law[contacts[i]] == POISSON
         clear = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
-        wanted[i] = 0.0 if poisson else _restitution(ev, low, i) * clear
+        wanted[i] = 0.0 if poisson or last else restitution(ev, low, i) * clear
         base[i] = 0.0
         p_n[i] = p_t[i] = 0.0
-        back = back or (part[i] != 0.0 and poisson and _restitution(ev, low, i) > 0.0)
+        back = back or (part[i] != 0.0 and poisson and restitution(ev, low, i) > 0.0)
     status = _solve_and_push(ev, ws, wanted)
-    if status != SETTLED or not back:
+    if status != SETTLED or last or not back:
         return status
     for i in range(count):
-        base[i] = _restitution(ev, low, i) * p_n[i] if law[contacts[i]] == POISSON else 0.0
+        base[i] = restitution(ev, low, i) * p_n[i] if law[contacts[i]] == POISSON else 0.0
     return _solve_and_push(ev, ws, wanted)
 
 
@@ -184,7 +186,7 @@ def _sequence(ev: Any, ws: Any, low: bool) -> int:
             push(ev, ws, p_n, p_t)
             return SETTLED
         one, other = one_contact(
-            a[k, k], a[k, count + k], a[count + k, count + k], rate[k] * (1.0 + _restitution(ev, low, k)),
+            a[k, k], a[k, count + k], a[count + k, count + k], rate[k] * (1.0 + restitution(ev, low, k)),
             slide_rate[k], mu[k] if a[count + k, count + k] > 0.0 else 0.0, 0.0, 0.0,
         )  # fmt: skip
         if not np.isfinite(one):

@@ -35,6 +35,7 @@ from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.levels import rate_size
 from ..tables.switch import engage_modes
 from .forces import cones_at
+from .impact import MOST_BOUNCES, MOST_ROUNDS, restitution
 from .laws import POISSON
 from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
 from .rates_in_space import masses, pressing, push_in_space, read_in_space, read_rates_in_space, solve_cones_in_space
@@ -68,7 +69,6 @@ from .records import (
     LEAVES,
     LEFT,
     LOSS,
-    LOW,
     MOMENT,
     MU,
     NEW_RATIO,
@@ -90,7 +90,6 @@ from .records import (
     RATE_BEFORE,
     READY,
     RESIDUAL,
-    RESTITUTION,
     ROUNDING,
     SEPARATION,
     SETTLED,
@@ -138,8 +137,6 @@ _FOUND = (
 )  # fmt: skip
 RANK_OF_HELD = 1e-8
 """Of its inverse mass: a tangent of which no more is left beside others is held by these."""
-MOST_ROUNDS = 2000
-"""Of impacts at one instant."""
 
 
 # ---- open -----------------------------------------------------------------------------------------------------------
@@ -251,7 +248,7 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             approach = col(ev, APPROACH)[i]
             col(ev, APPROACH)[i] = approach if approach > rounding[i] else -rate[i]
             before_n[i], before_t[i], before_s[i] = rate[i], slide[i], sway[i]
-        status = _blow(ev, dr, ws)
+        status = _blow(ev, dr, ws, turn >= MOST_BOUNCES)
         if status != SETTLED:
             return status
         for i in range(count):
@@ -269,20 +266,21 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
-def _blow(ev: Any, dr: Any, ws: Any) -> int:
-    """One problem of the contacts that do not separate, and a second one for the expansion of Poisson's contacts."""
+def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
+    """One problem of the contacts that do not separate, and a second one for the expansion of Poisson's contacts; or
+    the `last`, of all contacts and without restitution."""
     count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
     part, base, rate, rounding = col(ev, PART), col(ev, BASE), col(ev, RATE), col(ev, ROUNDING)
     p_n, p_t, p_s, back = col(ev, P_N), col(ev, P_T), col(ev, P_S), False
     low = whole(ev)[WITHOUT] != 0
     for i in range(count):
-        part[i] = 1.0 if rate[i] <= rounding[i] else 0.0
+        part[i] = 1.0 if last or rate[i] <= rounding[i] else 0.0
         base[i] = p_n[i] = p_t[i] = p_s[i] = 0.0
     for phase in range(2):
         b, p = vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
         for i in range(count):
             poisson = law[contacts[i]] == POISSON
-            e = 0.0 if low and col(ev, LOW)[i] != 0.0 else col(ev, RESTITUTION)[i]
+            e = 0.0 if last else restitution(ev, low, i)
             back = back or (part[i] != 0.0 and poisson and e > 0.0)
             if phase == 1:
                 base[i] = e * max(p_n[i], 0.0) if poisson else 0.0

@@ -1,4 +1,4 @@
-"""Projection of a point between two steps, with pivots of its own where those of the newest step do not suit it.
+"""Questions about a point of which the matrix has pivots of its own where those of the newest step do not suit it.
 
 The ones from before are put back, and how far the entries of L may grow with them: asking leaves no trace.
 """
@@ -7,14 +7,15 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
-from ..linalg import lu_at
+from ..linalg import factor, lu_at
 from ..linalg.analyze import call_analyze
-from ..linalg.record import ANALYZE_SPARSE, DENSE
+from ..linalg.determinant import determinant_sign
+from ..linalg.record import ANALYZE_SPARSE, DENSE, REANALYSE
 from ..linalg.record import WANT_ROOM as NO_MEMORY
 from ..stage.accelerations import solve_accelerations
 from ..stage.project import project_motion
 from ..state.workspace_records import OK, REANALYZE, SINGULAR
-from ..tables.evaluate import evaluate_power
+from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
 
 
 @internal
@@ -79,3 +80,20 @@ def project_between(ws: Any, motion: bool) -> int:
 def _unless_unfit(status: int) -> int:
     """Where the pivots of this very point do not suit it, there are none."""
     return SINGULAR if status == REANALYZE else status
+
+
+@internal
+def orientation(ws: Any) -> float:
+    """Sign of the determinant of [M, G; Phi_q, 0], G the directions of the forces, friction of sliding contacts
+    included; 0 where it is singular, or there is too little memory for pivots of its own."""
+    evaluate_residuals(ws)
+    evaluate_tangent(ws, 0.0, 0.0)
+    lu = lu_at(ws.kkt_query)
+    status, own = factor(lu, ws.values), lu.kind != DENSE and lu.ready != 0
+    own = own and status == REANALYSE
+    if own and _take_own(ws) == OK:
+        status = factor(lu, ws.values)
+    sign = determinant_sign(lu) if status == OK else 0.0
+    if own:
+        _put_back(ws)
+    return sign

@@ -15,6 +15,7 @@ from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_
 from ..events.settle import go_on_behind, settle
 from ..events.unsettled import find_unsettled
 from ..location.asleep import wake_all
+from ..location.other_pivots import orientation
 from ..location.search import locate
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
@@ -38,6 +39,7 @@ from ..state.run_records import (
     LOOP_TYPE,
     PASSED,
     REACHED,
+    REPARTITION,
     SETTLE,
     STATUS,
     STOP_TIME,
@@ -52,7 +54,7 @@ from ..state.run_records import (
     call_trial,
 )
 from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, STEPS, WORKSPACE_TYPE
-from .sliding import any_slides, may_have_jammed
+from .sliding import any_slides
 
 MANY = 6
 """Contacts from which on it pays to let those sleep that are far from touching."""
@@ -97,8 +99,10 @@ def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
 def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
     counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
     last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
+    side = 0.0  # the sign of a determinant at the newest row, while contacts slide; 0: not looked at yet
     while True:
         if is_due(dr, ws):
+            side = 0.0
             # which redundant rows are left out is for Python to look at, at every instant
             if hold or ws.n_redundant > 0 or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
                 return SETTLE
@@ -108,6 +112,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
                 return SETTLE if status == DECLINED else (WANTED if status <= WANT_MEMORY else FAILED)
             continue
         code = _aim(dr, ms, lc)
+        side = 0.0 if code == DUE else side
         if code == DUE and ws.n_redundant == 0:
             if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
                 return FULL
@@ -121,13 +126,21 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
         left = last - steps[STEPS] - counts[HANDLED]
         if left <= 0:
             return CHUNK
-        # while a contact slides, each step is looked at
+        # while a contact slides, each step is looked at: on the way to where it jams the forces grow without bound, and
+        # behind it the determinant has the other sign
         sliding, before = any_slides(ws), history_time(ms, 0)
+        if sliding and side == 0.0:
+            recall(ws, ms, 0)
+            side = orientation(ws)
         code = call_run(dr.run, ws, ms, lc, 1 if sliding else left)
-        if code == CHUNK and sliding:
-            if history_time(ms, 0) > before and may_have_jammed(ws):
-                return JAM
-            continue
+        if (code == CHUNK or code == REPARTITION) and sliding:
+            if history_time(ms, 0) > before:
+                now = orientation(ws)
+                if now != side and side != 0.0:
+                    return JAM
+                side = now
+            if code == CHUNK:
+                continue
         if code == REACHED:
             continue
         if code != EVENT:

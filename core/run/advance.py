@@ -46,7 +46,7 @@ from ..state.workspace_records import (
 )
 from .failures import failure_of
 from .locating import locate_again, locate_in_long_step
-from .painleve import refuse_passed_jam, sliding_contacts
+from .painleve import refuse_passed_jam
 from .step_budget import step_count, steps_left
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
             if not locate_again(sim) and (sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim)):
                 _fail(sim, OUTER_SLOW)
         elif returned == JAM:
-            refuse_passed_jam(sim, sliding_contacts(sim))
+            refuse_passed_jam(sim)
         elif returned == REPARTITION:
             repair(sim)
         elif returned in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":

@@ -6,7 +6,7 @@ and Brogliato 1999); on the way there the forces grow without bound.
 """
 
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
@@ -40,27 +40,29 @@ def sliding_contacts(sim: "Engine") -> list[int]:
     return [int(k) for k in np.flatnonzero(slides)]
 
 
-def refuse_passed_jam(sim: "Engine", sliding: list[int]) -> None:
-    """Raise SimulationError if the step that ended at the workspace's current point went over a place where one of the
-    contacts `sliding` jams: behind it, its force pulls the gap's acceleration down."""
-    workspace, n = sim.workspace, sim.assembly.n
+def refuse_passed_jam(sim: "Engine") -> NoReturn:
+    """Raise SimulationError: the step that ended at the workspace's current point went over a place where sliding
+    contacts jam. Of several it names the one whose force has become the most sensitive, with the wrong sign if one has:
+    behind that place, its force pulls the gap's acceleration down."""
+    workspace, n, sliding = sim.workspace, sim.assembly.n, sliding_contacts(sim)
     singular = factor_joints(workspace.record) != 0
     if singular:
         with suppress(SingularMatrixError):
             workspace.structure.kkt_query.analyze(workspace.arrays["values"])
             singular = factor_joints(workspace.record) != 0
-    active, rhs = workspace.structure.active, workspace.arrays["rhs"]
+    active, rhs, worst, most = workspace.structure.active, workspace.arrays["rhs"], sliding[0], (False, 0.0)
     for k in sliding:
-        contact = sim.assembly.contacts[k]
-        row = n + int(np.flatnonzero(active == contact.row)[0])
+        row = n + int(np.flatnonzero(active == sim.assembly.contacts[k].row)[0])
         rhs[: n + len(active)] = 0.0
         rhs[row] = 1.0
         # multiplier that gives the gap a unit acceleration: -1/(A_NN + RATIO A_NT), the other contacts included
         if not singular:
             solve_joints(workspace.record)
-        if singular or not rhs[row] < 0.0:
-            message = painleve(contact.name, sim.t_internal, abs(float(sim.memory[k, RATIO])))
-            raise SimulationError(message, t=sim.t_internal, loop="contact")
+        found = (not rhs[row] < 0.0, abs(float(rhs[row])))
+        if found > most:
+            worst, most = k, found
+    message = painleve(sim.assembly.contacts[worst].name, sim.t_internal, abs(float(sim.memory[worst, RATIO])))
+    raise SimulationError(message, t=sim.t_internal, loop="contact")
 
 
 def jam(sim: "Engine") -> str | None:

@@ -9,7 +9,8 @@ from ..rounding import NO_STIFFNESS
 from .evaluate import evaluate_residuals, evaluate_tangent
 
 PROBES = 4
-"""Pseudo-random motions from which the sizes of rows are taken."""
+"""Pseudo-random motions from which the sizes of rows are taken, beside those that move every two coordinates together
+and against each other: by the digits of their numbers, or the gaps of some of a hundred pairs would hardly move."""
 
 SQUARE, WORK, HEAVIEST, STIFFEST = range(4)
 MEASURED = 4
@@ -33,17 +34,24 @@ def _larger_number(largest: float, x: float) -> float:
 def measure_rows(ws: Any, scale: Any, sizes: Any) -> None:
     """How far rows of Phi move when the coordinates move by their scales (n,), into `sizes` (m,).
 
-    Phi' = Phi_q v + Phi_t for motions of all coordinates at once, with signs in no simple order.
+    Phi' = Phi_q v + Phi_t for motions of all coordinates at once; the largest of several.
     """
     v, phid, m = vec(ws.v, ws.n_ext), vec(ws.phid, ws.m_ext), len(sizes)
     v[:] = 0.0
     evaluate_residuals(ws)
     still = phid.copy()
     sizes[:] = 0.0
-    for k in range(PROBES):
+    digits = 1
+    while 2**digits < ws.n:
+        digits += 1
+    for k in range(PROBES + 1 + digits):
         for i in range(ws.n):
-            golden = 0.6180339887498949 * (i + 1.0) * (2 * k + 1)
-            v[i] = scale[i] if golden - math.floor(golden) < 0.5 else -scale[i]
+            if k < PROBES:
+                golden = 0.6180339887498949 * (i + 1.0) * (2 * k + 1)
+                ahead = golden - math.floor(golden) < 0.5
+            else:
+                ahead = (i >> (k - PROBES)) % 2 == 0  # the last one moves all alike
+            v[i] = scale[i] if ahead else -scale[i]
         evaluate_residuals(ws)
         for row in range(m):
             size = abs(phid[row] - still[row])
