@@ -31,6 +31,12 @@ def library_for(target):
     return next(LIBRARIES.glob(f"{target}/tlismni_core.*"), None)
 
 
+def is_of_these_sources(library):
+    """Of the core's, and of those in C."""
+    content = library.read_bytes()
+    return all(digest.encode() in content for digest in (core_digest(), c_digest()))
+
+
 def missing(target):
     """What a test needs and has not."""
     if LIBRARY is None or shutil.which("cc") is None:
@@ -40,7 +46,7 @@ def missing(target):
     if find_spec("ziglang") is None:
         return "ziglang, which compiles for it"
     library = library_for(target)
-    if library is None or any(x.encode() not in library.read_bytes() for x in (core_digest(), c_digest())):
+    if library is None or not is_of_these_sources(library):
         return f"the library of these sources in {LIBRARIES}"
     return ""
 
