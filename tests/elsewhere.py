@@ -1,7 +1,9 @@
-"""What runs programs of other processors, systems and C libraries here, and the libraries of machine code for them:
+r"""What runs programs of other processors, systems and C libraries here, and the libraries of machine code for them:
 
-apt-get install qemu-user libc6-arm64-cross wine64 musl
-python -m tlismni.core.ahead --target linux-aarch64 --target musl-x86_64 --target windows-x86_64 --output build
+dpkg --add-architecture arm64; apt-get update
+apt-get install qemu-user libc6-arm64-cross wine64 musl musl:arm64
+python -m tlismni.core.ahead --target linux-aarch64 --target musl-x86_64 --target musl-aarch64 --target windows-x86_64 \
+    --output build
 """
 
 import os
@@ -21,6 +23,7 @@ WINE = shutil.which("wine") or shutil.which("wine64")
 TARGETS = {
     "linux-aarch64": ("aarch64-linux-gnu.2.17", [QEMU, "-L", ARM] if QEMU and ARM.is_dir() else None),
     "musl-x86_64": ("x86_64-linux-musl", [] if Path("/lib/ld-musl-x86_64.so.1").exists() else None),
+    "musl-aarch64": ("aarch64-linux-musl", [QEMU] if QEMU and Path("/lib/ld-musl-aarch64.so.1").exists() else None),
     "windows-x86_64": ("x86_64-windows-gnu", [WINE] if WINE else None),
 }
 """zig's name, and what programs are run with; None: nothing here runs them."""

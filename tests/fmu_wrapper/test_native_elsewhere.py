@@ -7,10 +7,11 @@ from pathlib import Path
 import fmpy
 import pytest
 from elsewhere import LIBRARIES, TARGETS, library_for, missing, output, zig
+from native_pair import TAKE_PYTHON
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.platforms import PLATFORMS
-from tlismni.models import load
+from tlismni.models import load, names
 
 HOST, HEADERS = Path(__file__).with_name("host_elsewhere.c"), Path(fmpy.__file__).parent / "c-code"
 FMI_PLATFORMS = {"linux-aarch64": "aarch64-linux", "windows-x86_64": "x86_64-windows"}
@@ -39,18 +40,22 @@ def hosts(request, elsewhere, tmp_path_factory):
     return request.param, [here], [*before, there]
 
 
-@pytest.mark.parametrize(
-    "name, parameter, value",
-    [
-        ("bouncing_ball", "gravity", 3.7),
-        ("slider_crank_stop", "crank_mass", 0.5),
-        ("dropped_box", None, 0.0),
-        ("cable_ground", None, 0.0),
-    ],
-)
-def test_the_same_bits(hosts, elsewhere, name, parameter, value, tmp_path, monkeypatch):
+USUAL = {
+    "bouncing_ball": ("gravity", 3.7),
+    "slider_crank_stop": ("crank_mass", 0.5),
+    "dropped_box": (),
+    "cable_ground": (),
+}
+"""Scenarios, with a parameter that is set before the run."""
+OTHERS = [pytest.param(x, marks=pytest.mark.full) for x in names() if x not in (*TAKE_PYTHON, *USUAL)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*USUAL, *OTHERS])
+def test_the_same_bits(hosts, elsewhere, name, tmp_path, monkeypatch):
     monkeypatch.setenv("TLISMNI_LIBRARIES", str(LIBRARIES))
     (version, here, there), scenario = hosts, load(name)
+    parameter, value = USUAL.get(name) or (None, 0.0)
     others = [FMI_PLATFORMS[elsewhere]] if elsewhere in FMI_PLATFORMS else []
     path = export_fmu(scenario, tmp_path / "x.fmu", f"{version}.0", native=True, platforms=others)
     # a program's arguments have letters of the system's own on Windows, a URI has none
