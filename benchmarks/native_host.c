@@ -9,7 +9,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "native_fmi.h"
+#include "../tests/fmu_wrapper/native_fmi.h"
 
 static char **argument;
 static double end;

@@ -1,7 +1,6 @@
 """Writes a model or scenario as an FMU."""
 
 import logging
-import platform
 import sys
 import uuid
 from collections.abc import Callable, Sequence
@@ -25,7 +24,7 @@ from .native_export import NativeRun, native_binaries, variables_file
 from .nominal import with_nominals
 from .own_code import OwnCode
 from .pictures import pictures, scene
-from .platforms import PLATFORMS, choose, this_platform
+from .platforms import PLATFORMS, choose, fmi2_platform, this_platform
 from .python_library import library_record, shared_library
 from .recommended_step import recommended_step
 from .run import build_simulation
@@ -36,7 +35,6 @@ from .version import package_version
 
 SHIM = {"win32": "tlismni_shim.dll", "darwin": "tlismni_shim.dylib"}.get(sys.platform, "tlismni_shim.so")
 HERE = Path(__file__).parent
-_SYSTEMS = {"Linux": "linux", "Windows": "win", "Darwin": "darwin"}
 
 
 def export_fmu(
@@ -238,15 +236,6 @@ def shim_path() -> Path:
             "(in a source tree: pip install -e .) with a C compiler or ziglang at hand"
         )
     return path
-
-
-def fmi2_platform() -> str:
-    """Folder name of this machine's binaries in an FMI 2.0 FMU."""
-    machine = platform.machine().lower()
-    system = _SYSTEMS.get(platform.system(), platform.system().lower())
-    if machine in ("x86_64", "amd64"):
-        return f"{system}64"
-    return f"{'aarch64' if machine == 'arm64' else machine}-{system}"
 
 
 def fmi3_platform() -> str:

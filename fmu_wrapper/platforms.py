@@ -37,6 +37,7 @@ PLATFORMS = {
     )
 }
 """What can be built, by the names that FMI 3.0 gives."""
+_SYSTEMS = {"Linux": "linux", "Windows": "win", "Darwin": "darwin"}
 
 
 def this_platform() -> str:
@@ -44,6 +45,15 @@ def this_platform() -> str:
     machine = platform.machine().lower()
     system = {"Linux": "linux", "Windows": "windows", "Darwin": "darwin"}.get(platform.system(), "unknown")
     return f"{ {'amd64': 'x86_64', 'arm64': 'aarch64'}.get(machine, machine) }-{system}"
+
+
+def fmi2_platform() -> str:
+    """Folder name of this machine's binaries in an FMI 2.0 FMU."""
+    machine = platform.machine().lower()
+    system = _SYSTEMS.get(platform.system(), platform.system().lower())
+    if machine in ("x86_64", "amd64"):
+        return f"{system}64"
+    return f"{'aarch64' if machine == 'arm64' else machine}-{system}"
 
 
 def choose(names: Sequence[str]) -> list[str]:

@@ -20,7 +20,7 @@ FUNCTIONS = (
 )  # fmt: skip
 """What compiled code may call; those of two arguments are TWO, `ldexp` has a number and a whole one."""
 TWO = ("atan2", "pow", "hypot", "fmod", "nextafter")
-BESIDE = ("sincos", "modf", "scalbn", "sqrt", "__sincos_stret")
+BESIDE = ("sincos", "modf", "scalbn", "sqrt", "__sincos_stret", "__exp10")
 """What else a code generator makes of them."""
 SEEN = (*FUNCTIONS, "sincos")
 """Those that code compiled elsewhere can call."""
@@ -36,7 +36,7 @@ _FLAGS = ("-std=c99", "-O2", "-g0", "-ffreestanding", "-fno-builtin", "-ffp-cont
 _OF_MACHINE = {"fabs": "llvm.fabs.f64", "sqrt": "llvm.sqrt.f64", "floor": "llvm.floor.f64"}
 _KEPT_ATTRIBUTES = re.compile(r'\s"(?!no-builtins)[\w-]+"(="[^"]*")?|\suwtable')
 
-# macOS asks for sine and cosine at once in this way; square roots are an instruction
+# macOS asks for sine and cosine at once, and for powers of ten, in this way; square roots are an instruction
 _OF_OURS = """
 declare double @llvm.sqrt.f64(double)
 
@@ -54,6 +54,13 @@ define { double, double } @__sincos_stret(double %x) {
   %half = insertvalue { double, double } undef, double %s, 0
   %both = insertvalue { double, double } %half, double %c, 1
   ret { double, double } %both
+}
+
+declare double @exp10(double)
+
+define double @__exp10(double %x) {
+  %y = call double @exp10(double %x)
+  ret double %y
 }
 """
 

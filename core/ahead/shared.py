@@ -17,8 +17,13 @@ FLAGS = ("-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-Wall",
 """For C: nothing is seen from outside but what says so, and numbers come out as they are written."""
 NO_TABLES = ("-fno-unwind-tables", "-fno-asynchronous-unwind-tables")
 """Nothing is thrown through these functions."""
-OF_SYSTEM = {".so": ("-fPIC", "-Wl,-Bsymbolic", *NO_TABLES), ".dylib": ("-fPIC", *NO_TABLES), ".dll": ()}
-"""By the library's suffix; two libraries in one process must not take functions from each other."""
+OF_SYSTEM = {
+    ".so": ("-fPIC", "-Wl,-Bsymbolic", *NO_TABLES),
+    ".dylib": ("-fPIC", "-Wl,-install_name,@rpath/tlismni_core.dylib", *NO_TABLES),
+    ".dll": (),
+}
+"""By the library's suffix; two libraries in one process must not take functions from each other. On macOS programs look
+for a library by the name that it holds of itself, else that of the folder where it was linked."""
 
 
 class LinkError(TlismniError):

@@ -12,7 +12,10 @@ import itertools
 import weakref
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
+
+from ..platforms import fmi2_platform
 
 Listener = Callable[[str], None]
 """Called with a message."""
@@ -23,6 +26,7 @@ _numbers = itertools.count(1)
 
 def instantiate(unzipped: str, description: Any, listen: Listener) -> Any:
     """fmpy's co-simulation slave of an unzipped FMU, instantiated; `listen` hears its messages as long as it lives."""
+    from fmpy import sharedLibraryExtension
     from fmpy.fmi2 import FMU2Slave
     from fmpy.simulation import instantiate_fmu
 
@@ -32,10 +36,11 @@ def instantiate(unzipped: str, description: Any, listen: Listener) -> Any:
             listen(message.decode(errors="replace"))
 
         return instantiate_fmu(unzipped, description, "CoSimulation", logger=logger)
-    number = next(_numbers)
-    fmu = FMU2Slave(
-        guid=description.guid, unzipDirectory=unzipped, modelIdentifier=description.coSimulation.modelIdentifier
-    )
+    number, identifier = next(_numbers), description.coSimulation.modelIdentifier
+    # fmpy looks where FMI 2.0 says for x86-64, on all machines (0.3.32)
+    binary = Path(unzipped, "binaries", fmi2_platform(), f"{identifier}{sharedLibraryExtension}").resolve()
+    found = {"libraryPath": str(binary)} if binary.is_file() else {}
+    fmu = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, modelIdentifier=identifier, **found)
     _listeners[number] = listen
     weakref.finalize(fmu, _listeners.pop, number, None)
     fmu.instantiate(callbacks=_callbacks(number))

@@ -1,47 +1,17 @@
-"""The library for another processor, system or C library gives the bits of this one, where there is what runs it:
+"""The library for another processor, system or C library gives the bits of this one, where there is what runs it
+(`elsewhere.py`)."""
 
-apt-get install qemu-user libc6-arm64-cross wine64 musl
-python -m tlismni.core.ahead --target linux-aarch64 --target musl-x86_64 --target windows-x86_64 --output build
-"""
-
-import os
 import re
 import shutil
 import subprocess
-import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from tlismni.core.compiled.library import LIBRARY, core_digest
-from tlismni.core.native.c_sources import c_digest
+from elsewhere import TARGETS, library_for, missing, output, zig
+from tlismni.core.compiled.library import LIBRARY
 from tlismni.models import load
 
 HERE, NATIVE = Path(__file__).parent, Path(__file__).parents[2] / "core" / "native"
-LIBRARIES = Path(os.environ.get("TLISMNI_LIBRARIES", "build")).resolve()
-QEMU = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
-ARM = Path("/usr/aarch64-linux-gnu")
-WINE = shutil.which("wine") or shutil.which("wine64")
-TARGETS = {
-    "linux-aarch64": ("aarch64-linux-gnu.2.17", [QEMU, "-L", ARM] if QEMU and ARM.is_dir() else None),
-    "musl-x86_64": ("x86_64-linux-musl", [] if Path("/lib/ld-musl-x86_64.so.1").exists() else None),
-    "windows-x86_64": ("x86_64-windows-gnu", [WINE] if WINE else None),
-}
-"""zig's name, and what programs are run with; None: nothing here runs them."""
-
-
-def missing(target):
-    """What this needs and has not."""
-    if LIBRARY is None or shutil.which("cc") is None:
-        return "a C compiler and the library of machine code"
-    if TARGETS[target][1] is None:
-        return "what runs programs for it"
-    if find_spec("ziglang") is None:
-        return "ziglang, which compiles for it"
-    library = next(LIBRARIES.glob(f"{target}/tlismni_core.*"), None)
-    if library is None or any(x.encode() not in library.read_bytes() for x in (core_digest(), c_digest())):
-        return f"the library of these sources in {LIBRARIES}"
-    return ""
 
 
 def host_here(folder):
@@ -55,22 +25,16 @@ def host_here(folder):
 def host_there(folder, target):
     """The command of the host for the target."""
     system, before = TARGETS[target]
-    library = folder / next(LIBRARIES.glob(f"{target}/tlismni_core.*")).name
-    shutil.copy(LIBRARIES / target / library.name, library)
-    linked = library
+    linked = library = Path(shutil.copy(library_for(target), folder))
     if target.startswith("windows"):  # programs are linked with a list of what the library has
         functions = sorted(set(re.findall(r"\b(tlismni_\w+)\(", (NATIVE / "tlismni.h").read_text())))
         names, linked = folder / "tlismni_core.def", folder / "libtlismni_core.a"
         names.write_text("\n".join([f"LIBRARY {library.name}", "EXPORTS", *functions, ""]))
-        subprocess.run(
-            [sys.executable, "-m", "ziglang", "dlltool", "-m", "i386:x86-64", "-d", str(names), "-l", str(linked)],
-            check=True,
-        )
+        zig("dlltool", "-m", "i386:x86-64", "-d", names, "-l", linked)
     program = folder / "there.exe"
-    zig = [sys.executable, "-m", "ziglang", "cc", "-target", system, "-O2", f"-I{NATIVE}", "-o", str(program)]
     parts = [HERE / "bits_host.c", linked, f"-Wl,-rpath,{folder}", "-lm"]
-    subprocess.run([*zig, *map(str, parts)], check=True)
-    return [*map(str, before), str(program)]
+    zig("cc", "-target", system, "-O2", f"-I{NATIVE}", "-o", program, *parts)
+    return [*before, program]
 
 
 @pytest.fixture(scope="module", params=TARGETS)
@@ -107,11 +71,5 @@ def test_the_same_bits(programs, name, parameters, tmp_path):
     image = image_of(scenario.model, scenario.t_end, parameters=wanted, **settings)
     path = tmp_path / "run.image"
     path.write_bytes(image)
-    arguments = [str(path), repr(scenario.t_end), "40", *parameters]
-    here, there = (
-        subprocess.run(
-            [*command, *arguments], capture_output=True, text=True, check=True, env={**os.environ, "WINEDEBUG": "-all"}
-        ).stdout
-        for command in programs
-    )
+    here, there = (output([*command, path, repr(scenario.t_end), 40, *parameters]) for command in programs)
     assert here == there and len(here.splitlines()) == 41

@@ -2,9 +2,32 @@
 #ifndef HOST_H
 #define HOST_H
 
-#include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+#ifdef _WIN32
+#include <windows.h>
+
+#define RTLD_NOW 0
+#define RTLD_LOCAL 0
+
+static void *dlopen(const char *path, int mode) {
+    (void)mode;
+    return (void *)LoadLibraryA(path);
+}
+
+static void *dlsym(void *library, const char *name) {
+    return (void *)GetProcAddress((HMODULE)library, name);
+}
+
+static const char *dlerror(void) {
+    static char text[40];
+    snprintf(text, sizeof text, "Windows' error %lu", GetLastError());
+    return text;
+}
+#else
+#include <dlfcn.h>
+#endif
 
 /* The function `name` of the `library` in scope, as a variable of this name. */
 #define LOAD(name) name##TYPE *name = (name##TYPE *)find(library, #name)

@@ -7,6 +7,9 @@ from fmpy.fmi3 import FMU3Slave
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.models import load
 
+TAKE_PYTHON = ("split_wall", "four_bar", "tippe_top")
+"""Scenarios that cannot be FMUs without Python."""
+
 
 class Pair:
     """An FMU without Python and the same with it."""

@@ -2,11 +2,13 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
 from tlismni.fmu_wrapper.master.listening import instantiate
+from tlismni.fmu_wrapper.platforms import fmi2_platform
 
 
 @pytest.fixture
@@ -30,6 +32,16 @@ def test_each_instance_has_its_own_listener(unzipped, version):
         assert len(messages) == 1 and "doStep" in messages[0].replace("DoStep", "doStep")
         assert len(other) == before
         fmu.freeInstance()
+
+
+def test_binaries_for_arm_are_found(unzipped, monkeypatch):
+    """fmpy looks for those of FMI 2.0 in the folder for x86-64 alone."""
+    folder = Path(unzipped("2.0"))
+    here = folder / "binaries" / fmi2_platform()
+    monkeypatch.setattr("platform.machine", lambda: "arm64")
+    assert fmi2_platform().startswith("aarch64-")
+    here.rename(here.with_name(fmi2_platform()))
+    instantiate(str(folder), fmpy.read_model_description(str(folder)), print).freeInstance()
 
 
 AFTERWARDS = """

@@ -16,7 +16,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 from fmu_helpers import ball_model
-from native_pair import Pair, Side, scenario_pair
+from native_pair import TAKE_PYTHON, Pair, Side, scenario_pair
 from tlismni.core import Model
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper import export_fmu
@@ -341,8 +341,6 @@ def jail_of(folder, *programs):
     assert not [p for p in folder.rglob("*") if "python" in p.name.lower() and "pytest" not in str(p)]
 
 
-TAKE_PYTHON = ("split_wall", "four_bar", "tippe_top")
-"""Scenarios that cannot be FMUs without Python."""
 ALONE = [
     "woodpecker",
     *(pytest.param(x, marks=pytest.mark.full) for x in names() if x not in (*TAKE_PYTHON, "woodpecker")),
