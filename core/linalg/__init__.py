@@ -1,6 +1,7 @@
 """Linear solver for square matrices of one pattern and changing values, for use inside compiled loops."""
 
 from .analyze import analyze, follow
+from .determinant import determinant_sign
 from .errors import SingularMatrixError
 from .factorization import DENSE_LIMIT, Factorization, Matrix
 from .record import LU, LU_TYPE, NO_PIVOT, OK, REANALYSE, lu_at
@@ -19,6 +20,7 @@ __all__ = [
     "RowPivots",
     "SingularMatrixError",
     "analyze",
+    "determinant_sign",
     "factor",
     "follow",
     "independent_columns",

@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from ..compiled.jit import internal
+from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, uvec, vec
 from .record import DENSE
 
 
-@internal
+@compiled
 def determinant_sign(lu: Any) -> float:
     """+1 or -1, the sign of the determinant of the matrix factorised last; 1 for n = 0."""
     n = lu.n

@@ -7,9 +7,8 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at
+from ..linalg import determinant_sign, factor, lu_at
 from ..linalg.analyze import call_analyze
-from ..linalg.determinant import determinant_sign
 from ..linalg.record import ANALYZE_SPARSE, DENSE, REANALYSE
 from ..linalg.record import WANT_ROOM as NO_MEMORY
 from ..stage.accelerations import solve_accelerations

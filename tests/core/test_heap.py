@@ -65,6 +65,23 @@ def check_rest(sim, count, end, ledger):
     assert sum(event.kind == "impact" for event in sim.events) > count
 
 
+@pytest.mark.parametrize("count", [12, 30, 47])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_size_of_a_row_is_what_its_entries_make_of_the_coordinates(count, seed):
+    """Also of the gap between two disks one above the other, which no motion of both in the same way changes."""
+    sim = Simulation(heap(count, 0.3, 0.4, seed), "ebdf")
+    arrays = sim.workspace.arrays
+    scale, place = arrays["scale"], sim.assembly.q0[: 3 * count].reshape(-1, 3)
+    for contact in sim.assembly.contacts[3 * count :]:
+        i, j = (int(k) for k in contact.name[4:].split("_"))
+        across = place[i, :2] - place[j, :2]
+        n = np.abs(across) / np.linalg.norm(across)
+        gap = 2.0 * n @ scale[:2]  # both disks, both ways
+        turns = 2.0 * RADIUS * scale[2]
+        assert 0.3 * gap < arrays["row_scale"][contact.row] < 1.01 * gap
+        assert 0.3 * turns < arrays["row_scale"][contact.slide_row] < 1.01 * (turns + 2.0 * np.sum(scale[:2]))
+
+
 # what the error control leaves in the energy: at its tolerance of 1e-6 a method of second order more than one of fifth
 @pytest.mark.parametrize("method, ledger", [("ebdf", 1e-8), ("hht", 1e-6)])
 @pytest.mark.parametrize("restitution, friction, seed", [(0.3, 0.4, 0), (0.0, 0.2, 1)])

@@ -12,6 +12,7 @@ from tlismni.core.linalg import (
     REANALYSE,
     Factorization,
     SingularMatrixError,
+    determinant_sign,
     factor,
     factorization,
     independent_columns,
@@ -82,6 +83,20 @@ def test_solution_is_that_of_numpy(seed, n, per_row, dense):
     x = lu.solve(b)
     assert backward_error(a, x, b) < 1e-12
     assert np.allclose(x, np.linalg.solve(a, b), rtol=1e-8, atol=1e-10 * np.linalg.cond(a))
+
+
+@settings(deadline=None, max_examples=60)
+@given(seed=seeds, n=st.integers(1, 40), per_row=st.integers(0, 8), dense=st.booleans())
+def test_sign_of_the_determinant_is_that_of_numpy(seed, n, per_row, dense):
+    rng = np.random.default_rng(seed)
+    rows, cols, values = random_matrix(n, rng, per_row)
+    lu = Factorization(n, rows, cols, np.arange(len(rows)), dense=dense)
+    lu.analyze(values)
+    for k in range(3):
+        if k > 0:  # a row the other way round, with the pivots that are there
+            values = np.where(rows == rng.integers(n), -values, values)
+            assert lu.factor(values) == OK
+        assert determinant_sign(lu.record) == np.linalg.slogdet(full(n, rows, cols, values))[0]
 
 
 @pytest.mark.parametrize("mass", [1e-3, 1.0, 1e3])
