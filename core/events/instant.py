@@ -23,13 +23,19 @@ from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
 from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
 from ..tables.assembly import Assembly
+from .balance import find_forces
+from .balance_in_space import find_forces_in_space
+from .carrying import keep
+from .carrying_in_space import keep_in_space
 from .force_contact import settle_forces
 from .impact import strike
-from .in_space import begin_rest_in_space, find_forces_in_space, keep_in_space, open_in_space, strike_in_space
+from .impact_in_space import strike_in_space
 from .prepare import use_modes
 from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
-from .resting import begin_rest, find_forces, keep
+from .resting import begin_rest
+from .resting_in_space import begin_rest_in_space
 from .touching import open_touching
+from .touching_in_space import open_in_space
 
 PARTS = (open_touching, strike, begin_rest, find_forces, keep, use_modes, settle_forces)
 _OTHERS = (

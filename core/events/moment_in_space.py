@@ -19,6 +19,7 @@ from ..state.run_records import IMPACT
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
 from ..tables.evaluate import evaluate_energy
 from .forces import cones_at
+from .loaded import note_loaded
 from .rates_in_space import masses, pressing, push_in_space, solve_cones_in_space
 from .records import (
     AT_REST,
@@ -66,7 +67,6 @@ from .records import (
     whole,
 )
 from .report import report
-from .resting import note_loaded
 from .touching import looks_again
 
 FIRST_LOOK, SHORT, LONG = 3, 1e-11, 1e-5

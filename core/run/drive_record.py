@@ -17,7 +17,7 @@ from ..events.progress import Progress
 from ..events.report import MOST_EVENTS
 from ..laws import ForceLaw, ImpactLaw, law_address
 from ..laws.friction import LuGreFriction
-from ..location.search import NEAREST
+from ..location.roots import NEAREST
 from ..loop.drive import (
     aim_now,
     drive,

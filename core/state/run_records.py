@@ -114,7 +114,7 @@ DRIVE = np.dtype(
             "found",                                  # (n_contacts, FOUND_SIZE) float64: of the location of events
             "events", "event_rows",                   # (event_rows, EVENT_SIZE) float64: a buffer that Python empties
             "last_trial",                             # (1,) float64: size of the step that ends at the current point
-            "nearest",                                # (NEAREST,) float64: the last event searched for (`search.py`)
+            "nearest",                                # (NEAREST,) float64: the last event searched for (`roots.py`)
         )
     ]
 )  # fmt: skip

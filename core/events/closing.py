@@ -1,0 +1,92 @@
+"""Which of the touching contacts stay closed: those that press, and some that carry nothing."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec
+from ..rounding import PRESSING
+from ..state.modes import CLOSED
+from .loaded import is_loaded
+from .reading import comes_back
+from .records import (
+    AT_REST,
+    CLOSES,
+    COUNT,
+    DIRECTION,
+    F_N,
+    LEAVES,
+    NONE,
+    SETTLED,
+    SIZE,
+    SPARE,
+    STATIC,
+    STRUCK,
+    W_N,
+    W_T,
+    WAS,
+    call_part,
+    clear,
+    col,
+    real,
+    whole,
+)
+from .resting import fastest_free
+from .touching import free_jerks, looks_again
+
+CLOSES_FROM, CLOSES_TO = 3, 12
+"""Looks at one instant in which contacts that carry nothing close. Before, they stay as they are; after, those that
+have pulled by rounding stay open, or some would open and others close in turns: bodies that fall side by side."""
+
+
+@internal
+def choose(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Which contacts stay closed, to `CLOSES`."""
+    count, closes, now = whole(ev)[COUNT], col(ev, CLOSES), whole(ev)[STRUCK] == 0
+    clear(closes, count)
+    rests = False
+    for i in range(count):
+        rests = rests or col(ev, AT_REST)[i] != 0.0
+    if not rests:
+        return SETTLED
+    status = call_part(ev.find_forces, ev, dr, ws, ms)
+    if status != SETTLED:
+        return status
+    idle, none = False, real(ev)[NONE]
+    for i in range(count):
+        closes[i] = is_loaded(ev, i)
+        leaves = col(ev, LEAVES)[i] != 0.0
+        if now and col(ev, WAS)[i] == CLOSED and not leaves and abs(col(ev, W_N)[i]) <= none * col(ev, SIZE)[i]:
+            # touching without force: as it was
+            closes[i] = 1.0
+        idle = idle or (col(ev, AT_REST)[i] != 0.0 and closes[i] == 0.0 and not leaves)
+    if idle:
+        _close_idle(ev, dr, ws, closes)
+    _slide_unloaded(ev, closes)
+    return SETTLED
+
+
+@internal
+def _slide_unloaded(ev: Any, closes: Any) -> None:
+    """Contacts that stay closed without force begin to slide where nothing holds them: no friction does."""
+    least, direction = PRESSING * fastest_free(ev), col(ev, DIRECTION)
+    for i in range(whole(ev)[COUNT]):
+        free = col(ev, STATIC)[i] > 0.0 and direction[i] == 0.0 and col(ev, F_N)[i] == 0.0
+        if free and closes[i] != 0.0 and abs(col(ev, W_T)[i]) > least:
+            direction[i] = np.sign(col(ev, W_T)[i])
+
+
+@internal
+def _close_idle(ev: Any, dr: Any, ws: Any, closes: Any) -> None:
+    """Contacts that carry nothing close where they would come back, or where every step closes them at once."""
+    jerks, contacts, none = col(ev, SPARE), ivec(ev.contacts, ev.most), real(ev)[NONE]
+    free_jerks(ev, ws, jerks)
+    for i in range(whole(ev)[COUNT]):
+        if col(ev, AT_REST)[i] == 0.0 or closes[i] != 0.0 or col(ev, LEAVES)[i] != 0.0:
+            continue
+        motion = col(ev, W_N)[i]
+        # nothing presses it, or others carry all: a table on two feet in balance, whose third one touches
+        again = abs(motion) <= none * col(ev, SIZE)[i] and CLOSES_FROM <= looks_again(dr) <= CLOSES_TO
+        if again or comes_back(ws, contacts[i], jerks[i], motion):
+            closes[i] = 1.0

@@ -1,0 +1,142 @@
+"""What the touching constraint contacts do at an instant: impacts first, then which of them stay, stick or slide."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..cones.complementarity import MANY
+from ..rounding import DIRECTION_RANK, UNSOLVED
+from ..state.modes import IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, OPEN
+from ..state.run_records import CLOCK_SIZE, CROWDED
+from ..tables.levels import rate_size
+from .blow import impact
+from .carrying import LOOSEST_RANK, RANK_OF_MANY, keep_others, pulls
+from .closing import choose
+from .left_over import take_away_left
+from .new_modes import report_modes, take_modes
+from .reading import largest_acceleration, read_before
+from .records import (
+    ACCELERATIONS,
+    COUNT,
+    FIRST,
+    FLAG,
+    KINETIC,
+    LEFT,
+    NO_ACCELERATIONS,
+    NO_FORCES,
+    RANK,
+    RATE,
+    REPEATED_ROWS,
+    RESTITUTION,
+    RESTS,
+    ROUNDING,
+    SETTLED,
+    SINGULAR_MATRIX,
+    SLIDE_RATE,
+    SLOW,
+    STATIC,
+    STOP_IMPULSE,
+    STOP_LOSS,
+    WANT_ROOM,
+    WAS,
+    WHO,
+    call_part,
+    col,
+    real,
+    whole,
+)
+from .touching import find_touching, looks_again, read_rates, read_values
+from .wedging import MOST_WEDGES, wedge
+
+
+@internal
+def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
+    """Impacts, forces, and what they mean."""
+    if not find_touching(ev, dr, ws):
+        return WANT_ROOM
+    read_before(ev, dr, ws)
+    read_values(ev, ws)
+    count, contacts, accelerations = whole(ev)[COUNT], ivec(ev.contacts, ev.most), largest_acceleration(ws)
+    crowded = vec(lc.clock, CLOCK_SIZE)[CROWDED] != 0.0
+    friction, static = vec(dr.friction, ws.n_contacts), vec(ws.contact_sticking, ws.n_contacts)
+    for i in range(count):
+        k = contacts[i]
+        col(ev, KINETIC)[i], col(ev, STATIC)[i] = friction[k], static[k]
+        col(ev, RESTITUTION)[i] = vec(dr.restitution, ws.n_contacts)[k]
+        col(ev, RESTS)[i] = col(ev, FIRST)[i] = col(ev, STOP_IMPULSE)[i] = col(ev, STOP_LOSS)[i] = 0.0
+        col(ev, SLOW)[i] = vec(dr.rest_ratio, ws.n_contacts)[k] * rate_size(ws, k) if crowded else 0.0
+    status = call_part(ev.open_touching, ev, dr, ws, ms)
+    if status != SETTLED:
+        return status
+    read_rates(ev, ws)
+    if _approach(ev, ws, ms):
+        status = impact(ev, dr, ws, ms)
+        if status != SETTLED:
+            return status
+        for i in range(count):
+            col(ev, ROUNDING)[i] *= max(1.0, 2.0 * real(ev)[LEFT])
+        accelerations = 0.0
+    real(ev)[ACCELERATIONS] = accelerations
+    for _ in range(MOST_WEDGES):
+        status = call_part(ev.begin_rest, ev, dr, ws, ms)
+        if status == SETTLED:
+            status = choose(ev, dr, ws, ms)
+        # one contact alone that jams is for the user to hear of
+        given_up = whole(ev)[WHO] >= 0 or ms.exact == 0 or ws.tangents == 2
+        if status != NO_FORCES or given_up or not wedge(ev, dr, ws, ms):
+            break
+    if status != SETTLED:
+        return status
+    _account_stops(ev, ws)
+    rank = DIRECTION_RANK if count <= MANY else RANK_OF_MANY
+    real(ev)[RANK] = min(rank * 100.0 ** max(looks_again(dr) - 2, 0), LOOSEST_RANK)
+    call_part(ev.keep, ev, dr, ws, ms)
+    while True:
+        status = take_modes(ev, dr, ws, ms)
+        repeats = status == REPEATED_ROWS or status == SINGULAR_MATRIX or status == NO_ACCELERATIONS
+        others = ws.tangents == 1 and (repeats or (status == SETTLED and pulls(ev, ws)))
+        if others and keep_others(ev, ws):
+            call_part(ev.keep, ev, dr, ws, ms)
+            continue
+        # contacts that each can be told from any other repeat each other together
+        if not repeats or real(ev)[RANK] >= LOOSEST_RANK or not _any(ev, FLAG):
+            break
+        real(ev)[RANK] = min(100.0 * real(ev)[RANK], LOOSEST_RANK)
+        call_part(ev.keep, ev, dr, ws, ms)
+    if status == SETTLED:
+        report_modes(ev, dr, ws, ms)
+    return status
+
+
+@internal
+def _account_stops(ev: Any, ws: Any) -> None:
+    """What stopped without a collision, to the contacts' memories."""
+    memory, contacts = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(ev.contacts, ev.most)
+    for i in range(whole(ev)[COUNT]):
+        memory[contacts[i], IMPULSE_JUMP] += col(ev, STOP_IMPULSE)[i]
+        memory[contacts[i], LOSS_JUMP] += col(ev, STOP_LOSS)[i]
+
+
+@internal
+def _any(ev: Any, k: int) -> bool:
+    for i in range(whole(ev)[COUNT]):
+        if col(ev, k)[i] != 0.0:
+            return True
+    return False
+
+
+@internal
+def _approach(ev: Any, ws: Any, ms: Any) -> bool:
+    """True if a touching contact approaches by more than what rounding leaves."""
+    count, rate, rounding, largest = whole(ev)[COUNT], col(ev, RATE), col(ev, ROUNDING), 0.0
+    for i in range(count):
+        largest = max(largest, abs(rate[i]), abs(col(ev, SLIDE_RATE)[i]))
+    found, left = False, False
+    for i in range(count):
+        # what an impact of many leaves is no reason for another
+        if count > MANY and -UNSOLVED * largest <= rate[i] < -rounding[i]:
+            rounding[i], left = 2.0 * abs(rate[i]), True
+        found = found or (rate[i] < -rounding[i] and (col(ev, WAS)[i] == OPEN or ms.exact != 0))
+    if left and not found and ms.exact != 0:
+        take_away_left(ev, ws)
+    return found

@@ -1,0 +1,128 @@
+"""Impacts of contacts with two tangents, with exact friction cones (`cones/friction_cones.py`)."""
+
+import math
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..rounding import UNSOLVED
+from ..tables.evaluate import evaluate_residuals
+from .impact import MOST_BOUNCES, MOST_ROUNDS, restitution
+from .laws import POISSON
+from .rates_in_space import masses, push_in_space, read_rates_in_space, solve_cones_in_space
+from .records import (
+    APPROACH,
+    BASE,
+    COUNT,
+    ENDLESS_ROUNDS,
+    FRICTION,
+    IMPULSE,
+    KINETIC,
+    KNOWN,
+    LEFT,
+    LOSS,
+    NO_IMPACT,
+    P_N,
+    P_S,
+    P_T,
+    PART,
+    RATE,
+    RATE_BEFORE,
+    RESIDUAL,
+    ROUNDING,
+    SEPARATION,
+    SETTLED,
+    SLIDE_BEFORE,
+    SLIDE_RATE,
+    SWAY_BEFORE,
+    SWAY_RATE,
+    WITHOUT,
+    col,
+    copy,
+    real,
+    whole,
+)
+
+
+@internal
+def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """As `strike`: Newton's law of restitution speaks of end velocities, and so does the friction with both laws."""
+    count, phid = whole(ev)[COUNT], vec(ws.phid, ws.m_ext)
+    rate, slide, sway, rounding = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE), col(ev, ROUNDING)
+    active, joint_rates = ivec(ws.active, ws.m_act), vec(ev.joint_rates, ws.m_act)
+    before_n, before_t, before_s = col(ev, RATE_BEFORE), col(ev, SLIDE_BEFORE), col(ev, SWAY_BEFORE)
+    loss, p_n, p_t, p_s = col(ev, LOSS), col(ev, P_N), col(ev, P_T), col(ev, P_S)
+    read_rates_in_space(ev, ws)
+    for i in range(ws.m_act):
+        joint_rates[i] = phid[active[i]]
+    largest, left = 0.0, math.inf
+    for i in range(count):
+        col(ev, IMPULSE)[i] = col(ev, FRICTION)[i] = loss[i] = 0.0
+        col(ev, APPROACH)[i] = max(-rate[i], 0.0)
+        largest = max(largest, abs(rate[i]) / rounding[i], abs(slide[i]) / rounding[i], abs(sway[i]) / rounding[i])
+    real(ev)[RESIDUAL], noise = 0.0, UNSOLVED * largest
+    for turn in range(MOST_ROUNDS + 1):
+        before_round, left = left, 0.0
+        for i in range(count):
+            left = max(left, -rate[i] / rounding[i])
+        if left <= 1.0 or 0.5 * before_round <= left <= noise:
+            break
+        if turn == MOST_ROUNDS:
+            return ENDLESS_ROUNDS
+        for i in range(count):
+            approach = col(ev, APPROACH)[i]
+            col(ev, APPROACH)[i] = approach if approach > rounding[i] else -rate[i]
+            before_n[i], before_t[i], before_s[i] = rate[i], slide[i], sway[i]
+        status = _blow(ev, dr, ws, turn >= MOST_BOUNCES)
+        if status != SETTLED:
+            return status
+        for i in range(count):
+            work = p_n[i] * (before_n[i] + rate[i]) + p_t[i] * (before_t[i] + slide[i])
+            loss[i] -= 0.5 * (work + p_s[i] * (before_s[i] + sway[i]))
+            col(ev, IMPULSE)[i] += p_n[i]
+            col(ev, FRICTION)[i] += math.sqrt(p_t[i] * p_t[i] + p_s[i] * p_s[i])
+    evaluate_residuals(ws)
+    read_rates_in_space(ev, ws)
+    for i in range(ws.m_act):
+        real(ev)[RESIDUAL] = max(real(ev)[RESIDUAL], abs(phid[active[i]] - joint_rates[i]))
+    copy(col(ev, SEPARATION), rate, count)
+    real(ev)[LEFT] = left
+    return SETTLED
+
+
+@internal
+def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
+    """One problem of the contacts that do not separate, and a second one for the expansion of Poisson's contacts; or
+    the `last`, of all contacts and without restitution."""
+    count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
+    part, base, rate, rounding = col(ev, PART), col(ev, BASE), col(ev, RATE), col(ev, ROUNDING)
+    p_n, p_t, p_s, back = col(ev, P_N), col(ev, P_T), col(ev, P_S), False
+    low = whole(ev)[WITHOUT] != 0
+    for i in range(count):
+        part[i] = 1.0 if last or rate[i] <= rounding[i] else 0.0
+        base[i] = p_n[i] = p_t[i] = p_s[i] = 0.0
+    for phase in range(2):
+        b, p = vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
+        for i in range(count):
+            poisson = law[contacts[i]] == POISSON
+            e = 0.0 if last else restitution(ev, low, i)
+            back = back or (part[i] != 0.0 and poisson and e > 0.0)
+            if phase == 1:
+                base[i] = e * max(p_n[i], 0.0) if poisson else 0.0
+            clear_rate = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
+            wanted = e * (col(ev, RATE_BEFORE)[i] if phase == 1 else clear_rate) if not poisson else 0.0
+            b[i] = clear_rate + wanted
+            b[count + i], b[2 * count + i] = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i]
+            if abs(b[count + i]) <= rounding[i] and abs(b[2 * count + i]) <= rounding[i]:
+                b[count + i] = b[2 * count + i] = 0.0
+            col(ev, KNOWN)[i] = 0.0
+        if not solve_cones_in_space(ev, masses(ev, count), count, part, b, col(ev, KINETIC), base, col(ev, KNOWN), p):
+            return NO_IMPACT
+        push_in_space(ev, ws, p)
+        for i in range(count):
+            p_n[i] += p[i]
+            p_t[i] += p[count + i]
+            p_s[i] += p[2 * count + i]
+        if not back:
+            break
+    return SETTLED

@@ -1,0 +1,98 @@
+"""Contacts with two tangents that touch at one instant: their directions, and how an impulse at one moves the others.
+
+As `touching.py`, in its place. The room for directions and responses holds a third block, the second tangents' behind
+the first ones'; inverse masses of all three are in `masses`. The tangents of a contact are those of
+`shapes/frame3d.py`.
+"""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..linalg import lu_at, solve
+from ..linalg.analyze import call_analyze
+from ..linalg.record import WANT_ROOM
+from ..rounding import IMMOVABLE
+from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
+from ..state.modes import STICKS as STUCK
+from ..state.workspace_records import OK
+from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+from ..tables.switch import engage_modes
+from .rates_in_space import masses, read_rates_in_space
+from .records import COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
+from .torques_in_space import find_torques, press_with_torques
+from .touching import find_gradient, refuse_immovable
+
+
+@internal
+def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """As `open_touching`, with both tangents."""
+    count, contacts, n = whole(ev)[COUNT], ivec(ev.contacts, ev.most), ws.n
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    for i in range(count):
+        k = contacts[i]
+        memory[k, MODE], memory[k, SLIDE], memory[k, RATIO] = OPEN, STUCK, 0.0
+        # directions and rates are to speak of the same tangents
+        memory[k, AXIS] = 0.0
+    if engage_modes(ws) != OK:
+        return WANT_MEMORY
+    # the rows of those that slid or stuck now tell both velocities
+    evaluate_residuals(ws)
+    find_torques(ev, ws, count)
+    for i in range(count):
+        memory[contacts[i], MODE] = CLOSED
+    evaluate_tangent(ws, 0.0, 0.0)
+    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
+    static, directions = vec(ws.contact_sticking, ws.n_contacts), mat(ev.directions, 3 * count, n)
+    for i in range(count):
+        k = contacts[i]
+        find_gradient(ws, rows[k], directions[i])
+        for block in range(2):
+            to = directions[(block + 1) * count + i]
+            if slides[k] >= 0 and static[k] > 0.0:
+                find_gradient(ws, slides[k] + block, to)
+            else:
+                clear(to, n)
+        memory[k, MODE] = OPEN
+    evaluate_tangent(ws, 0.0, 0.0)
+    code = call_analyze(ws.analyze, lu_at(ws.kkt_query), ws.values)
+    if code != OK:
+        return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
+    _respond(ev, ws, count)
+    read_rates_in_space(ev, ws)
+    return refuse_immovable(ev, ws, count)
+
+
+@internal
+def _respond(ev: Any, ws: Any, count: int) -> None:
+    n, directions, responses = ws.n, mat(ev.directions, 3 * count, ws.n), mat(ev.responses, 3 * count, ws.n)
+    a, plane, rhs = masses(ev, count), delassus(ev, count), vec(ws.rhs, n + ws.m_act)
+    for i in range(3 * count):
+        for j in range(n):
+            rhs[j] = directions[i, j]
+        for j in range(ws.m_act):
+            rhs[n + j] = 0.0
+        solve(lu_at(ws.kkt_query), ws.rhs)
+        for j in range(n):
+            responses[i, j] = rhs[j]
+    for i in range(3 * count):
+        for j in range(3 * count):
+            product = 0.0
+            for e in range(n):
+                product += directions[i, e] * responses[j, e]
+            a[i, j] = product
+    for i in range(3 * count):
+        for j in range(i):
+            a[i, j] = a[j, i] = 0.5 * (a[i, j] + a[j, i])
+    # a tangent that joints hold takes no friction
+    largest = 0.0
+    for i in range(3 * count):
+        largest = max(largest, a[i, i])
+    for i in range(count, 3 * count):
+        if a[i, i] <= IMMOVABLE * largest:
+            for j in range(3 * count):
+                a[i, j] = a[j, i] = 0.0
+    for i in range(2 * count):
+        for j in range(2 * count):
+            plane[i, j] = a[i, j]
+    press_with_torques(ev, ws, count)

@@ -1,0 +1,54 @@
+"""Trials: a step is made again with another size, and tells what is positive before an event of one of its contacts."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE
+from ..state.run_records import call_trial
+from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
+from .watch import friction_margin
+
+# what is searched for a root
+GAP, FORCE, OVERLAP, CLOSING = range(4)
+
+
+@internal
+def make_trial(dr: Any, ws: Any, ms: Any, lc: Any, step: float, full: float) -> int:
+    """Make the step again with another size. Small fractions of it are made by the one-step starter: the multistep
+    coefficients of a grid with a very small last step lose digits."""
+    last = vec(dr.last_trial, 1)
+    if last[0] == step:
+        return OK
+    starter, rows = lc.starter, lc.rows
+    if step < 0.1 * full or rows == 1:
+        lc.starter = lc.fine_starter
+        if rows > 1:
+            lc.rows = 1_000_000_000
+    # with old matrices the same step would come out a little different each time it is made
+    rate = vec(ws.rate, RATE_SIZE)
+    rate[FACTOR_AGE], rate[OUTER_RATE] = -1.0, 1.0
+    status = call_trial(dr.trial, ws, ms, lc, step)
+    lc.starter, lc.rows = starter, rows
+    last[0] = step if status == OK else -1.0
+    return status
+
+
+@internal
+def trial_value(
+    dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack: float, step: float, full: float
+) -> Any:
+    """(status, value) at the end of a step of this size of what is positive before the event."""
+    status = make_trial(dr, ws, ms, lc, step, full)
+    if status != OK:
+        return status, 0.0
+    row = ivec(ws.contact_rows, ws.n_contacts)[k]
+    if what == GAP or what == OVERLAP:
+        return OK, sign * vec(ws.phi, ws.m_ext)[row] + slack
+    if what == CLOSING:
+        return OK, vec(ws.phidd, ws.m_ext)[row] + slack
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+    force = sign * vec(ws.monitor, ws.n_contacts)[k]
+    if memory[MODE] == CLOSED and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0 and memory[SLIDE] != IDLE:
+        force = min(force, friction_margin(ws, k))
+    return OK, force
