@@ -46,7 +46,7 @@ from .matrices import refactor
 
 # Beyond these the matrices are renewed at the next stage: a factorisation costs about as much as two iterations.
 MOST_OUTER = 3
-MOST_INNER = 9
+MOST_INNER = 3
 # The same where constraints are cheap beside the residuals.
 MOST_CHEAP_INNER = 12
 # A rate that was measured at an earlier stage is trusted less at each stage that does not measure it anew.
