@@ -1,6 +1,7 @@
 """A law from the formula of its force alone: derivatives by dual numbers, the spring's energy by quadrature."""
 
 import inspect
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -21,9 +22,9 @@ def force_formula(force: Callable[..., float]) -> Any:
     """Formula of a ForceLaw from F(delta, delta_dot, v0, p0, ...): the force in N, with at most four parameters.
 
     `force` is plain Python or a numba function, of numbers: arithmetic, comparisons, abs, min, max, and the functions
-    of `math`. Its derivatives are exact to rounding. The elastic part is F(delta, 0, v0); its energy is integrated by
-    Gauss's rule with 8 points in sqrt(delta), which is exact for springs delta^(k/2), k <= 13. It is compiled when it
-    is first used, and kept on disk.
+    of `math`. Its derivatives are exact to rounding; one that is not finite at delta = 0 (of a root) counts as 0 there.
+    The elastic part is F(delta, 0, v0); its energy is integrated by Gauss's rule with 8 points in sqrt(delta), which is
+    exact for springs delta^(k/2), k <= 13. It is compiled when it is first used, and kept on disk.
 
     Raises
     ------
@@ -55,7 +56,10 @@ def force_formula(force: Callable[..., float]) -> Any:
         energy = 0.0
         for k in range(8):
             energy += SHARES[k] * call(d * ROOTS[k] ** 2, 0.0, v0, p0, p1, p2, p3)
-        return f.x, f.a, f.b, float(call(d, 0.0, v0, p0, p1, p2, p3)), energy * d
+        # a root has no slope where shapes just touch; the force is none there yet, and the next point has one
+        stiffness = f.a if d != 0.0 or math.isfinite(f.a) else 0.0
+        damping = f.b if d != 0.0 or math.isfinite(f.b) else 0.0
+        return f.x, stiffness, damping, float(call(d, 0.0, v0, p0, p1, p2, p3)), energy * d
 
     formula.__name__ = plain.__name__
     made = jit(formula)

@@ -90,4 +90,7 @@ def _inconsistent(sim: "ContactSide") -> ConsistencyError:
         return error
     finally:
         sim.workspace.engage(*key)
-    return ConsistencyError(f"at t = {sim.t_internal:.9g} s the constraints of the closed contacts are inconsistent")
+    return ConsistencyError(
+        f"at t = {sim.t_internal:.9g} s the constraints of the closed contacts are inconsistent, or a derivative of a "
+        "force is not finite (a root or a quotient in a formula of your own, whose argument comes to zero there)"
+    )

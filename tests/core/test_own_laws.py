@@ -127,6 +127,26 @@ def test_branches_and_functions_are_differentiated(depth, rate, sign):
     assert law.evaluate(0.0, 1.0, 1.0) == (0.0,) * 5
 
 
+def rooted(delta, delta_dot, v0, stiffness):
+    """Its derivatives at no penetration are quotients of nothing by nothing."""
+    return stiffness * math.sqrt(delta) ** 3 + 0.0 * math.sqrt(delta)
+
+
+class Rooted(ForceLaw):
+    formula = force_formula(rooted)
+    stiffness: Positive
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-6, 1e-7, 1e-8])
+@pytest.mark.parametrize("height", [0.5, 1.0, 1.3])
+def test_a_root_has_no_derivative_where_shapes_just_touch(rtol, height):
+    """Where the event of the first touch lies, above or below by rounding or just there, is no matter."""
+    law = Rooted(stiffness=1e5)
+    assert Rooted.formula(0.0, 0.3, 1.0, 1e5, 0.0, 0.0, 0.0)[:3] == (0.0, 0.0, 0.0)
+    result = simulate(ball_over_floor(law, height=height), 1.0, rtol=rtol)
+    assert [event.kind for event in result.events[:2]] == ["close", "open"]
+
+
 def test_law_with_branches_rebounds_as_an_independent_integration():
     law = TwoSlopes(k1=1e3, k2=5e3, limit=0.01)
     model = ball_over_floor(law, height=0.01, speed=-1.0, gravity=0.0)
