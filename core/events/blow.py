@@ -1,11 +1,9 @@
-"""What an impact does: contacts that would bounce ever lower are struck without restitution, if they then stay, or in a
-heap."""
+"""What an impact does: contacts that would bounce ever lower are struck without restitution, if they then stay."""
 
 from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.cones import MANY
 from ..methods.history import history_time
 from ..rounding import ENERGY_GAIN, FORCE_ROUNDING
 from ..state.modes import APPROACH_SPEED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, OPEN
@@ -131,10 +129,8 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return status
     for i in range(count):
         stay = stay and (col(ev, LOW)[i] == 0.0 or col(ev, F_N)[i] > 0.0)
-    # in a heap there is always one that others push away: there, what bounces by next to nothing does not bounce
-    if stay or (count > MANY and status == SETTLED):
-        for i in range(count):
-            col(ev, RESTS)[i] = 1.0 if col(ev, LOW)[i] != 0.0 and col(ev, F_N)[i] > 0.0 else 0.0
+    if stay:
+        copy(col(ev, RESTS), col(ev, LOW), count)
         return SETTLED
     for one, other in _RESULTS:
         copy(col(ev, one), col(ev, other), count)
