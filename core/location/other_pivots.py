@@ -5,6 +5,8 @@ The ones from before are put back, and how far the entries of L may grow with th
 
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import determinant_sign, factor, lu_at
@@ -84,15 +86,21 @@ def _unless_unfit(status: int) -> int:
 @internal
 def orientation(ws: Any) -> float:
     """Sign of the determinant of [M, G; Phi_q, 0], G the directions of the forces, friction of sliding contacts
-    included; 0 where it is singular, or there is too little memory for pivots of its own."""
+    included; 0 where it is singular, NaN where there is too little memory for pivots of its own."""
     evaluate_residuals(ws)
     evaluate_tangent(ws, 0.0, 0.0)
     lu = lu_at(ws.kkt_query)
-    status, own = factor(lu, ws.values), lu.kind != DENSE and lu.ready != 0
-    own = own and status == REANALYSE
-    if own and _take_own(ws) == OK:
+    if lu.kind != DENSE and lu.ready == 0:
+        # pivots that nobody has chosen yet need not be put back
+        code = call_analyze(ws.analyze, lu, ws.values)
+        if code != OK:
+            return np.nan if code == NO_MEMORY else 0.0
+    status = factor(lu, ws.values)
+    if status != REANALYSE:
+        return determinant_sign(lu) if status == OK else 0.0
+    status = _take_own(ws)
+    if status == OK:
         status = factor(lu, ws.values)
-    sign = determinant_sign(lu) if status == OK else 0.0
-    if own:
-        _put_back(ws)
+    sign = determinant_sign(lu) if status == OK else (np.nan if status == REANALYZE else 0.0)
+    _put_back(ws)
     return sign

@@ -131,14 +131,14 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
         sliding, before = any_slides(ws), history_time(ms, 0)
         if sliding and side == 0.0:
             recall(ws, ms, 0)
-            side = orientation(ws)
+            side = _known(orientation(ws))
         code = call_run(dr.run, ws, ms, lc, 1 if sliding else left)
         if (code == CHUNK or code == REPARTITION) and sliding:
             if history_time(ms, 0) > before:
                 now = orientation(ws)
-                if now != side and side != 0.0:
+                if now == now and now != side and side != 0.0:
                     return JAM
-                side = now
+                side = _known(now)
             if code == CHUNK:
                 continue
         if code == REACHED:
@@ -147,6 +147,12 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
             return code
         if call_locate(dr.locate, dr, False) != OK:
             return UNLOCATED
+
+
+@internal
+def _known(side: float) -> float:
+    """0 for NaN."""
+    return side if side == side else 0.0
 
 
 @internal
