@@ -77,7 +77,9 @@ const char *tlismni_why(tlismni_status status) {
     case DUE:
         return "a force or a driver jumps at a given time, where only Python starts anew as yet" WITH_PYTHON;
     case JAM:
-        return "a sliding contact may have jammed, which only Python looks into as yet" WITH_PYTHON;
+        return "sliding contacts jam (Painleve's paradox): their friction presses the bodies together more than the normal "
+               "forces keep them apart, so that rigid bodies have no (or no unique) accelerations: use smaller "
+               "coefficients of friction, or force laws";
     case RAISED:
         return "compiled code has raised an error: memory is exhausted, or damaged";
     case NEEDS_EVENT:
