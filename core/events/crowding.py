@@ -4,27 +4,101 @@ Coulomb friction of several contacts can make them stick and slip in turns that 
 time: as accumulating bounces do, but tens of thousands of them. Bounces end by the rest rule; so does this. While
 instants crowd, a closed contact that slides more slowly than `rest_ratio` times the speeds there are counts as one that
 does not slide: the forces say whether it sticks.
+
+Where many contacts touch, instants crowd without any of these limits: an impact opens contacts that fall back within
+microseconds, and each of them is an impact of all. Then the run goes on in steps of impulses (`impulse_step.py`), a row
+of them, until for some steps no contact comes or goes, or the row is at its end. If instants crowd again behind it, the
+next row is twice as long.
 """
 
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import vec
-from ..state.run_records import CLOCK_SIZE, CROWDED, WINDOW_COUNT, WINDOW_START
+from ..compiled.views import ivec, mat, vec
+from ..state.modes import MEMORY_SIZE, PUSHED
+from ..state.modes import PUSHES as BLOCKS
+from ..state.run_records import (
+    CALM,
+    CLOCK_SIZE,
+    CROWDED,
+    PUSH_STEP,
+    PUSHED_FROM,
+    PUSHED_UNTIL,
+    PUSHES,
+    PUSHES_LEFT,
+    WINDOW_COUNT,
+    WINDOW_START,
+)
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
+from .laws import FORCE, MASSLESS
 
 WINDOW = 64
 """Instants that are looked at together."""
-NEXT_TO_NO_TIME = 1e-6
-"""Of the model's own time."""
+NEXT_TO_NO_TIME, NEXT_TO_NO_TIME_OF_MANY = 1e-6, 2e-3
+"""Of the model's own time: for so many instants, and for so many at which many contacts touch."""
+MANY_TOUCH = 8
+SIZE = 5e-4
+"""Of a step of impulses, in parts of the model's own time."""
+FEWEST, MOST = 8, 512
+"""Steps of impulses in a row."""
+SOON = 64
+FEW_AGAIN = 16
+"""Steps of impulses: what crowds again within the time of so many behind the last row goes on crowding."""
 
 
 @internal
-def count_instant(ws: Any, lc: Any, t: float) -> None:
-    """One more instant, at time t."""
+def count_instant(dr: Any, ws: Any, ms: Any, lc: Any, t: float, touching: int) -> None:
+    """One more instant, at time t, with so many touching contacts."""
     clock = vec(lc.clock, CLOCK_SIZE)
+    many = touching >= MANY_TOUCH and clock[PUSH_STEP] == 0.0
     clock[WINDOW_COUNT] += 1.0
+    again = clock[PUSHES] > 0.0 and t <= clock[PUSHED_UNTIL] + _size(ws) and clock[WINDOW_COUNT] >= FEW_AGAIN
+    if many and again:
+        begin_pushing(dr, ws, ms, lc, t)
     if clock[WINDOW_COUNT] >= WINDOW:
-        span = (t - clock[WINDOW_START]) * vec(ws.control, CONTROL_SIZE)[RATE_SCALE]
-        clock[CROWDED] = 1.0 if abs(span) < NEXT_TO_NO_TIME else 0.0
+        span = abs(t - clock[WINDOW_START]) * vec(ws.control, CONTROL_SIZE)[RATE_SCALE]
+        clock[CROWDED] = 1.0 if span < NEXT_TO_NO_TIME else 0.0
         clock[WINDOW_START], clock[WINDOW_COUNT] = t, 0.0
+        if many and span < NEXT_TO_NO_TIME_OF_MANY:
+            begin_pushing(dr, ws, ms, lc, t)
+
+
+@internal
+def _size(ws: Any) -> float:
+    return float(SIZE / vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
+
+
+@internal
+def may_push(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
+    """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, among
+    redundant rows, and where contacts act as forces or are at massless ends."""
+    law = ivec(dr.law, ws.n_contacts)
+    if ms.exact == 0 or ws.n_redundant > 0:
+        return False
+    for k in range(ws.n_contacts):
+        if law[k] == FORCE or law[k] == MASSLESS:
+            return False
+    return True
+
+
+@internal
+def begin_pushing(dr: Any, ws: Any, ms: Any, lc: Any, t: float) -> bool:
+    """Go on in steps of impulses from time t; False where that cannot be."""
+    clock = vec(lc.clock, CLOCK_SIZE)
+    if clock[PUSH_STEP] != 0.0 or not may_push(dr, ws, ms, lc):
+        return clock[PUSH_STEP] != 0.0
+    again = t <= clock[PUSHED_UNTIL] + SOON * _size(ws) and clock[PUSHES] > 0.0
+    clock[PUSHES] = min(2.0 * clock[PUSHES], MOST) if again else FEWEST
+    clock[PUSH_STEP], clock[PUSHES_LEFT], clock[CALM], clock[PUSHED_FROM] = _size(ws), clock[PUSHES], 0.0, t
+    return True
+
+
+@internal
+def end_pushing(ws: Any, lc: Any, t: float) -> None:
+    """What touches now is for an instant of its own to settle."""
+    clock = vec(lc.clock, CLOCK_SIZE)
+    clock[PUSH_STEP] = clock[PUSHES_LEFT] = clock[CALM] = clock[PUSHED_FROM] = 0.0
+    clock[PUSHED_UNTIL], clock[WINDOW_START], clock[WINDOW_COUNT] = t, t, 0.0
+    for k in range(ws.n_contacts):
+        for block in range(BLOCKS):
+            mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, PUSHED + block] = 0.0

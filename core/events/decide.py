@@ -22,6 +22,7 @@ from .records import (
     FLAG,
     KINETIC,
     LEFT,
+    MET_LOSS,
     NO_ACCELERATIONS,
     NO_FORCES,
     RANK,
@@ -37,6 +38,7 @@ from .records import (
     STATIC,
     STOP_IMPULSE,
     STOP_LOSS,
+    TOUCHED,
     WANT_ROOM,
     WAS,
     WHO,
@@ -56,6 +58,7 @@ def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         return WANT_ROOM
     read_before(ev, dr, ws)
     read_values(ev, ws)
+    whole(ev)[TOUCHED], real(ev)[MET_LOSS] = whole(ev)[COUNT], 0.0
     count, contacts, accelerations = whole(ev)[COUNT], ivec(ev.contacts, ev.most), largest_acceleration(ws)
     crowded = vec(lc.clock, CLOCK_SIZE)[CROWDED] != 0.0
     friction, static = vec(dr.friction, ws.n_contacts), vec(ws.contact_sticking, ws.n_contacts)

@@ -30,6 +30,8 @@ from .carrying_in_space import keep_in_space
 from .force_contact import settle_forces
 from .impact import strike
 from .impact_in_space import strike_in_space
+from .impulse_rows import ROW_ROOM
+from .impulse_step import push_apart
 from .prepare import use_modes
 from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
 from .resting import begin_rest
@@ -37,7 +39,7 @@ from .resting_in_space import begin_rest_in_space
 from .touching import open_touching
 from .touching_in_space import open_in_space
 
-PARTS = (open_touching, strike, begin_rest, find_forces, keep, use_modes, settle_forces)
+PARTS = (open_touching, strike, begin_rest, find_forces, keep, use_modes, settle_forces, push_apart)
 _OTHERS = (
     ("solve_cones", solve_cones, CONES_SIGNATURE),
     ("independent", independent_directions, INDEPENDENT_SIGNATURE),
@@ -78,6 +80,8 @@ class Instant:
         # normals and tangents of so many contacts
         blocks = 1 + assembly.tangents
         every, spatial = blocks * most, 3 * most if blocks == 3 else 0
+        # in space torques against turning too
+        rows = every + (most if spatial else 0)
         work = max(independent_size(every, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
         of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS, most)
         self._cones = BlockRecord(
@@ -92,7 +96,8 @@ class Instant:
                 **dict.fromkeys(("some", "chosen", "order"), every),
                 "contacts": most, "table": COLUMNS * most, "reals": REALS, "wholes": WHOLES,
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
-                "directions": every * n, "responses": every * n,
+                "directions": rows * n, "responses": rows * n, "sweeps": ROW_ROOM * rows + n,
+                "columns": 2 * rows * (n + 1),
                 "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
                 "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,

@@ -15,6 +15,7 @@ from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import CLOSE, GRAZE, OPENS, REST, SLIP, STICK, call_accelerations
 from ..state.workspace_records import OK
+from ..tables.evaluate import evaluate_energy
 from ..tables.levels import position_level
 from .balance_in_space import BEGINS
 from .meeting import meet_constraints
@@ -27,6 +28,7 @@ from .records import (
     DIRECTION,
     FLAG,
     GAP,
+    MET_LOSS,
     NEW_RATIO,
     NEW_SLIDE,
     NO_ACCELERATIONS,
@@ -40,6 +42,7 @@ from .records import (
     WAS,
     call_part,
     col,
+    real,
     whole,
 )
 from .report import report
@@ -51,6 +54,7 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     accelerations."""
     contacts, slides = ivec(ev.contacts, ev.most), ivec(ws.contact_slide_rows, ws.n_contacts)
     scale, rows = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)
+    energy = vec(ws.energy, 3)
     level, changed, some = GAP_ROUNDING * position_level(ws), False, False
     for i in range(whole(ev)[COUNT]):
         k, was, taken = contacts[i], col(ev, WAS)[i], col(ev, FLAG)[i] != 0.0
@@ -76,8 +80,13 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         status = call_part(ev.use_modes, ev, dr, ws, ms)
         if status != SETTLED:
             return status
-    if changed and ms.exact != 0 and not meet_constraints(ws):
-        return NOT_MET
+    if changed and ms.exact != 0:
+        evaluate_energy(ws)
+        before = energy[0] + energy[1] + energy[2]
+        if not meet_constraints(ws):
+            return NOT_MET
+        evaluate_energy(ws)
+        real(ev)[MET_LOSS] += before - energy[0] - energy[1] - energy[2]
     return SETTLED if call_accelerations(dr.accelerations, ws) == OK else NO_ACCELERATIONS
 
 

@@ -20,7 +20,7 @@ INSTANT = np.dtype(
         for name in (
             "most",                      # touching contacts that there is room for
             # addresses of these functions
-            "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces",
+            "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces", "push_apart",
             "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
@@ -44,6 +44,7 @@ INSTANT = np.dtype(
             "massless_rates",            # (n_contacts,) float64
             # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
             "space_a", "space_b", "space_p", "space_room", "pressing_a", "torques",
+            "sweeps", "columns",         # room for `impulse_step.py`: float64 and int64
         )
     ]
 )  # fmt: skip
@@ -89,7 +90,10 @@ COLUMNS = 81
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)
 MOMENT = 6  # that has decided, s; 0: forces have
-REALS = 7
+SWEPT = 7  # sweeps of the last step of impulses
+MET_LOSS = 8  # energy that bringing the motion onto new constraints has taken, J: in no account
+LARGEST = 9  # rate of a row before its impulse, m/s
+REALS = 10
 # entries of `wholes`
 COUNT = 0  # contacts that touch
 STRUCK = 1
@@ -99,7 +103,8 @@ WHO = 4  # the contact that a failure is of
 READY = 5  # accelerations have been looked at
 WITHOUT = 6  # 1: impacts are without restitution where `LOW` says so
 TURNS = 7  # 1: forces of contacts have torques against turning with them
-WHOLES = 8
+TOUCHED = 8  # contacts that touch, once the instant has been decided
+WHOLES = 9
 
 # what settling an instant returns
 SETTLED = 0

@@ -10,8 +10,9 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..location.asleep import look_at_all
 from ..location.watch import remember
-from ..methods.history import history_time, recall, restart
-from ..state.modes import MEMORY_SIZE, MODE
+from ..methods.history import history_time, recall, replace, restart
+from ..rounding import GAP_ROUNDING
+from ..state.modes import CLOSED, MEMORY_SIZE, MODE
 from ..state.run_records import (
     CLOCK_SIZE,
     COUNTS_SIZE,
@@ -20,34 +21,53 @@ from ..state.run_records import (
     HANDLED,
     HANDLED_AT,
     HERE,
+    PUSH_STEP,
+    PUSHED_FROM,
     STEP_SIZE,
     call_sample,
 )
-from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, RATE_SIZE
+from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE, FACTOR_AGE, RATE_SIZE
 from ..tables.evaluate import evaluate_power, evaluate_residuals
+from ..tables.levels import position_level
 from ..tables.switch import take_structure
 from .breakpoint import pass_breakpoint
-from .crowding import count_instant
+from .crowding import MANY_TOUCH, begin_pushing, count_instant, may_push
 from .decide import decide
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
 from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
 from .progress import COUNT as GUARDED
-from .records import DECLINED, SETTLED, call_part, copy
+from .records import DECLINED, MET_LOSS, NO_IMPACT, NOT_MET, SETTLED, TOUCHED, call_part, clear, copy, real, whole
 from .report import MOST_EVENTS, room_for
 from .unsettled import find_pending, find_unsettled
+
+UNSEEN = 1e-8
+"""Of the model's energy: what an instant of many contacts may take of it without an account."""
 
 
 @internal
 def begin_anew(ws: Any, ms: Any, lc: Any) -> None:
     """A history that begins at the current point, whose accelerations are known."""
+    _know_rates(ws)
+    restart(ws, ms)
+    remember(ws, lc)
+
+
+@internal
+def _go_on(ws: Any, ms: Any, lc: Any) -> None:
+    """The current point, whose accelerations are known, in place of the newest row."""
+    _know_rates(ws)
+    replace(ws, ms)
+    remember(ws, lc)
+
+
+@internal
+def _know_rates(ws: Any) -> None:
     a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
     evaluate_power(ws)
     for i in range(ws.n_ext):
         aux[i] = a[i]
     vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
-    restart(ws, ms)
-    remember(ws, lc)
 
 
 @internal
@@ -55,8 +75,10 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     """Let the pending events happen at the newest row: a status of `records`."""
     t, counts, goals = history_time(ms, 0), ivec(dr.counts, COUNTS_SIZE), vec(dr.goals, GOALS_SIZE)
     room = lc.capacity == 0 or ivec(lc.cursor, 1)[0] < lc.capacity
-    if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts) or not _gets_on(dr, t):
+    if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts):
         return DECLINED
+    if not _gets_on(dr, t):
+        return SETTLED if _goes_on_in_steps(dr, ws, ms, lc, t) else DECLINED
     _keep(ev, ws, False)
     step = vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here
@@ -74,22 +96,67 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     status = call_part(ev.settle_forces, ev, dr, ws, ms) if _any_force(dr, ws) else SETTLED
     if status == SETTLED:
         status = settle_massless(ev, dr, ws, ms)
-    if status == SETTLED and _any_constraint(dr, ws):
+    whole(ev)[TOUCHED], pushing = 0, vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
+    begun = vec(lc.clock, CLOCK_SIZE)[PUSHED_FROM] == t
+    if status == SETTLED and pushing:
+        status = call_part(ev.push_apart, ev, dr, ws, ms)
+        clear(ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
+    elif status == SETTLED and _any_constraint(dr, ws):
         status = decide(ev, dr, ws, ms, lc)
-    if status == SETTLED:
+    if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms, lc):
+        status = NOT_MET
+    if status == SETTLED and not pushing:
         status = find_pending(ev, dr, ws, ms, lc)
-    ws.kept = 0
+    ws.kept, touched = 0, whole(ev)[TOUCHED]
     if status != SETTLED:
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
         _put_back(ev, ws, ms, structure)
         vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = step
-        return status
-    begin_anew(ws, ms, lc)
+        many = status >= NO_IMPACT and not pushing and touched >= MANY_TOUCH
+        return SETTLED if many and _goes_on_in_steps(dr, ws, ms, lc, t) else status
+    if pushing and not begun:
+        # what lies between two steps of impulses is between what they have left
+        _go_on(ws, ms, lc)
+    else:
+        begin_anew(ws, ms, lc)
     _count(dr, t)
-    count_instant(ws, lc, t)
+    if not pushing:
+        count_instant(dr, ws, ms, lc, t, touched)
     copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
+    if (vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0) != pushing:
+        # at the begin of a row of steps of impulses what is closed is to be opened, and at its end to be settled
+        _all_pending(dr, ws)
     _sample(dr, ws, lc)
     return SETTLED
+
+
+@internal
+def _goes_on_in_steps(dr: Any, ws: Any, ms: Any, lc: Any, t: float) -> bool:
+    """True if the run goes on from time t by steps of impulses, since what touches there cannot be settled."""
+    if not begin_pushing(dr, ws, ms, lc, t):
+        return False
+    ivec(dr.counts, COUNTS_SIZE)[HERE] = 0
+    _all_pending(dr, ws)
+    return True
+
+
+@internal
+def _loses_unseen(ev: Any, ws: Any) -> bool:
+    """True if many touch, and bringing them onto their new constraints has changed the energy by more than rounding."""
+    most = UNSEEN * vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
+    return bool(whole(ev)[TOUCHED] >= MANY_TOUCH and abs(real(ev)[MET_LOSS]) > most)
+
+
+@internal
+def _all_pending(dr: Any, ws: Any) -> None:
+    """Closed constraint contacts, and others that touch, are pending."""
+    memory, pending = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.pending, ws.n_contacts)
+    rows, phi, scale = ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext)
+    level, asleep = GAP_ROUNDING * position_level(ws), ivec(ws.asleep, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        touches = asleep[k] == 0 and phi[rows[k]] <= level * scale[rows[k]]
+        if memory[k, MODE] == CLOSED or touches:
+            pending[k] = 1
 
 
 @internal

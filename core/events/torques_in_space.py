@@ -9,6 +9,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg import lu_at, solve
+from ..location.probe import can_look, pull_alone
 from ..shapes.gripping3d import TURNS_HARD
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE, OPEN
 from ..tables.evaluate import evaluate_residuals
@@ -17,7 +18,7 @@ from .records import AXIS_NOW, FLAG, TURNS, clear, col, whole
 
 
 @internal
-def find_torques(ev: Any, ws: Any, count: int) -> None:
+def find_torques(ev: Any, ws: Any, lc: Any, count: int) -> None:
     """Of the touching contacts, which are open and whose residuals have been evaluated: the axes that their tangents
     are counted from, and whether they resist turning; then the residual by their normal forces, to `torques`."""
     contacts, monitor, turns = ivec(ev.contacts, ev.most), vec(ws.monitor, 2 * ws.n_contacts), col(ev, FLAG)
@@ -40,6 +41,9 @@ def find_torques(ev: Any, ws: Any, count: int) -> None:
         if turns[i] == 0.0:
             continue
         row = rows[contacts[i]]
+        if can_look(lc, contacts[i]):
+            pull_alone(ws, lc, contacts[i], row, torques[i])
+            continue
         before = lam[row]
         for force in range(2):
             lam[row] = -1.0 * force

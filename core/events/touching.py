@@ -120,15 +120,28 @@ def _respond(ev: Any, ws: Any, count: int, slides: Any) -> None:
         solve(lu_at(ws.kkt_query), ws.rhs)
         for j in range(n):
             responses[i, j] = rhs[j]
+    some = ivec(ev.columns, n)
     for i in range(2 * count):
+        entries = entries_of(directions[i], n, some)
         for j in range(2 * count):
             product = 0.0
-            for e in range(n):
-                product += directions[i, e] * responses[j, e]
+            for e in range(entries):
+                product += directions[i, some[e]] * responses[j, some[e]]
             a[i, j] = product
     for i in range(2 * count):
         for j in range(i):
             a[i, j] = a[j, i] = 0.5 * (a[i, j] + a[j, i])
+
+
+@internal
+def entries_of(x: Any, n: int, some: Any) -> int:
+    """Which entries of x (n,) are not zero, to `some`; how many."""
+    count = 0
+    for j in range(n):
+        if x[j] != 0.0:
+            some[count] = j
+            count += 1
+    return count
 
 
 @internal

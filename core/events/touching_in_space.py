@@ -7,7 +7,7 @@ the first ones'; inverse masses of all three are in `masses`. The tangents of a 
 
 from typing import Any
 
-from ..compiled.jit import internal
+from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
@@ -15,13 +15,16 @@ from ..linalg.record import WANT_ROOM
 from ..rounding import IMMOVABLE
 from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
 from ..state.modes import STICKS as STUCK
+from ..state.run_records import LOOP_TYPE
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.switch import engage_modes
 from .rates_in_space import masses, read_rates_in_space
 from .records import COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
 from .torques_in_space import find_torques, press_with_torques
-from .touching import find_gradient, refuse_immovable
+from .touching import entries_of, find_gradient, refuse_immovable
+
+loop_at = record_view(LOOP_TYPE)
 
 
 @internal
@@ -38,7 +41,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return WANT_MEMORY
     # the rows of those that slid or stuck now tell both velocities
     evaluate_residuals(ws)
-    find_torques(ev, ws, count)
+    find_torques(ev, ws, loop_at(dr.loop), count)
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
     evaluate_tangent(ws, 0.0, 0.0)
@@ -75,11 +78,13 @@ def _respond(ev: Any, ws: Any, count: int) -> None:
         solve(lu_at(ws.kkt_query), ws.rhs)
         for j in range(n):
             responses[i, j] = rhs[j]
+    some = ivec(ev.columns, n)
     for i in range(3 * count):
+        entries = entries_of(directions[i], n, some)
         for j in range(3 * count):
             product = 0.0
-            for e in range(n):
-                product += directions[i, e] * responses[j, e]
+            for e in range(entries):
+                product += directions[i, some[e]] * responses[j, some[e]]
             a[i, j] = product
     for i in range(3 * count):
         for j in range(i):

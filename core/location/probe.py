@@ -133,6 +133,38 @@ def look(ws: Any, ms: Any, lc: Any, k: int, row: int, h: float, s: float, view: 
 
 
 @internal
+def can_look(lc: Any, k: int) -> bool:
+    """True if contact k can be evaluated alone."""
+    return bool(ivec(lc.near, NEAR_SIZE * (k + 1))[NEAR_SIZE * k + KERNEL] != 0)
+
+
+@internal
+def pull_alone(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
+    """What a unit normal force of contact k, whose row this is, does to the equations of motion at the current point:
+    the generalized forces (n,), with all that comes with the normal force."""
+    batch, n = probe_of(lc, k), ws.n_ext
+    coord = ivec(batch.coord, batch.count * batch.ncoord)
+    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
+    to_q, to_v, to_a, r = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n), vec(lc.probe_r, n)
+    lam = vec(lc.probe_lam, ws.m_ext)
+    for j in range(ws.n):
+        out[j] = 0.0
+    for force in range(2):
+        for j in range(batch.count * batch.ncoord):
+            i = coord[j]
+            to_q[i], to_v[i], to_a[i], r[i] = q[i], v[i], a[i], 0.0
+        lam[row] = -1.0 * force
+        call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(ws.t, 1)[0], batch)
+        # a coordinate may stand there twice
+        for j in range(batch.count * batch.ncoord):
+            to_a[coord[j]] = r[coord[j]] - (out[coord[j]] if force == 1 and coord[j] < ws.n else 0.0)
+        for j in range(batch.count * batch.ncoord):
+            if coord[j] < ws.n:
+                out[coord[j]] = to_a[coord[j]] if force == 0 else -to_a[coord[j]]
+    lam[row] = 0.0
+
+
+@internal
 def state_of_pair(ws: Any, ms: Any, lc: Any, k: int, h: float, s: float, state: Any) -> None:
     """(x, y, theta), velocities and accelerations of the first body of contact k and of the second (18,), at s h."""
     batch, n = probe_of(lc, k), ws.n_ext

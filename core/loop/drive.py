@@ -38,6 +38,7 @@ from ..state.run_records import (
     LAST_STOP,
     LOOP_TYPE,
     PASSED,
+    PUSH_STEP,
     REACHED,
     REPARTITION,
     SETTLE,
@@ -54,6 +55,7 @@ from ..state.run_records import (
     call_trial,
 )
 from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, STEPS, WORKSPACE_TYPE
+from .push_step import make_push_step
 from .sliding import any_slides
 
 MANY = 6
@@ -104,7 +106,8 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
         if is_due(dr, ws):
             side = 0.0
             # which redundant rows are left out is for Python to look at, at every instant
-            if hold or ws.n_redundant > 0 or history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]:
+            beyond = history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]
+            if ws.n_redundant > 0 or ((hold or beyond) and vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0):
                 return SETTLE
             status = call_settle(dr.settle, dr)
             if status != SETTLED:
@@ -126,6 +129,11 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
         left = last - steps[STEPS] - counts[HANDLED]
         if left <= 0:
             return CHUNK
+        if vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0:
+            side, code = 0.0, make_push_step(dr, ws, ms, lc)
+            if code != OK:
+                return code
+            continue
         # while a contact slides, each step is looked at: on the way to where it jams the forces grow without bound, and
         # behind it the determinant has the other sign
         sliding, before = any_slides(ws), history_time(ms, 0)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, SLIDE
+from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, OPEN, PUSHED, SLIDE
 from ..tables.evaluate import evaluate_energy, recorded_norm
 
 
@@ -52,15 +52,16 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
         phi, phid = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
         for k in range(contacts):
             mode = memory[k, MODE]
-            out[at + k] = monitor[k] if mode == ACTIVE or mode == CLOSED else 0.0
+            # of an open one the mean force while instants are stepped through, else 0
+            out[at + k] = monitor[k] if mode == ACTIVE or mode == CLOSED else memory[k, PUSHED]
             out[at + contacts + k] = phi[rows[k]]
             out[at + 2 * contacts + k] = phid[rows[k]]
-            out[at + 3 * contacts + k] = mode
+            out[at + 3 * contacts + k] = CLOSED if mode == OPEN and memory[k, PUSHED] > 0.0 else mode
             out[at + 4 * contacts + k] = memory[k, IMPULSE_JUMP]
             out[at + 5 * contacts + k] = memory[k, LOSS_JUMP]
             with_friction = slide_rows[k] >= 0
             acts = with_friction and (mode == ACTIVE or mode == CLOSED)
-            out[at + 6 * contacts + k] = monitor[contacts + k] if acts else 0.0
+            out[at + 6 * contacts + k] = monitor[contacts + k] if acts else _pushed_along(ws, memory[k])
             out[at + 7 * contacts + k] = phid[slide_rows[k]] if with_friction else 0.0
             if ws.tangents == 2 and vec(ws.contact_sticking, contacts)[k] > 0.0:
                 # in space: how fast it slides
@@ -80,6 +81,13 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
     out[at] = recorded_norm(ws, ws.phi)
     out[at + 1] = recorded_norm(ws, ws.phid)
     out[at + 2] = recorded_norm(ws, ws.phidd)
+
+
+@internal
+def _pushed_along(ws: Any, memory: Any) -> float:
+    """Mean force along the tangents in the last step of impulses, N."""
+    first, second = memory[PUSHED + 1], memory[PUSHED + 2]
+    return float(first if ws.tangents < 2 else np.sqrt(first * first + second * second))
 
 
 def empty_buffer(capacity: int, length: int) -> np.ndarray:

@@ -78,6 +78,16 @@ def restart(ws: Any, ms: Any) -> None:
     push(ws, ms)
 
 
+@internal
+def replace(ws: Any, ms: Any) -> None:
+    """The current point takes the place of the newest row, whose motion from the row before it was not smooth: rows
+    further back are forgotten."""
+    ring = ivec(ms.ring, RING_SIZE)
+    ring[0] = (ring[0] + ms.capacity - 1) % ms.capacity
+    ring[1] = min(ring[1] - 1, 1)
+    push(ws, ms)
+
+
 @compiled
 def recall(ws: Any, ms: Any, back: int) -> None:
     """The row `back` steps before the newest becomes the current point of the workspace."""

@@ -14,6 +14,7 @@ import numpy as np
 from ..compiled import types
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
+from ..events.crowding import MANY_TOUCH
 from ..events.laws import FORCE, MASSLESS
 from ..loop.drive import drive_at, loop_at, method_at, workspace_at
 from ..methods.history import history_row, history_time
@@ -171,7 +172,9 @@ def _forget_in_clock(dr: Any, ws: Any, lc: Any, shift: int) -> None:
     for k in range(ws.n_contacts):
         rubs = rubs or friction[k] > 0.0
     if not rubs:
-        clock[WINDOW_START] = clock[WINDOW_COUNT] = clock[CROWDED] = 0.0
+        clock[CROWDED] = 0.0
+        if ws.n_contacts < MANY_TOUCH:
+            clock[WINDOW_START] = clock[WINDOW_COUNT] = 0.0
 
 
 @internal

@@ -24,7 +24,9 @@ RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slid
 GAP_START = 8  # gap at which a contact constraint holds, next to nothing, m
 BEGUN_IMPULSE = 9  # impulse of a contact force when it began to act, N s
 BEGUN_LOSS = 10  # its dissipation then, J
-MEMORY_SIZE = 11
+PUSHED = 11  # of a constraint contact in the last step of impulses: mean normal force, N
+PUSHES = 4  # columns: it, along two tangents, and what acts against turning of it
+MEMORY_SIZE = PUSHED + PUSHES
 # of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):
 WAY = SLIDE_START  # angle of the first tangent, rad
 AXIS = BEGUN_IMPULSE  # which axis of the first marker angles are counted from: 1, 2, 3; 0: not chosen

@@ -69,7 +69,11 @@ B1, B2, A2 = 13, 14, 15  # coefficients of the step-size controller
 REJECTED_HERE = 16  # trials that failed since the last accepted step
 WINDOW_START, WINDOW_COUNT = 17, 18  # since when instants with events are counted, and how many there were
 CROWDED = 19  # 1: the last of these windows was next to no time (`events/crowding.py`)
-CLOCK_SIZE = 20
+# while instants crowd (`events/crowding.py`): the size of the steps of impulses, 0: none; those that are left and how
+# many there were to be at first, since when no contact has come or gone; where the last began, and where the last of a
+# row of them ended
+PUSH_STEP, PUSHES_LEFT, PUSHES, CALM, PUSHED_FROM, PUSHED_UNTIL = range(20, 26)
+CLOCK_SIZE = 26
 
 # columns of a per-step record
 LOG_COLUMNS = ("t", "h", "error", "k", "rejected", "outer", "inner", "factorizations", "evaluations", "krylov")

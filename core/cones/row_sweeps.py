@@ -1,0 +1,176 @@
+"""Impulses of many contacts by sweeps over their rows, one after another, as changes of the motion.
+
+Nonlinear Gauss-Seidel with projections (Jourdan, Alart and Jean 1998; Jean 1999): each row takes the impulse that
+brings its rate to zero, the normal one not below zero, the tangential ones within the friction circle of the present
+normal force, torques against turning between zero and that. No matrix of all contacts is formed: each row knows its
+gradient, and the motion that a unit impulse along it causes.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import imat, mat
+
+
+@internal
+def list_columns(rows: int, n: int, directions: Any, responses: Any, columns: int) -> None:
+    """Which entries of each row are not zero, to `columns` (2, rows, n + 1): first how many."""
+    of_directions, of_responses = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
+    for r in range(rows):
+        some, others = 0, 0
+        for j in range(n):
+            if directions[r, j] != 0.0:
+                some += 1
+                of_directions[r, some] = j
+            if responses[r, j] != 0.0:
+                others += 1
+                of_responses[r, others] = j
+        of_directions[r, 0], of_responses[r, 0] = some, others
+
+
+@internal
+def _rate(r: int, off: Any, directions: Any, where: Any, x: Any) -> float:
+    rate = off[r]
+    for e in range(1, where[r, 0] + 1):
+        rate += directions[r, where[r, e]] * x[where[r, e]]
+    return float(rate)
+
+
+@internal
+def _move(r: int, impulse: float, responses: Any, where: Any, x: Any) -> None:
+    for e in range(1, where[r, 0] + 1):
+        x[where[r, e]] += impulse * responses[r, where[r, e]]
+
+
+@internal
+def sweep_rows(
+    count: int, tangents: int, turns: bool, rows: int, n: int, directions_at: int, responses_at: int, columns: int,
+    masses: Any, off: Any, mu: Any, p: Any, x: Any, tolerance: float, most: int,
+) -> int:  # fmt: skip
+    """Impulses p (rows,) of `count` contacts, normals, tangents and torques in this order, of which as many are asked for
+    as `tangents` and `turns` say, and the change x (n,) of the
+    motion that they cause; both go on from what they are. off, masses (rows,): rates without
+    them, and the inverse masses of the rows, 0: it takes no impulse. Until no rate changes by
+    more than `tolerance` in a sweep, but at most so many sweeps: how many there were."""
+    directions, responses = mat(directions_at, rows, n), mat(responses_at, rows, n)
+    to_read, to_move = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
+    for turn in range(most):
+        change = 0.0
+        for i in range(count):
+            if masses[i] > 0.0:
+                step = max(-_rate(i, off, directions, to_read, x) / masses[i], -p[i])
+                if step != 0.0:
+                    p[i] += step
+                    _move(i, step, responses, to_move, x)
+                    change = max(change, abs(step) * masses[i])
+            if mu[i] > 0.0 and tangents > 0:
+                first, second = count + i, 2 * count + i
+                mass = max(masses[first], masses[second] if tangents == 2 else 0.0)
+                if mass > 0.0:
+                    limit = mu[i] * p[i]
+                    along = p[first] - _rate(first, off, directions, to_read, x) / mass if masses[first] > 0.0 else 0.0
+                    across = 0.0
+                    if tangents == 2 and masses[second] > 0.0:
+                        across = p[second] - _rate(second, off, directions, to_read, x) / mass
+                    size = np.sqrt(along * along + across * across)
+                    part = limit / size if size > limit else 1.0
+                    step = part * along - p[first]
+                    if step != 0.0:
+                        p[first] += step
+                        _move(first, step, responses, to_move, x)
+                        change = max(change, abs(step) * mass)
+                    if tangents == 2:
+                        step = part * across - p[second]
+                        if step != 0.0:
+                            p[second] += step
+                            _move(second, step, responses, to_move, x)
+                            change = max(change, abs(step) * mass)
+            if turns:
+                r = (1 + tangents) * count + i
+                if masses[r] > 0.0:
+                    new = p[r] - _rate(r, off, directions, to_read, x) / masses[r]
+                    step = min(max(new, 0.0), p[i]) - p[r]
+                    if step != 0.0:
+                        p[r] += step
+                        _move(r, step, responses, to_move, x)
+                        change = max(change, abs(step) * masses[r])
+        if change <= tolerance:
+            return turn + 1
+    return most
+
+
+@internal
+def _motion(count: int, p: Any, responses: Any, where: Any, n: int, x: Any) -> None:
+    """x = the motion that the normal impulses p cause."""
+    for j in range(n):
+        x[j] = 0.0
+    for i in range(count):
+        if p[i] != 0.0:
+            _move(i, p[i], responses, where, x)
+
+
+@internal
+def press_apart(
+    count: int, rows: int, n: int, directions_at: int, responses_at: int, columns: int, masses: Any, gaps: Any, p: Any,
+    x: Any, work: Any, tolerance: float, most: int,
+) -> bool:  # fmt: skip
+    """Least motion x (n,) along the normals that leaves none of the `gaps` (rows,) below -`tolerance`; p (rows,): how
+    much each normal has pressed. True if it was found in so many turns.
+
+    Sweeps find which normals press, conjugate gradients how much these do: a quadratic problem with bounds (as MPRGP
+    of Dostal and Schoeberl 2005 turns from one to the other). work : (3 rows + n,).
+    """
+    directions, responses = mat(directions_at, rows, n), mat(responses_at, rows, n)
+    to_read, to_move = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
+    rest, way, product = work[:rows], work[rows : 2 * rows], work[2 * rows : 3 * rows]
+    for j in range(n):
+        x[j] = 0.0
+    for i in range(count):
+        p[i] = 0.0
+    for _ in range(most):
+        for _ in range(5):
+            for i in range(count):
+                if masses[i] > 0.0:
+                    step = max(-_rate(i, gaps, directions, to_read, x) / masses[i], -p[i])
+                    if step != 0.0:
+                        p[i] += step
+                        _move(i, step, responses, to_move, x)
+        worst, size = 0.0, 0.0
+        for i in range(count):
+            left = _rate(i, gaps, directions, to_read, x)
+            worst = max(worst, -left, left if p[i] > 0.0 else 0.0)
+            rest[i] = -left if p[i] > 0.0 else 0.0
+            way[i] = rest[i]
+            size += rest[i] * rest[i]
+        if worst <= tolerance:
+            return True
+        for _ in range(2 * count):
+            if not size > 0.0:
+                break
+            _motion(count, way, responses, to_move, n, work[3 * rows :])
+            of_way = 0.0
+            for i in range(count):
+                product[i] = 0.0
+                if p[i] > 0.0:
+                    for e in range(1, to_read[i, 0] + 1):
+                        product[i] += directions[i, to_read[i, e]] * work[3 * rows + to_read[i, e]]
+                of_way += product[i] * way[i]
+            if not of_way > 0.0:
+                break
+            length, before, out = size / of_way, size, False
+            for i in range(count):
+                if way[i] < 0.0 and p[i] + length * way[i] < 0.0:
+                    length, out = min(length, p[i] / -way[i]), True
+            size = 0.0
+            for i in range(count):
+                p[i] = max(p[i] + length * way[i], 0.0) if way[i] != 0.0 else p[i]
+                rest[i] -= length * product[i]
+                size += rest[i] * rest[i] if p[i] > 0.0 else 0.0
+            if out or np.sqrt(size) <= 0.1 * tolerance:
+                break
+            for i in range(count):
+                way[i] = rest[i] + size / before * way[i] if p[i] > 0.0 else 0.0
+        _motion(count, p, responses, to_move, n, x)
+    return False

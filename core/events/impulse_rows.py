@@ -1,0 +1,142 @@
+"""The rows of a step of impulses: of each touching contact its normal, its tangents and its torque against turning."""
+
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..cones.row_sweeps import list_columns
+from ..linalg import lu_at, solve
+from ..rounding import GAP_ROUNDING
+from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
+from ..tables.levels import position_level
+from .rates_in_space import masses
+from .records import (
+    COUNT,
+    FLAG,
+    GAP,
+    KINETIC,
+    LARGEST,
+    RATE,
+    SETTLED,
+    SLIDE_RATE,
+    SWAY_RATE,
+    TURNS,
+    call_part,
+    clear,
+    col,
+    delassus,
+    real,
+    whole,
+)
+from .touching import read_rates
+
+INVERSE, TAKES, BEFORE, OFF, P = range(5)
+"""Of each row: its inverse mass, the same or 0 where it takes no impulse, its rate before, that without impulses less
+what is wanted, its impulse."""
+ROW_NUMBERS = 5
+ROW_ROOM = ROW_NUMBERS + 3
+"""Numbers of each row, with those that `press_apart` works with."""
+
+
+@internal
+def part(ev: Any, rows: int, k: int) -> Any:
+    """One of the `ROW_NUMBERS` of each row."""
+    return vec(ev.sweeps + 8 * rows * k, rows)
+
+
+@internal
+def room(ev: Any, rows: int, n: int) -> Any:
+    """To work in."""
+    return vec(ev.sweeps + 8 * rows * ROW_NUMBERS, 3 * rows + n)
+
+
+@internal
+def rows_of(ev: Any, ws: Any) -> int:
+    """How many there are."""
+    turns = 1 if ws.tangents == 2 and whole(ev)[TURNS] != 0 else 0
+    return int((1 + ws.tangents + turns) * whole(ev)[COUNT])
+
+
+@internal
+def open_rows(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Open the touching contacts, and find what impulses at them, and torques against turning, do to the motion."""
+    count, contacts = whole(ev)[COUNT], ivec(ev.contacts, ev.most)
+    for i in range(count):
+        col(ev, KINETIC)[i] = vec(dr.friction, ws.n_contacts)[contacts[i]]
+    status = call_part(ev.open_touching, ev, dr, ws, ms)
+    if status != SETTLED:
+        return int(status)
+    for i in range(count):
+        mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], GAP_START] = 0.0
+    if ws.tangents != 2:
+        read_rates(ev, ws)
+    elif whole(ev)[TURNS] != 0:
+        _respond_to_torques(ev, ws, count)
+    rows = rows_of(ev, ws)
+    list_columns(rows, ws.n, mat(ev.directions, rows, ws.n), mat(ev.responses, rows, ws.n), ev.columns)
+    return SETTLED
+
+
+@internal
+def _respond_to_torques(ev: Any, ws: Any, count: int) -> None:
+    """Torques of unit normal forces, without these forces, and the motions that they cause: rows behind the others."""
+    n, rhs = ws.n, vec(ws.rhs, ws.n + ws.m_act)
+    directions, responses = mat(ev.directions, 4 * count, n), mat(ev.responses, 4 * count, n)
+    torques, turns = mat(ev.torques, count, n), col(ev, FLAG)
+    for i in range(count):
+        clear(directions[3 * count + i], n)
+        clear(responses[3 * count + i], n)
+        if turns[i] == 0.0:
+            continue
+        for j in range(n):
+            directions[3 * count + i, j] = rhs[j] = torques[i, j] - directions[i, j]
+        for j in range(ws.m_act):
+            rhs[n + j] = 0.0
+        solve(lu_at(ws.kkt_query), ws.rhs)
+        for j in range(n):
+            responses[3 * count + i, j] = rhs[j]
+
+
+@internal
+def prepare_rows(ev: Any, ws: Any, h: float) -> None:
+    """Inverse masses and rates, and the impulses to begin with: most likely those of the last step, with the motion
+    that they cause in `bounced` (n,)."""
+    count, rows, n, v = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ws.v, ws.n_ext)
+    directions, responses = mat(ev.directions, rows, n), mat(ev.responses, rows, n)
+    contacts, memory, x = ivec(ev.contacts, ev.most), mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ev.bounced, n)
+    inverse, takes, rate, p = part(ev, rows, INVERSE), part(ev, rows, TAKES), part(ev, rows, BEFORE), part(ev, rows, P)
+    scale, contact_rows = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)
+    level, largest = GAP_ROUNDING * position_level(ws), 0.0
+    clear(x, n)
+    for r in range(rows):
+        i, block = r % count, r // count
+        k = contacts[i]
+        if block == 0:
+            rate[r] = col(ev, RATE)[i]
+        elif block == 1:
+            rate[r] = col(ev, SLIDE_RATE)[i]
+        elif block == 2 and ws.tangents == 2:
+            rate[r] = col(ev, SWAY_RATE)[i]
+        else:
+            rate[r] = 0.0
+            for j in range(n):
+                rate[r] += directions[r, j] * v[j]
+        inverse[r] = p[r] = 0.0
+        if block > ws.tangents or _moves(ev, ws, count, r):
+            for j in range(n):
+                inverse[r] += directions[r, j] * responses[r, j]
+        # what is near, but does not touch, stands here to be kept from overlapping
+        takes[r] = inverse[r] if col(ev, GAP)[i] <= level * scale[contact_rows[k]] else 0.0
+        if takes[r] > 0.0:
+            largest = max(largest, abs(rate[r]))
+            p[r] = h * memory[k, PUSHED + block]
+            for j in range(n):
+                x[j] += p[r] * responses[r, j]
+        part(ev, rows, OFF)[r] = rate[r]
+    real(ev)[LARGEST] = largest
+
+
+@internal
+def _moves(ev: Any, ws: Any, count: int, r: int) -> bool:
+    """False for a tangent without friction, or that joints hold."""
+    return bool((masses(ev, count)[r, r] if ws.tangents == 2 else delassus(ev, count)[r, r]) > 0.0)

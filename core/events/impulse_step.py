@@ -1,0 +1,208 @@
+"""A step of velocities and impulses, without events (Moreau 1988; Jean and Moreau 1992; Jean 1999).
+
+All contacts are open in a step; those that overlap at its end are pushed apart there. The impulses are those with
+which none approaches, each within its friction cone: of what a step takes, weight as well as impacts. What they do to
+the velocities they do to the positions with half the step, as if they had acted in its middle, so what rests or sticks
+stays where it is. Gaps that are negative all the same are closed by the least motion along the normals that does so.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal, record_view
+from ..compiled.views import ivec, mat, vec
+from ..cones.row_sweeps import press_apart, sweep_rows
+from ..methods.history import history_time
+from ..rounding import GAP_ROUNDING
+from ..state.modes import CLOSED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, PUSHED
+from ..state.run_records import CALM, CLOCK_SIZE, IMPACT, LOOP_TYPE, PUSHED_FROM, PUSHES_LEFT, call_accelerations
+from ..state.workspace_records import OK
+from ..tables.evaluate import evaluate_energy, evaluate_residuals
+from ..tables.levels import position_level
+from .crowding import end_pushing
+from .impulse_rows import BEFORE, INVERSE, OFF, TAKES, P, open_rows, part, prepare_rows, room, rows_of
+from .meeting import meet_constraints
+from .reading import read_before
+from .records import (
+    APPROACH,
+    COUNT,
+    FALLS,
+    KINETIC,
+    LARGEST,
+    LOSS,
+    NO_ACCELERATIONS,
+    NOT_MET,
+    RESTS,
+    SETTLED,
+    SWEPT,
+    TOUCHED,
+    WANT_ROOM,
+    WAS,
+    call_part,
+    col,
+    real,
+    whole,
+)
+from .report import report
+from .touching import find_touching, read_values
+
+TOLERANCE, SWEEPS = 1e-7, 300
+"""Sweeps end when no rate changes by more than this part of the largest there was, or after so many."""
+SHIFTS, SHIFT_TURNS = 3, 30
+"""Looks at gaps that are still negative, and turns for each."""
+QUIET = 6
+"""Steps in which no contact comes, goes or bounces, after which the crowd is over."""
+
+loop_at = record_view(LOOP_TYPE)
+
+
+@internal
+def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Push apart what overlaps at the end of a step of impulses, which is the newest row."""
+    lc = loop_at(dr.loop)
+    clock, t, energy = vec(lc.clock, CLOCK_SIZE), history_time(ms, 0), vec(ws.energy, 3)
+    h = t - clock[PUSHED_FROM]
+    if not find_touching(ev, dr, ws):
+        return WANT_ROOM
+    read_before(ev, dr, ws)
+    read_values(ev, ws)
+    status = open_rows(ev, dr, ws, ms)
+    if status != SETTLED:
+        return status
+    prepare_rows(ev, ws, h)
+    _bounce(ev, dr, ws, h)
+    evaluate_energy(ws)
+    before, kinetic = energy[0] + energy[1] + energy[2], energy[0]
+    _push(ev, ws, h)
+    changed, lost = _record(ev, dr, ws, h, t)
+    if dr.input_account >= 0:
+        evaluate_energy(ws)
+        driven = energy[0] - kinetic + lost
+        vec(ws.v, ws.n_ext)[dr.input_account] += driven
+        before += driven
+    if _any_held(ev):
+        status = call_part(ev.use_modes, ev, dr, ws, ms)
+        if status != SETTLED:
+            return int(status)
+    if not meet_constraints(ws) or not _close_overlaps(ev, ws):
+        return NOT_MET
+    evaluate_energy(ws)
+    _account(ev, ws, before - energy[0] - energy[1] - energy[2] - lost)
+    if call_accelerations(dr.accelerations, ws) != OK:
+        return NO_ACCELERATIONS
+    whole(ev)[TOUCHED] = whole(ev)[COUNT]
+    clock[PUSHED_FROM], clock[CALM] = t, 0.0 if changed else clock[CALM] + 1.0
+    if clock[PUSHES_LEFT] <= 0.0 or clock[CALM] >= QUIET:
+        end_pushing(ws, lc, t)
+    return SETTLED
+
+
+@internal
+def _any_held(ev: Any) -> bool:
+    """True if a contact was closed: at the first of a row of steps."""
+    for i in range(whole(ev)[COUNT]):
+        if col(ev, WAS)[i] == CLOSED:
+            return True
+    return False
+
+
+@internal
+def _bounce(ev: Any, dr: Any, ws: Any, h: float) -> None:
+    """Newton's law for contacts that have just met, by 1 in `RESTS`: those that pressed in the last step already are
+    parts of one blow, and what falls within a step no farther than its weight makes it is no bounce."""
+    rows, contacts, memory = rows_of(ev, ws), ivec(ev.contacts, ev.most), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    off, rate, takes = part(ev, rows, OFF), part(ev, rows, BEFORE), part(ev, rows, TAKES)
+    for i in range(whole(ev)[COUNT]):
+        k, approach, falls = contacts[i], -rate[i], max(col(ev, FALLS)[i], 0.0)
+        e = vec(dr.restitution, ws.n_contacts)[k]
+        least = max(vec(dr.rest_ratio, ws.n_contacts)[k] * memory[k, LARGEST_APPROACH], h * falls)
+        new = takes[i] > 0.0 and memory[k, PUSHED] == 0.0
+        col(ev, APPROACH)[i] = max(approach, 0.0)
+        col(ev, RESTS)[i] = 1.0 if new and e * approach > least and approach > 2.0 * h * falls else 0.0
+        if col(ev, RESTS)[i] != 0.0:
+            off[i] += e * rate[i]
+
+
+@internal
+def _push(ev: Any, ws: Any, h: float) -> None:
+    """Impulses of all rows; the velocities change by them, and the positions by half of h (s) of that."""
+    count, rows, n, x = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ev.bounced, ws.n)
+    v, q = vec(ws.v, ws.n_ext), vec(ws.q, ws.n_ext)
+    real(ev)[SWEPT] = sweep_rows(
+        count, ws.tangents, rows > (1 + ws.tangents) * count, rows, n, ev.directions, ev.responses, ev.columns,
+        part(ev, rows, TAKES), part(ev, rows, OFF), col(ev, KINETIC), part(ev, rows, P), x,
+        TOLERANCE * real(ev)[LARGEST], SWEEPS,
+    )  # fmt: skip
+    for j in range(n):
+        v[j] += x[j]
+        q[j] += 0.5 * h * x[j]
+
+
+@internal
+def _record(ev: Any, dr: Any, ws: Any, h: float, t: float) -> Any:
+    """Impulses to the contacts' memories, bounces to the events. (True if a contact has come, gone or bounced; what all
+    impulses have taken of the energy, J: half of each times the sum of its rates before and after.)"""
+    count, rows, n, x = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ev.bounced, ws.n)
+    directions, contacts, rate, p = (
+        mat(ev.directions, rows, n), ivec(ev.contacts, ev.most), part(ev, rows, BEFORE), part(ev, rows, P)
+    )  # fmt: skip
+    changed, total = False, 0.0
+    for i in range(count):
+        k, lost, after = contacts[i], 0.0, rate[i]
+        memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+        changed = changed or (p[i] > 0.0) != (memory[PUSHED] > 0.0) or col(ev, RESTS)[i] != 0.0
+        for block in range(rows // count):
+            r, moved = block * count + i, 0.0
+            for j in range(n):
+                moved += directions[r, j] * x[j]
+            after = rate[i] + moved if block == 0 else after
+            lost -= p[r] * (rate[r] + 0.5 * moved)
+            memory[PUSHED + block] = p[r] / h if h > 0.0 else 0.0
+        memory[IMPULSE_JUMP] += p[i]
+        col(ev, LOSS)[i] = lost
+        total += lost
+        if col(ev, RESTS)[i] != 0.0:
+            approach = col(ev, APPROACH)[i]
+            memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
+            report(dr, t, IMPACT, k, p[i], lost, approach, max(after, 0.0), 0.0, 0.0)
+    return changed, total
+
+
+@internal
+def _account(ev: Any, ws: Any, more: float) -> None:
+    """The losses go to the contacts' memories, with `more` (J) that motions along the constraints have taken, as their
+    impulses share it."""
+    count, contacts, total = whole(ev)[COUNT], ivec(ev.contacts, ev.most), 0.0
+    p, memory = part(ev, rows_of(ev, ws), P), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    for i in range(count):
+        total += p[i]
+    for i in range(count):
+        share = p[i] / total if total > 0.0 else 1.0 / count
+        memory[contacts[i], LOSS_JUMP] += col(ev, LOSS)[i] + share * more
+
+
+@internal
+def _close_overlaps(ev: Any, ws: Any) -> bool:
+    """Shift what overlaps along the normals; False where joints cannot be met then."""
+    count, rows, n, x = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ev.bounced, ws.n)
+    off, scale, contacts = part(ev, rows, OFF), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
+    contact_rows, level = ivec(ws.contact_rows, ws.n_contacts), GAP_ROUNDING * position_level(ws)
+    for _ in range(SHIFTS):
+        worst, least = 0.0, np.inf
+        for i in range(count):
+            row = contact_rows[contacts[i]]
+            off[i], least = vec(ws.phi, ws.m_ext)[row], min(least, scale[row])
+            worst = max(worst, -off[i] - level * scale[row])
+        if worst <= 0.0:
+            return True
+        press_apart(
+            count, rows, n, ev.directions, ev.responses, ev.columns, part(ev, rows, INVERSE), off,
+            part(ev, rows, BEFORE), x, room(ev, rows, n), 0.1 * level * least, SHIFT_TURNS,
+        )  # fmt: skip
+        for j in range(n):
+            vec(ws.q, ws.n_ext)[j] += x[j]
+        evaluate_residuals(ws)
+        if not meet_constraints(ws):
+            return False
+    return True

@@ -1,0 +1,68 @@
+"""A step of impulses: smooth motion with all contact constraints open, without a look for their events; what overlaps at
+its end is pending, and pushed apart there (`events/impulse_step.py`)."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, vec
+from ..events.crowding import end_pushing
+from ..location.asleep import sleeps_on
+from ..location.probe import set_travel
+from ..location.trials import make_trial
+from ..methods.history import history_time, recall
+from ..rounding import GAP_ROUNDING
+from ..state.run_records import CLOCK_SIZE, FULL, PUSH_STEP, PUSHED_FROM, PUSHES_LEFT, STOP_TIME
+from ..state.workspace_records import OK
+from ..tables.levels import position_level
+from .loop import take_sample, take_step
+
+NEAR = 2.0
+SHORTEST = 1e-3
+"""Of a step of impulses: if no smooth step of that size can be made, none can."""
+
+
+@internal
+def make_push_step(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
+    """Make it and accept it; OK, or the status of a step that cannot be made."""
+    if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+        return FULL
+    if lc.log_capacity > 0 and ivec(lc.log_cursor, 1)[0] >= lc.log_capacity:
+        return FULL
+    clock, t, error = vec(lc.clock, CLOCK_SIZE), history_time(ms, 0), vec(ms.error, 2)
+    remaining = clock[STOP_TIME] - t
+    h = min(clock[PUSH_STEP], remaining)
+    if remaining > h > 0.5 * remaining:
+        h = 0.5 * remaining
+    least = SHORTEST * h
+    while True:
+        recall(ws, ms, 0)
+        vec(dr.last_trial, 1)[0] = -1.0
+        status = make_trial(dr, ws, ms, lc, h, np.inf)
+        if status == OK and error[0] <= 1.0:
+            break
+        if h <= least:
+            return status
+        h *= 0.25
+    if h == remaining:
+        vec(ws.t, 1)[0] = clock[STOP_TIME]
+    set_travel(ws, ms, lc, h)
+    level, rows, phi = GAP_ROUNDING * position_level(ws), ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext)
+    pending, scale, touches, deepest = ivec(dr.pending, ws.n_contacts), vec(ws.row_scale, ws.m_ext), False, 0.0
+    for k in range(ws.n_contacts):
+        pending[k] = 0
+        if not sleeps_on(ws, ms, lc, k) and phi[rows[k]] <= level * scale[rows[k]]:
+            pending[k], touches, deepest = 1, True, max(deepest, -phi[rows[k]])
+    # what is so near may overlap once those are pushed apart
+    for k in range(ws.n_contacts):
+        if ivec(ws.asleep, ws.n_contacts)[k] == 0 and phi[rows[k]] <= NEAR * deepest:
+            pending[k] = 1
+    take_step(ws, ms, lc)
+    clock[PUSHED_FROM] = t
+    clock[PUSHES_LEFT] -= 1.0
+    if not touches:
+        # nothing is left of the crowd, and nobody else samples this point
+        end_pushing(ws, lc, history_time(ms, 0))
+        take_sample(ws, lc)
+    return OK
