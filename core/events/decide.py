@@ -16,6 +16,7 @@ from .left_over import take_away_left
 from .new_modes import report_modes, take_modes
 from .reading import largest_acceleration, read_before
 from .records import (
+    ALONE,
     ACCELERATIONS,
     COUNT,
     FIRST,
@@ -68,6 +69,7 @@ def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         col(ev, RESTITUTION)[i] = vec(dr.restitution, ws.n_contacts)[k]
         col(ev, RESTS)[i] = col(ev, FIRST)[i] = col(ev, STOP_IMPULSE)[i] = col(ev, STOP_LOSS)[i] = 0.0
         col(ev, SLOW)[i] = vec(dr.rest_ratio, ws.n_contacts)[k] * rate_size(ws, k) if crowded else 0.0
+    whole(ev)[ALONE] = 0
     status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status != SETTLED:
         return status

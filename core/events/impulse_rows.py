@@ -11,6 +11,7 @@ from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
 from ..tables.levels import position_level
 from .rates_in_space import masses
 from .records import (
+    ALONE,
     COUNT,
     FLAG,
     GAP,
@@ -63,7 +64,9 @@ def open_rows(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     count, contacts = whole(ev)[COUNT], ivec(ev.contacts, ev.most)
     for i in range(count):
         col(ev, KINETIC)[i] = vec(dr.friction, ws.n_contacts)[contacts[i]]
+    whole(ev)[ALONE] = 1
     status = call_part(ev.open_touching, ev, dr, ws, ms)
+    whole(ev)[ALONE] = 0
     if status != SETTLED:
         return int(status)
     for i in range(count):

@@ -13,11 +13,12 @@ import numpy as np
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..cones.row_sweeps import press_apart, sweep_rows
+from ..linalg import lu_at, solve
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, PUSHED
 from ..state.run_records import CALM, CLOCK_SIZE, IMPACT, LOOP_TYPE, PUSHED_FROM, PUSHES_LEFT, call_accelerations
-from ..state.workspace_records import OK
+from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from ..tables.evaluate import evaluate_energy, evaluate_residuals
 from ..tables.levels import position_level
 from .crowding import end_pushing
@@ -40,6 +41,7 @@ from .records import (
     WANT_ROOM,
     WAS,
     call_part,
+    clear,
     col,
     real,
     whole,
@@ -47,10 +49,12 @@ from .records import (
 from .report import report
 from .touching import find_touching, read_values
 
-TOLERANCE, SWEEPS = 1e-7, 300
+TOLERANCE, SWEEPS = 1e-7, 1000
 """Sweeps end when no rate changes by more than this part of the largest there was, or after so many."""
 SHIFTS, SHIFT_TURNS = 3, 30
 """Looks at gaps that are still negative, and turns for each."""
+FEW = 5.0
+"""Steps within which what flies off must not be back, or it is no bounce."""
 QUIET = 6
 """Steps in which no contact comes, goes or bounces, after which the crowd is over."""
 
@@ -95,7 +99,29 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     clock[PUSHED_FROM], clock[CALM] = t, 0.0 if changed else clock[CALM] + 1.0
     if clock[PUSHES_LEFT] <= 0.0 or clock[CALM] >= QUIET:
         end_pushing(ws, lc, t)
+    elif h > 0.0:
+        _carry(ev, ws, h)
     return SETTLED
+
+
+@internal
+def _carry(ev: Any, ws: Any, h: float) -> None:
+    """Accelerations and joint forces as the contacts' mean forces of the last step (s) make them: what is seen of the
+    motion until the next one. The next step does not begin with them."""
+    rows, n, rhs = rows_of(ev, ws), ws.n, vec(ws.rhs, ws.n + ws.m_act)
+    directions, p, a, lam = mat(ev.directions, rows, n), part(ev, rows, P), vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext)
+    clear(rhs, n + ws.m_act)
+    for r in range(rows):
+        if p[r] != 0.0:
+            for j in range(n):
+                rhs[j] += directions[r, j] * p[r] / h
+    solve(lu_at(ws.kkt_query), ws.rhs)
+    active = ivec(ws.active, ws.m_act)
+    for j in range(n):
+        a[j] += rhs[j]
+    for i in range(ws.m_act):
+        lam[active[i]] += rhs[n + i]
+    evaluate_residuals(ws)
 
 
 @internal
@@ -110,16 +136,18 @@ def _any_held(ev: Any) -> bool:
 @internal
 def _bounce(ev: Any, dr: Any, ws: Any, h: float) -> None:
     """Newton's law for contacts that have just met, by 1 in `RESTS`: those that pressed in the last step already are
-    parts of one blow, and what falls within a step no farther than its weight makes it is no bounce."""
+    parts of one blow, and what the accelerations here stop within a few steps is no bounce."""
     rows, contacts, memory = rows_of(ev, ws), ivec(ev.contacts, ev.most), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
     off, rate, takes = part(ev, rows, OFF), part(ev, rows, BEFORE), part(ev, rows, TAKES)
+    falls_of_model, contact_rows = vec(ws.control, CONTROL_SIZE)[RATE_SCALE] ** 2, ivec(ws.contact_rows, ws.n_contacts)
     for i in range(whole(ev)[COUNT]):
         k, approach, falls = contacts[i], -rate[i], max(col(ev, FALLS)[i], 0.0)
         e = vec(dr.restitution, ws.n_contacts)[k]
-        least = max(vec(dr.rest_ratio, ws.n_contacts)[k] * memory[k, LARGEST_APPROACH], h * falls)
+        slow = FEW * h * max(falls, falls_of_model * vec(ws.row_scale, ws.m_ext)[contact_rows[k]])
+        least = max(vec(dr.rest_ratio, ws.n_contacts)[k] * memory[k, LARGEST_APPROACH], slow)
         new = takes[i] > 0.0 and memory[k, PUSHED] == 0.0
         col(ev, APPROACH)[i] = max(approach, 0.0)
-        col(ev, RESTS)[i] = 1.0 if new and e * approach > least and approach > 2.0 * h * falls else 0.0
+        col(ev, RESTS)[i] = 1.0 if new and e * approach > least else 0.0
         if col(ev, RESTS)[i] != 0.0:
             off[i] += e * rate[i]
 

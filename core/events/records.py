@@ -104,7 +104,8 @@ READY = 5  # accelerations have been looked at
 WITHOUT = 6  # 1: impacts are without restitution where `LOW` says so
 TURNS = 7  # 1: forces of contacts have torques against turning with them
 TOUCHED = 8  # contacts that touch, once the instant has been decided
-WHOLES = 9
+ALONE = 9  # 1: of the inverse masses of what is opened the diagonal alone is wanted
+WHOLES = 10
 
 # what settling an instant returns
 SETTLED = 0

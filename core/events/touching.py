@@ -21,6 +21,7 @@ from ..tables.levels import acceleration_level, position_level, rate_level
 from ..tables.switch import engage_modes
 from .laws import FORCE, MASSLESS
 from .records import (
+    ALONE,
     COUNT,
     GAP,
     IMMOVABLE_CONTACT,
@@ -121,14 +122,15 @@ def _respond(ev: Any, ws: Any, count: int, slides: Any) -> None:
         for j in range(n):
             responses[i, j] = rhs[j]
     some = ivec(ev.columns, n)
+    alone = whole(ev)[ALONE] != 0
     for i in range(2 * count):
         entries = entries_of(directions[i], n, some)
-        for j in range(2 * count):
+        for j in range(i if alone else 0, i + 1 if alone else 2 * count):
             product = 0.0
             for e in range(entries):
                 product += directions[i, some[e]] * responses[j, some[e]]
             a[i, j] = product
-    for i in range(2 * count):
+    for i in range(0 if alone else 2 * count):
         for j in range(i):
             a[i, j] = a[j, i] = 0.5 * (a[i, j] + a[j, i])
 

@@ -20,7 +20,7 @@ from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.switch import engage_modes
 from .rates_in_space import masses, read_rates_in_space
-from .records import COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
+from .records import ALONE, COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
 from .torques_in_space import find_torques, press_with_torques
 from .touching import entries_of, find_gradient, refuse_immovable
 
@@ -79,14 +79,15 @@ def _respond(ev: Any, ws: Any, count: int) -> None:
         for j in range(n):
             responses[i, j] = rhs[j]
     some = ivec(ev.columns, n)
+    alone = whole(ev)[ALONE] != 0
     for i in range(3 * count):
         entries = entries_of(directions[i], n, some)
-        for j in range(3 * count):
+        for j in range(i if alone else 0, i + 1 if alone else 3 * count):
             product = 0.0
             for e in range(entries):
                 product += directions[i, some[e]] * responses[j, some[e]]
             a[i, j] = product
-    for i in range(3 * count):
+    for i in range(0 if alone else 3 * count):
         for j in range(i):
             a[i, j] = a[j, i] = 0.5 * (a[i, j] + a[j, i])
     # a tangent that joints hold takes no friction
@@ -95,9 +96,11 @@ def _respond(ev: Any, ws: Any, count: int) -> None:
         largest = max(largest, a[i, i])
     for i in range(count, 3 * count):
         if a[i, i] <= IMMOVABLE * largest:
-            for j in range(3 * count):
+            a[i, i] = 0.0
+            for j in range(0 if alone else 3 * count):
                 a[i, j] = a[j, i] = 0.0
     for i in range(2 * count):
-        for j in range(2 * count):
+        for j in range(i if alone else 0, i + 1 if alone else 2 * count):
             plane[i, j] = a[i, j]
-    press_with_torques(ev, ws, count)
+    if not alone:
+        press_with_torques(ev, ws, count)

@@ -13,6 +13,7 @@ from ..tables.levels import force_level
 from .laws import MASSLESS
 from .reading import comes_back
 from .records import (
+    ALONE,
     B_N,
     B_T,
     COUNT,
@@ -82,6 +83,7 @@ def _returns_at_once(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int
     mode, slide, ratio, axis = memory[MODE], memory[SLIDE], memory[RATIO], memory[AXIS]
     ivec(ev.contacts, ev.most)[0], whole(ev)[COUNT] = k, 1
     motion, jerks = col(ev, B_N), col(ev, SPARE)
+    whole(ev)[ALONE] = 0
     status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status == SETTLED:
         status = free_accelerations(ev, dr, ws, motion, col(ev, B_T), 0.0)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled.jit import compiled, compiled_unlocked, internal, record_view
 from ..compiled.views import ivec, vec
-from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at
+from ..events.records import ALONE, DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at, whole
 from ..events.settle import go_on_behind, settle
 from ..events.unsettled import find_unsettled
 from ..location.asleep import wake_all
@@ -216,6 +216,7 @@ def unsettled_now(dr: Any) -> bool:
 def open_now(dr: Any) -> int:
     """`open_touching` at the current point, for Python."""
     ev = instant_at(dr.instant)
+    whole(ev)[ALONE] = 0
     return call_part(ev.open_touching, ev, dr, workspace_at(dr.workspace), method_at(dr.method))
 
 
