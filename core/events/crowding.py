@@ -15,6 +15,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
+from ..rounding import GAP_ROUNDING
 from ..state.modes import MEMORY_SIZE, PUSHED
 from ..state.modes import PUSHES as BLOCKS
 from ..state.run_records import (
@@ -30,6 +31,7 @@ from ..state.run_records import (
     WINDOW_START,
 )
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
+from ..tables.levels import position_level
 from .laws import FORCE, MASSLESS
 
 WINDOW = 64
@@ -66,6 +68,14 @@ def count_instant(dr: Any, ws: Any, ms: Any, lc: Any, t: float, touching: int) -
 @internal
 def _size(ws: Any) -> float:
     return float(SIZE / vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
+
+
+@internal
+def near_level(ws: Any, h: float) -> float:
+    """Gaps in parts of their rows' scales that count as none at the end of a step of impulses of h (s): those that the
+    model's own accelerations close within the next one. What rests presses in each step then, not in every other."""
+    way = h * vec(ws.control, CONTROL_SIZE)[RATE_SCALE]
+    return float(GAP_ROUNDING * position_level(ws) + 0.5 * way * way)
 
 
 @internal

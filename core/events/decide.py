@@ -16,8 +16,8 @@ from .left_over import take_away_left
 from .new_modes import report_modes, take_modes
 from .reading import largest_acceleration, read_before
 from .records import (
-    ALONE,
     ACCELERATIONS,
+    ALONE,
     COUNT,
     FIRST,
     FLAG,

@@ -6,9 +6,8 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.row_sweeps import list_columns
 from ..linalg import lu_at, solve
-from ..rounding import GAP_ROUNDING
 from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
-from ..tables.levels import position_level
+from .crowding import near_level
 from .rates_in_space import masses
 from .records import (
     ALONE,
@@ -109,7 +108,7 @@ def prepare_rows(ev: Any, ws: Any, h: float) -> None:
     contacts, memory, x = ivec(ev.contacts, ev.most), mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ev.bounced, n)
     inverse, takes, rate, p = part(ev, rows, INVERSE), part(ev, rows, TAKES), part(ev, rows, BEFORE), part(ev, rows, P)
     scale, contact_rows = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)
-    level, largest = GAP_ROUNDING * position_level(ws), 0.0
+    level, largest = near_level(ws, h), 0.0
     clear(x, n)
     for r in range(rows):
         i, block = r % count, r // count

@@ -17,7 +17,16 @@ from ..linalg import lu_at, solve
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, PUSHED
-from ..state.run_records import CALM, CLOCK_SIZE, IMPACT, LOOP_TYPE, PUSHED_FROM, PUSHES_LEFT, call_accelerations
+from ..state.run_records import (
+    CALM,
+    CLOCK_SIZE,
+    IMPACT,
+    LOOP_TYPE,
+    PUSHED_FROM,
+    PUSHES,
+    PUSHES_LEFT,
+    call_accelerations,
+)
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from ..tables.evaluate import evaluate_energy, evaluate_residuals
 from ..tables.levels import position_level
@@ -55,8 +64,9 @@ SHIFTS, SHIFT_TURNS = 3, 30
 """Looks at gaps that are still negative, and turns for each."""
 FEW = 5.0
 """Steps within which what flies off must not be back, or it is no bounce."""
-QUIET = 6
-"""Steps in which no contact comes, goes or bounces, after which the crowd is over."""
+QUIET, QUIET_PART = 6, 0.125
+"""Steps in which no contact comes, goes or bounces, after which the crowd is over: so many, and such a part of the row,
+so that a crowd that comes back at once is not looked at again and again."""
 
 loop_at = record_view(LOOP_TYPE)
 
@@ -97,7 +107,7 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return NO_ACCELERATIONS
     whole(ev)[TOUCHED] = whole(ev)[COUNT]
     clock[PUSHED_FROM], clock[CALM] = t, 0.0 if changed else clock[CALM] + 1.0
-    if clock[PUSHES_LEFT] <= 0.0 or clock[CALM] >= QUIET:
+    if clock[PUSHES_LEFT] <= 0.0 or clock[CALM] >= max(QUIET, QUIET_PART * clock[PUSHES]):
         end_pushing(ws, lc, t)
     elif h > 0.0:
         _carry(ev, ws, h)

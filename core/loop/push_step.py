@@ -7,15 +7,13 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..events.crowding import end_pushing
+from ..events.crowding import end_pushing, near_level
 from ..location.asleep import sleeps_on
 from ..location.probe import set_travel
 from ..location.trials import make_trial
 from ..methods.history import history_time, recall
-from ..rounding import GAP_ROUNDING
 from ..state.run_records import CLOCK_SIZE, FULL, PUSH_STEP, PUSHED_FROM, PUSHES_LEFT, STOP_TIME
 from ..state.workspace_records import OK
-from ..tables.levels import position_level
 from .loop import take_sample, take_step
 
 NEAR = 2.0
@@ -48,7 +46,7 @@ def make_push_step(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     if h == remaining:
         vec(ws.t, 1)[0] = clock[STOP_TIME]
     set_travel(ws, ms, lc, h)
-    level, rows, phi = GAP_ROUNDING * position_level(ws), ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext)
+    level, rows, phi = near_level(ws, h), ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext)
     pending, scale, touches, deepest = ivec(dr.pending, ws.n_contacts), vec(ws.row_scale, ws.m_ext), False, 0.0
     for k in range(ws.n_contacts):
         pending[k] = 0
