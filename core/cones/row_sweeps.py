@@ -49,11 +49,12 @@ def sweep_rows(
     count: int, tangents: int, turns: bool, rows: int, n: int, directions_at: int, responses_at: int, columns: int,
     masses: Any, off: Any, mu: Any, p: Any, x: Any, tolerance: float, most: int,
 ) -> int:  # fmt: skip
-    """Impulses p (rows,) of `count` contacts, normals, tangents and torques in this order, of which as many are asked for
-    as `tangents` and `turns` say, and the change x (n,) of the
-    motion that they cause; both go on from what they are. off, masses (rows,): rates without
-    them, and the inverse masses of the rows, 0: it takes no impulse. Until no rate changes by
-    more than `tolerance` in a sweep, but at most so many sweeps: how many there were."""
+    """Impulses p (rows,) of `count` contacts, and the change x (n,) of the motion that they cause; both go on from what
+    they are. Until no rate changes by more than `tolerance` in a sweep, but at most so many: how many there were.
+
+    Rows are normals, first and second tangents, torques, as many of them as `tangents` and `turns` say. off, masses
+    (rows,): rates without the impulses, and the rows' inverse masses, 0 where a row takes none. mu (count,).
+    """
     directions, responses = mat(directions_at, rows, n), mat(responses_at, rows, n)
     to_read, to_move = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
     for turn in range(most):

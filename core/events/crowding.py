@@ -43,8 +43,9 @@ SIZE = 5e-4
 """Of a step of impulses, in parts of the model's own time."""
 FEWEST, MOST = 8, 512
 """Steps of impulses in a row."""
-SOON = 64
 FEW_AGAIN = 16
+"""Instants within the time of one step behind a row, after which the next begins."""
+SOON = 64
 """Steps of impulses: what crowds again within the time of so many behind the last row goes on crowding."""
 
 
@@ -68,6 +69,13 @@ def count_instant(dr: Any, ws: Any, ms: Any, lc: Any, t: float, touching: int) -
 @internal
 def _size(ws: Any) -> float:
     return float(SIZE / vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
+
+
+@internal
+def pushed_lately(ws: Any, lc: Any, t: float) -> bool:
+    """True if the last row of steps of impulses ended a short time before t."""
+    clock = vec(lc.clock, CLOCK_SIZE)
+    return bool(clock[PUSHES] > 0.0 and t <= clock[PUSHED_UNTIL] + SOON * _size(ws))
 
 
 @internal
@@ -97,7 +105,7 @@ def begin_pushing(dr: Any, ws: Any, ms: Any, lc: Any, t: float) -> bool:
     clock = vec(lc.clock, CLOCK_SIZE)
     if clock[PUSH_STEP] != 0.0 or not may_push(dr, ws, ms, lc):
         return clock[PUSH_STEP] != 0.0
-    again = t <= clock[PUSHED_UNTIL] + SOON * _size(ws) and clock[PUSHES] > 0.0
+    again = pushed_lately(ws, lc, t)
     clock[PUSHES] = min(2.0 * clock[PUSHES], MOST) if again else FEWEST
     clock[PUSH_STEP], clock[PUSHES_LEFT], clock[CALM], clock[PUSHED_FROM] = _size(ws), clock[PUSHES], 0.0, t
     return True

@@ -1,5 +1,7 @@
-"""A step of impulses: smooth motion with all contact constraints open, without a look for their events; what overlaps at
-its end is pending, and pushed apart there (`events/impulse_step.py`)."""
+"""A step of impulses: smooth motion with all contact constraints open, without a look for their events.
+
+What overlaps at its end is pending, and pushed apart there (`events/impulse_step.py`).
+"""
 
 from typing import Any
 
@@ -12,18 +14,19 @@ from ..location.asleep import sleeps_on
 from ..location.probe import set_travel
 from ..location.trials import make_trial
 from ..methods.history import history_time, recall
-from ..state.run_records import CLOCK_SIZE, FULL, PUSH_STEP, PUSHED_FROM, PUSHES_LEFT, STOP_TIME
-from ..state.workspace_records import OK
-from .loop import take_sample, take_step
+from ..state.run_records import CLOCK_SIZE, FULL, PUSH_STEP, PUSHED_FROM, PUSHES_LEFT, REPARTITION, STOP_TIME
+from ..state.workspace_records import COUNTERS_SIZE, OF_IMPULSES, OK
+from .loop import partition_strained, take_sample, take_step
 
 NEAR = 2.0
+"""Of the deepest overlap: a gap so small may close where that one is opened."""
 SHORTEST = 1e-3
 """Of a step of impulses: if no smooth step of that size can be made, none can."""
 
 
 @internal
 def make_push_step(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
-    """Make it and accept it; OK, or the status of a step that cannot be made."""
+    """Make it and accept it; OK, REPARTITION, or the status of a step that cannot be made."""
     if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
         return FULL
     if lc.log_capacity > 0 and ivec(lc.log_cursor, 1)[0] >= lc.log_capacity:
@@ -57,10 +60,11 @@ def make_push_step(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         if ivec(ws.asleep, ws.n_contacts)[k] == 0 and phi[rows[k]] <= NEAR * deepest:
             pending[k] = 1
     take_step(ws, ms, lc)
+    ivec(ws.counters, COUNTERS_SIZE)[OF_IMPULSES] += 1
     clock[PUSHED_FROM] = t
     clock[PUSHES_LEFT] -= 1.0
     if not touches:
         # nothing is left of the crowd, and nobody else samples this point
         end_pushing(ws, lc, history_time(ms, 0))
         take_sample(ws, lc)
-    return OK
+    return REPARTITION if partition_strained(ws) else OK

@@ -14,7 +14,7 @@ import numpy as np
 from ..compiled import types
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..events.crowding import MANY_TOUCH
+from ..events.crowding import MANY_TOUCH, pushed_lately
 from ..events.laws import FORCE, MASSLESS
 from ..loop.drive import drive_at, loop_at, method_at, workspace_at
 from ..methods.history import history_row, history_time
@@ -53,6 +53,9 @@ from ..state.run_records import (
     PASSED,
     PREVIOUS_NORM,
     PREVIOUS_RATIO,
+    PUSH_STEP,
+    PUSHED_UNTIL,
+    PUSHES,
     REJECTED_HERE,
     STATUS,
     STEP_SIZE,
@@ -104,7 +107,7 @@ def _normalise(dr: Any, ws: Any, ms: Any, lc: Any, shift: int) -> None:
     _order_history(ws, ms, shift)
     _place_newest(ws, ms, shift)
     _forget_used(ws, ms, shift)
-    _forget_in_clock(dr, ws, lc, shift)
+    _forget_in_clock(dr, ws, ms, lc, shift)
     _forget_in_memories(dr, ws, shift)
 
 
@@ -154,7 +157,7 @@ def _forget_used(ws: Any, ms: Any, shift: int) -> None:
 
 
 @internal
-def _forget_in_clock(dr: Any, ws: Any, lc: Any, shift: int) -> None:
+def _forget_in_clock(dr: Any, ws: Any, ms: Any, lc: Any, shift: int) -> None:
     """Where the last way went, and what fixed steps, or contacts without friction, have no use for."""
     clock = vec(lc.clock + shift, CLOCK_SIZE)
     clock[STOP_TIME] = clock[TRIAL_STEP] = clock[TARGET_TIME] = clock[BREAK_TIME] = clock[REJECTED_HERE] = 0.0
@@ -175,6 +178,8 @@ def _forget_in_clock(dr: Any, ws: Any, lc: Any, shift: int) -> None:
         clock[CROWDED] = 0.0
         if ws.n_contacts < MANY_TOUCH:
             clock[WINDOW_START] = clock[WINDOW_COUNT] = 0.0
+    if clock[PUSH_STEP] == 0.0 and not pushed_lately(ws, lc, history_time(ms, 0)):
+        clock[PUSHES] = clock[PUSHED_UNTIL] = 0.0
 
 
 @internal

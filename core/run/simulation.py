@@ -20,7 +20,7 @@ from .state import State
 
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
-    "residual_evaluations", "stages", "analyses", "krylov_iterations",
+    "residual_evaluations", "stages", "analyses", "krylov_iterations", "impulse_steps",
 )  # fmt: skip
 
 

@@ -166,7 +166,8 @@ RATE_SIZE = 14
 
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)
-COUNTERS_SIZE = 10
+OF_IMPULSES = 10  # steps of impulses, which are among the steps
+COUNTERS_SIZE = 11
 
 # status of stages, steps and of the loop
 OK = 0
