@@ -13,7 +13,9 @@ from ..state.method_records import RING_SIZE
 @inlined
 def row_index(ms: Any, back: int) -> int:
     """Ring position of the row `back` steps before the newest."""
-    return (ivec(ms.ring, 2)[0] - back) % ms.capacity
+    # a remainder would take longer than what is done with many a row
+    place = ivec(ms.ring, 2)[0] - back
+    return place if place >= 0 else place + ms.capacity
 
 
 @inlined

@@ -67,6 +67,8 @@ class Formula:
     """The stage solver of a comparison method; None: that of TLISMNI with the chosen outer loop."""
     newton_tolerance: float = 0.01
     """Where the outer loop stops with error control, as a fraction of the error weights."""
+    slack: float = 1e4
+    """How many times looser than in the end the constraints may be met, at most, while the outer loop moves."""
     outer_loops: tuple[str, ...] = ("newton", "simple", "jfnk")
     """Outer loops that can solve its stages; a stage solver of its own knows newton alone."""
     weights: tuple[tuple[float, ...], ...] = ()

@@ -16,76 +16,21 @@ from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
 from ..state.workspace_records import OK, call_stage
 from ..tables.evaluate import evaluate_power
-from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import rows_available
+from .newmark_guess import (
+    ALL_BY_MANY_ROWS,
+    BY_LINE,
+    BY_POSITIONS,
+    best_guess,
+    guess_by_line,
+    guess_by_many_rows,
+    guess_by_positions,
+)
 from .one_stage import MOST_GROWTH
 from .velocity_error import filtered_velocity_error
 
 ALPHA, BETA, GAMMA = 0, 1, 2
-MOST_ROWS = 3
-"""Of the history, from which positions are extrapolated."""
-
-
-@internal
-def _noisy(ws: Any, ms: Any, c_q: float) -> bool:
-    """Whether positions would have predicted the newest row better than accelerations: those of stiff components are
-    large and change their sign from step to step."""
-    if rows_available(ms) <= MOST_ROWS:
-        return False
-    n = ws.n_ext
-    weights = _weights(ws, ms, 1, history_time(ms, 0), MOST_ROWS)
-    newest, older, oldest = history_row(ws, ms, 0), history_row(ws, ms, 1), history_row(ws, ms, 2)
-    farthest, weight_q = history_row(ws, ms, 3), vec(ws.weight_q, n)
-    ahead = (history_time(ms, 0) - history_time(ms, 1)) / (history_time(ms, 1) - history_time(ms, 2))
-    by_q, by_a = 0.0, 0.0
-    for i in range(ws.n):
-        dq = newest[i] - weights[0] * older[i] - weights[1] * oldest[i] - weights[2] * farthest[i]
-        j = 2 * n + i
-        da = c_q * (newest[j] - older[j] - ahead * (older[j] - oldest[j]))
-        by_q += (dq / weight_q[i]) ** 2
-        by_a += (da / weight_q[i]) ** 2
-    return by_q < by_a
-
-
-@internal
-def _weights(ws: Any, ms: Any, first: int, t: float, count: int) -> Any:
-    """Weights in `scratch` that extrapolate rows first ... first + count - 1 of the history to t."""
-    nodes, weights = vec(ws.scratch, MOST_ROWS), vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS)
-    for j in range(count):
-        nodes[j] = history_time(ms, first + j) - t
-    extrapolation_weights(nodes, count, weights)
-    return weights
-
-
-@internal
-def _predict_by_accelerations(ws: Any, ms: Any, extrapolation: float) -> None:
-    """Accelerations and multipliers extrapolated from the newest two rows."""
-    n = ws.n_ext
-    row, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
-    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    for i in range(ws.n):
-        a[i] = row[2 * n + i] + extrapolation * (row[2 * n + i] - older[2 * n + i])
-    for i in range(ws.m_ext):
-        lam[i] = row[4 * n + i] + extrapolation * (row[4 * n + i] - older[4 * n + i])
-
-
-@internal
-def _predict_by_positions(ws: Any, ms: Any, h: float, c_q: float) -> None:
-    """The accelerations that belong to positions extrapolated from the newest rows, or at the start by velocities; the
-    multipliers of the newest row."""
-    n, count = ws.n_ext, min(rows_available(ms), MOST_ROWS)
-    weights = _weights(ws, ms, 0, history_time(ms, 0) + h, count)
-    newest, q_star, a, lam = history_row(ws, ms, 0), vec(ws.q_star, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    for i in range(ws.n):
-        q = newest[i] + h * newest[n + i]
-        if count > 1:
-            q = 0.0
-            for j in range(count):
-                q += weights[j] * history_row(ws, ms, j)[i]
-        a[i] = (q - q_star[i]) / c_q
-    for i in range(ws.m_ext):
-        lam[i] = newest[4 * n + i]
 
 
 @internal
@@ -104,17 +49,16 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
         algorithmic = true + ratio * (row[3 * n + i] - true)
         q_star[i] = row[i] + h * row[n + i] + h * h * ((0.5 - beta) * algorithmic - beta * alpha * true)
         v_star[i] = row[n + i] + h * ((1.0 - gamma) * algorithmic - gamma * alpha * true)
-    extrapolation = 0.0
-    if rows_available(ms) > 1:
-        extrapolation = h / (history_time(ms, 0) - history_time(ms, 1))
-    noisy = _noisy(ws, ms, c_q)
-    if noisy:
-        _predict_by_positions(ws, ms, h, c_q)
+    guess = best_guess(ws, ms, c_q, gamma)
+    if guess == BY_POSITIONS:
+        guess_by_positions(ws, ms, h, c_q)
+    elif guess != BY_LINE:
+        guess_by_many_rows(ws, ms, h, c_q, c_v, guess == ALL_BY_MANY_ROWS)
     else:
-        _predict_by_accelerations(ws, ms, extrapolation)
+        guess_by_line(ws, ms, h)
     status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
-    if status != OK and not noisy:
-        _predict_by_positions(ws, ms, h, c_q)
+    if status != OK and guess != BY_POSITIONS:
+        guess_by_positions(ws, ms, h, c_q)
         status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
     if status != OK:
         return status

@@ -64,9 +64,15 @@ def _irk(name: str) -> Formula:
     return Formula(irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(), outer_loops=loops)
 
 
+def _newmark(alpha: float, beta: float, gamma: float) -> Formula:
+    # its guess is mostly good enough for one increment, which has to see the constraints met: what they leave open goes
+    # into the accelerations of stiff parts, and these unsmoothed into the next guess and into the estimate of the error
+    return Formula(newmark_step, 0, (alpha, beta, gamma), carries=True, slack=1.0)
+
+
 def _hht(values: Mapping[str, Any]) -> Formula:
     alpha = values["alpha"]
-    return Formula(newmark_step, 0, (alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha), carries=True)
+    return _newmark(alpha, (1.0 - alpha) ** 2 / 4.0, 0.5 - alpha)
 
 
 METHODS = {
@@ -79,7 +85,7 @@ METHODS = {
                 "beta": Option(0.25, 0.01, 2.0, "beta; 1/4 with gamma 1/2 is the average acceleration"),
                 "gamma": Option(0.5, 0.5, 1.5, "gamma; above 1/2 it damps, at order 1"),
             },
-            lambda o: Formula(newmark_step, 0, (0.0, o["beta"], o["gamma"]), carries=True),
+            lambda o: _newmark(0.0, o["beta"], o["gamma"]),
         ),
         Method(
             "hht",

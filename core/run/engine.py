@@ -130,7 +130,7 @@ class Engine(ContactSide):
         self.guard = Progress(float(t0), self.workspace.state["guard"][0])
         self.drive = Drive(self, self.guard)
         self.beginning = Beginning(self)
-        set_control(self.settings, self.formula.newton_tolerance, self.assembly, self.workspace.arrays["control"])
+        set_control(self.settings, self.formula, self.assembly, self.workspace.arrays["control"])
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
         self.scales: Scales

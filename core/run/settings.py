@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..errors import ModelError
 from ..loop.controllers import CONTROLLERS
+from ..methods.method import Formula
 from ..rounding import CONSTRAINT_TOLERANCES, FINEST
 from ..stage import OUTER_LOOPS
 from ..stage.simple import MOST_DEPTH
@@ -20,6 +21,7 @@ from ..state.workspace_records import (
     LINEAR,
     MAX_INNER,
     MOST_CONDITION,
+    MOST_SLACK,
     NEWTON_TOLERANCE,
     POSITION_TOLERANCE,
     RTOL,
@@ -123,9 +125,9 @@ DEFAULT_NEWTON_TOLERANCE = 1e-10
 what rounding leaves in stiff bodies is not far below."""
 
 
-def set_control(settings: Settings, newton_tolerance: float, assembly: Assembly, control: NDArray[np.float64]) -> None:
+def set_control(settings: Settings, formula: Formula, assembly: Assembly, control: NDArray[np.float64]) -> None:
     """Fill the workspace's control numbers, but for those of the outer loop (`Engine.use_outer_loop`) and those that
-    the model's own scales are needed for (`begin_measure.py`); `newton_tolerance` is the formula's own."""
+    the model's own scales are needed for (`begin_measure.py`)."""
     if settings.step is not None:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
         control[RTOL] = control[ATOL] = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
@@ -133,12 +135,13 @@ def set_control(settings: Settings, newton_tolerance: float, assembly: Assembly,
     else:
         control[RTOL] = settings.rtol
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
-            newton_tolerance, min(0.01, FINEST / settings.rtol)
+            formula.newton_tolerance, min(0.01, FINEST / settings.rtol)
         )
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
     control[MAX_INNER] = 13.0
+    control[MOST_SLACK] = formula.slack
     control[LINEAR] = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
     control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

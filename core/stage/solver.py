@@ -28,6 +28,7 @@ from ..state.workspace_records import (
     LAST_OUTER,
     LINEAR,
     MAX_OUTER,
+    MOST_SLACK,
     NEWTON_TOLERANCE,
     NOT_FINITE,
     OK,
@@ -147,8 +148,9 @@ def add_increment(ws: Any, c_q: float, c_v: float) -> None:
 @inlined
 def inner_slack(control: Any) -> float:
     """By how much the inner loop may be looser while the outer one moves: before that has converged, the constraints
-    need to hold only a hundred times better than it does."""
-    return max(1.0, min(1e4, 0.01 * control[NEWTON_TOLERANCE] * control[RTOL] / control[POSITION_TOLERANCE]))
+    need to hold only a hundred times better than it does, or as well as the formula asks for."""
+    enough = 0.01 * control[NEWTON_TOLERANCE] * control[RTOL] / control[POSITION_TOLERANCE]
+    return max(1.0, min(control[MOST_SLACK], enough))
 
 
 @inlined

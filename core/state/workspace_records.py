@@ -145,7 +145,8 @@ LINEAR = 14  # 1: the equations are linear, so that one iteration with their own
 RATE_SCALE = 15  # inverse of the model's own time, 1/s
 ENERGY_SCALE = 16  # work of its forces along its lengths, J
 STIFFNESS_SCALE = 17  # square of the rate of its fastest vibration, 1/s^2
-CONTROL_SIZE = 18
+MOST_SLACK = 18  # how many times looser the inner loop may be, at most, while the outer one moves
+CONTROL_SIZE = 19
 
 # columns of `rate` (float64): what the convergence tests remember; part of the state
 OUTER_RATE = 0
