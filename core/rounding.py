@@ -145,7 +145,7 @@ REACHES_LIMIT_NOW = 1e-6
 STICKS_STILL = 1e-9
 """Of the largest acceleration, in space: what sticks moves less along its tangents."""
 NEARLY_JAMMED = 1e-6
-"""Of a contact's inverse effective mass, in space: with less left of it by friction, it jams."""
+"""Of a contact's inverse effective mass: with less left of it by friction, it jams."""
 FRICTION_ENOUGH = 1e-14
 """Of the largest force of several contacts in space: what a sweep changes when it is done."""
 FRICTION_NEAR = 1e-12

@@ -14,6 +14,7 @@ from ..compiled.views import ivec
 from ..rounding import PRESSING
 from ..state.modes import CLOSED
 from .forces import NO_SOLUTION, among, farthest_of
+from .jams import name_jammed, refuse_jam
 from .loaded import is_loaded, note_loaded
 from .records import (
     APART,
@@ -24,7 +25,6 @@ from .records import (
     F_T,
     FLAG,
     FULL,
-    JAMS,
     KEPT_DIRECTION,
     KEPT_FULL,
     KEPT_TAKES,
@@ -49,19 +49,14 @@ from .records import (
     W_N,
     W_T,
     WAS,
-    WHO,
     clear,
     col,
     copy,
-    delassus,
     real,
     whole,
 )
 from .resting import fastest_free, find_free, hold_back
 from .sticking import find_beginning, held
-
-NEARLY_SINGULAR = 1e-6
-"""Part of a contact's inverse effective mass that friction leaves where it is about to jam."""
 
 
 @internal
@@ -87,7 +82,7 @@ def find_forces(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     if status != SETTLED:
         return status
     _stand_apart(ev, ws, ms)
-    return _refuse_jam(ev)
+    return refuse_jam(ev, ws)
 
 
 @internal
@@ -194,7 +189,7 @@ def _solve(ev: Any, ws: Any, ms: Any) -> int:
     count, takes, none = whole(ev)[COUNT], col(ev, TAKES), real(ev)[NONE]
     for _ in range(2):
         if among(ev, count, takes, col(ev, DIRECTION), col(ev, DIRECTION)) == NO_SOLUTION:
-            _name_jammed(ev)
+            name_jammed(ev, ws)
             return NO_FORCES
         note_loaded(ev, ws)
         # one that leaves does so unless the others' forces press it together again
@@ -205,30 +200,4 @@ def _solve(ev: Any, ws: Any, ms: Any) -> int:
                 takes[i], again = 1.0, True
         if not again:
             break
-    return SETTLED
-
-
-@internal
-def _name_jammed(ev: Any) -> None:
-    """Which contact's friction alone may turn the effect of the normal force round; -1: none's."""
-    count, kinetic = whole(ev)[COUNT], col(ev, KINETIC)
-    a, who = delassus(ev, count), -1
-    for i in range(count - 1, -1, -1):
-        if kinetic[i] > 0.0 and a[i, i] <= kinetic[i] * abs(a[i, count + i]):
-            who = ivec(ev.contacts, ev.most)[i]
-    whole(ev)[WHO] = who
-
-
-@internal
-def _refuse_jam(ev: Any) -> int:
-    """Painleve's paradox: friction turns the effect of the normal force round."""
-    count = whole(ev)[COUNT]
-    a, direction, kinetic = delassus(ev, count), col(ev, DIRECTION), col(ev, KINETIC)
-    for i in range(count):
-        if direction[i] != 0.0 and kinetic[i] > 0.0:
-            left = a[i, i] - kinetic[i] * direction[i] * a[i, count + i]
-            pressed = col(ev, F_N)[i] > 0.0 or col(ev, WAS)[i] == CLOSED
-            if left <= NEARLY_SINGULAR * a[i, i] and pressed:
-                whole(ev)[WHO] = ivec(ev.contacts, ev.most)[i]
-                return JAMS
     return SETTLED

@@ -5,11 +5,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..rounding import NEARLY_JAMMED, REACHES_LIMIT, REACHES_LIMIT_NOW, STICKS_STILL
-from ..state.modes import CLOSED
+from ..rounding import REACHES_LIMIT, REACHES_LIMIT_NOW, STICKS_STILL
+from .jams import name_jammed, refuse_jam
 from .loaded import note_loaded
 from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
-from .rates_in_space import masses, pressing, solve_cones_in_space
+from .rates_in_space import pressing, solve_cones_in_space
 from .reading import unresolved_speed
 from .records import (
     AT_REST,
@@ -43,8 +43,6 @@ from .records import (
     W_N,
     W_S,
     W_T,
-    WAS,
-    WHO,
     col,
     real,
     whole,
@@ -69,14 +67,14 @@ def find_forces_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     part, real(ev)[MOMENT] = col(ev, PART), 0.0
     for i in range(whole(ev)[COUNT]):
         part[i] = 1.0 if col(ev, AT_REST)[i] != 0.0 and col(ev, LEAVES)[i] == 0.0 else 0.0
-    status = balance_in_space(ev, part, True)
+    status = balance_in_space(ev, ws, part, True)
     for _ in range(whole(ev)[COUNT]):
         if status != SETTLED or not _falls_back(ev, ws, part):
             break
-        status = balance_in_space(ev, part, True)
+        status = balance_in_space(ev, ws, part, True)
     if status == SETTLED:
         note_loaded(ev, ws)
-        status = _refuse_jam(ev)
+        status = refuse_jam(ev, ws)
     if status == SETTLED and ms.exact != 0:
         stop_in_space(ev, dr, ws)
     wedged = (status == NO_FORCES or status == JAMS) and whole(ev)[COUNT] > 1 and ms.exact != 0
@@ -99,7 +97,7 @@ def _falls_back(ev: Any, ws: Any, part: Any) -> bool:
 
 
 @internal
-def balance_in_space(ev: Any, part: Any, more: bool) -> int:
+def balance_in_space(ev: Any, ws: Any, part: Any, more: bool) -> int:
     """Forces of the contacts `part`; `more`: of others at rest too, which these press together again."""
     count, takes = whole(ev)[COUNT], col(ev, TAKES)
     direction, b, p = col(ev, DIRECTION), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
@@ -115,7 +113,7 @@ def balance_in_space(ev: Any, part: Any, more: bool) -> int:
         for i in range(count):
             mu[i] = col(ev, KINETIC)[i] if direction[i] != 0.0 else col(ev, STATIC)[i]
         if not solve_cones_in_space(ev, a, count, takes, b, mu, col(ev, BASE), direction, p):
-            _name_jammed(ev)
+            name_jammed(ev, ws)
             return NO_FORCES
         again = False
         for i in range(count):
@@ -142,32 +140,4 @@ def balance_in_space(ev: Any, part: Any, more: bool) -> int:
                     takes[i], again = 1.0, True
         if not again:
             break
-    return SETTLED
-
-
-@internal
-def _lightened(ev: Any, i: int) -> float:
-    """Part of the inverse mass along the normal that friction of a sliding contact leaves."""
-    count = whole(ev)[COUNT]
-    a = masses(ev, count)
-    turned = a[i, count + i] * col(ev, COS_WAY)[i] + a[i, 2 * count + i] * col(ev, SIN_WAY)[i]
-    return (a[i, i] - col(ev, KINETIC)[i] * turned) / a[i, i]
-
-
-@internal
-def _name_jammed(ev: Any) -> None:
-    whole(ev)[WHO] = -1
-    for i in range(whole(ev)[COUNT] - 1, -1, -1):
-        if col(ev, DIRECTION)[i] != 0.0 and _lightened(ev, i) <= 0.0:
-            whole(ev)[WHO] = ivec(ev.contacts, ev.most)[i]
-
-
-@internal
-def _refuse_jam(ev: Any) -> int:
-    """Painleve's paradox: friction turns the effect of the normal force round."""
-    for i in range(whole(ev)[COUNT]):
-        pressed = col(ev, F_N)[i] > 0.0 or col(ev, WAS)[i] == CLOSED
-        if col(ev, DIRECTION)[i] != 0.0 and pressed and _lightened(ev, i) <= NEARLY_JAMMED:
-            whole(ev)[WHO] = ivec(ev.contacts, ev.most)[i]
-            return JAMS
     return SETTLED

@@ -5,10 +5,12 @@ as a constraint, the others carry a constant share of their normal force (IDLE, 
 reaches its limit; then it keeps that limit and another takes the rest, or all let go.
 """
 
+import math
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, vec
+from ..compiled.views import ivec, mat, vec
+from ..linalg.small import solve_square
 from ..state.modes import IDLE
 from ..state.modes import STICKS as STUCK
 from .forces import independent_of
@@ -27,6 +29,7 @@ from .records import (
     SETTLED,
     clear,
     col,
+    delassus,
     real,
     whole,
 )
@@ -37,6 +40,9 @@ RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
 does not settle. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
 PULLING = 1e-3
 """Of the largest force of the contacts: one that pulls by more has been kept together with the wrong others."""
+LEFT_OPEN = 1e-6
+"""Part of the determinant of the contacts' inverse masses that constant shares leave where they say next to nothing of
+how large the forces are."""
 
 
 @internal
@@ -45,6 +51,15 @@ def keep(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     (SLIDE and RATIO): `FLAG`, `NEW_SLIDE`, `NEW_RATIO`. Contacts that repeat each other nearly need large forces
     against each other to move as constraints say: where an instant does not settle, more and more of them count as
     one."""
+    number = _keep(ev, ws)
+    while number > 0 and _left_open(ev, number) and keep_others(ev, ws):
+        number = _keep(ev, ws)
+    return SETTLED
+
+
+@internal
+def _keep(ev: Any, ws: Any) -> int:
+    """With the present order of the tangents: how many directions, `some` of `chosen`."""
     count, closes, f_n, flag = whole(ev)[COUNT], col(ev, CLOSES), col(ev, F_N), col(ev, FLAG)
     some, order, chosen = ivec(ev.some, 2 * ev.most), ivec(ev.order, 2 * ev.most), ivec(ev.chosen, 2 * ev.most)
     slide, ratio, kinetic, direction = col(ev, NEW_SLIDE), col(ev, NEW_RATIO), col(ev, KINETIC), col(ev, DIRECTION)
@@ -60,7 +75,7 @@ def keep(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             some[at] = i
             normals += 1
     if normals == 0:
-        return SETTLED
+        return 0
     for j in range(stuck):
         if closes[order[j]] != 0.0:
             at = normals + kept
@@ -81,7 +96,45 @@ def keep(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         if chosen[j] >= normals:
             i = some[chosen[j]] - count
             slide[i], ratio[i] = STUCK, 0.0
-    return SETTLED
+    return number
+
+
+@internal
+def _left_open(ev: Any, number: int) -> bool:
+    """True if the constant shares of contacts that others hold leave the forces open, in directions in which they are
+    clear without."""
+    count, any_shares = whole(ev)[COUNT], False
+    for i in range(count):
+        any_shares = any_shares or (col(ev, FLAG)[i] != 0.0 and _shares(ev, i))
+    if not any_shares:
+        return False
+    return _size(ev, number, True) < _size(ev, number, False) + math.log(LEFT_OPEN)
+
+
+@internal
+def _shares(ev: Any, i: int) -> bool:
+    return bool(col(ev, NEW_SLIDE)[i] == IDLE and col(ev, NEW_RATIO)[i] != 0.0)
+
+
+@internal
+def _size(ev: Any, number: int, shared: bool) -> float:
+    """Logarithm of the determinant's size of the kept directions' motion by their forces, friction of what slides
+    included; `shared`: constant shares too."""
+    count, ratio, n = whole(ev)[COUNT], col(ev, NEW_RATIO), number
+    a, some, chosen = delassus(ev, count), ivec(ev.some, 2 * ev.most), ivec(ev.chosen, 2 * ev.most)
+    matrix, right = mat(ev.matrix, n, n), vec(ev.matrix + 8 * n * n, n)
+    for j in range(n):
+        q, right[j] = some[chosen[j]], 0.0
+        slope = 0.0 if q >= count or (_shares(ev, q) and not shared) else ratio[q]
+        for i in range(n):
+            p = some[chosen[i]]
+            matrix[i, j] = a[p, q] + (slope * a[p, count + q] if slope != 0.0 else 0.0)
+    if solve_square(matrix, right) == 0:
+        return -math.inf
+    size = 0.0
+    for i in range(n):
+        size += math.log(abs(matrix[i, i]))
+    return size
 
 
 @internal

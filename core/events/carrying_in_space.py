@@ -114,7 +114,7 @@ def _hand_over(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
     _swap(ev, False)
     good = moment > 0.0 and decide_by_moment(ev, dr, ws, ms, kept, moment)
     if moment == 0.0:
-        good = balance_in_space(ev, kept, False) == SETTLED
+        good = balance_in_space(ev, ws, kept, False) == SETTLED
     fastest = 0.0
     for i in range(whole(ev)[COUNT]):
         fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]), abs(col(ev, B_S)[i]))

@@ -78,15 +78,16 @@ def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         col(ev, IMPULSE)[i] = col(ev, FRICTION)[i] = loss[i] = 0.0
         approach[i] = max(-rate[i], 0.0)
         sequential = sequential or law[contacts[i]] == SEQUENTIAL
-        largest = max(largest, abs(rate[i]) / rounding[i], abs(slide_rate[i]) / rounding[i])
+        largest = max(largest, abs(rate[i]), abs(slide_rate[i]))
     real(ev)[RESIDUAL], left, noise = 0.0, np.inf, UNSOLVED * largest
     before_n, before_t = col(ev, RATE_BEFORE), col(ev, SLIDE_BEFORE)
     for turn in range(MOST_ROUNDS + 1):
-        before_round, left = left, 0.0
+        before_round, left, fastest = left, 0.0, 0.0
         for i in range(count):
-            left = max(left, -rate[i] / rounding[i])
-        # where contacts repeat each other nearly, no round gets below what rounding leaves in the forces
-        if left <= 1.0 or 0.5 * before_round <= left <= noise:
+            left, fastest = max(left, -rate[i] / rounding[i]), max(fastest, -rate[i])
+        # where contacts repeat each other nearly, no round gets below what rounding leaves in the forces: a part of the
+        # fastest motion, for each contact, whatever its own rounding is
+        if left <= 1.0 or (0.5 * before_round <= left and fastest <= noise):
             break
         if turn == MOST_ROUNDS:
             return ENDLESS_ROUNDS

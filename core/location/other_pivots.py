@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import inlined, internal
-from ..compiled.views import ivec, vec
+from ..compiled.views import ivec, mat, vec
 from ..linalg import determinant_sign, factor, lu_at
 from ..linalg.analyze import call_analyze
-from ..linalg.record import ANALYZE_SPARSE, DENSE, REANALYSE
+from ..linalg.record import ANALYZE_SPARSE, DENSE
 from ..linalg.record import WANT_ROOM as NO_MEMORY
 from ..stage.accelerations import solve_accelerations
 from ..stage.project import project_motion
+from ..state.modes import ALONG, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.workspace_records import OK, REANALYZE, SINGULAR
 from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
 
@@ -84,11 +85,29 @@ def _unless_unfit(status: int) -> int:
 
 
 @internal
-def orientation(ws: Any) -> float:
-    """Sign of the determinant of [M, G; Phi_q, 0], G the directions of the forces, friction of sliding contacts
-    included; 0 where it is singular, NaN where there is too little memory for pivots of its own."""
+def _evaluate_sliding(ws: Any) -> None:
+    """values = [M, G; Phi_q, 0] at the current point, G the directions of the forces: friction of what slides is in
+    proportion to its normal force, that of contacts which others hold counts as given.
+
+    Their constant shares of the normal forces choose one friction of many. Beside constraints that nearly repeat each
+    other they can turn the determinant's sign by themselves, which says nothing about sliding.
+    """
+    memory, kept = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.query_kept, ws.n_contacts)
     evaluate_residuals(ws)
+    for k in range(ws.n_contacts):
+        kept[k] = memory[k, RATIO]
+        if memory[k, MODE] == CLOSED and (memory[k, SLIDE] == IDLE or memory[k, SLIDE] == ALONG):
+            memory[k, RATIO] = 0.0
     evaluate_tangent(ws, 0.0, 0.0)
+    for k in range(ws.n_contacts):
+        memory[k, RATIO] = kept[k]
+
+
+@internal
+def orientation(ws: Any) -> float:
+    """Sign of the determinant of the matrix of `_evaluate_sliding`; 0 where it is singular, NaN where there is too
+    little memory for pivots of its own."""
+    _evaluate_sliding(ws)
     lu = lu_at(ws.kkt_query)
     if lu.kind != DENSE and lu.ready == 0:
         # pivots that nobody has chosen yet need not be put back
@@ -96,8 +115,9 @@ def orientation(ws: Any) -> float:
         if code != OK:
             return np.nan if code == NO_MEMORY else 0.0
     status = factor(lu, ws.values)
-    if status != REANALYSE:
+    if status == OK or lu.kind == DENSE:
         return determinant_sign(lu) if status == OK else 0.0
+    # also where a pivot is next to nothing, for they may have been chosen for other values
     status = _take_own(ws)
     if status == OK:
         status = factor(lu, ws.values)

@@ -14,7 +14,7 @@ from ..errors import SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
 from ..stage.joints import factor_joints, solve_joints
-from ..state.modes import CLOSED, MODE, RATIO, SLIDE
+from ..state.modes import ALONG, CLOSED, IDLE, MODE, RATIO, SLIDE
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -44,12 +44,17 @@ def refuse_passed_jam(sim: "Engine") -> NoReturn:
     """Raise SimulationError: the step that ended at the workspace's current point went over a place where sliding
     contacts jam. Of several it names the one whose force has become the most sensitive, with the wrong sign if one has:
     behind that place, its force pulls the gap's acceleration down."""
-    workspace, n, sliding = sim.workspace, sim.assembly.n, sliding_contacts(sim)
+    workspace, n, sliding, memory = sim.workspace, sim.assembly.n, sliding_contacts(sim), sim.memory
+    # constant shares of contacts that others hold are given forces, as for the determinant (`other_pivots.py`)
+    held = (memory[:, SLIDE] == IDLE) | (memory[:, SLIDE] == ALONG)
+    shares = memory[held, RATIO]
+    memory[held, RATIO] = 0.0
     singular = factor_joints(workspace.record) != 0
     if singular:
         with suppress(SingularMatrixError):
             workspace.structure.kkt_query.analyze(workspace.arrays["values"])
             singular = factor_joints(workspace.record) != 0
+    memory[held, RATIO] = shares
     active, rhs, worst, most = workspace.structure.active, workspace.arrays["rhs"], sliding[0], (False, 0.0)
     for k in sliding:
         row = n + int(np.flatnonzero(active == sim.assembly.contacts[k].row)[0])
@@ -61,7 +66,7 @@ def refuse_passed_jam(sim: "Engine") -> NoReturn:
         found = (not rhs[row] < 0.0, abs(float(rhs[row])))
         if found > most:
             worst, most = k, found
-    message = painleve(sim.assembly.contacts[worst].name, sim.t_internal, abs(float(sim.memory[worst, RATIO])))
+    message = painleve(sim.assembly.contacts[worst].name, sim.t_internal, abs(float(memory[worst, RATIO])))
     raise SimulationError(message, t=sim.t_internal, loop="contact")
 
 

@@ -90,7 +90,7 @@ VIOLATED = 107
 UNLOCATED = 108  # events have been found whose times Python has to locate
 DUE = 109  # a breakpoint is due
 SETTLE = 110  # pending events are for Python to settle
-JAM = 111  # a sliding contact may have jammed
+JAM = 111  # the newest step went over a place where sliding contacts jam
 WANTED = 112  # something has to be built before pending events can be settled
 FAILED = 113  # pending events cannot be settled
 

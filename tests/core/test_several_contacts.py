@@ -17,9 +17,14 @@ from tlismni.core import (
     Ramp,
     Revolute2D,
     RigidBody2D,
+    Simulation,
     Sine,
     simulate,
 )
+from tlismni.core.compiled.jit import compiled
+from tlismni.core.location.other_pivots import orientation
+from tlismni.core.stage.joints import evaluate_joints
+from tlismni.core.state.modes import CLOSED, IDLE, MODE, RATIO, SLIDE
 
 WIDTH, HEIGHT, MASS = 0.4, 0.6, 3.0
 
@@ -215,3 +220,47 @@ def test_spinning_disk_in_a_wedge_is_braked_by_both_sides(mu):
     stops = events(result, "stick")
     assert [e.t for e in stops] == pytest.approx([stop] * 2, abs=1e-9)
     assert np.abs(result.v[-1]).max() < 1e-12
+
+
+# ---- constant shares of contacts that others hold -------------------------------------------------------------------
+
+
+@compiled
+def side(ws):
+    return orientation(ws)
+
+
+@pytest.mark.parametrize("ratio", [0.3, -30.0, 30.0])
+def test_constant_share_of_a_held_contact_is_no_jam(ratio):
+    """A box on two steps and a block that slides: whatever constant share of its normal force the held foot carries,
+    the determinant that tells a jam has the sign that it has without, and the state its bits."""
+    step = HalfPlane2D(marker=Marker2D(point=(0.0, HEIGHT)))
+    inertia = MASS * (WIDTH**2 + HEIGHT**2) / 12.0
+    bodies = [
+        RigidBody2D(name="b", mass=MASS, inertia=inertia, position=(0.0, 0.5 * HEIGHT)),
+        RigidBody2D(name="s", mass=MASS, inertia=inertia, position=(2.0, 0.5 * HEIGHT), velocity=(1.0, 0.0)),
+    ]
+    feet = [
+        foot("low", "b", -0.5 * WIDTH, -0.5 * HEIGHT, 0.3),
+        foot("high", "b", 0.5 * WIDTH, 0.5 * HEIGHT, 0.3, plane=step),
+        foot("slides", "s", -0.5 * WIDTH, -0.5 * HEIGHT, 0.3),
+        foot("too", "s", 0.5 * WIDTH, -0.5 * HEIGHT, 0.3),
+    ]
+    sim = Simulation(Model(bodies=bodies, contacts=feet))
+    sim.advance(1e-3)
+    ws, memory = sim.workspace, sim.memory
+    held = np.flatnonzero((memory[:, MODE] == CLOSED) & (memory[:, SLIDE] == IDLE))
+    assert list(held) in ([0], [1]) and all(np.abs(memory[2:, SLIDE]) == 1.0)
+    with_share, signs, n = [], [], sim.assembly.n + ws.structure.m_act
+    for share in (0.0, ratio):
+        memory[held, RATIO] = share
+        before = memory.tobytes()
+        signs.append(side(ws.record))
+        assert memory.tobytes() == before
+        evaluate_joints(ws.record)
+        matrix = np.zeros((n, n))
+        matrix[ws.structure.rows, ws.structure.cols] = ws.arrays["values"][: ws.structure.nnz]
+        with_share.append(np.linalg.slogdet(matrix)[0])
+    assert signs[0] == signs[1] == with_share[0]
+    # the line between the feet: a share that points beyond it turns the sign of the matrix that holds it
+    assert with_share[1] == with_share[0] * np.sign(1.0 - ratio * HEIGHT / WIDTH)

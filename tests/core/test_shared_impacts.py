@@ -12,6 +12,7 @@ from tlismni.core import (
     DiskOnDisk2D,
     DiskOnHalfPlane2D,
     HalfPlane2D,
+    Marker2D,
     Model,
     NewtonImpact,
     PointMass2D,
@@ -19,6 +20,7 @@ from tlismni.core import (
     RigidBody2D,
     simulate,
 )
+from tlismni.core.events.impact import MOST_BOUNCES
 
 # ---- chains of balls ------------------------------------------------------------------------------------------------
 
@@ -169,3 +171,27 @@ def test_two_contacts_close_at_once_at_different_places():
     for e in hits:
         i = int(e.contact[1])
         assert e.impulse == pytest.approx((1.0 + i) * (1.0 + laws[i].restitution) * speed, rel=1e-9)
+
+
+# ---- rounds that feed each other ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("law", [NewtonImpact, PoissonImpact])
+@pytest.mark.parametrize("e, lasts", [(1.0, True), (0.9, True), (0.3, False)])
+def test_ball_between_floor_and_ceiling(law, e, lasts):
+    """It touches both: each throws it against the other, at one instant. Where that does not die away, the last of
+    MOST_BOUNCES + 1 rounds is without restitution."""
+    ball = PointMass2D(name="b", mass=2.0, position=(0.0, 0.5), velocity=(1.0, -1.0))
+    floor = foot("floor", "b", mu=None, radius=0.5, law=law(restitution=e))
+    ceiling = HalfPlane2D(marker=Marker2D(point=(0.0, 1.0), angle=math.pi))
+    above = foot("ceiling", "b", mu=None, radius=0.5, plane=ceiling, law=law(restitution=e))
+    result = simulate(Model(gravity=(0.0, 0.0), bodies=[ball], contacts=[floor, above]), 0.1)
+    struck = {event.contact: event for event in result.events if event.kind == "impact"}
+    assert all(event.t == 0.0 for event in struck.values()) and len(struck) == 2
+    # m (1 + e) e^k in round k, in turns, and what is left to the floor
+    blows = [2.0 * (1.0 + e) * e**k for k in range(MOST_BOUNCES)]
+    left = 2.0 * e**MOST_BOUNCES if lasts else 0.0
+    assert struck["floor"].impulse == pytest.approx(sum(blows[::2]) + left, rel=1e-11)
+    assert struck["ceiling"].impulse == pytest.approx(sum(blows[1::2]), rel=1e-11)
+    assert sum(event.energy_loss for event in struck.values()) == pytest.approx(1.0, rel=1e-12)
+    assert result["b.vx"][-1] == pytest.approx(1.0, abs=1e-13) and abs(result["b.vy"][-1]) < 1e-11

@@ -18,6 +18,7 @@ from tlismni.core import (
     SphereOnSphere3D,
     simulate,
 )
+from tlismni.core.events.impact import MOST_BOUNCES
 
 ANYTHING = 1e9
 CLOSE = 1e-10
@@ -187,3 +188,27 @@ def test_poissons_law_of_random_impacts(most):
     """One contact on a body at most, and two: where some come to rest by the blow, its losses are told all the same."""
     for seed in range(100):
         Strike(seed, PoissonImpact, most).check(poisson=True)
+
+
+@pytest.mark.parametrize("law", [NewtonImpact, PoissonImpact])
+@pytest.mark.parametrize("e", [1.0, 0.9])
+def test_sphere_between_floor_and_ceiling(law, e):
+    """As in the plane: each throws it against the other at one instant, until a last round without restitution."""
+    body = RigidBody3D(
+        name="b", mass=2.0, inertia=(1.0, 1.0, 1.0), position=(0.0, 0.0, 0.5), velocity=(0.0, 0.0, -1.0),
+        attitude=EulerParameters(),
+    )  # fmt: skip
+    rough = CoulombFriction(coefficient=0.3)
+    planes = [HalfSpace3D(), HalfSpace3D(marker=Marker3D(point=(0.0, 0.0, 1.0), attitude=Axes(z=(0.0, 0.0, -1.0))))]
+    ball = Sphere3D(marker=Marker3D(body="b"), radius=0.5)
+    contacts = [
+        SphereOnHalfSpace3D(name=name, plane=plane, sphere=ball, law=law(restitution=e), friction=rough)
+        for name, plane in zip(("floor", "ceiling"), planes, strict=True)
+    ]
+    result = simulate(Model(gravity=(0.0, 0.0, 0.0), bodies=[body], contacts=contacts), 0.1)
+    struck = {event.contact: event for event in result.events if event.kind == "impact"}
+    blows = [2.0 * (1.0 + e) * e**k for k in range(MOST_BOUNCES)]
+    assert struck["floor"].impulse == pytest.approx(sum(blows[::2]) + 2.0 * e**MOST_BOUNCES, rel=1e-10)
+    assert struck["ceiling"].impulse == pytest.approx(sum(blows[1::2]), rel=1e-10)
+    assert sum(event.energy_loss for event in struck.values()) == pytest.approx(1.0, rel=1e-10)
+    assert np.abs(result.v[-1]).max() < 1e-12
