@@ -99,7 +99,7 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         status = call_part(ev.use_modes, ev, dr, ws, ms)
         if status != SETTLED:
             return int(status)
-    if not meet_constraints(ws) or not _close_overlaps(ev, ws):
+    if not _close_overlaps(ev, ws):
         return NOT_MET
     evaluate_energy(ws)
     _account(ev, ws, before - energy[0] - energy[1] - energy[2] - lost)
@@ -222,18 +222,20 @@ def _account(ev: Any, ws: Any, more: float) -> None:
 
 @internal
 def _close_overlaps(ev: Any, ws: Any) -> bool:
-    """Shift what overlaps along the normals; False where joints cannot be met then."""
+    """Meet the joints, and shift what overlaps along the normals; False where joints cannot be met."""
     count, rows, n, x = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ev.bounced, ws.n)
     off, scale, contacts = part(ev, rows, OFF), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
     contact_rows, level = ivec(ws.contact_rows, ws.n_contacts), GAP_ROUNDING * position_level(ws)
-    for _ in range(SHIFTS):
+    for turn in range(SHIFTS + 1):
+        if not meet_constraints(ws):
+            return False
         worst, least = 0.0, np.inf
         for i in range(count):
             row = contact_rows[contacts[i]]
             off[i], least = vec(ws.phi, ws.m_ext)[row], min(least, scale[row])
             worst = max(worst, -off[i] - level * scale[row])
-        if worst <= 0.0:
-            return True
+        if worst <= 0.0 or turn == SHIFTS:
+            break
         press_apart(
             count, rows, n, ev.directions, ev.responses, ev.columns, part(ev, rows, INVERSE), off,
             part(ev, rows, BEFORE), x, room(ev, rows, n), 0.1 * level * least, SHIFT_TURNS,
@@ -241,6 +243,4 @@ def _close_overlaps(ev: Any, ws: Any) -> bool:
         for j in range(n):
             vec(ws.q, ws.n_ext)[j] += x[j]
         evaluate_residuals(ws)
-        if not meet_constraints(ws):
-            return False
     return True

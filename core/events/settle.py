@@ -78,7 +78,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts):
         return DECLINED
     if not _gets_on(dr, t):
-        return SETTLED if _goes_on_in_steps(dr, ws, ms, lc, t) else DECLINED
+        return SETTLED if _many_touch(dr, ws) and _goes_on_in_steps(dr, ws, ms, lc, t) else DECLINED
     _keep(ev, ws, False)
     step = vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here
@@ -132,12 +132,26 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
 
 @internal
 def _goes_on_in_steps(dr: Any, ws: Any, ms: Any, lc: Any, t: float) -> bool:
-    """True if the run goes on from time t by steps of impulses, since what touches there cannot be settled."""
-    if not begin_pushing(dr, ws, ms, lc, t):
+    """True if the run goes on from the newest row, at time t, by steps of impulses: what touches cannot be settled."""
+    if vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0 or not begin_pushing(dr, ws, ms, lc, t):
         return False
-    ivec(dr.counts, COUNTS_SIZE)[HERE] = 0
+    guard = vec(dr.guard, GUARD_SIZE)
+    # these steps get on
+    ivec(dr.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[GUARDED] = 0, t, 0.0
+    recall(ws, ms, 0)
+    evaluate_residuals(ws)
     _all_pending(dr, ws)
     return True
+
+
+@internal
+def _many_touch(dr: Any, ws: Any) -> bool:
+    """True if so many contacts are closed or pending that their instants may crowd."""
+    memory, pending, count = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.pending, ws.n_contacts), 0
+    for k in range(ws.n_contacts):
+        if memory[k, MODE] == CLOSED or pending[k] != 0:
+            count += 1
+    return count >= MANY_TOUCH
 
 
 @internal
