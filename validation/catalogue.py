@@ -128,6 +128,8 @@ def run_case(
     step, t_end = changes.pop("step", case.step), changes.pop("t_end", case.t_end)
     tolerance = changes.pop("tolerance", case.tolerance)
     scenario = load(case.scenario, **{**case.parameters, **changes})
+    if case.accuracy is not None:
+        scenario = replace(scenario, rtol=case.accuracy[0], atol=case.accuracy[1])
     other = as_cables(scenario.model, case.cables) if has_floating_beams(scenario.model) else None
     return crosscheck(
         scenario, report_dir, progress, t_end=t_end, step=step, exudyn_model=other, name=case.name, why=case.why,

@@ -10,6 +10,7 @@ from . import (  # noqa: F401
     joints,
     loads3d,
     reduced,
+    reduced2d,
     scalar_contacts,
     scalar_forces,
     scalar_joints,

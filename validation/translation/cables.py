@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.elements import Cable2D, Cable3D, CableClamp3D, MaterialPoint2D, MaterialPoint3D
+from ...core.elements import Cable2D, Cable3D, CableClamp3D, MaterialPoint2D, MaterialPoint3D, ReducedBody2D
 from ...core.model.base import in_space
 from ..errors import NotTranslatable
 from .bodies import node_columns
+from .reduced2d import point_of_reduced
 from .registry import BodyItems, Build, Column, no_equal, translates
 
 no_equal("coordinate constraints on a node of the cable (ObjectConnectorCoordinate), where it is clamped to the ground",
@@ -75,6 +76,8 @@ def _cable(
 @translates(MaterialPoint2D)
 def point_in_plane(record: MaterialPoint2D, build: Build) -> None:
     """A place in a cable element, for markers and sensors: exudyn needs no body there."""
+    if any(isinstance(b, ReducedBody2D) and b.name == record.body for b in build.model.bodies):
+        return point_of_reduced(record, build)
     outputs = {
         "Position": ("x", "y"),
         "Velocity": ("vx", "vy"),

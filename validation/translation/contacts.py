@@ -115,7 +115,8 @@ def _add(
 
 
 def _on_flexible(record: DiskOnHalfPlane2D | DiskOnDisk2D, build: Build) -> bool:
-    return any(m.body != GROUND and build.bodies[m.body].elements for m in record.markers())
+    items = [build.bodies[m.body] for m in record.markers() if m.body != GROUND]
+    return any(body.elements or body.mesh_points for body in items)
 
 
 def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Shapes) -> BeforeStep:

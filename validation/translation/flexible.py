@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import diags_array
 
-from ...core.elements import AxialRod, FloatingBeam2D, ReducedBody2D
+from ...core.elements import AxialRod, FloatingBeam2D
 from ..errors import NotTranslatable
 from .bodies import node_columns
 from .registry import BodyItems, Build, no_equal, translates
@@ -12,10 +12,6 @@ no_equal(
     "a Cable2D of the same section: exudyn has the ANCF element, and FFRF bodies only from three-dimensional "
     "meshes (`tlismni.validation.as_cables(model)` makes the exchange, `crosscheck` takes it as `exudyn_model`)",
     FloatingBeam2D,
-)
-no_equal(
-    "the finite element model it was reduced from, as an ObjectFFRFreducedOrder of one's own; for a beam a Cable2D",
-    ReducedBody2D,
 )
 
 

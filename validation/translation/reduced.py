@@ -6,6 +6,8 @@ and these are all that counts: they are the Gram matrix over the mass of (1, u0,
 of them, have the same integrals exactly. Points without mass carry the interfaces.
 """
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,8 +16,8 @@ from numpy.typing import NDArray
 from ...core.elements import InterfaceFrame3D, ReducedBody3D
 from ...core.elements.reduced_body3d import Interface3D
 from ...core.model.base import in_space
-from ...core.model.markers import Marker3D
 from ..errors import NotTranslatable
+from .bodies import node_columns
 from .registry import BodyItems, Build, Column, translates
 
 Array = NDArray[np.float64]
@@ -56,8 +58,6 @@ def _around(place: Interface3D, n: int) -> tuple[Array, Array]:
 @translates(ReducedBody3D)
 def reduced_body(record: ReducedBody3D, build: Build) -> None:
     """NodeRigidBodyEP and NodeGenericODE2 with ObjectFFRFreducedOrder."""
-    from exudyn.FEM import ObjectFFRFreducedOrderInterface
-
     n = len(record.stiffness)
     each, places, shapes = cloud_of(record)
     masses = np.full(len(places), each)
@@ -65,39 +65,17 @@ def reduced_body(record: ReducedBody3D, build: Build) -> None:
         more, moved = _around(place, n)
         places, shapes = np.concatenate([places, more]), np.concatenate([shapes, moved], axis=1)
         masses = np.concatenate([masses, np.zeros(len(more))])
-    stiffness = np.array(record.stiffness)
-    ffrf = ObjectFFRFreducedOrderInterface(_Mesh(places, shapes.reshape(n, -1).T, np.repeat(masses, 3)))
     q0, v0 = record.initial_state()
     frame = build.add("NodeRigidBodyEP", referenceCoordinates=list(q0[:7]), initialVelocities=list(v0[:7]))
     modes = build.add(
         "NodeGenericODE2", numberOfODE2Coordinates=n, referenceCoordinates=[0.0] * n,
         initialCoordinates=list(q0[7:]), initialCoordinates_t=list(v0[7:]),
     )  # fmt: skip
-    matrices = {"massMatrixReduced": ffrf.massMatrixReduced, "stiffnessMatrixReduced": stiffness}
-    if record.damping is not None:
-        matrices["dampingMatrixReduced"] = np.array(record.damping)
-    integrals = (
-        "mPsiTildePsi",
-        "mPsiTildePsiTilde",
-        "mPhitTPsi",
-        "mPhitTPsiTilde",
-        "mXRefTildePsi",
-        "mXRefTildePsiTilde",
-    )
-    item = build.add(
-        "ObjectFFRFreducedOrder", nodeNumbers=[frame, modes], modeBasis=ffrf.modeBasis, referencePositions=ffrf.xRef,
-        mass=ffrf.totalMass, inertia=ffrf.inertiaLocal, centerOfMass=ffrf.chiU, computeFFRFterms=True,
-        **{name: _container(matrix, build) for name, matrix in matrices.items()},
-        **{name: getattr(ffrf, name) for name in integrals},
-    )  # fmt: skip
+    item = add_ffrf(build, (frame, modes), (places, shapes, masses), record.stiffness, record.damping)
     reference = (*q0[:7], *(0.0 for _ in range(n)))
     build.bodies[record.name] = BodyItems(frame, item, False)
     build.flexible = True
-    weight = each * np.array(in_space(build.model.gravity))
-    for k in range(4 + 3 * n if weight.any() else 0):
-        # not LoadMassProportional, whose torque is that of the undeformed body
-        marker = build.add("MarkerSuperElementPosition", bodyNumber=item, meshNodeNumbers=[k], weightingFactors=[1.0])
-        build.add("LoadForceVector", markerNumber=marker, loadVector=weight.tolist())
+    add_weight(build, item, masses)
     if build.sensors:
         outputs = ("Coordinates", "Coordinates_t", "Coordinates_tt")
         sensors = [[build.sensor(node, output, of_node=True) for output in outputs] for node in (frame, modes)]
@@ -106,6 +84,52 @@ def reduced_body(record: ReducedBody3D, build: Build) -> None:
             for level, name in enumerate((coordinate.name, coordinate.rate, coordinate.acceleration)):
                 offset = reference[k] if level == 0 else 0.0
                 build.columns.append(Column(f"{record.name}.{name}", sensors[node][level], component, 1.0, offset))
+
+
+def add_ffrf(
+    build: Build,
+    nodes: tuple[int, int],
+    cloud: tuple[Array, Array, Array],
+    stiffness: Sequence[Sequence[float]],
+    damping: Sequence[Sequence[float]] | None,
+) -> int:
+    """ObjectFFRFreducedOrder on the nodes (of the frame, of the n amplitudes); returns its index.
+
+    `cloud`: places (N, 3) in m, mode shapes (n, N, 3) and masses (N,) in kg of its points. `stiffness`, `damping`: of
+    the amplitudes, (n, n).
+    """
+    from exudyn.FEM import ObjectFFRFreducedOrderInterface
+
+    places, shapes, masses = cloud
+    ffrf = ObjectFFRFreducedOrderInterface(_Mesh(places, shapes.reshape(len(shapes), -1).T, np.repeat(masses, 3)))
+    matrices = {"massMatrixReduced": ffrf.massMatrixReduced, "stiffnessMatrixReduced": np.array(stiffness)}
+    if damping is not None:
+        matrices["dampingMatrixReduced"] = np.array(damping)
+    integrals = (
+        "mPsiTildePsi",
+        "mPsiTildePsiTilde",
+        "mPhitTPsi",
+        "mPhitTPsiTilde",
+        "mXRefTildePsi",
+        "mXRefTildePsiTilde",
+    )
+    return int(
+        build.add(
+            "ObjectFFRFreducedOrder", nodeNumbers=list(nodes), modeBasis=ffrf.modeBasis, referencePositions=ffrf.xRef,
+            mass=ffrf.totalMass, inertia=ffrf.inertiaLocal, centerOfMass=ffrf.chiU, computeFFRFterms=True,
+            **{name: _container(matrix, build) for name, matrix in matrices.items()},
+            **{name: getattr(ffrf, name) for name in integrals},
+        )
+    )  # fmt: skip
+
+
+def add_weight(build: Build, item: int, masses: Array) -> None:
+    """The weight of each point of the cloud that has mass (N,), kg."""
+    gravity = np.array(in_space(build.model.gravity))
+    for k in np.flatnonzero(masses).tolist() if gravity.any() else ():
+        # not LoadMassProportional, whose torque is that of the undeformed body
+        marker = build.add("MarkerSuperElementPosition", bodyNumber=item, meshNodeNumbers=[k], weightingFactors=[1.0])
+        build.add("LoadForceVector", markerNumber=marker, loadVector=(masses[k] * gravity).tolist())
 
 
 class _Mesh:
@@ -145,38 +169,41 @@ def _container(matrix: Array, build: Build) -> Any:
 
 @translates(InterfaceFrame3D)
 def interface_frame(record: InterfaceFrame3D, build: Build) -> None:
-    """No item of its own: markers on it are superelement markers of the body's points there. Its place and velocity are
-    read of one."""
+    """NodeRigidBodyEP with an ObjectRigidBody without mass, welded to the body's points there. A marker of these points
+    alone would not do: an offset of it does not turn with the modes in exudyn."""
     if record.body not in build.bodies:
         raise NotTranslatable(f"'{record.name}' stands before its body '{record.body}': list the body first")
-    build.bodies[record.name] = BodyItems(build.bodies[record.body].node, build.bodies[record.body].item, True)
-    if build.sensors:
-        marker = on_interface(Marker3D(body=record.name), build, np.eye(3))
-        for output, names in (("Position", ("x", "y", "z")), ("Velocity", ("vx", "vy", "vz"))):
-            kind = getattr(build.exudyn.core.OutputVariableType, output)
-            sensor = build.mbs.AddSensor(
-                build.exudyn.items.SensorMarker(
-                    markerNumber=marker, outputVariableType=kind, storeInternal=True, writeToFile=False
-                )
-            )
-            for k, name in enumerate(names):
-                build.columns.append(Column(f"{record.name}.{name}", sensor, k))
-
-
-def on_interface(marker: Marker3D, build: Build, axes: Array) -> int:
-    """A rigid marker on the frame of an interface."""
-    bodies = {body.name: body for body in build.model.bodies}
-    frame = bodies[marker.body]
-    assert isinstance(frame, InterfaceFrame3D)
-    body = bodies[frame.body]
+    records = {body.name: body for body in build.model.bodies}
+    body = records[record.body]
     assert isinstance(body, ReducedBody3D)
-    number = [place.name for place in body.interfaces].index(frame.interface)
+    number = [place.name for place in body.interfaces].index(record.interface)
     first = 4 + 3 * len(body.stiffness) + len(AROUND) * number
-    transformation = np.eye(4)
-    transformation[:3, :3], transformation[:3, 3] = axes, marker.point
-    return int(
-        build.add(
-            "MarkerSuperElementRigid", bodyNumber=build.bodies[frame.body].item, localHT=transformation,
-            meshNodeNumbers=list(range(first, first + len(AROUND))), weightingFactors=[1.0 / len(AROUND)] * len(AROUND),
+    points = replace(build.bodies[record.body], mesh_points=tuple(range(first, first + len(AROUND))))
+    q0, v0 = record.start_in(records)
+    node = build.add(
+        "NodeRigidBodyEP", referenceCoordinates=list(q0), initialCoordinates=[0.0] * 7, initialVelocities=list(v0)
+    )
+    item = build.add("ObjectRigidBody", nodeNumber=node, mass=0.0, inertia=[0.0] * 6)
+    build.bodies[record.name] = BodyItems(node, item, True, reference=tuple(q0))
+    carried = build.mesh_frame(points, (0.0, 0.0, 0.0), np.eye(3))
+    own = build.add("MarkerBodyRigid", bodyNumber=item, localPosition=[0.0] * 3)
+    build.add("ObjectJointGeneric", markerNumbers=[carried, own], constrainedAxes=[1] * 6)
+    node_columns(record, build, (node,), q0)
+    read_place(build, carried, record.name, "xyz")
+
+
+def read_place(build: Build, marker: int, name: str, axes: str) -> None:
+    """Channels of place and velocity of `name` along `axes`, of the marker on the body's points in place of the node's:
+    the velocity of what has no mass is as good as Newton's last iteration only."""
+    if not build.sensors:
+        return
+    for output, prefix in (("Position", ""), ("Velocity", "v")):
+        kind = getattr(build.exudyn.core.OutputVariableType, output)
+        sensor = build.mbs.AddSensor(
+            build.exudyn.items.SensorMarker(
+                markerNumber=marker, outputVariableType=kind, storeInternal=True, writeToFile=False
+            )
         )
-    )  # fmt: skip
+        names = {f"{name}.{prefix}{axis}" for axis in axes}
+        build.columns = [column for column in build.columns if column.channel not in names]
+        build.columns += [Column(f"{name}.{prefix}{axis}", sensor, k) for k, axis in enumerate(axes)]

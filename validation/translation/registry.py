@@ -1,6 +1,6 @@
 """Which function translates which record, and what the functions share while a model is built."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -67,11 +67,30 @@ class BodyItems:
     local: tuple[float, float] = (0.0, 0.0)
     """Where a material point lies in its element `item`, m."""
     reference: tuple[float, ...] = ()
-    """What exudyn's coordinates are displacements from."""
+    """What exudyn's coordinates are displacements from, node after node."""
+    sizes: tuple[int, ...] = ()
+    """Coordinates of each node, where they are not `coordinates_each`."""
+    order: tuple[int, ...] = ()
+    """Where each coordinate of the record stands in `reference`; left out: in its order."""
+    mesh_points: tuple[int, ...] = ()
+    """Points of the superelement `item` that carry the frame which markers take."""
 
     @property
     def all_nodes(self) -> tuple[int, ...]:
         return self.nodes or (self.node,)
+
+    def node_slices(self) -> dict[int, slice]:
+        """Which part of `reference` belongs to each node."""
+        nodes = self.all_nodes
+        sizes = self.sizes or (self.coordinates_each or len(self.reference),) * len(nodes)
+        ends = np.cumsum(sizes).tolist()
+        return {node: slice(end - size, end) for node, size, end in zip(nodes, sizes, ends, strict=True)}
+
+    def place(self, k: int) -> tuple[int, int, float]:
+        """(node, place among its coordinates, reference) of the record's coordinate k."""
+        at = self.order[k] if self.order else k
+        node, part = next((node, part) for node, part in self.node_slices().items() if at < part.stop)
+        return node, at - part.start, self.reference[at]
 
 
 @dataclass(frozen=True)
@@ -161,9 +180,22 @@ class Build:
                 f"a marker on '{marker.body}' lies {marker.point[0]:g} m beyond it along the axis, where exudyn's "
                 "cable elements have no point: put a MaterialPoint2D there, or a light RigidBody2D on a Clamp2D"
             )
+        if body.mesh_points:
+            return self.mesh_frame(body, (*marker.point, 0.0), np.eye(3))
         local = [body.local[0] + marker.point[0], body.local[1] + marker.point[1], 0.0]
         kind = "MarkerBodyRigid" if body.rigid else "MarkerBodyPosition"
         return self.add(kind, bodyNumber=body.item, localPosition=local)
+
+    def mesh_frame(self, body: BodyItems, point: Sequence[float], axes: np.ndarray) -> int:
+        """A rigid marker on the frame that points of a superelement carry, at `point` (3,) in m, with `axes` (3, 3)."""
+        place, points = np.eye(4), list(body.mesh_points)
+        place[:3, :3], place[:3, 3] = axes, point
+        return int(
+            self.add(
+                "MarkerSuperElementRigid", bodyNumber=body.item, localHT=place, meshNodeNumbers=points,
+                weightingFactors=[1.0 / len(points)] * len(points),
+            )
+        )  # fmt: skip
 
     def frame(self, marker: Marker2D, user: str) -> Any:
         """A position and orientation marker. Raises NotTranslatable on a point mass, which has none."""
@@ -182,10 +214,8 @@ class Build:
         items = self.bodies[body]
         if coordinate not in record.coordinate_names or not items.reference:
             raise NotTranslatable(f"'{user}' takes '{coordinate}' of '{body}', which is no coordinate there")
-        k = record.coordinate_names.index(coordinate)
-        each = items.coordinates_each or len(items.reference)
-        marker = self.add("MarkerNodeCoordinate", nodeNumber=items.all_nodes[k // each], coordinate=k % each)
-        return marker, items.reference[k]
+        node, k, reference = items.place(record.coordinate_names.index(coordinate))
+        return self.add("MarkerNodeCoordinate", nodeNumber=node, coordinate=k), reference
 
     def ground_coordinate(self) -> Any:
         """A coordinate that is always zero."""

@@ -13,7 +13,6 @@ from ...core.elements import (
     Distance3D,
     Fixed3D,
     Gear3D,
-    InterfaceFrame3D,
     Joint3D,
     Planar3D,
     PointMass3D,
@@ -43,7 +42,6 @@ from ...core.shapes.on_mesh3d import SphereOnMesh3D
 from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
 from ..errors import NotTranslatable
 from .bodies import node_columns
-from .reduced import on_interface
 from .registry import BodyItems, Build, Derived, no_equal, translates
 
 Work = Callable[[np.ndarray], np.ndarray]
@@ -157,8 +155,6 @@ def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = 
         return int(
             build.add("MarkerBodyPosition", bodyNumber=body, localPosition=[*build.bodies[marker.body].local, 0.0])
         )
-    if any(record.name == marker.body and isinstance(record, InterfaceFrame3D) for record in build.model.bodies):
-        return on_interface(marker, build, np.eye(3) if axes is None else axes)
     transformation = np.eye(4)
     transformation[:3, 3] = marker.point
     if axes is not None:

@@ -46,15 +46,15 @@ class Nodes:
             if name == GROUND:
                 continue
             items = build.bodies[name]
-            carrier = build.bodies[_carrier(build, name)]
-            each = carrier.coordinates_each or len(carrier.reference)
+            carrier = items if items.reference else build.bodies[_carrier(build, name)]
+            parts = carrier.node_slices()
             for node in items.all_nodes:
                 if node in self.slices:
                     continue
-                first = carrier.all_nodes.index(node) * each
-                self.slices[node] = slice(len(references), len(references) + each)
+                own = carrier.reference[parts[node]]
+                self.slices[node] = slice(len(references), len(references) + len(own))
                 self.nodes.append(node)
-                references += carrier.reference[first : first + each]
+                references += own
         self.reference = references
 
     def indices(self, nodes: Sequence[int]) -> list[int]:
@@ -67,8 +67,8 @@ class Nodes:
         items = build.bodies[body]
         if coordinate not in record.coordinate_names or not items.reference:
             raise NotTranslatable(f"'{coordinate}' of '{body}' is no coordinate there")
-        k, each = record.coordinate_names.index(coordinate), items.coordinates_each or len(items.reference)
-        return self.slices[items.all_nodes[k // each]].start + k % each
+        node, k, _ = items.place(record.coordinate_names.index(coordinate))
+        return self.slices[node].start + k
 
 
 def _carrier(build: Build, name: str) -> str:
@@ -87,9 +87,11 @@ def frame_of(build: Build, body: str, nodes: Nodes) -> Frame:
     if body == GROUND:
         return lambda x: (0.0, 0.0, 0.0, lambda gradient, cx, cy, ca: None)
     record = next(b for b in build.model.bodies if b.name == body)
-    at = nodes.indices(build.bodies[body].all_nodes)
-    if not isinstance(record, MaterialPoint2D):
-        return _rigid_frame(at)
+    items = build.bodies[body]
+    at = nodes.indices(items.all_nodes)
+    if items.reference:  # coordinates of its own, unlike a point of a cable
+        return _rigid_frame([at[k] for k in items.order[:3]] or at)
+    assert isinstance(record, MaterialPoint2D)
     carrier = next(b for b in build.model.bodies if b.name == record.body)
     if not isinstance(carrier, Cable2D):  # refused before, when the point itself was translated
         raise TypeError(f"'{record.body}' is a {type(carrier).__name__}, not a Cable2D")
@@ -233,10 +235,9 @@ def _coordinate_gap(record: CoordinateContact, build: Build) -> UserGap:
     for body, coordinate in record.moved_coordinates():
         items = build.bodies[body]
         names = next(b for b in build.model.bodies if b.name == body).coordinate_names
-        k, each = names.index(coordinate), items.coordinates_each or len(items.reference)
-        node = items.all_nodes[k // each]
-        places[body, coordinate] = (node, k % each)
-        references[node] = items.reference[k - k % each : k - k % each + each]
+        node, k, _ = items.place(names.index(coordinate))
+        places[body, coordinate] = (node, k)
+        references[node] = items.reference[items.node_slices()[node]]
         if node not in used:
             used.append(node)
     starts: dict[int, int] = {}
