@@ -225,6 +225,17 @@ class Pinocchio:
         return seconds, np.array([self.data.oMi[k + 1].act(along) for k in range(n)])
 
 
+def pinocchio(links: int) -> Pinocchio | None:
+    """None where it is not installed, or cannot make its data."""
+    if not find_spec("pinocchio"):
+        return None
+    try:
+        return Pinocchio(links)
+    except MemoryError:
+        print(f"Pinocchio: no memory for the data of {links} links", flush=True)
+        return None
+
+
 def show(name: str, found: Found | None) -> None:
     """A line."""
     if found is None:
@@ -240,7 +251,7 @@ def run_case(links: int, limit: float) -> None:
     model = spatial_chain(links)
     _, exact = run_ours(model, t_end, "irk", rtol, {})
     confirmed = {"adams": run_ours(model, t_end, "adams", rtol, {"order": 8})[1]}
-    peer = Pinocchio(links) if find_spec("pinocchio") else None
+    peer = pinocchio(links)
     if peer is not None:
         confirmed["DOP853"] = peer.run(t_end, rtol)[1]
     told = ", ".join(f"{name} {apart(ends, exact):.1e} m" for name, ends in confirmed.items())

@@ -124,10 +124,14 @@ def _measure_condition(ws: Any) -> None:
     largest = 0.0
     for i in range(ws.n):
         largest = max(largest, abs(rhs[i]) / scale[i])
-    if largest > CHOICE_GROWTH * rate[LEAST_CONDITION] > 0.0 and _dependent_move(ws) <= rate[LEAST_CONDITION]:
-        largest = rate[LEAST_CONDITION]
+    least = rate[LEAST_CONDITION]
+    if largest > CHOICE_GROWTH * least > 0.0 and _dependent_move(ws) <= least:
+        largest = least
     rate[CONDITION] = largest
     rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
+    if least > CHOICE_GROWTH * largest > CHOICE_GROWTH**2 * _dependent_move(ws):
+        # the first ones of a structure, at guesses far away, were such moves: what they were is no growth
+        rate[WORST_CONDITION] = largest
     if rate[CHOICE_CONDITION] == 0.0 or CHOICE_GROWTH * largest < rate[CHOICE_CONDITION]:
         rate[CHOICE_CONDITION] = largest
     if rate[LEAST_CONDITION] == 0.0 or largest < rate[LEAST_CONDITION]:
