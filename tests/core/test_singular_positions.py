@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 from helpers import G, on, pendulum_angles, residuals
 from linkages import four_bar, slider_crank, stiffness
-from tlismni.core import ConsistencyError, EquationSystem, Simulation, SimulationError, simulate
+from tlismni.core import (
+    ConsistencyError,
+    EquationSystem,
+    Marker3D,
+    Model,
+    RigidBody3D,
+    Simulation,
+    SimulationError,
+    Spherical3D,
+    simulate,
+)
 
 # IFToMM benchmark A02, two loops, at t = 10 s: the upper end of the first crank
 A02_END = np.array([0.328458111533, 0.944518538181])
@@ -190,6 +200,28 @@ def test_linkage_that_only_comes_near_is_not_mistaken():
         assert residuals(result)[0] < 1e-10
         assert np.abs(result["energy.balance"]).max() < 1e-6
     assert runs[0].q[-1] == pytest.approx(runs[1].q[-1], abs=1e-5)
+
+
+def test_long_chain_that_bends_is_not_looked_at(monkeypatch):
+    """The move of least mass that mends its rows grows to 27 times what it was, the smallest one does not. A look for
+    a singular position takes minutes with so many rods."""
+
+    def looked(*_):
+        raise AssertionError("a singular position was looked for")
+
+    monkeypatch.setattr("tlismni.core.repair.passage.find_singular", looked)
+    bodies, joints = [], []
+    for k in range(1000):
+        body = RigidBody3D(name=f"rod{k}", mass=1.0, inertia=(0.00125, 0.084, 0.084), position=(k + 0.5, 0.0, 0.0))
+        place = (float(k), 0.0, 0.0)
+        before = bodies[-1].marker_at(place) if bodies else Marker3D()
+        joints.append(Spherical3D(name=f"ball{k}", a=before, b=body.marker_at(place)))
+        bodies.append(body)
+    simulation = Simulation(
+        Model(gravity=(0.0, 0.0, -G), bodies=bodies, joints=joints), "adams", 1e-10, 1e-12, record=False, order=8
+    )
+    simulation.run_to(0.06)
+    assert simulation.stats["steps"] > 20
 
 
 def test_fixed_steps_that_cannot_pass_say_why():
