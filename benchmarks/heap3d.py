@@ -39,8 +39,8 @@ SPIN = 0.5
 OUTPUT = 0.01
 STIFFNESS = 1e6
 """Of a contact between two spheres, N/m: a sphere's weight presses it by 6 um."""
-STILL = 1e-6
-"""m/s: a heap with all speeds below rests."""
+STILL = 1e-3
+"""m/s: a heap with all speeds below rests, as far as it is looked at from outside."""
 Places = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
@@ -116,8 +116,9 @@ def run_ours(start: Places, end: float, rest_ratio: float, most: float, rolling:
     instants = len({event.t for event in sim.events})
     lost = values["energy.dissipation"] + values["energy.impact_loss"]
     print(
-        f"ours: {seconds:.1f} s of CPU ({made:.1f} s to make it); {len(sim.events)} events at {instants} instants; at "
-        f"rest from {rests_at:.2f} s (now {sim.t:.2f} s)"
+        f"ours: {seconds:.1f} s of CPU ({made:.1f} s to make it); {len(sim.events)} events at {instants} instants; "
+        f"{sim.stats['steps']} steps, {sim.stats['impulse_steps']} of impulses; at rest from {rests_at:.2f} s (now "
+        f"{sim.t:.2f} s: fastest {speed:.1g} m/s)"
     )
     print(f"  deepest overlap {deepest:.2g} m; energy balance {values['energy.balance']:.2g} J of {lost:.3g} J lost")
     print(f"  highest centre {np.max(q[:, 2]):.4f} m")

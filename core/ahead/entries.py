@@ -83,6 +83,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     yield building.engage_wanted, ENGAGE_SIGNATURE
     yield drive.settle_pending, run_records.SETTLE_SIGNATURE
     yield drive.pass_breakpoint, run_records.SETTLE_SIGNATURE
+    yield drive.push_step, run_records.SETTLE_SIGNATURE
     yield drive.locate_now, run_records.LOCATE_SIGNATURE
     yield loop.run, run_records.RUN_SIGNATURE
     yield loop.trial_step, run_records.TRIAL_SIGNATURE

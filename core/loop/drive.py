@@ -130,7 +130,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
         if left <= 0:
             return CHUNK
         if vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0:
-            side, code = 0.0, make_push_step(dr, ws, ms, lc)
+            side, code = 0.0, call_settle(dr.push_step, dr)
             if code != OK:
                 return code
             continue
@@ -196,6 +196,12 @@ def settle_pending(dr: Any) -> int:
     """Let the pending events happen at the newest row: a status of `events/records.py`."""
     ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
     return settle(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
+def push_step(dr: Any) -> int:
+    """One step of impulses, as `make_push_step` says."""
+    return make_push_step(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
 
 
 @compiled

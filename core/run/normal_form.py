@@ -28,15 +28,18 @@ from ..state.modes import (
     MEMORY_SIZE,
     MODE,
     OPEN,
+    PUSHED,
     SLIDE,
     SLIDE_START,
     STICKS,
 )
+from ..state.modes import PUSHES as BLOCKS
 from ..state.run_records import (
     A2,
     B2,
     BREAK_TIME,
     BUDGET,
+    CALM,
     CLOCK_SIZE,
     COUNTS_SIZE,
     CROWDED,
@@ -54,8 +57,10 @@ from ..state.run_records import (
     PREVIOUS_NORM,
     PREVIOUS_RATIO,
     PUSH_STEP,
+    PUSHED_FROM,
     PUSHED_UNTIL,
     PUSHES,
+    PUSHES_LEFT,
     REJECTED_HERE,
     STATUS,
     STEP_SIZE,
@@ -108,7 +113,7 @@ def _normalise(dr: Any, ws: Any, ms: Any, lc: Any, shift: int) -> None:
     _place_newest(ws, ms, shift)
     _forget_used(ws, ms, shift)
     _forget_in_clock(dr, ws, ms, lc, shift)
-    _forget_in_memories(dr, ws, shift)
+    _forget_in_memories(dr, ws, lc, shift)
 
 
 @internal
@@ -178,16 +183,21 @@ def _forget_in_clock(dr: Any, ws: Any, ms: Any, lc: Any, shift: int) -> None:
         clock[CROWDED] = 0.0
         if ws.n_contacts < MANY_TOUCH:
             clock[WINDOW_START] = clock[WINDOW_COUNT] = 0.0
+    if clock[PUSH_STEP] == 0.0:
+        clock[PUSHES_LEFT] = clock[CALM] = clock[PUSHED_FROM] = 0.0
     if clock[PUSH_STEP] == 0.0 and not pushed_lately(ws, lc, history_time(ms, 0)):
         clock[PUSHES] = clock[PUSHED_UNTIL] = 0.0
 
 
 @internal
-def _forget_in_memories(dr: Any, ws: Any, shift: int) -> None:
+def _forget_in_memories(dr: Any, ws: Any, lc: Any, shift: int) -> None:
     """Of contacts: what their law does not ask for in their mode."""
+    pushing = vec(lc.clock + shift, CLOCK_SIZE)[PUSH_STEP] != 0.0
     memories, law = mat(ws.memory + shift, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
     for k in range(ws.n_contacts):
         memory = memories[k]
+        for block in range(0 if pushing else BLOCKS):
+            memory[PUSHED + block] = 0.0
         if law[k] == FORCE:
             memory[LARGEST_APPROACH] = 0.0
             if memory[MODE] == OPEN:

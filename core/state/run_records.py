@@ -99,7 +99,8 @@ DRIVE = np.dtype(
         (name, np.int64)
         for name in (
             "workspace", "method", "loop", "instant",  # addresses of the records
-            "run", "trial", "accept", "write_sample", "accelerations", "settle", "locate",  # addresses of functions
+            "run", "trial", "accept", "write_sample", "accelerations", "settle", "locate",
+            "push_step",                              # addresses of functions
             "goals",                                  # (GOALS_SIZE,) float64: where to go
             "counts",                                 # (COUNTS_SIZE,) int64
             "guard",                                  # (GUARD_SIZE,) float64: of `Progress`

@@ -23,6 +23,7 @@ RARE = {
     "clock 17": "crowding instants of friction", "clock 18": "the same", "clock 19": "the same",
     "memory 9": "contacts by force and in space only", "memory 10": "the same",
     "memory 2": "asked for where bounces accumulate",
+    **dict.fromkeys((f"clock {k}" for k in (21, 22, 25)), "steps of impulses of many contacts"),
     "inputs": "of inputs, and of none where there is none",
 }  # fmt: skip
 """What need not show in the futures of a few states, and why."""
