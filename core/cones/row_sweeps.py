@@ -57,46 +57,38 @@ def sweep_rows(
     """
     directions, responses = mat(directions_at, rows, n), mat(responses_at, rows, n)
     to_read, to_move = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
+    stages = 2 + (1 if turns else 0)
     for turn in range(most):
         change = 0.0
         for i in range(count):
-            if masses[i] > 0.0:
-                step = max(-_rate(i, off, directions, to_read, x) / masses[i], -p[i])
-                if step != 0.0:
-                    p[i] += step
-                    _move(i, step, responses, to_move, x)
-                    change = max(change, abs(step) * masses[i])
-            if mu[i] > 0.0 and tangents > 0:
-                first, second = count + i, 2 * count + i
-                mass = max(masses[first], masses[second] if tangents == 2 else 0.0)
-                if mass > 0.0:
-                    limit = mu[i] * p[i]
-                    along = p[first] - _rate(first, off, directions, to_read, x) / mass if masses[first] > 0.0 else 0.0
-                    across = 0.0
-                    if tangents == 2 and masses[second] > 0.0:
-                        across = p[second] - _rate(second, off, directions, to_read, x) / mass
-                    size = np.sqrt(along * along + across * across)
+            for stage in range(stages):
+                # the normal, both tangents, the torque: each with the motion that those before have left
+                first = (0 if stage == 0 else 1 if stage == 1 else 1 + tangents) * count + i
+                wide = tangents if stage == 1 else 1
+                mass, new, other, size = 0.0, 0.0, 0.0, 0.0
+                for k in range(wide):
+                    mass = max(mass, masses[first + k * count])
+                if mass == 0.0 or (stage == 1 and mu[i] == 0.0):
+                    continue
+                for k in range(wide):
+                    r = first + k * count
+                    value = p[r] - _rate(r, off, directions, to_read, x) / mass if masses[r] > 0.0 else 0.0
+                    new, other = (value, other) if k == 0 else (new, value)
+                if stage == 0:
+                    new = max(new, 0.0)
+                elif stage == 1:
+                    size, limit = np.sqrt(new * new + other * other), mu[i] * p[i]
                     part = limit / size if size > limit else 1.0
-                    step = part * along - p[first]
-                    if step != 0.0:
-                        p[first] += step
-                        _move(first, step, responses, to_move, x)
-                        change = max(change, abs(step) * mass)
-                    if tangents == 2:
-                        step = part * across - p[second]
-                        if step != 0.0:
-                            p[second] += step
-                            _move(second, step, responses, to_move, x)
-                            change = max(change, abs(step) * mass)
-            if turns:
-                r = (1 + tangents) * count + i
-                if masses[r] > 0.0:
-                    new = p[r] - _rate(r, off, directions, to_read, x) / masses[r]
-                    step = min(max(new, 0.0), p[i]) - p[r]
+                    new, other = part * new, part * other
+                else:
+                    new = min(max(new, 0.0), p[i])
+                for k in range(wide):
+                    r = first + k * count
+                    step = (new if k == 0 else other) - p[r]
                     if step != 0.0:
                         p[r] += step
                         _move(r, step, responses, to_move, x)
-                        change = max(change, abs(step) * masses[r])
+                        change = max(change, abs(step) * mass)
         if change <= tolerance:
             return turn + 1
     return most

@@ -36,8 +36,9 @@ from .laws import FORCE, MASSLESS
 
 WINDOW = 64
 """Instants that are looked at together."""
-NEXT_TO_NO_TIME, NEXT_TO_NO_TIME_OF_MANY = 1e-6, 2e-3
-"""Of the model's own time: for so many instants, and for so many at which many contacts touch."""
+NEXT_TO_NO_TIME, NEXT_TO_NO_TIME_OF_MANY, IN_SPACE = 1e-6, 1e-5, 2e-3
+"""Of the model's own time: for so many instants, and for so many at which many contacts touch, in the plane and in
+space: heaps of disks come to rest event by event, and their crowds end by themselves."""
 MANY_TOUCH = 8
 SIZE = 5e-4
 """Of a step of impulses, in parts of the model's own time."""
@@ -56,14 +57,13 @@ def count_instant(dr: Any, ws: Any, ms: Any, lc: Any, t: float, touching: int) -
     many = touching >= MANY_TOUCH and clock[PUSH_STEP] == 0.0
     clock[WINDOW_COUNT] += 1.0
     again = clock[PUSHES] > 0.0 and t <= clock[PUSHED_UNTIL] + _size(ws) and clock[WINDOW_COUNT] >= FEW_AGAIN
-    if many and again:
-        begin_pushing(dr, ws, ms, lc, t)
     if clock[WINDOW_COUNT] >= WINDOW:
         span = abs(t - clock[WINDOW_START]) * vec(ws.control, CONTROL_SIZE)[RATE_SCALE]
         clock[CROWDED] = 1.0 if span < NEXT_TO_NO_TIME else 0.0
         clock[WINDOW_START], clock[WINDOW_COUNT] = t, 0.0
-        if many and span < NEXT_TO_NO_TIME_OF_MANY:
-            begin_pushing(dr, ws, ms, lc, t)
+        again = again or span < (IN_SPACE if ws.tangents == 2 else NEXT_TO_NO_TIME_OF_MANY)
+    if many and again:
+        begin_pushing(dr, ws, ms, lc, t)
 
 
 @internal

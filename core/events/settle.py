@@ -78,7 +78,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts):
         return DECLINED
     if not _gets_on(dr, t):
-        return SETTLED if _many_touch(dr, ws) and _goes_on_in_steps(dr, ws, ms, lc, t) else DECLINED
+        return _go_on_in_steps(dr, ws, ms, lc, t, DECLINED) if _many_touch(dr, ws) else DECLINED
     _keep(ev, ws, False)
     step = vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here
@@ -113,7 +113,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         _put_back(ev, ws, ms, structure)
         vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = step
         many = status >= NO_IMPACT and not pushing and touched >= MANY_TOUCH
-        return SETTLED if many and _goes_on_in_steps(dr, ws, ms, lc, t) else status
+        return _go_on_in_steps(dr, ws, ms, lc, t, status) if many else status
     if pushing and not begun:
         # what lies between two steps of impulses is between what they have left
         _go_on(ws, ms, lc)
@@ -131,17 +131,18 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
 
 
 @internal
-def _goes_on_in_steps(dr: Any, ws: Any, ms: Any, lc: Any, t: float) -> bool:
-    """True if the run goes on from the newest row, at time t, by steps of impulses: what touches cannot be settled."""
+def _go_on_in_steps(dr: Any, ws: Any, ms: Any, lc: Any, t: float, status: int) -> int:
+    """Go on from the newest row, at time t, by steps of impulses, since what touches cannot be settled: SETTLED, or the
+    `status` that says so where there are no such steps."""
     if vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0 or not begin_pushing(dr, ws, ms, lc, t):
-        return False
+        return status
     guard = vec(dr.guard, GUARD_SIZE)
     # these steps get on
     ivec(dr.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[GUARDED] = 0, t, 0.0
     recall(ws, ms, 0)
     evaluate_residuals(ws)
     _all_pending(dr, ws)
-    return True
+    return SETTLED
 
 
 @internal
@@ -156,9 +157,10 @@ def _many_touch(dr: Any, ws: Any) -> bool:
 
 @internal
 def _loses_unseen(ev: Any, ws: Any) -> bool:
-    """True if many touch, and bringing them onto their new constraints has changed the energy by more than rounding."""
+    """True if many touch in space, and bringing them onto their new constraints has changed the energy by more than
+    rounding. (In the plane what is lost so is next to nothing, and events get on.)"""
     most = UNSEEN * vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
-    return bool(whole(ev)[TOUCHED] >= MANY_TOUCH and abs(real(ev)[MET_LOSS]) > most)
+    return bool(ws.tangents == 2 and whole(ev)[TOUCHED] >= MANY_TOUCH and abs(real(ev)[MET_LOSS]) > most)
 
 
 @internal

@@ -90,6 +90,21 @@ def test_a_heap_comes_to_rest(count, seed, end):
     assert max(event.t for event in sim.events) < 0.98 * end
 
 
+@pytest.mark.full
+def test_a_heap_whose_instants_crowd_comes_to_rest():
+    """Twenty spheres, of which a ring is nearly locked between floor and wall: on by steps of impulses, to rest."""
+    sim, radii = dropped(20, 0, turning=TurningFriction(rolling=1e-3, spinning=5e-4))
+    start = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    assert deepest_until(sim, radii, np.linspace(0.0, 1.6, 33)[1:]) < 1e-4
+    assert sim.stats["impulse_steps"] > 1000
+    values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))
+    lost = values["energy.dissipation"] + values["energy.impact_loss"]
+    assert values["energy.balance"] == pytest.approx(0.0, abs=1e-6 * lost)
+    assert lost == pytest.approx(start["energy.potential"] - values["energy.potential"], rel=1e-5)
+    assert np.abs(sim.workspace.arrays["v"][:140]).max() < 1e-2
+    assert deepest_until(sim, radii, [1.6]) < 1e-9
+
+
 def test_a_ball_that_rolls_along_a_wall_touches_it_without_force():
     """It rolls on the floor with a wall beside it, at no distance and without a force. Rounding moves it within what
     the wall can tell; it goes on rolling."""
