@@ -31,6 +31,15 @@ def list_columns(rows: int, n: int, directions: Any, responses: Any, columns: in
 
 
 @internal
+def along(r: int, n: int, rows: int, columns: int, directions: Any, x: Any) -> float:
+    """Product of the gradient of row r with x (n,), by the entries of the gradient that `list_columns` has found."""
+    where, product = imat(columns, rows, n + 1), 0.0
+    for e in range(1, where[r, 0] + 1):
+        product += directions[r, where[r, e]] * x[where[r, e]]
+    return float(product)
+
+
+@internal
 def _rate(r: int, off: Any, directions: Any, where: Any, x: Any) -> float:
     rate = off[r]
     for e in range(1, where[r, 0] + 1):
@@ -153,6 +162,7 @@ def press_apart(
             if not of_way > 0.0:
                 break
             length, before, out = size / of_way, size, False
+            motion = work[3 * rows :]
             for i in range(count):
                 if way[i] < 0.0 and p[i] + length * way[i] < 0.0:
                     length, out = min(length, p[i] / -way[i]), True
@@ -161,9 +171,10 @@ def press_apart(
                 p[i] = max(p[i] + length * way[i], 0.0) if way[i] != 0.0 else p[i]
                 rest[i] -= length * product[i]
                 size += rest[i] * rest[i] if p[i] > 0.0 else 0.0
+            for j in range(n):
+                x[j] += length * motion[j]
             if out or np.sqrt(size) <= 0.1 * tolerance:
                 break
             for i in range(count):
                 way[i] = rest[i] + size / before * way[i] if p[i] > 0.0 else 0.0
-        _motion(count, p, responses, to_move, n, x)
     return False

@@ -13,15 +13,19 @@ next row is twice as long.
 
 from typing import Any
 
-from ..compiled.jit import internal
+from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
+from ..methods.history import history_time, recall
 from ..rounding import GAP_ROUNDING
-from ..state.modes import MEMORY_SIZE, PUSHED
+from ..state.modes import CLOSED, MEMORY_SIZE, MODE, PUSHED
 from ..state.modes import PUSHES as BLOCKS
 from ..state.run_records import (
     CALM,
     CLOCK_SIZE,
+    COUNTS_SIZE,
     CROWDED,
+    HERE,
+    LOOP_TYPE,
     PUSH_STEP,
     PUSHED_FROM,
     PUSHED_UNTIL,
@@ -31,8 +35,11 @@ from ..state.run_records import (
     WINDOW_START,
 )
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
+from ..tables.evaluate import evaluate_residuals
 from ..tables.levels import position_level
 from .laws import FORCE, MASSLESS
+from .progress import COUNT, GUARD_SIZE, SINCE
+from .records import DECLINED, SETTLED
 
 WINDOW = 64
 """Instants that are looked at together."""
@@ -49,10 +56,12 @@ FEW_AGAIN = 16
 SOON = 64
 """Steps of impulses: what crowds again within the time of so many behind the last row goes on crowding."""
 
+loop_at = record_view(LOOP_TYPE)
+
 
 @internal
-def count_instant(dr: Any, ws: Any, ms: Any, lc: Any, t: float, touching: int) -> None:
-    """One more instant, at time t, with so many touching contacts."""
+def count_instant(ws: Any, lc: Any, t: float, touching: int) -> bool:
+    """One more instant, at time t, with so many touching contacts; True if the run is to go on in steps of impulses."""
     clock = vec(lc.clock, CLOCK_SIZE)
     many = touching >= MANY_TOUCH and clock[PUSH_STEP] == 0.0
     clock[WINDOW_COUNT] += 1.0
@@ -62,8 +71,7 @@ def count_instant(dr: Any, ws: Any, ms: Any, lc: Any, t: float, touching: int) -
         clock[CROWDED] = 1.0 if span < NEXT_TO_NO_TIME else 0.0
         clock[WINDOW_START], clock[WINDOW_COUNT] = t, 0.0
         again = again or span < (IN_SPACE if ws.tangents == 2 else NEXT_TO_NO_TIME_OF_MANY)
-    if many and again:
-        begin_pushing(dr, ws, ms, lc, t)
+    return bool(many and again)
 
 
 @internal
@@ -87,7 +95,7 @@ def near_level(ws: Any, h: float) -> float:
 
 
 @internal
-def may_push(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
+def may_push(dr: Any, ws: Any, ms: Any) -> bool:
     """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, among
     redundant rows, and where contacts act as forces or are at massless ends."""
     law = ivec(dr.law, ws.n_contacts)
@@ -100,15 +108,32 @@ def may_push(dr: Any, ws: Any, ms: Any, lc: Any) -> bool:
 
 
 @internal
-def begin_pushing(dr: Any, ws: Any, ms: Any, lc: Any, t: float) -> bool:
-    """Go on in steps of impulses from time t; False where that cannot be."""
+def step_through(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Go on from the newest row by steps of impulses; DECLINED, and nothing has happened, where there are none."""
+    lc, t, guard = loop_at(dr.loop), history_time(ms, 0), vec(dr.guard, GUARD_SIZE)
     clock = vec(lc.clock, CLOCK_SIZE)
-    if clock[PUSH_STEP] != 0.0 or not may_push(dr, ws, ms, lc):
-        return clock[PUSH_STEP] != 0.0
-    again = pushed_lately(ws, lc, t)
-    clock[PUSHES] = min(2.0 * clock[PUSHES], MOST) if again else FEWEST
+    if clock[PUSH_STEP] != 0.0 or not may_push(dr, ws, ms):
+        return DECLINED
+    clock[PUSHES] = min(2.0 * clock[PUSHES], MOST) if pushed_lately(ws, lc, t) else FEWEST
     clock[PUSH_STEP], clock[PUSHES_LEFT], clock[CALM], clock[PUSHED_FROM] = _size(ws), clock[PUSHES], 0.0, t
-    return True
+    # these steps get on
+    ivec(dr.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[COUNT] = 0, t, 0.0
+    recall(ws, ms, 0)
+    evaluate_residuals(ws)
+    all_pending(dr, ws)
+    return SETTLED
+
+
+@internal
+def all_pending(dr: Any, ws: Any) -> None:
+    """Closed constraint contacts, and others that touch, are pending."""
+    memory, pending = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.pending, ws.n_contacts)
+    rows, phi, scale = ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext)
+    level, asleep = GAP_ROUNDING * position_level(ws), ivec(ws.asleep, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        touches = asleep[k] == 0 and phi[rows[k]] <= level * scale[rows[k]]
+        if memory[k, MODE] == CLOSED or touches:
+            pending[k] = 1
 
 
 @internal

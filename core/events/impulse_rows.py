@@ -4,7 +4,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.row_sweeps import list_columns
+from ..cones.row_sweeps import along, list_columns
 from ..linalg import lu_at, solve
 from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
 from .crowding import near_level
@@ -120,13 +120,10 @@ def prepare_rows(ev: Any, ws: Any, h: float) -> None:
         elif block == 2 and ws.tangents == 2:
             rate[r] = col(ev, SWAY_RATE)[i]
         else:
-            rate[r] = 0.0
-            for j in range(n):
-                rate[r] += directions[r, j] * v[j]
+            rate[r] = along(r, n, rows, ev.columns, directions, v)
         inverse[r] = p[r] = 0.0
         if block > ws.tangents or _moves(ev, ws, count, r):
-            for j in range(n):
-                inverse[r] += directions[r, j] * responses[r, j]
+            inverse[r] = along(r, n, rows, ev.columns, directions, responses[r])
         # what is near, but does not touch, stands here to be kept from overlapping
         takes[r] = inverse[r] if col(ev, GAP)[i] <= level * scale[contact_rows[k]] else 0.0
         if takes[r] > 0.0:

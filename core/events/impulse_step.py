@@ -12,11 +12,11 @@ import numpy as np
 
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
-from ..cones.row_sweeps import press_apart, sweep_rows
+from ..cones.row_sweeps import along, press_apart, sweep_rows
 from ..linalg import lu_at, solve
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
-from ..state.modes import CLOSED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, PUSHED
+from ..state.modes import CLOSED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, MODE, PUSHED
 from ..state.run_records import (
     CALM,
     CLOCK_SIZE,
@@ -33,11 +33,11 @@ from ..tables.levels import position_level
 from .crowding import end_pushing
 from .impulse_rows import BEFORE, INVERSE, OFF, TAKES, P, open_rows, part, prepare_rows, room, rows_of
 from .meeting import meet_constraints
-from .reading import read_before
 from .records import (
     APPROACH,
     COUNT,
     FALLS,
+    GAP,
     KINETIC,
     LARGEST,
     LOSS,
@@ -48,7 +48,6 @@ from .records import (
     SWEPT,
     TOUCHED,
     WANT_ROOM,
-    WAS,
     call_part,
     clear,
     col,
@@ -56,7 +55,7 @@ from .records import (
     whole,
 )
 from .report import report
-from .touching import find_touching, read_values
+from .touching import find_touching
 
 TOLERANCE, SWEEPS = 1e-7, 1000
 """Sweeps end when no rate changes by more than this part of the largest there was, or after so many."""
@@ -79,8 +78,7 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     h = t - clock[PUSHED_FROM]
     if not find_touching(ev, dr, ws):
         return WANT_ROOM
-    read_before(ev, dr, ws)
-    read_values(ev, ws)
+    held = _look(ev, ws)
     status = open_rows(ev, dr, ws, ms)
     if status != SETTLED:
         return status
@@ -95,7 +93,7 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         driven = energy[0] - kinetic + lost
         vec(ws.v, ws.n_ext)[dr.input_account] += driven
         before += driven
-    if _any_held(ev):
+    if held:
         status = call_part(ev.use_modes, ev, dr, ws, ms)
         if status != SETTLED:
             return int(status)
@@ -135,12 +133,15 @@ def _carry(ev: Any, ws: Any, h: float) -> None:
 
 
 @internal
-def _any_held(ev: Any) -> bool:
-    """True if a contact was closed: at the first of a row of steps."""
+def _look(ev: Any, ws: Any) -> bool:
+    """Gaps of the touching contacts, and with which accelerations they close, before any impulse; True if one was
+    closed: at the first of a row of steps."""
+    contacts, rows, held = ivec(ev.contacts, ev.most), ivec(ws.contact_rows, ws.n_contacts), False
     for i in range(whole(ev)[COUNT]):
-        if col(ev, WAS)[i] == CLOSED:
-            return True
-    return False
+        k = contacts[i]
+        col(ev, GAP)[i], col(ev, FALLS)[i] = vec(ws.phi, ws.m_ext)[rows[k]], -vec(ws.phidd, ws.m_ext)[rows[k]]
+        held = held or mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE] == CLOSED
+    return held
 
 
 @internal
@@ -191,9 +192,8 @@ def _record(ev: Any, dr: Any, ws: Any, h: float, t: float) -> Any:
         memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
         changed = changed or (p[i] > 0.0) != (memory[PUSHED] > 0.0) or col(ev, RESTS)[i] != 0.0
         for block in range(rows // count):
-            r, moved = block * count + i, 0.0
-            for j in range(n):
-                moved += directions[r, j] * x[j]
+            r = block * count + i
+            moved = along(r, n, rows, ev.columns, directions, x)
             after = rate[i] + moved if block == 0 else after
             lost -= p[r] * (rate[r] + 0.5 * moved)
             memory[PUSHED + block] = p[r] / h if h > 0.0 else 0.0

@@ -27,6 +27,7 @@ from .balance import find_forces
 from .balance_in_space import find_forces_in_space
 from .carrying import keep
 from .carrying_in_space import keep_in_space
+from .crowding import step_through
 from .force_contact import settle_forces
 from .impact import strike
 from .impact_in_space import strike_in_space
@@ -39,7 +40,7 @@ from .resting_in_space import begin_rest_in_space
 from .touching import open_touching
 from .touching_in_space import open_in_space
 
-PARTS = (open_touching, strike, begin_rest, find_forces, keep, use_modes, settle_forces, push_apart)
+PARTS = (open_touching, strike, begin_rest, find_forces, keep, use_modes, settle_forces, push_apart, step_through)
 _OTHERS = (
     ("solve_cones", solve_cones, CONES_SIGNATURE),
     ("independent", independent_directions, INDEPENDENT_SIGNATURE),

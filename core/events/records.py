@@ -21,6 +21,7 @@ INSTANT = np.dtype(
             "most",                      # touching contacts that there is room for
             # addresses of these functions
             "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces", "push_apart",
+            "step_through",
             "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them

@@ -11,7 +11,6 @@ from ..compiled.views import ivec, mat, vec
 from ..location.asleep import look_at_all
 from ..location.watch import remember
 from ..methods.history import history_time, recall, replace, restart
-from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE
 from ..state.run_records import (
     CLOCK_SIZE,
@@ -28,10 +27,9 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE, FACTOR_AGE, RATE_SIZE
 from ..tables.evaluate import evaluate_power, evaluate_residuals
-from ..tables.levels import position_level
 from ..tables.switch import take_structure
 from .breakpoint import pass_breakpoint
-from .crowding import MANY_TOUCH, begin_pushing, count_instant, may_push
+from .crowding import MANY_TOUCH, all_pending, count_instant, may_push
 from .decide import decide
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
@@ -78,7 +76,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts):
         return DECLINED
     if not _gets_on(dr, t):
-        return _go_on_in_steps(dr, ws, ms, lc, t, DECLINED) if _many_touch(dr, ws) else DECLINED
+        return int(call_part(ev.step_through, ev, dr, ws, ms)) if _many_touch(dr, ws) else DECLINED
     _keep(ev, ws, False)
     step = vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here
@@ -103,7 +101,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         clear(ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
     elif status == SETTLED and _any_constraint(dr, ws):
         status = decide(ev, dr, ws, ms, lc)
-    if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms, lc):
+    if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms):
         status = NOT_MET
     if status == SETTLED and not pushing:
         status = find_pending(ev, dr, ws, ms, lc)
@@ -113,35 +111,24 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         _put_back(ev, ws, ms, structure)
         vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = step
         many = status >= NO_IMPACT and not pushing and touched >= MANY_TOUCH
-        return _go_on_in_steps(dr, ws, ms, lc, t, status) if many else status
+        if many and call_part(ev.step_through, ev, dr, ws, ms) == SETTLED:
+            return SETTLED
+        return status
     if pushing and not begun:
         # what lies between two steps of impulses is between what they have left
         _go_on(ws, ms, lc)
     else:
         begin_anew(ws, ms, lc)
     _count(dr, t)
+    crowds = False
     if not pushing:
-        count_instant(dr, ws, ms, lc, t, touched)
+        crowds = count_instant(ws, lc, t, touched)
     copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
-    if (vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0) != pushing:
-        # at the begin of a row of steps of impulses what is closed is to be opened, and at its end to be settled
-        _all_pending(dr, ws)
+    if pushing and vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
+        all_pending(dr, ws)
+    elif crowds:
+        call_part(ev.step_through, ev, dr, ws, ms)
     _sample(dr, ws, lc)
-    return SETTLED
-
-
-@internal
-def _go_on_in_steps(dr: Any, ws: Any, ms: Any, lc: Any, t: float, status: int) -> int:
-    """Go on from the newest row, at time t, by steps of impulses, since what touches cannot be settled: SETTLED, or the
-    `status` that says so where there are no such steps."""
-    if vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0 or not begin_pushing(dr, ws, ms, lc, t):
-        return status
-    guard = vec(dr.guard, GUARD_SIZE)
-    # these steps get on
-    ivec(dr.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[GUARDED] = 0, t, 0.0
-    recall(ws, ms, 0)
-    evaluate_residuals(ws)
-    _all_pending(dr, ws)
     return SETTLED
 
 
@@ -161,18 +148,6 @@ def _loses_unseen(ev: Any, ws: Any) -> bool:
     rounding. (In the plane what is lost so is next to nothing, and events get on.)"""
     most = UNSEEN * vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
     return bool(ws.tangents == 2 and whole(ev)[TOUCHED] >= MANY_TOUCH and abs(real(ev)[MET_LOSS]) > most)
-
-
-@internal
-def _all_pending(dr: Any, ws: Any) -> None:
-    """Closed constraint contacts, and others that touch, are pending."""
-    memory, pending = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.pending, ws.n_contacts)
-    rows, phi, scale = ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext)
-    level, asleep = GAP_ROUNDING * position_level(ws), ivec(ws.asleep, ws.n_contacts)
-    for k in range(ws.n_contacts):
-        touches = asleep[k] == 0 and phi[rows[k]] <= level * scale[rows[k]]
-        if memory[k, MODE] == CLOSED or touches:
-            pending[k] = 1
 
 
 @internal
