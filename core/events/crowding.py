@@ -15,7 +15,7 @@ from typing import Any
 
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
-from ..methods.history import history_time, recall
+from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE, PUSHED
 from ..state.modes import PUSHES as BLOCKS
@@ -35,7 +35,6 @@ from ..state.run_records import (
     WINDOW_START,
 )
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
-from ..tables.evaluate import evaluate_residuals
 from ..tables.levels import position_level
 from .laws import FORCE, MASSLESS
 from .progress import COUNT, GUARD_SIZE, SINCE
@@ -118,8 +117,6 @@ def step_through(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     clock[PUSH_STEP], clock[PUSHES_LEFT], clock[CALM], clock[PUSHED_FROM] = _size(ws), clock[PUSHES], 0.0, t
     # these steps get on
     ivec(dr.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[COUNT] = 0, t, 0.0
-    recall(ws, ms, 0)
-    evaluate_residuals(ws)
     all_pending(dr, ws)
     return SETTLED
 

@@ -86,12 +86,8 @@ def _respond_to_torques(ev: Any, ws: Any, count: int) -> None:
     directions, responses = mat(ev.directions, 4 * count, n), mat(ev.responses, 4 * count, n)
     torques, turns = mat(ev.torques, count, n), col(ev, FLAG)
     for i in range(count):
-        clear(directions[3 * count + i], n)
-        clear(responses[3 * count + i], n)
-        if turns[i] == 0.0:
-            continue
         for j in range(n):
-            directions[3 * count + i, j] = rhs[j] = torques[i, j] - directions[i, j]
+            directions[3 * count + i, j] = rhs[j] = turns[i] * (torques[i, j] - directions[i, j])
         for j in range(ws.m_act):
             rhs[n + j] = 0.0
         solve(lu_at(ws.kkt_query), ws.rhs)

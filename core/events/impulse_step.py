@@ -28,7 +28,7 @@ from ..state.run_records import (
     call_accelerations,
 )
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
-from ..tables.evaluate import evaluate_energy, evaluate_residuals
+from ..tables.evaluate import evaluate_energy
 from ..tables.levels import position_level
 from .crowding import end_pushing
 from .impulse_rows import BEFORE, INVERSE, OFF, TAKES, P, open_rows, part, prepare_rows, room, rows_of
@@ -129,7 +129,6 @@ def _carry(ev: Any, ws: Any, h: float) -> None:
         a[j] += rhs[j]
     for i in range(ws.m_act):
         lam[active[i]] += rhs[n + i]
-    evaluate_residuals(ws)
 
 
 @internal
@@ -242,5 +241,4 @@ def _close_overlaps(ev: Any, ws: Any) -> bool:
         )  # fmt: skip
         for j in range(n):
             vec(ws.q, ws.n_ext)[j] += x[j]
-        evaluate_residuals(ws)
     return True

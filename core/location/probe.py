@@ -149,19 +149,16 @@ def pull_alone(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
     lam = vec(lc.probe_lam, ws.m_ext)
     for j in range(ws.n):
         out[j] = 0.0
-    for force in range(2):
-        for j in range(batch.count * batch.ncoord):
-            i = coord[j]
-            to_q[i], to_v[i], to_a[i], r[i] = q[i], v[i], a[i], 0.0
-        lam[row] = -1.0 * force
-        call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(ws.t, 1)[0], batch)
-        # a coordinate may stand there twice
-        for j in range(batch.count * batch.ncoord):
-            to_a[coord[j]] = r[coord[j]] - (out[coord[j]] if force == 1 and coord[j] < ws.n else 0.0)
-        for j in range(batch.count * batch.ncoord):
-            if coord[j] < ws.n:
-                out[coord[j]] = to_a[coord[j]] if force == 0 else -to_a[coord[j]]
+    for j in range(batch.count * batch.ncoord):
+        i = coord[j]
+        to_q[i], to_v[i], to_a[i], r[i] = q[i], v[i], a[i], 0.0
+    # all that a contact adds to the residual goes with its multipliers
+    lam[row] = -1.0
+    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(ws.t, 1)[0], batch)
     lam[row] = 0.0
+    for j in range(batch.count * batch.ncoord):
+        if coord[j] < ws.n:
+            out[coord[j]] = -r[coord[j]]
 
 
 @internal

@@ -152,32 +152,20 @@ def _write_log(ws: Any, ms: Any, lc: Any) -> None:
     cursor[0] += 1
 
 
-@internal
-def take_step(ws: Any, ms: Any, lc: Any) -> None:
-    """The current point becomes the newest row, and a step record if they are wanted."""
+@compiled
+def accept(ws: Any, ms: Any, lc: Any) -> None:
+    """The current point becomes the newest row, and a sample and a step record if they are wanted."""
     push(ws, ms)
     remember(ws, lc)
     doze(ws, lc)
     ivec(ws.counters, COUNTERS_SIZE)[STEPS] += 1
     if lc.log_capacity > 0:
         _write_log(ws, ms, lc)
-
-
-@internal
-def take_sample(ws: Any, lc: Any) -> None:
-    """A sample of the current point, if they are wanted and it is the turn of one."""
     if lc.capacity > 0 and ivec(ws.counters, COUNTERS_SIZE)[STEPS] % lc.stride == 0:
         cursor = ivec(lc.cursor, 1)
         look_at_all(ws, lc)
         write_sample(ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
         cursor[0] += 1
-
-
-@compiled
-def accept(ws: Any, ms: Any, lc: Any) -> None:
-    """The current point becomes the newest row, and a sample and a step record if they are wanted."""
-    take_step(ws, ms, lc)
-    take_sample(ws, lc)
 
 
 @internal

@@ -14,9 +14,18 @@ from ..location.asleep import sleeps_on
 from ..location.probe import set_travel
 from ..location.trials import make_trial
 from ..methods.history import history_time, recall
-from ..state.run_records import CLOCK_SIZE, FULL, PUSH_STEP, PUSHED_FROM, PUSHES_LEFT, REPARTITION, STOP_TIME
+from ..state.run_records import (
+    CLOCK_SIZE,
+    FULL,
+    PUSH_STEP,
+    PUSHED_FROM,
+    PUSHES_LEFT,
+    REPARTITION,
+    STOP_TIME,
+    call_accept,
+)
 from ..state.workspace_records import COUNTERS_SIZE, OF_IMPULSES, OK
-from .loop import partition_strained, take_sample, take_step
+from .loop import partition_strained
 
 NEAR = 2.0
 """Of the deepest overlap: a gap so small may close where that one is opened."""
@@ -59,12 +68,14 @@ def make_push_step(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     for k in range(ws.n_contacts):
         if ivec(ws.asleep, ws.n_contacts)[k] == 0 and phi[rows[k]] <= NEAR * deepest:
             pending[k] = 1
-    take_step(ws, ms, lc)
+    # a sample of what overlaps is none: `settle` makes one of what is left of it
+    kept, lc.capacity = lc.capacity, 0 if touches else lc.capacity
+    call_accept(dr.accept, ws, ms, lc)
+    lc.capacity = kept
     ivec(ws.counters, COUNTERS_SIZE)[OF_IMPULSES] += 1
     clock[PUSHED_FROM] = t
     clock[PUSHES_LEFT] -= 1.0
     if not touches:
-        # nothing is left of the crowd, and nobody else samples this point
+        # nothing is left of the crowd
         end_pushing(ws, lc, history_time(ms, 0))
-        take_sample(ws, lc)
     return REPARTITION if partition_strained(ws) else OK
