@@ -111,26 +111,28 @@ def step_through(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Go on from the newest row by steps of impulses; DECLINED, and nothing has happened, where there are none."""
     lc, t, guard = loop_at(dr.loop), history_time(ms, 0), vec(dr.guard, GUARD_SIZE)
     clock = vec(lc.clock, CLOCK_SIZE)
-    if clock[PUSH_STEP] != 0.0 or not may_push(dr, ws, ms):
+    if clock[PUSH_STEP] != 0.0 or not may_push(dr, ws, ms) or _make_pending(dr, ws) < MANY_TOUCH:
         return DECLINED
     clock[PUSHES] = min(2.0 * clock[PUSHES], MOST) if pushed_lately(ws, lc, t) else FEWEST
     clock[PUSH_STEP], clock[PUSHES_LEFT], clock[CALM], clock[PUSHED_FROM] = _size(ws), clock[PUSHES], 0.0, t
     # these steps get on
     ivec(dr.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[COUNT] = 0, t, 0.0
-    all_pending(dr, ws)
     return SETTLED
 
 
 @internal
-def all_pending(dr: Any, ws: Any) -> None:
-    """Closed constraint contacts, and others that touch, are pending."""
+def _make_pending(dr: Any, ws: Any) -> int:
+    """Closed constraint contacts, and others that touch, become pending; how many are now."""
     memory, pending = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.pending, ws.n_contacts)
     rows, phi, scale = ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext)
     level, asleep = GAP_ROUNDING * position_level(ws), ivec(ws.asleep, ws.n_contacts)
+    count = 0
     for k in range(ws.n_contacts):
         touches = asleep[k] == 0 and phi[rows[k]] <= level * scale[rows[k]]
         if memory[k, MODE] == CLOSED or touches:
             pending[k] = 1
+        count += 1 if pending[k] != 0 else 0
+    return count
 
 
 @internal

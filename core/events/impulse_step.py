@@ -107,9 +107,20 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     clock[PUSHED_FROM], clock[CALM] = t, 0.0 if changed else clock[CALM] + 1.0
     if clock[PUSHES_LEFT] <= 0.0 or clock[CALM] >= max(QUIET, QUIET_PART * clock[PUSHES]):
         end_pushing(ws, lc, t)
+        _leave_unsettled(ev, ws)
     elif h > 0.0:
         _carry(ev, ws, h)
     return SETTLED
+
+
+@internal
+def _leave_unsettled(ev: Any, ws: Any) -> None:
+    """What touches at the end of a row is for an instant of its own to settle."""
+    contacts, rows, level = ivec(ev.contacts, ev.most), ivec(ws.contact_rows, ws.n_contacts), GAP_ROUNDING
+    for i in range(whole(ev)[COUNT]):
+        row = rows[contacts[i]]
+        touches = vec(ws.phi, ws.m_ext)[row] <= level * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        ivec(ev.unsettled, ws.n_contacts)[contacts[i]] = 1 if touches else 0
 
 
 @internal

@@ -11,7 +11,7 @@ from ..compiled.views import ivec, mat, vec
 from ..location.asleep import look_at_all
 from ..location.watch import remember
 from ..methods.history import history_time, recall, replace, restart
-from ..state.modes import CLOSED, MEMORY_SIZE, MODE
+from ..state.modes import MEMORY_SIZE, MODE
 from ..state.run_records import (
     CLOCK_SIZE,
     COUNTS_SIZE,
@@ -29,7 +29,7 @@ from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE,
 from ..tables.evaluate import evaluate_power, evaluate_residuals
 from ..tables.switch import take_structure
 from .breakpoint import pass_breakpoint
-from .crowding import MANY_TOUCH, all_pending, count_instant, may_push
+from .crowding import MANY_TOUCH, count_instant, may_push
 from .decide import decide
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
@@ -76,7 +76,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts):
         return DECLINED
     if not _gets_on(dr, t):
-        return int(call_part(ev.step_through, ev, dr, ws, ms)) if _many_touch(dr, ws) else DECLINED
+        return int(call_part(ev.step_through, ev, dr, ws, ms))
     _keep(ev, ws, False)
     step = vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here
@@ -97,8 +97,8 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     whole(ev)[TOUCHED], pushing = 0, vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
     begun = vec(lc.clock, CLOCK_SIZE)[PUSHED_FROM] == t
     if status == SETTLED and pushing:
-        status = call_part(ev.push_apart, ev, dr, ws, ms)
         clear(ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
+        status = call_part(ev.push_apart, ev, dr, ws, ms)
     elif status == SETTLED and _any_constraint(dr, ws):
         status = decide(ev, dr, ws, ms, lc)
     if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms):
@@ -124,22 +124,10 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     if not pushing:
         crowds = count_instant(ws, lc, t, touched)
     copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
-    if pushing and vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
-        all_pending(dr, ws)
-    elif crowds:
+    if crowds:
         call_part(ev.step_through, ev, dr, ws, ms)
     _sample(dr, ws, lc)
     return SETTLED
-
-
-@internal
-def _many_touch(dr: Any, ws: Any) -> bool:
-    """True if so many contacts are closed or pending that their instants may crowd."""
-    memory, pending, count = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.pending, ws.n_contacts), 0
-    for k in range(ws.n_contacts):
-        if memory[k, MODE] == CLOSED or pending[k] != 0:
-            count += 1
-    return count >= MANY_TOUCH
 
 
 @internal

@@ -121,14 +121,12 @@ def _respond(ev: Any, ws: Any, count: int, slides: Any) -> None:
         solve(lu_at(ws.kkt_query), ws.rhs)
         for j in range(n):
             responses[i, j] = rhs[j]
-    some = ivec(ev.columns, n)
     alone = whole(ev)[ALONE] != 0
     for i in range(2 * count):
-        entries = entries_of(directions[i], n, some)
         for j in range(i if alone else 0, i + 1 if alone else 2 * count):
             product = 0.0
-            for e in range(entries):
-                product += directions[i, some[e]] * responses[j, some[e]]
+            for e in range(n):
+                product += directions[i, e] * responses[j, e]
             a[i, j] = product
     for i in range(0 if alone else 2 * count):
         for j in range(i):
