@@ -13,7 +13,6 @@ import numpy as np
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..cones.row_sweeps import along, press_apart, sweep_rows
-from ..linalg import lu_at, solve
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, MODE, PUSHED
@@ -49,7 +48,6 @@ from .records import (
     TOUCHED,
     WANT_ROOM,
     call_part,
-    clear,
     col,
     real,
     whole,
@@ -125,21 +123,11 @@ def _leave_unsettled(ev: Any, ws: Any) -> None:
 
 @internal
 def _carry(ev: Any, ws: Any, h: float) -> None:
-    """Accelerations and joint forces as the contacts' mean forces of the last step (s) make them: what is seen of the
-    motion until the next one. The next step does not begin with them."""
-    rows, n, rhs = rows_of(ev, ws), ws.n, vec(ws.rhs, ws.n + ws.m_act)
-    directions, p, a, lam = mat(ev.directions, rows, n), part(ev, rows, P), vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext)
-    clear(rhs, n + ws.m_act)
-    for r in range(rows):
-        if p[r] != 0.0:
-            for j in range(n):
-                rhs[j] += directions[r, j] * p[r] / h
-    solve(lu_at(ws.kkt_query), ws.rhs)
-    active = ivec(ws.active, ws.m_act)
-    for j in range(n):
-        a[j] += rhs[j]
-    for i in range(ws.m_act):
-        lam[active[i]] += rhs[n + i]
+    """Accelerations as the contacts' mean forces of the last step (s) make them: what is seen of the motion until the
+    next one, which does not begin with them."""
+    a, changes = vec(ws.a, ws.n_ext), vec(ev.velocities, ws.n)
+    for j in range(ws.n):
+        a[j] += changes[j] / h
 
 
 @internal
@@ -177,7 +165,7 @@ def _bounce(ev: Any, dr: Any, ws: Any, h: float) -> None:
 def _push(ev: Any, ws: Any, h: float) -> None:
     """Impulses of all rows; the velocities change by them, and the positions by half of h (s) of that."""
     count, rows, n, x = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ev.bounced, ws.n)
-    v, q = vec(ws.v, ws.n_ext), vec(ws.q, ws.n_ext)
+    v, q, changes = vec(ws.v, ws.n_ext), vec(ws.q, ws.n_ext), vec(ev.velocities, n)
     real(ev)[SWEPT] = sweep_rows(
         count, ws.tangents, rows > (1 + ws.tangents) * count, rows, n, ev.directions, ev.responses, ev.columns,
         part(ev, rows, TAKES), part(ev, rows, OFF), col(ev, KINETIC), part(ev, rows, P), x,
@@ -186,6 +174,7 @@ def _push(ev: Any, ws: Any, h: float) -> None:
     for j in range(n):
         v[j] += x[j]
         q[j] += 0.5 * h * x[j]
+        changes[j] = x[j]
 
 
 @internal
