@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from exudyn_limits import SETTINGS, compare
 from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -22,12 +23,11 @@ from tlismni.core import (
 )
 from tlismni.core.elements import Clamp2D, CoordinateDriver, Prismatic2D, TorsionSpring2D
 from tlismni.core.laws import Hertz, Tsuji
-from tlismni.validation import ExudynSettings, NotTranslatable, run_exudyn
+from tlismni.validation import NotTranslatable, run_exudyn
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.translation.reduced2d import cloud_in_plane
 
 WEIGHT = (0.6, -9.0)
-SETTINGS = ExudynSettings(modified_newton=False, absolute_tolerance=1e-10)
 needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="needs exudyn 1.13")
 
 
@@ -66,19 +66,6 @@ def body(seed: int, modes: int = 2, stiff: float = 50.0, **changes: Any) -> Redu
 
 def point_frames(record: ReducedBody2D) -> list[MaterialPoint2D]:
     return [MaterialPoint2D(name=f"p{k}", body="r", point=given.point) for k, given in enumerate(record.points)]
-
-
-def compare(model: Model, end: float, channels: tuple[str, ...], tolerance: float, steps: int = 500) -> None:
-    """exudyn's limit for small steps (Richardson's) is ours, to a twentieth of its own error at the smaller step and
-    `tolerance` in parts of each channel's range."""
-    ours = simulate(model, end, "irk", 1e-9, 1e-11, t_eval=np.linspace(0.0, end, 21))
-    coarse, fine = (run_exudyn(model, end, end / n, SETTINGS) for n in (steps, 2 * steps))
-    for channel in channels:
-        values = [np.interp(ours.t[1:], r.t, r[channel]) for r in (coarse, fine)]
-        limit, scale = values[1] + (values[1] - values[0]) / 3.0, np.ptp(ours[channel])
-        own = np.abs(values[1] - values[0]).max() / 3.0
-        assert scale > 1e-3 and own < 5e-3 * scale, channel
-        assert np.abs(limit - ours[channel][1:]).max() < 0.05 * own + tolerance * scale, channel
 
 
 @pytest.mark.parametrize("seed, modes", [(0, 1), (1, 2), (2, 3), (3, 5)])

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from exudyn_limits import SETTINGS, compare
 from tlismni.core import (
     AppliedForce3D,
     Constant,
@@ -19,7 +20,7 @@ from tlismni.core import (
     simulate,
 )
 from tlismni.core.model.attitude import rotation_matrix
-from tlismni.validation import ExudynSettings, run_exudyn
+from tlismni.validation import run_exudyn
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.translation.reduced import cloud_of
 
@@ -28,7 +29,6 @@ from reduced_bodies import moments, points_with_modes
 
 ATTITUDE = RotationVector(vector=(0.4, 0.2, -0.3))
 WEIGHT = (0.3, -0.4, -9.0)
-SETTINGS = ExudynSettings(modified_newton=False, absolute_tolerance=1e-10)
 needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="needs exudyn 1.13")
 
 
@@ -46,19 +46,6 @@ def test_the_cloud_has_the_integrals_of_the_body(seed: int, modes: int) -> None:
     for name, value in found.items():
         wanted = np.array(getattr(record, name))
         assert np.abs(np.array(value) - wanted).max() < 1e-13 * max(1.0, np.abs(wanted).max()), name
-
-
-def compare(model: Model, end: float, channels: tuple[str, ...], tolerance: float) -> None:
-    """exudyn's limit for small steps (Richardson's) is ours, to a twentieth of its own error at the smaller step and
-    `tolerance` in parts of each channel's range."""
-    ours = simulate(model, end, "irk", 1e-9, 1e-11, t_eval=np.linspace(0.0, end, 21))
-    coarse, fine = (run_exudyn(model, end, h, SETTINGS) for h in (end / 500, end / 1000))
-    for channel in channels:
-        values = [np.interp(ours.t[1:], r.t, r[channel]) for r in (coarse, fine)]
-        limit, scale = values[1] + (values[1] - values[0]) / 3.0, np.ptp(ours[channel])
-        own = np.abs(values[1] - values[0]).max() / 3.0
-        assert scale > 1e-3 and own < 5e-3 * scale, channel
-        assert np.abs(limit - ours[channel][1:]).max() < 0.05 * own + tolerance * scale, channel
 
 
 @needs_exudyn
