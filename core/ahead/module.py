@@ -144,6 +144,15 @@ def _text_constant(name: str, content: str) -> str:
     return f'@{name} = constant [{len(data)} x i8] c"{codes}"\n'
 
 
+def _mangled(module: str) -> str:
+    """How numba writes a module of the core in the names of its functions."""
+    return "".join(f"{len(part)}{part}" for part in f"tlismni.core.{module}".split("."))
+
+
+_SELDOM = tuple(_mangled(module) for module in ("analysis", "linalg.analyze", "events.impulse_step", "repair"))
+"""Where few bytes are worth more than speed: nothing is repeated there to save a jump."""
+
+
 def optimised(
     whole: Any, symbols: Mapping[str, str], texts: Mapping[str, str], target: Target, quick: bool = False
 ) -> tuple[Any, Any]:
@@ -158,6 +167,8 @@ def optimised(
     module = whole.clone()
     module.triple, module.data_layout = target.triple, str(machine.target_data)
     for function in module.functions:
+        if not function.is_declaration and any(part in function.name for part in _SELDOM):
+            function.add_function_attribute("optsize")
         if function.name in symbols:
             function.linkage = "external"
             function.name = symbols[function.name]

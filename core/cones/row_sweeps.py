@@ -1,9 +1,9 @@
 """Impulses of many contacts by sweeps over their rows, one after another, as changes of the motion.
 
 Nonlinear Gauss-Seidel with projections (Jourdan, Alart and Jean 1998; Jean 1999): each row takes the impulse that
-brings its rate to zero, the normal one not below zero, the tangential ones within the friction circle of the present
-normal force, torques against turning between zero and that. No matrix of all contacts is formed: each row knows its
-gradient, and the motion that a unit impulse along it causes.
+brings its rate to zero, the normal one not below zero, the tangential ones and the torques against rolling within
+circles of the present normal one, that against spinning within its limit. No matrix of all contacts is formed: each row
+knows its gradient, and the motion that a unit impulse along it causes.
 """
 
 from typing import Any
@@ -33,18 +33,15 @@ def list_columns(rows: int, n: int, directions: Any, responses: Any, columns: in
 @internal
 def along(r: int, n: int, rows: int, columns: int, directions: Any, x: Any) -> float:
     """Product of the gradient of row r with x (n,), by the entries of the gradient that `list_columns` has found."""
-    where, product = imat(columns, rows, n + 1), 0.0
-    for e in range(1, where[r, 0] + 1):
-        product += directions[r, where[r, e]] * x[where[r, e]]
-    return float(product)
+    return _along(r, directions, imat(columns, rows, n + 1), x)
 
 
 @internal
-def _rate(r: int, off: Any, directions: Any, where: Any, x: Any) -> float:
-    rate = off[r]
+def _along(r: int, directions: Any, where: Any, x: Any) -> float:
+    product = 0.0
     for e in range(1, where[r, 0] + 1):
-        rate += directions[r, where[r, e]] * x[where[r, e]]
-    return float(rate)
+        product += directions[r, where[r, e]] * x[where[r, e]]
+    return float(product)
 
 
 @internal
@@ -54,52 +51,81 @@ def _move(r: int, impulse: float, responses: Any, where: Any, x: Any) -> None:
 
 
 @internal
+def _sweep(
+    count: int, tangents: int, stages: int, directions: Any, responses: Any, to_read: Any, to_move: Any,
+    masses: Any, off: Any, arms: Any, p: Any, x: Any,
+) -> float:  # fmt: skip
+    """One sweep over all rows; by how much a rate has changed most."""
+    change = 0.0
+    for i in range(count):
+        for stage in range(stages):
+            # the normal, the tangents, rolling, spinning: each with the motion that those before have left
+            first = (0 if stage == 0 else 1 if stage == 1 else tangents + 2 * stage - 3) * count + i
+            wide = tangents if stage == 1 else 2 if stage == 2 else 1
+            mass, new, other = 0.0, 0.0, 0.0
+            for k in range(wide):
+                mass = max(mass, masses[first + k * count])
+            if mass == 0.0 or (stage > 0 and arms[first] == 0.0):
+                continue
+            for k in range(wide):
+                r = first + k * count
+                rate = off[r] + _along(r, directions, to_read, x)
+                value = p[r] - rate / mass if masses[r] > 0.0 else 0.0
+                new, other = (value, other) if k == 0 else (new, value)
+            if stage == 0:
+                new = max(new, 0.0)
+            else:
+                size, limit = np.sqrt(new * new + other * other), arms[first] * p[i]
+                part = limit / size if size > limit else 1.0
+                new, other = part * new, part * other
+            for k in range(wide):
+                r = first + k * count
+                step = (new if k == 0 else other) - p[r]
+                if step != 0.0:
+                    p[r] += step
+                    _move(r, step, responses, to_move, x)
+                    change = max(change, abs(step) * mass)
+    return change
+
+
+@internal
 def sweep_rows(
     count: int, tangents: int, turns: bool, rows: int, n: int, directions_at: int, responses_at: int, columns: int,
-    masses: Any, off: Any, mu: Any, p: Any, x: Any, tolerance: float, most: int,
+    masses: Any, off: Any, arms: Any, p: Any, x: Any, work: Any, tolerance: float, most: int,
 ) -> int:  # fmt: skip
     """Impulses p (rows,) of `count` contacts, and the change x (n,) of the motion that they cause; both go on from what
     they are. Until no rate changes by more than `tolerance` in a sweep, but at most so many: how many there were.
 
-    Rows are normals, first and second tangents, torques, as many of them as `tangents` and `turns` say. off, masses
-    (rows,): rates without the impulses, and the rows' inverse masses, 0 where a row takes none. mu (count,).
+    Rows are normals, first and second tangents, two across the normal and one along it against turning, as many of them
+    as `tangents` and `turns` say. off, masses, arms (rows,): rates without the impulses, the rows' inverse masses, 0
+    where a row takes none, and how far they may go, in parts of the normal impulse. work (2 rows + 2 n,).
+
+    What a sweep changes is taken for the negative gradient of a function, and the way on is that of nonlinear
+    conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010, with Fletcher's and Reeves's factor); where changes
+    do not become smaller it begins anew. The last sweep goes nowhere else: its impulses lie within their limits.
     """
     directions, responses = mat(directions_at, rows, n), mat(responses_at, rows, n)
     to_read, to_move = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
-    stages = 2 + (1 if turns else 0)
+    stages, before = 4 if turns else 2, 0.0
+    for e in range(rows + n):
+        work[e], work[rows + n + e] = p[e] if e < rows else x[e - rows], 0.0
     for turn in range(most):
-        change = 0.0
-        for i in range(count):
-            for stage in range(stages):
-                # the normal, both tangents, the torque: each with the motion that those before have left
-                first = (0 if stage == 0 else 1 if stage == 1 else 1 + tangents) * count + i
-                wide = tangents if stage == 1 else 1
-                mass, new, other, size = 0.0, 0.0, 0.0, 0.0
-                for k in range(wide):
-                    mass = max(mass, masses[first + k * count])
-                if mass == 0.0 or (stage == 1 and mu[i] == 0.0):
-                    continue
-                for k in range(wide):
-                    r = first + k * count
-                    value = p[r] - _rate(r, off, directions, to_read, x) / mass if masses[r] > 0.0 else 0.0
-                    new, other = (value, other) if k == 0 else (new, value)
-                if stage == 0:
-                    new = max(new, 0.0)
-                elif stage == 1:
-                    size, limit = np.sqrt(new * new + other * other), mu[i] * p[i]
-                    part = limit / size if size > limit else 1.0
-                    new, other = part * new, part * other
-                else:
-                    new = min(max(new, 0.0), p[i])
-                for k in range(wide):
-                    r = first + k * count
-                    step = (new if k == 0 else other) - p[r]
-                    if step != 0.0:
-                        p[r] += step
-                        _move(r, step, responses, to_move, x)
-                        change = max(change, abs(step) * mass)
+        change = _sweep(count, tangents, stages, directions, responses, to_read, to_move, masses, off, arms, p, x)
         if change <= tolerance:
             return turn + 1
+        size = 0.0
+        for r in range(rows):
+            size += masses[r] * (p[r] - work[r]) ** 2
+        further = size / before if 0.0 < size <= before and turn < most - 2 else 0.0
+        for e in range(rows + n):
+            here, way = p[e] if e < rows else x[e - rows], further * work[rows + n + e]
+            work[rows + n + e] = way + here - work[e] if further > 0.0 or turn == 0 else 0.0
+            work[e] = here + way
+            if e < rows:
+                p[e] += way
+            else:
+                x[e - rows] += way
+        before = size
     return most
 
 
@@ -126,7 +152,7 @@ def press_apart(
     """
     directions, responses = mat(directions_at, rows, n), mat(responses_at, rows, n)
     to_read, to_move = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
-    rest, way, product = work[:rows], work[rows : 2 * rows], work[2 * rows : 3 * rows]
+    rest, way, product, motion = work[:rows], work[rows : 2 * rows], work[2 * rows : 3 * rows], work[3 * rows :]
     for j in range(n):
         x[j] = 0.0
     for i in range(count):
@@ -135,13 +161,13 @@ def press_apart(
         for _ in range(5):
             for i in range(count):
                 if masses[i] > 0.0:
-                    step = max(-_rate(i, gaps, directions, to_read, x) / masses[i], -p[i])
+                    step = max(-(gaps[i] + _along(i, directions, to_read, x)) / masses[i], -p[i])
                     if step != 0.0:
                         p[i] += step
                         _move(i, step, responses, to_move, x)
         worst, size = 0.0, 0.0
         for i in range(count):
-            left = _rate(i, gaps, directions, to_read, x)
+            left = gaps[i] + _along(i, directions, to_read, x)
             worst = max(worst, -left, left if p[i] > 0.0 else 0.0)
             rest[i] = -left if p[i] > 0.0 else 0.0
             way[i] = rest[i]
@@ -151,18 +177,14 @@ def press_apart(
         for _ in range(2 * count):
             if not size > 0.0:
                 break
-            _motion(count, way, responses, to_move, n, work[3 * rows :])
+            _motion(count, way, responses, to_move, n, motion)
             of_way = 0.0
             for i in range(count):
-                product[i] = 0.0
-                if p[i] > 0.0:
-                    for e in range(1, to_read[i, 0] + 1):
-                        product[i] += directions[i, to_read[i, e]] * work[3 * rows + to_read[i, e]]
+                product[i] = _along(i, directions, to_read, motion) if p[i] > 0.0 else 0.0
                 of_way += product[i] * way[i]
             if not of_way > 0.0:
                 break
             length, before, out = size / of_way, size, False
-            motion = work[3 * rows :]
             for i in range(count):
                 if way[i] < 0.0 and p[i] + length * way[i] < 0.0:
                     length, out = min(length, p[i] / -way[i]), True

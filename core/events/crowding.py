@@ -15,6 +15,7 @@ from typing import Any
 
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
+from ..location.probe import can_look
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE, PUSHED
@@ -96,12 +97,12 @@ def near_level(ws: Any, h: float) -> float:
 @internal
 def may_push(dr: Any, ws: Any, ms: Any) -> bool:
     """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, among
-    redundant rows, and where contacts act as forces or are at massless ends."""
-    law = ivec(dr.law, ws.n_contacts)
+    redundant rows, and where contacts act as forces, are at massless ends, or cannot be looked at alone in space."""
+    law, lc = ivec(dr.law, ws.n_contacts), loop_at(dr.loop)
     if ms.exact == 0 or ws.n_redundant > 0:
         return False
     for k in range(ws.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS:
+        if law[k] == FORCE or law[k] == MASSLESS or (ws.tangents == 2 and not can_look(lc, k)):
             return False
     return True
 

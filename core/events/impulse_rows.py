@@ -1,20 +1,19 @@
-"""The rows of a step of impulses: of each touching contact its normal, its tangents and its torque against turning."""
+"""The rows of a step of impulses: of each touching contact its normal, its tangents and the axes that it may turn
+about."""
 
 from typing import Any
 
-from ..compiled.jit import internal
+from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
 from ..cones.row_sweeps import along, list_columns
-from ..linalg import lu_at, solve
 from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
+from ..state.run_records import LOOP_TYPE
 from .crowding import near_level
 from .rates_in_space import masses
 from .records import (
     ALONE,
     COUNT,
-    FLAG,
     GAP,
-    KINETIC,
     LARGEST,
     RATE,
     SETTLED,
@@ -29,13 +28,17 @@ from .records import (
     whole,
 )
 from .touching import read_rates
+from .turning_rows import TURNING_ROWS, find_turning_rows
 
-INVERSE, TAKES, BEFORE, OFF, P = range(5)
+INVERSE, TAKES, BEFORE, OFF, P, ARM = range(6)
 """Of each row: its inverse mass, the same or 0 where it takes no impulse, its rate before, that without impulses less
-what is wanted, its impulse."""
-ROW_NUMBERS = 5
+what is wanted, its impulse, and how far that may go, in parts of the normal one."""
+ROW_NUMBERS = 6
 ROW_ROOM = ROW_NUMBERS + 3
 """Numbers of each row, with those that `press_apart` works with."""
+
+
+loop_at = record_view(LOOP_TYPE)
 
 
 @internal
@@ -47,13 +50,13 @@ def part(ev: Any, rows: int, k: int) -> Any:
 @internal
 def room(ev: Any, rows: int, n: int) -> Any:
     """To work in."""
-    return vec(ev.sweeps + 8 * rows * ROW_NUMBERS, 3 * rows + n)
+    return vec(ev.sweeps + 8 * rows * ROW_NUMBERS, 3 * rows + 2 * n)
 
 
 @internal
 def rows_of(ev: Any, ws: Any) -> int:
     """How many there are."""
-    turns = 1 if ws.tangents == 2 and whole(ev)[TURNS] != 0 else 0
+    turns = TURNING_ROWS if ws.tangents == 2 and whole(ev)[TURNS] != 0 else 0
     return int((1 + ws.tangents + turns) * whole(ev)[COUNT])
 
 
@@ -61,8 +64,6 @@ def rows_of(ev: Any, ws: Any) -> int:
 def open_rows(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Open the touching contacts, and find what impulses at them, and torques against turning, do to the motion."""
     count, contacts = whole(ev)[COUNT], ivec(ev.contacts, ev.most)
-    for i in range(count):
-        col(ev, KINETIC)[i] = vec(dr.friction, ws.n_contacts)[contacts[i]]
     whole(ev)[ALONE] = 1
     status = call_part(ev.open_touching, ev, dr, ws, ms)
     whole(ev)[ALONE] = 0
@@ -72,27 +73,14 @@ def open_rows(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], GAP_START] = 0.0
     if ws.tangents != 2:
         read_rates(ev, ws)
-    elif whole(ev)[TURNS] != 0:
-        _respond_to_torques(ev, ws, count)
     rows = rows_of(ev, ws)
+    arms = part(ev, rows, ARM)
+    for r in range(count, (1 + ws.tangents) * count):
+        arms[r] = vec(dr.friction, ws.n_contacts)[contacts[r % count]]
+    if rows > (1 + ws.tangents) * count:
+        find_turning_rows(ev, ws, loop_at(dr.loop), (1 + ws.tangents) * count, arms)
     list_columns(rows, ws.n, mat(ev.directions, rows, ws.n), mat(ev.responses, rows, ws.n), ev.columns)
     return SETTLED
-
-
-@internal
-def _respond_to_torques(ev: Any, ws: Any, count: int) -> None:
-    """Torques of unit normal forces, without these forces, and the motions that they cause: rows behind the others."""
-    n, rhs = ws.n, vec(ws.rhs, ws.n + ws.m_act)
-    directions, responses = mat(ev.directions, 4 * count, n), mat(ev.responses, 4 * count, n)
-    torques, turns = mat(ev.torques, count, n), col(ev, FLAG)
-    for i in range(count):
-        for j in range(n):
-            directions[3 * count + i, j] = rhs[j] = turns[i] * (torques[i, j] - directions[i, j])
-        for j in range(ws.m_act):
-            rhs[n + j] = 0.0
-        solve(lu_at(ws.kkt_query), ws.rhs)
-        for j in range(n):
-            responses[3 * count + i, j] = rhs[j]
 
 
 @internal

@@ -30,14 +30,13 @@ from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from ..tables.evaluate import evaluate_energy
 from ..tables.levels import position_level
 from .crowding import end_pushing
-from .impulse_rows import BEFORE, INVERSE, OFF, TAKES, P, open_rows, part, prepare_rows, room, rows_of
+from .impulse_rows import ARM, BEFORE, INVERSE, OFF, TAKES, P, open_rows, part, prepare_rows, room, rows_of
 from .meeting import meet_constraints
 from .records import (
     APPROACH,
     COUNT,
     FALLS,
     GAP,
-    KINETIC,
     LARGEST,
     LOSS,
     NO_ACCELERATIONS,
@@ -168,7 +167,7 @@ def _push(ev: Any, ws: Any, h: float) -> None:
     v, q, changes = vec(ws.v, ws.n_ext), vec(ws.q, ws.n_ext), vec(ev.velocities, n)
     real(ev)[SWEPT] = sweep_rows(
         count, ws.tangents, rows > (1 + ws.tangents) * count, rows, n, ev.directions, ev.responses, ev.columns,
-        part(ev, rows, TAKES), part(ev, rows, OFF), col(ev, KINETIC), part(ev, rows, P), x,
+        part(ev, rows, TAKES), part(ev, rows, OFF), part(ev, rows, ARM), part(ev, rows, P), x, room(ev, rows, n),
         TOLERANCE * real(ev)[LARGEST], SWEEPS,
     )  # fmt: skip
     for j in range(n):

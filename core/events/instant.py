@@ -31,7 +31,7 @@ from .crowding import step_through
 from .force_contact import settle_forces
 from .impact import strike
 from .impact_in_space import strike_in_space
-from .impulse_rows import ROW_ROOM
+from .impulse_rows import ROW_ROOM, TURNING_ROWS
 from .impulse_step import push_apart
 from .prepare import use_modes
 from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
@@ -82,7 +82,7 @@ class Instant:
         blocks = 1 + assembly.tangents
         every, spatial = blocks * most, 3 * most if blocks == 3 else 0
         # in space torques against turning too
-        rows = every + (most if spatial else 0)
+        rows = every + (TURNING_ROWS * most if spatial else 0)
         work = max(independent_size(every, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
         of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS, most)
         self._cones = BlockRecord(
@@ -97,7 +97,7 @@ class Instant:
                 **dict.fromkeys(("some", "chosen", "order"), every),
                 "contacts": most, "table": COLUMNS * most, "reals": REALS, "wholes": WHOLES,
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
-                "directions": rows * n, "responses": rows * n, "sweeps": ROW_ROOM * rows + n,
+                "directions": rows * n, "responses": rows * n, "sweeps": ROW_ROOM * rows + 2 * n,
                 "columns": 2 * rows * (n + 1),
                 "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
                 "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,

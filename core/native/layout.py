@@ -24,13 +24,14 @@ HEAD = (
 )  # fmt: skip
 """Sizes and counts, 8 bytes each."""
 
-CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "locate_now", "along_inputs", "in_time",
-          "begin_now", "matrix_words", "save_matrices", "restore_matrices",
+CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "go_by_impulses", "locate_now",
+          "along_inputs", "in_time", "begin_now", "matrix_words", "save_matrices", "restore_matrices",
           "want", "normalise")  # fmt: skip
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
     "exchange": "run.exchange", "tell": "run.exchange", "read": "run.exchange", "drive": "loop.drive",
-    "settle_pending": "loop.drive", "repair_now": "repair.mend", "locate_now": "loop.drive",
+    "settle_pending": "loop.drive", "repair_now": "repair.mend",
+    "go_by_impulses": "repair.mend", "locate_now": "loop.drive",
     "along_inputs": "run.slopes", "in_time": "run.slopes",
     "begin_now": "run.begin_now", "want": "run.read_channels",
     "normalise": "run.normal_form",

@@ -74,6 +74,12 @@ static tlismni_status repair(tlismni_run *run) {
     return status == SETTLED ? TLISMNI_OK : (tlismni_status)(status < RAISED ? SETTLING + status : status);
 }
 
+/* Go on in steps of impulses where no other step can be made; `code` if there are none. */
+static tlismni_status by_impulses(tlismni_run *run, int64_t code) {
+    bool pushes = call(run, BY_IMPULSES, run->model->places.drive) == SETTLED;
+    return pushes ? TLISMNI_OK : (tlismni_status)code;
+}
+
 /* Locate in the last step the event that could not be located because a trial failed (`locating.py`). */
 static tlismni_status locate_again(tlismni_run *run) {
     for (int attempt = 0; attempt < 3; attempt++) {
@@ -130,7 +136,10 @@ static tlismni_status after(tlismni_run *run, int64_t code, bool hold, double *r
             }
             return TLISMNI_OK;
         }
-        return (tlismni_status)code;
+        return by_impulses(run, code);
+    case STEP_TOO_SMALL:
+    case JAM:
+        return by_impulses(run, code);
     default:
         return (tlismni_status)code;
     }

@@ -1,4 +1,5 @@
-"""`repair`, compiled, for systems without redundant rows: a new partition and new pivots at the newest row.
+"""`repair`, compiled, for systems without redundant rows: a new partition and new pivots at the newest row; and what
+is left where that does not help.
 
 Who drives a run without Python calls it; where something has to be built that is not there yet it says so.
 """
@@ -7,12 +8,13 @@ from typing import Any
 
 from ..compiled.jit import compiled
 from ..compiled.views import vec
-from ..events.records import SETTLED, SINGULAR_MATRIX, WANT_MEMORY, call_part, instant_at
+from ..events.records import DECLINED, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, call_part, instant_at
 from ..linalg import lu_at
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ROOM
-from ..loop.drive import method_at, workspace_at
+from ..loop.drive import loop_at, method_at, workspace_at
 from ..methods.history import recall
+from ..state.run_records import CLOCK_SIZE, PUSH_STEP, STEP_SIZE
 from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV, OK, RATE_SIZE
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
@@ -38,3 +40,20 @@ def repair_now(dr: Any) -> int:
     if code == WANT_ROOM:
         return WANT_MEMORY
     return SETTLED if code == OK else SINGULAR_MATRIX
+
+
+@compiled
+def go_by_impulses(dr: Any) -> int:
+    """Where no step can be made from the newest row: steps of impulses from there (`events/crowding.py`), if enough
+    contacts touch; SETTLED, or DECLINED, and nothing has happened."""
+    ws, ms, ev = workspace_at(dr.workspace), method_at(dr.method), instant_at(dr.instant)
+    if ws.n_contacts == 0:
+        return DECLINED
+    recall(ws, ms, 0)
+    evaluate_residuals(ws)
+    status = int(call_part(ev.step_through, ev, dr, ws, ms))
+    if status == SETTLED:
+        # what failed has left it at nearly nothing
+        clock = vec(loop_at(dr.loop).clock, CLOCK_SIZE)
+        clock[STEP_SIZE] = clock[PUSH_STEP]
+    return status

@@ -123,7 +123,8 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
             if not locate_again(sim) and (sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim)):
                 _fail(sim, OUTER_SLOW)
         elif returned == JAM:
-            refuse_passed_jam(sim)
+            if not _go_by_impulses(sim, "sliding contacts jam"):
+                refuse_passed_jam(sim)
         elif returned == REPARTITION:
             repair(sim)
         elif returned in (OUTER_DIVERGED, OUTER_SLOW) and sim.settings.fallback and sim.outer != "newton":
@@ -139,12 +140,12 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
             try:
                 repair(sim)
             except SimulationError:
-                if not _pass_after_all(sim):
+                if not _pass_after_all(sim) and not _go_by_impulses(sim, _reason(returned)[1]):
                     raise
         elif returned in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
             if returned == REANALYZE:  # the matrix of the shorter step has other pivots
                 repaired_at = math.nan
-        elif not _pass_after_all(sim):
+        elif not _pass_after_all(sim) and not _go_by_impulses(sim, _reason(returned)[1]):
             _fail(sim, returned)
 
 
@@ -224,10 +225,23 @@ def _pass_after_all(sim: "Simulation") -> bool:
     return bool(near) and _pass_singular(sim, last_resort=True)
 
 
+def _go_by_impulses(sim: "Simulation", reason: str) -> bool:
+    """Steps of impulses from the newest row on, because no other step can be made; False where there are none."""
+    if not sim.drive.go_by_impulses():
+        return False
+    logger.warning("at t = %.9g s steps of impulses take over among many contacts: %s", sim.t_internal, reason)
+    return True
+
+
+def _reason(code: int) -> tuple[str, str]:
+    """The loop that failed, and why."""
+    return _REASONS.get(code, ("outer", f"status {code}"))
+
+
 def _fail(sim: "Simulation", code: int) -> None:
     from ..repair.singular_position import near_singular
 
-    loop, reason = _REASONS.get(code, ("outer", f"status {code}"))
+    loop, reason = _reason(code)
     t, h, settings = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.settings
     tried = f"fixed step {h:.3g} s" if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"
     if sim.outer == "simple" and loop == "outer":

@@ -14,6 +14,7 @@ from ..events import Event
 from ..events.instant import Instant
 from ..events.laws import code_of
 from ..events.progress import Progress
+from ..events.records import SETTLED
 from ..events.report import MOST_EVENTS
 from ..laws import ForceLaw, ImpactLaw, law_address
 from ..laws.friction import LuGreFriction
@@ -31,6 +32,7 @@ from ..loop.drive import (
 )
 from ..loop.loop import accept, run, trial_step
 from ..loop.sample import write_sample
+from ..repair.mend import go_by_impulses
 from ..stage.accelerations import solve_accelerations
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
@@ -227,6 +229,10 @@ class Drive:
         """Go on behind the breakpoint t (s), just after the newest row: a status, as `settle`."""
         self.goals[PASSED] = t
         return int(pass_breakpoint(self._record.record))
+
+    def go_by_impulses(self) -> bool:
+        """Steps of impulses from the newest row on, where no other step can be made; False where there are none."""
+        return int(go_by_impulses(self._record.record)) == SETTLED
 
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the current point: they pull, or are held beyond their

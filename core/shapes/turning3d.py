@@ -66,6 +66,20 @@ def add_torque(b: Any, coord: Any, pair: Any, torque: Any) -> None:
 
 
 @internal
+def turning_gradient(q: Any, coord: Any, pair: Any, axis: Any, n: int, out: Any) -> None:
+    """d(axis . w)/dv, to out (n,): w_a = 2 E(p_a) p_a'."""
+    on_a, on_b = (
+        onto(space_axes(four(q, coord, 3, pair[0])), axis),
+        onto(space_axes(four(q, coord, 10, pair[1])), axis),
+    )
+    for i in range(4):
+        if coord[3 + i] < n:
+            out[coord[3 + i]] = -2.0 * on_a[i]
+        if coord[10 + i] < n:
+            out[coord[10 + i]] = 2.0 * on_b[i]
+
+
+@internal
 def add_torque_by(b: Any, coord: Any, pair: Any, slot: Any, m: Any) -> None:
     """values[slot[j]] += derivative of the residual by f, the torque being f m: slot (14,)."""
     values, q = vec(b.values, b.n_values), vec(b.q, b.n_extended)

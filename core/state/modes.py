@@ -25,7 +25,7 @@ GAP_START = 8  # gap at which a contact constraint holds, next to nothing, m
 BEGUN_IMPULSE = 9  # impulse of a contact force when it began to act, N s
 BEGUN_LOSS = 10  # its dissipation then, J
 PUSHED = 11  # of a constraint contact in the last step of impulses: mean normal force, N
-PUSHES = 4  # columns: it, along two tangents, and what acts against turning of it
+PUSHES = 6  # columns: it, along two tangents, and torques against rolling about two axes and spinning, N m
 MEMORY_SIZE = PUSHED + PUSHES
 # of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):
 WAY = SLIDE_START  # angle of the first tangent, rad
