@@ -31,6 +31,7 @@ from tlismni.core import (
 from tlismni.core.cones.row_sweeps import list_columns, press_apart, sweep_rows
 from tlismni.core.events.crowding import SIZE
 from tlismni.core.state.modes import CLOSED, MODE, PUSHED
+from tlismni.core.state.modes import PUSHES as PUSHES_OF_A_CONTACT
 from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT
 
 G, R = 9.81, 0.1
@@ -126,6 +127,24 @@ def test_a_rolling_ball_is_braked_by_turning():
     assert abs(values(sim)["ball.vx"]) < 1e-5
 
 
+@pytest.mark.parametrize("turned", [0.0, 0.7])
+def test_a_ball_that_rolling_friction_holds_on_a_slope_does_not_creep(turned):
+    """tan(slope) < rho/R: it stays where it is, whichever way it would roll; beyond, it rolls with 5/7 of what is
+    left."""
+    rolling, end = 5e-3, 0.3
+    for slope, moves in ((0.9 * rolling / R, False), (1.3 * rolling / R, True)):
+        model = ball(mu=0.5, restitution=0.0, turning=TurningFriction(rolling=rolling, spinning=1e-3))
+        flat = G * math.sin(math.atan(slope))
+        pull = (flat * math.cos(turned), flat * math.sin(turned), -G * math.cos(math.atan(slope)))
+        sim = in_steps(model.model_copy(update={"gravity": pull}))
+        sim.advance(end)
+        now = values(sim)
+        left = 5.0 / 7.0 * (flat - G * math.cos(math.atan(slope)) * rolling / R) if moves else 0.0
+        went = math.hypot(now["ball.x"], now["ball.y"])
+        assert went == pytest.approx(0.5 * left * end**2, rel=1e-3, abs=1e-13)
+        assert math.hypot(now["ball.vx"], now["ball.vy"]) == pytest.approx(left * end, rel=1e-3, abs=1e-12)
+
+
 def test_an_impact_bounces_and_the_ledger_closes():
     """Newton's law to the step's size, the energy exactly."""
     off = []
@@ -175,7 +194,7 @@ def test_a_state_within_the_steps_goes_on_alike():
     assert sim.clock[PUSH_STEP] > 0.0
     sim.advance(0.06)
     assert np.array_equal(later, sim.values())
-    for k in range(4):
+    for k in range(PUSHES_OF_A_CONTACT):
         sim.restore(state)
         sim.memory[0, PUSHED + k] += 1.0
         assert sim.state() != state
@@ -212,11 +231,11 @@ def test_units_do_not_matter():
 
 
 @njit
-def _swept(count, tangents, rows, n, directions, responses, columns, masses, off, mu, p, x, most):
+def _swept(count, tangents, turns, rows, n, directions, responses, columns, masses, off, arms, p, x, tolerance):
     list_columns(rows, n, directions, responses, columns.ctypes.data)
     return sweep_rows(
-        count, tangents, False, rows, n, directions.ctypes.data, responses.ctypes.data, columns.ctypes.data, masses,
-        off, mu, p, x, 1e-14, most,
+        count, tangents, turns, rows, n, directions.ctypes.data, responses.ctypes.data, columns.ctypes.data, masses,
+        off, arms, p, x, np.empty(2 * (rows + n)), tolerance, 100_000,
     )  # fmt: skip
 
 
@@ -239,25 +258,45 @@ def problem(seed, count, n, blocks):
     return directions, responses, (directions * responses).sum(axis=1), rng.normal(size=blocks * count)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_sweeps_meet_the_conditions_of_contact(seed):
-    """None approaches, none pulls, friction is within its circle, opposes what slides, and lets nothing slide below
-    it."""
-    count, n, mu = 6, 24, 0.3
-    directions, responses, masses, off = problem(seed, count, n, 3)
-    p, x, columns = np.zeros(3 * count), np.zeros(n), np.zeros(2 * 3 * count * (n + 1), dtype=np.int64)
-    _swept(count, 2, 3 * count, n, directions, responses, columns, masses, off, np.full(count, mu), p, x, 100_000)
-    rate = off + directions @ x
-    assert x == pytest.approx(responses.T @ p, abs=1e-11)
-    normal, slide = rate[:count], rate[count:].reshape(2, count)
-    friction, limit = p[count:].reshape(2, count), mu * p[:count]
-    assert normal.min() > -1e-10
-    assert p[:count].min() >= 0.0
-    assert np.abs(normal * p[:count]).max() < 1e-9
-    size, speed = np.hypot(*friction), np.hypot(*slide)
+def meets_its_circle(force, rate, limit):
+    """Force (k, count) is within its circle, opposes the rates (k, count), and lets nothing move below it."""
+    size, speed = np.sqrt((force**2).sum(axis=0)), np.sqrt((rate**2).sum(axis=0))
     assert (size - limit).max() < 1e-10
     assert np.abs((limit - size) * speed).max() < 1e-8
-    assert np.abs((friction * slide).sum(axis=0) + size * speed).max() < 1e-8
+    assert np.abs((force * rate).sum(axis=0) + size * speed).max() < 1e-8
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("turns", [False, True])
+def test_sweeps_meet_the_conditions_of_contact(seed, turns):
+    """None approaches, none pulls, friction is within its circle, opposes what slides, and lets nothing slide below
+    it; torques against rolling and spinning likewise."""
+    count, n, blocks = 6, 24, 6 if turns else 3
+    directions, responses, masses, off = problem(seed, count, n, blocks)
+    arms = np.repeat([np.inf, 0.3, 0.3, 0.2, 0.2, 0.1][:blocks], count)
+    p, x = np.zeros(blocks * count), np.zeros(n)
+    columns = np.zeros(2 * blocks * count * (n + 1), dtype=np.int64)
+    _swept(count, 2, turns, blocks * count, n, directions, responses, columns, masses, off, arms, p, x, 1e-14)
+    rate, p = (off + directions @ x).reshape(blocks, count), p.reshape(blocks, count)
+    assert x == pytest.approx(responses.T @ p.ravel(), abs=1e-11)
+    assert rate[0].min() > -1e-10
+    assert p[0].min() >= 0.0
+    assert np.abs(rate[0] * p[0]).max() < 1e-9
+    meets_its_circle(p[1:3], rate[1:3], 0.3 * p[0])
+    if turns:
+        meets_its_circle(p[3:5], rate[3:5], 0.2 * p[0])
+        meets_its_circle(p[5:], rate[5:], 0.1 * p[0])
+
+
+def test_sweeps_of_a_long_pile_need_conjugate_gradients():
+    """60 blocks on one another, from no impulses: plain sweeps are 3e4."""
+    count = n = 60
+    directions = np.vstack([np.eye(n) - np.eye(n, k=-1), np.zeros((count, n))])  # normals, and no tangents
+    p, x, columns = np.zeros(2 * count), np.zeros(n), np.zeros(2 * 2 * count * (n + 1), dtype=np.int64)
+    masses, off, arms = (directions**2).sum(axis=1), -(directions @ np.ones(n)), np.zeros(2 * count)
+    used = _swept(count, 1, False, 2 * count, n, directions, directions, columns, masses, off, arms, p, x, 1e-9)
+    assert p[:count] == pytest.approx(np.arange(count, 0, -1), rel=1e-6)
+    assert used < 4000
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -1,5 +1,6 @@
 """Painleve's paradox in space: a rod that slides on the floor with its tip, in any vertical plane."""
 
+import logging
 import math
 
 import numpy as np
@@ -65,3 +66,31 @@ def test_a_rod_that_turns_into_the_critical_angle_is_stopped_by_name(turned):
     assert critical(reached) == pytest.approx(1.6, rel=1e-2)
     assert partial["tip.normal_force"].max() > 10.0 * partial["tip.normal_force"][1]
     assert np.abs(partial["tip.friction_force"][-1]) == pytest.approx(1.6 * partial["tip.normal_force"][-1], rel=1e-9)
+
+
+def test_among_many_contacts_impulses_take_over(caplog):
+    """The same rod beside eight balls at rest: what has no accelerations is stopped by an impulse, and the log says
+    so."""
+    rod = sliding_rod(0.6, -10.0, 1.0, 1.6, 0.0)
+    with pytest.raises(SimulationError) as caught:
+        simulate(rod, 2.0, "ebdf", rtol=1e-8)
+    balls = [
+        RigidBody3D(name=f"ball{k}", mass=1.0, inertia=(4e-3,) * 3, position=(k, 5.0, 0.1)) for k in range(8)
+    ]  # fmt: skip
+    on_floor = [
+        SphereOnHalfSpace3D(
+            name=f"floor{k}", plane=HalfSpace3D(), sphere=Sphere3D(marker=Marker3D(body=f"ball{k}"), radius=0.1),
+            law=NewtonImpact(restitution=0.0), friction=CoulombFriction(coefficient=0.3),
+        )
+        for k in range(8)
+    ]  # fmt: skip
+    beside = rod.model_copy(update={"bodies": [*rod.bodies, *balls], "contacts": [*rod.contacts, *on_floor]})
+    with caplog.at_level(logging.WARNING):
+        result = simulate(beside, caught.value.t + 0.05, "ebdf", rtol=1e-8)
+    assert "steps of impulses take over" in caplog.text
+    assert result.stats["impulse_steps"] > 0
+    assert result["tip.gap"].min() > -1e-5
+    energy = result["energy.kinetic"] + result["energy.potential"]
+    assert energy[-1] < energy[0]
+    assert result["energy.balance"][-1] == pytest.approx(0.0, abs=1e-6 * energy[0])
+    assert result["ball3.z"] == pytest.approx(0.1, abs=1e-9)
