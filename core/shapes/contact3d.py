@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
@@ -38,6 +39,12 @@ class Sphere3D(Record):
     """Its centre."""
     radius: NonNegative = 0.0
     """m."""
+
+
+@cache
+def _entries(rows: int, columns: int) -> tuple[tuple[int, int], ...]:
+    """All entries of a matrix; the same tuple for all contacts of a group."""
+    return tuple((i, j) for i in range(rows) for j in range(columns))
 
 
 class Contact3D(ContactElement):
@@ -88,11 +95,10 @@ class Contact3D(ContactElement):
         """A contact with Coulomb friction has rows of both tangents behind that of the gap, with another law of
         friction one of the sliding speed."""
         kind, n = type(self), self.width
-        full = tuple((i, j) for i in range(n) for j in range(n))
         if isinstance(self.friction, CoulombFriction):
-            return Form(kind.gripping_kernel, 3, full, tuple((k, j) for k in range(3) for j in range(n)), (1, 2))
+            return Form(kind.gripping_kernel, 3, _entries(n, n), _entries(3, n), (1, 2))
         kernel, rows = (kind.kernel, 1) if self.friction is None else (kind.rubbing_kernel, 2)
-        return Form(kernel, rows, full, tuple((0, j) for j in range(n)))
+        return Form(kernel, rows, _entries(n, n), _entries(1, n))
 
     def lengths(self) -> Sequence[float]:
         return tuple(sphere.radius for sphere in self.spheres())

@@ -283,7 +283,7 @@ def assemble(model: Parts) -> Assembly:
             )
             for c in model.contacts
         ],
-        work_names=numbering.work_names,
+        work_names=list(numbering.work_numbers),
         work_sizes=numbering.work_sizes,
         signals=np.array([*numbering.pool, 0.0]),
         input_names=[record.name for record in model.inputs],

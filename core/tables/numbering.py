@@ -27,7 +27,7 @@ class ModelNumbering:
         self.input_start = {record.name: record.start for record in model.inputs}
         self.motions: list[InputMotion] = []
         self.pool: list[float] = []
-        self.work_names: list[str] = []
+        self.work_numbers: dict[str, int] = {}
         self.work_sizes: dict[str, float] = {}
         self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
         self.names = {body.name: body.coordinate_names for body in model.bodies}
@@ -118,11 +118,9 @@ class ModelNumbering:
         return friction_address(law)
 
     def work(self, name: str, size: float | None = None) -> int:
-        if name not in self.work_names:
-            self.work_names.append(name)
         if size is not None:
             self.work_sizes[name] = size
-        return self.n + AT_REST + self.work_names.index(name)
+        return self.n + AT_REST + self.work_numbers.setdefault(name, len(self.work_numbers))
 
 
 def _length(model: Parts) -> float:
