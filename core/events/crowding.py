@@ -49,7 +49,7 @@ space: heaps of disks come to rest event by event, and their crowds end by thems
 MANY_TOUCH = 8
 SIZE = 5e-4
 """Of a step of impulses, in parts of the model's own time."""
-FEWEST, MOST = 8, 512
+FEWEST, MOST = 8, 4096
 """Steps of impulses in a row."""
 FEW_AGAIN = 16
 """Instants within the time of one step behind a row, after which the next begins."""
