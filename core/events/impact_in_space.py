@@ -59,13 +59,14 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     for i in range(count):
         col(ev, IMPULSE)[i] = col(ev, FRICTION)[i] = loss[i] = 0.0
         col(ev, APPROACH)[i] = max(-rate[i], 0.0)
-        largest = max(largest, abs(rate[i]) / rounding[i], abs(slide[i]) / rounding[i], abs(sway[i]) / rounding[i])
+        largest = max(largest, abs(rate[i]), abs(slide[i]), abs(sway[i]))
     real(ev)[RESIDUAL], noise = 0.0, UNSOLVED * largest
     for turn in range(MOST_ROUNDS + 1):
-        before_round, left = left, 0.0
+        before_round, left, fastest = left, 0.0, 0.0
         for i in range(count):
-            left = max(left, -rate[i] / rounding[i])
-        if left <= 1.0 or 0.5 * before_round <= left <= noise:
+            left, fastest = max(left, -rate[i] / rounding[i]), max(fastest, -rate[i])
+        # (as `impact.py`)
+        if left <= 1.0 or (0.5 * before_round <= left and fastest <= noise):
             break
         if turn == MOST_ROUNDS:
             return ENDLESS_ROUNDS
