@@ -32,6 +32,7 @@ from tlismni.core.analysis import (
     lyapunov_exponents,
     parameter_sensitivities,
     state_space,
+    static_equilibrium,
 )
 from tlismni.core.analysis.saltation import Rows, _normal_part
 from tlismni.core.analysis.variation import Variation
@@ -210,3 +211,36 @@ def test_what_has_no_variations_is_said():
         lyapunov_exponents(load("dropped_box", tilt_x=0.0, tilt_y=0.0).model, 1.0)
     # corner by corner it goes on, also where corners that are struck without rebound stay
     assert lyapunov_exponents(load("dropped_box").model, 0.3919).impacts > 10
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_box_comes_to_rest_on_a_face_whose_corners_say_more_than_enough(seed):
+    """Three corners hold it, the fourth follows from them; one of these carries nothing."""
+    tilts = dict(zip(("tilt_x", "tilt_y", "tilt_z"), np.random.default_rng(seed).uniform(-2.0, 2.0, 3), strict=True))
+    rest = static_equilibrium(load("dropped_box", **tilts).model)
+    assert min(abs(rest["box.z"] - z) for z in (0.1, 0.15, 0.2)) < 1e-9
+    assert sum(rest[f"floor_ground_box_{k}.normal_force"] for k in range(1, 9)) == pytest.approx(2.0 * G, rel=1e-9)
+    assert min(rest[f"floor_ground_box_{k}.gap"] for k in range(1, 9)) > -1e-9
+
+
+@pytest.mark.parametrize("name, parameters", [("universal_pendulum", {"tilt": 3.0}), ("heavy_top", {"spin": 0.0})])
+def test_rest_is_found_through_any_turn(name, parameters):
+    rest = static_equilibrium(load(name, **parameters).model)
+    (body,) = rest.system.bodies
+    assert rest[f"{body.name}.z"] == pytest.approx(-np.linalg.norm(body.position), abs=1e-9)
+
+
+def test_bricards_loop_vibrates_as_it_swings():
+    """Its small vibrations about rest have the period of a run that starts beside it."""
+    modes = eigenmodes(load("bricard").model)
+    (frequency,) = modes.frequencies
+    values = dict(modes.equilibrium.start_values)
+    names = [name for name in values if not name.endswith("_rate")]
+    shape = dict(zip(modes.coordinates, modes.shapes[0].real, strict=True))
+    for name in names:
+        if name in shape:
+            values[name] += 1e-4 * shape[name]
+    half = 0.5 / frequency
+    run = simulate(load("bricard").model, half, rtol=1e-10, atol=1e-12, start_values=values, t_eval=[0.0, half])
+    angle = run["hinge0.angle"] - modes.equilibrium["hinge0.angle"]
+    assert angle[1] == pytest.approx(-angle[0], rel=1e-3) and abs(angle[0]) > 1e-5
