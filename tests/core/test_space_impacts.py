@@ -114,8 +114,8 @@ class Strike:
         return np.array([result[f"b{i}.{name}"][at] for i in range(self.count) for name in names])
 
     def check_friction(self, directions, change, normal, rub, v_t, most):
-        """Where it slides friction is mu P_N against v_T; where it sticks some impulses within the cones, with all others,
-        make up the change of momentum. At any rank."""
+        """Where it slides friction is mu P_N against v_T; where it sticks some impulses within the cones, with all
+        others, make up the change of momentum. At any rank."""
         mu, speed = np.array(self.mu), np.linalg.norm(v_t, axis=1)
         sliding = speed > 1e-9
         assert rub[sliding] == pytest.approx((mu * normal)[sliding], abs=most)
