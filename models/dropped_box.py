@@ -21,11 +21,22 @@ PARAMETERS = (
     ScenarioParameter("length", 0.4, "m", "along its x axis", 0.0, exclusive=True),
     ScenarioParameter("width", 0.3, "m", "along its y axis", 0.0, exclusive=True),
     ScenarioParameter("thickness", 0.2, "m", "along its z axis", 0.0, exclusive=True),
+    *(
+        ScenarioParameter(
+            f"inertia_{axis}", None, "kg.m2", f"moment of inertia about its {axis} axis; none: that of a full box", 0.0,
+            exclusive=True, optional=True,
+        )
+        for axis in "xyz"
+    ),
     ScenarioParameter("height", 0.5, "m", "height of its centre at the start", 0.0, exclusive=True),
     ScenarioParameter("tilt_x", 0.4, "rad", "rotation vector of its attitude at the start, along x"),
     ScenarioParameter("tilt_y", 0.2, "rad", "the same along y"),
     ScenarioParameter("tilt_z", 0.0, "rad", "the same along z"),
-    ScenarioParameter("velocity_x", 0.0, "m/s", "velocity at the start, along x"),
+    *(ScenarioParameter(f"velocity_{axis}", 0.0, "m/s", f"velocity at the start, along {axis}") for axis in "xyz"),
+    *(
+        ScenarioParameter(f"spin_{axis}", 0.0, "rad/s", f"angular velocity at the start, about the box's {axis} axis")
+        for axis in "xyz"
+    ),
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, against z", 0.0, exclusive=True),
     *law_parameters(restitution=0.2, stiffness=1e6),
     *friction_parameters(0.0, None, 1e-3),
@@ -34,10 +45,11 @@ PARAMETERS = (
 
 @scenario("dropped_box", "a box falls on a floor, corner first, and comes to rest on a face", PARAMETERS)
 def dropped_box(
-    *, mass: float, length: float, width: float, thickness: float, height: float, tilt_x: float, tilt_y: float,
-    tilt_z: float, velocity_x: float, gravity: float, law: str, restitution: float, stiffness: float, exponent: float,
-    damping: float | None, relaxation_time: float | None, friction: float, static_friction: float | None,
-    transition_speed: float,
+    *, mass: float, length: float, width: float, thickness: float, inertia_x: float | None, inertia_y: float | None,
+    inertia_z: float | None, height: float, tilt_x: float, tilt_y: float, tilt_z: float, velocity_x: float,
+    velocity_y: float, velocity_z: float, spin_x: float, spin_y: float, spin_z: float, gravity: float, law: str,
+    restitution: float, stiffness: float, exponent: float, damping: float | None, relaxation_time: float | None,
+    friction: float, static_friction: float | None, transition_speed: float,
 ) -> Scenario:  # fmt: skip
     """Body `box`, contacts `floor_ground_box_1` to `_8` of its corners with the floor at z = 0.
 
@@ -51,9 +63,14 @@ def dropped_box(
         contact = contact.model_copy(update={"rest_ratio": REST_RATIO})
     x, y, z = length**2, width**2, thickness**2
     body = RigidBody3D(
-        name="box", mass=mass, inertia=(mass * (y + z) / 12.0, mass * (x + z) / 12.0, mass * (x + y) / 12.0),
+        name="box", mass=mass,
+        inertia=(
+            mass * (y + z) / 12.0 if inertia_x is None else inertia_x,
+            mass * (x + z) / 12.0 if inertia_y is None else inertia_y,
+            mass * (x + y) / 12.0 if inertia_z is None else inertia_z,
+        ),
         position=(0.0, 0.0, height), attitude=RotationVector(vector=(tilt_x, tilt_y, tilt_z)),
-        velocity=(velocity_x, 0.0, 0.0),
+        velocity=(velocity_x, velocity_y, velocity_z), angular_velocity=(spin_x, spin_y, spin_z),
     )  # fmt: skip
     rubs = contact_friction(
         contact, friction=friction, static_friction=static_friction, transition_speed=transition_speed

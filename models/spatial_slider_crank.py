@@ -20,10 +20,14 @@ PARAMETERS = (
     ScenarioParameter("crank_z", 0.12, "m", "place of the crank's bearing along z"),
     ScenarioParameter("crank_mass", 0.12, "kg", "mass of the crank", 0.0, exclusive=True),
     ScenarioParameter("crank_inertia", 1e-4, "kg.m2", "inertia of the crank across its length", 0.0, exclusive=True),
+    ScenarioParameter(
+        "crank_axial_inertia", 1e-5, "kg.m2", "inertia of the crank along its length", 0.0, exclusive=True
+    ),
     ScenarioParameter("rod_mass", 0.5, "kg", "mass of the rod", 0.0, exclusive=True),
     ScenarioParameter("rod_inertia", 4e-3, "kg.m2", "inertia of the rod across its length", 0.0, exclusive=True),
     ScenarioParameter("rod_axial_inertia", 4e-4, "kg.m2", "inertia of the rod along its length", 0.0, exclusive=True),
     ScenarioParameter("slider_mass", 2.0, "kg", "mass of the slider", 0.0, exclusive=True),
+    ScenarioParameter("slider_inertia", 1e-4, "kg.m2", "inertia of the slider about any axis", 0.0, exclusive=True),
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, against z", 0.0),
     ScenarioParameter("speed", 6.0, "rad/s", "angular velocity of the crank at the start"),
 )  # fmt: skip
@@ -32,7 +36,8 @@ PARAMETERS = (
 @scenario("spatial_slider_crank", "a slider-crank in space (Haug; IFToMM benchmark A03)", PARAMETERS)
 def spatial_slider_crank(
     *, crank_length: float, rod_length: float, crank_y: float, crank_z: float, crank_mass: float, crank_inertia: float,
-    rod_mass: float, rod_inertia: float, rod_axial_inertia: float, slider_mass: float, gravity: float, speed: float,
+    crank_axial_inertia: float, rod_mass: float, rod_inertia: float, rod_axial_inertia: float, slider_mass: float,
+    slider_inertia: float, gravity: float, speed: float,
 ) -> Scenario:  # fmt: skip
     """Bodies `arm`, `rod` and `slider`. Joints: `crank`, the hinge of the arm on the ground about x, whose angle is
     that of the arm from z; `pin`, a ball joint of arm and rod; `fork`, a universal joint of rod and slider;
@@ -64,7 +69,7 @@ def spatial_slider_crank(
     normal = np.cross(across, x)
     spin -= (spin @ normal) / (along @ normal) * along
     arm = RigidBody3D(
-        name="arm", mass=crank_mass, inertia=(crank_inertia, crank_inertia, 0.1 * crank_inertia),
+        name="arm", mass=crank_mass, inertia=(crank_inertia, crank_inertia, crank_axial_inertia),
         position=(0.0, crank_y, crank_z + 0.5 * crank_length), velocity=_vector(0.5 * end_velocity),
         angular_velocity=(speed, 0.0, 0.0),
     )  # fmt: skip
@@ -75,8 +80,8 @@ def spatial_slider_crank(
         angular_velocity=_vector(spin), angular_velocity_in="space",
     )  # fmt: skip
     slider = RigidBody3D(
-        name="slider", mass=slider_mass, inertia=(1e-4, 1e-4, 1e-4), position=(slider_x, 0.0, 0.0),
-        velocity=_vector(slider_velocity),
+        name="slider", mass=slider_mass, inertia=(slider_inertia, slider_inertia, slider_inertia),
+        position=(slider_x, 0.0, 0.0), velocity=_vector(slider_velocity),
     )  # fmt: skip
     hinge = Axes(z=(1.0, 0.0, 0.0), x=(0.0, 0.0, 1.0))
     guide = Axes(z=(1.0, 0.0, 0.0))

@@ -2,9 +2,11 @@
 
 import math
 
+import numpy as np
+
 from ..core.description import Model
 from ..core.elements import RigidBody3D, Universal3D
-from ..core.model.attitude import RotationVector
+from ..core.model.attitude import RotationVector, rotation_matrix
 from ..core.model.markers import Marker3D
 from .parameters import ScenarioParameter
 from .registry import scenario
@@ -17,21 +19,27 @@ PARAMETERS = (
     ScenarioParameter("axial_inertia", 0.04, "kg.m2", "moment of inertia along the pendulum", 0.0, exclusive=True),
     ScenarioParameter("gravity", 9.80665, "m/s^2", "gravity, against z", 0.0),
     ScenarioParameter("tilt", 0.5 * math.pi, "rad", "turn of pendulum and joint about (1, -1, 0) from hanging down"),
+    ScenarioParameter("rate_x", 0.0, "rad/s", "rate about the joint's axis in the ground at the start"),
+    ScenarioParameter("rate_y", 0.0, "rad/s", "rate about the joint's axis in the pendulum at the start"),
 )
 
 
 @scenario("universal_pendulum", "a pendulum on a universal joint, released at rest (Chrono's test case)", PARAMETERS)
 def universal_pendulum(
-    *, mass: float, length: float, transverse_inertia: float, axial_inertia: float, gravity: float, tilt: float
-) -> Scenario:
+    *, mass: float, length: float, transverse_inertia: float, axial_inertia: float, gravity: float, tilt: float,
+    rate_x: float, rate_y: float,
+) -> Scenario:  # fmt: skip
     """Body `pendulum`, whose z axis points to joint `cross` at the origin, with its axes x in the ground and y in the
     body, both turned by `tilt`."""
     part = tilt / math.sqrt(2.0)
     attitude = RotationVector(vector=(part, -part, 0.0))
     sideways = length * math.sin(tilt) / math.sqrt(2.0)
+    # w x (0, 0, -length) in the body's axes
+    velocity = rotation_matrix(attitude.parameters()) @ np.array([-length * rate_y, length * rate_x, 0.0])
     pendulum = RigidBody3D(
         name="pendulum", mass=mass, inertia=(transverse_inertia, transverse_inertia, axial_inertia), attitude=attitude,
         position=(sideways, sideways, -length * math.cos(tilt)),
+        velocity=(float(velocity[0]), float(velocity[1]), float(velocity[2])), angular_velocity=(rate_x, rate_y, 0.0),
     )  # fmt: skip
     cross = Universal3D(
         name="cross", a=Marker3D(attitude=attitude), b=Marker3D(body="pendulum", point=(0.0, 0.0, length))

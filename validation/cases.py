@@ -107,9 +107,11 @@ CASES: Mapping[str, Sequence[Case]] = {
         Case("spatial_slider_crank", coarse={"t_end": 1.0}, accuracy=(1e-11, 1e-13), seconds=20.0),
     ),
     "arm_stop": (
-        Case("arm_stop", {"law": "hertz"}, t_end=0.42, step=2e-5, seconds=15.0,
+        Case("arm_stop", {"law": "hertz"}, t_end=0.25, step=2e-5, seconds=15.0,
+             coarse={"step": 1e-4, "tolerance": 1e-3}, why="a blow of the elbow's end stop, by force"),
+        Case("arm_stop", {"law": "hertz", "elbow_limit": None}, t_end=0.42, step=2e-5, seconds=15.0,
              coarse={"t_end": 0.3, "step": 1e-4, "tolerance": 1e-3},
-             why="a blow of the tip and one of the elbow, by force"),
+             why="without the end stop: a blow of the tip and one of the elbow, by force"),
     ),
     "dropped_box": (
         Case("dropped_box", {"law": "hertz", "stiffness": 1e5}, t_end=0.28, step=2e-5, seconds=15.0,

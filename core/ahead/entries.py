@@ -179,8 +179,8 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield linearise.tangent_rate, (_WS, _MS, _REALS, _WHOLES, _WHOLES, _BLOCKS)
     work = typeof(flow.make_work(2, 1, 1))
     matrices, variations = (_BLOCKS,) * 6, (_MATRIX, _MATRIX)
-    yield flow.carry, (_REAL, *matrices, _WHOLES, _WHOLES, *variations, _MATRIX, work)
-    layout = Tuple((_WHOLES,) * 5)
+    yield flow.carry, (_REAL, *matrices, _REALS, *variations, _MATRIX, work)
+    layout = Tuple((_WHOLES, _WHOLES, _WHOLES, _REALS))
     room = Tuple((_REALS, *(_BLOCKS,) * 5, _MATRIX, _BLOCKS, _MATRIX, *variations))
     yield flight.fly, (_WS, _MS, _LC, _WHOLE, layout, room, work, *variations, _REALS, _REALS)
 

@@ -11,6 +11,7 @@ from ..loop.sample import write_sample
 from ..run.simulation import Simulation
 from ..tables.assembly import Assembly
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+from ..tables.partition import choose_dependent
 
 Floats = NDArray[np.float64]
 
@@ -98,15 +99,21 @@ def matrices(sim: Simulation) -> Matrices:
     """The matrices at the workspace's point, which must be at rest."""
     mass, jacobian = tangent(sim, 0.0, 0.0)
     stiffness, damping = tangent(sim, 1.0, 0.0)[0] - mass, tangent(sim, 0.0, 1.0)[0] - mass
-    dependent = sim.workspace.structure.dependent
-    if dependent is None:
-        raise RuntimeError("a simulation always has a partition once it is built")
-    n = sim.assembly.n
+    return Matrices(mass, damping, stiffness, jacobian, *null_basis(sim, jacobian))
+
+
+def null_basis(sim: Simulation, jacobian: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """N (n, f) with Phi_q N = 0 and the identity in the rows of the independent coordinates, and their numbers (f,).
+
+    `jacobian` is Phi_q (m_act, n) as the workspace's matrix has it now. The partition is chosen here: that of the run
+    is as old as its last change, and on the way to rest bodies may have turned by any angle.
+    """
+    dependent, n = choose_dependent(sim.workspace), sim.assembly.n
     independent = np.setdiff1d(np.arange(n), dependent)
     basis = np.zeros((n, len(independent)))
     basis[independent] = np.eye(len(independent))
     basis[dependent] = -np.linalg.solve(jacobian[:, dependent], jacobian[:, independent])
-    return Matrices(mass, damping, stiffness, jacobian, basis, independent)
+    return basis, independent
 
 
 def loads(sim: Simulation, names: list[str]) -> Floats:

@@ -31,6 +31,8 @@ LONGEST = 1e8
 """Longest pseudo time step, in squares of the model's own time: what nothing holds does not run away by rounding."""
 STRAINS = 1e-5
 """Part of |K| |q| that acts at least: forces inside elastic bodies cancel, and leave their rounding."""
+ROUNDING = 1e-9
+"""Gap below zero, in parts of its size, of a contact that others hold, which is rounding."""
 SMALLEST = 1e-40
 """Pseudo time step, relative to the first, at which the search gives up."""
 
@@ -63,6 +65,7 @@ class Creep:
                 if self._let_go():
                     step, before = 0.0, np.inf
                     continue
+                self._check_gaps()
                 self.unbalanced = balanced
                 return
             size = float(np.max(np.abs(acceleration) / self.scale, initial=0.0))
@@ -76,7 +79,11 @@ class Creep:
             while moved < 0.0:
                 step /= GROWTH
                 if step < SMALLEST * first:
-                    raise self._lost("no way leads downhill")
+                    if balanced > BALANCED:
+                        raise self._lost("no way leads downhill")
+                    # contacts have just balanced all forces: what is left is rounding, in any direction
+                    moved = step = 0.0
+                    break
                 moved = self._move(step, q, acceleration)
             if self._choose(self._touching()):
                 step, moved, before = 0.0, np.inf, np.inf
@@ -168,11 +175,34 @@ class Creep:
         if np.array_equal(before, sim.memory[:, MODE]):
             return False
         q = self._point()[0]
-        sim.use_modes(accelerations=False)
+        if not self._take_on(closing) and np.array_equal(before, sim.memory[:, MODE]):
+            place(sim, q, np.zeros(len(sim.workspace.structure.active)))
+            return False
         place(sim, q, np.zeros(len(sim.workspace.structure.active)))
         if not bring_to_rest(sim.workspace, "phi", "q"):
             raise self._lost("contacts that have closed cannot be met together with the joints")
         return True
+
+    def _take_on(self, closing: list[int]) -> bool:
+        """Make what is closed constraints. Of the contacts that close, those whose equations others say already stay
+        open, held by the others: a box lies on three of its corners. False if there are such."""
+        sim = self.sim
+        try:
+            sim.use_modes(accelerations=False)
+            return True
+        except ConsistencyError:
+            if not closing:
+                raise
+        modes = sim.memory[closing, MODE].copy()
+        sim.memory[closing, MODE] = OPEN
+        for k, mode in sorted(zip(closing, modes, strict=True), key=lambda pair: sim.gap(pair[0])):
+            sim.memory[k, MODE] = mode
+            try:
+                sim.use_modes(accelerations=False)
+            except ConsistencyError:
+                sim.memory[k, MODE] = OPEN
+        sim.use_modes(accelerations=False)
+        return False
 
     def _let_go(self) -> bool:
         """Open the contact that pulls most, if one does."""
@@ -195,6 +225,14 @@ class Creep:
         sim.use_modes(accelerations=False)
         place(sim, q, np.zeros(len(sim.workspace.structure.active)))
         return True
+
+    def _check_gaps(self) -> None:
+        """Raise SimulationError where a contact that others should hold is entered all the same."""
+        sim = self.sim
+        for k in self._touching():
+            contact = sim.assembly.contacts[k]
+            if sim.gap(k) < -ROUNDING * float(sim.workspace.arrays["row_scale"][contact.row]):
+                raise self._lost(f"contact '{contact.name}' cannot be met together with the joints and contacts there")
 
     def _lost(self, why: str) -> SimulationError:
         sim = self.sim

@@ -49,7 +49,7 @@ def fly(
 ) -> int:  # fmt: skip
     """Up to `most` steps, as `run` makes them, and the variations carried over each.
 
-    layout : (rows, cols, colours, dependent, independent). room : (times, M, K, D, Phi_q, B, points, zeros, r, old dq,
+    layout : (rows, cols, colours, scale). room : (times, M, K, D, Phi_q, B, points, zeros, r, old dq,
     old dv) for as many points as there is room for. growth (columns,) += logarithms of the lengths. totals : highest
     frequency of the newest step, integral of the divergence so far.
 
@@ -57,7 +57,7 @@ def fly(
     -------
     What `run` returns; or STEP_LEFT.
     """
-    rows, cols, colours, dependent, independent = layout
+    rows, cols, colours, scale = layout
     times, mass, k, d, phi_q, rate, points, zeros, r, old_dq, old_dv = room
     capacity = (len(times) - 2) // STAGES
     n, columns = dq.shape
@@ -82,8 +82,8 @@ def fly(
                 if failed != 0 or _varies(mass[:count]):
                     return STEP_LEFT
                 frequency, divergence = carry(
-                    t1 - t0, mass[:count], k[:count], d[:count], zeros, phi_q[:count], rate[:count], dependent,
-                    independent, dq, dv, r, work,
+                    t1 - t0, mass[:count], k[:count], d[:count], zeros, phi_q[:count], rate[:count], scale, dq, dv,
+                    r, work,
                 )  # fmt: skip
                 totals[0] = frequency
                 if (t1 - t0) * frequency <= 1.5 * SUBSTEP * substeps:

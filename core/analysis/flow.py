@@ -1,9 +1,10 @@
 """The variational equation between events, in independent coordinates, by Gauss collocation of order 6.
 
 Variations that keep the constraints are dq = N y with Phi_q N = 0; N is the identity in the rows of the independent
-coordinates and -Phi_qd^-1 Phi_qi in the others. Their rates are dv = N y' + N' y, with Phi_q N' = -B N and B the rate
-of Phi_q along the motion. With the momenta p = N^T M dv the linearised equations of motion lose the variations of the
-multipliers (N^T Phi_q^T = 0), and no derivative of B is needed:
+coordinates and -Phi_qd^-1 Phi_qi in the others. Which are dependent is chosen anew for each step, so that Phi_qd stays
+far from singular while bodies turn: of a body's Euler parameters a large one. Their rates are dv = N y' + N' y, with
+Phi_q N' = -B N and B the rate of Phi_q along the motion. With the momenta p = N^T M dv the linearised equations of
+motion lose the variations of the multipliers (N^T Phi_q^T = 0), and no derivative of B is needed:
 
     y' = G^-1 (p - N^T M N' y)                               G = N^T M N
     p' = N'^T M dv + N^T ((M' - D) dv - K dq)
@@ -20,8 +21,10 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import compiled_unlocked, internal
 from ..methods.tableaus import TABLEAUS
+from .elimination import add_product, add_transposed, choose, eliminate
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 _GAUSS = TABLEAUS["gauss3"]
 NODES = np.array(_GAUSS.c)
@@ -50,6 +53,9 @@ class Work(NamedTuple):
     system: Floats  # (stages 2f, stages 2f)
     slopes: Floats  # (stages 2f, columns)
     z: Floats  # (2f, columns)
+    pivoting: Floats  # (m, n)
+    dependent: Ints  # (m,)
+    independent: Ints  # (f,)
 
 
 def make_work(n: int, m: int, columns: int) -> Work:
@@ -59,63 +65,15 @@ def make_work(n: int, m: int, columns: int) -> Work:
         *[(n, f)] * 6, (m, m), (m, f), *[(f, f)] * 5, (STAGES, 2 * f, 2 * f), (STAGES * 2 * f, STAGES * 2 * f),
         (STAGES * 2 * f, columns), (2 * f, columns),
     )  # fmt: skip
-    return Work(*(np.zeros(shape) for shape in shapes))
+    places = np.zeros((m, n)), np.zeros(m, dtype=np.int64), np.zeros(f, dtype=np.int64)
+    room: tuple[Any, ...] = (*(np.zeros(shape) for shape in shapes), *places)
+    return Work(*room)
 
 
 @internal
-def eliminate(a: Any, b: Any) -> None:
-    """b = a^-1 b by Gauss with partial pivoting (LAPACK costs more than these small systems); a (n, n) is lost."""
-    n, columns = len(a), b.shape[1]
-    for i in range(n):
-        at = i
-        for j in range(i + 1, n):
-            if abs(a[j, i]) > abs(a[at, i]):
-                at = j
-        if at != i:
-            for j in range(i, n):
-                a[i, j], a[at, j] = a[at, j], a[i, j]
-            for j in range(columns):
-                b[i, j], b[at, j] = b[at, j], b[i, j]
-        for j in range(i + 1, n):
-            x = a[j, i] / a[i, i]
-            if x != 0.0:
-                for l in range(i + 1, n):
-                    a[j, l] -= x * a[i, l]
-                for l in range(columns):
-                    b[j, l] -= x * b[i, l]
-    for i in range(n - 1, -1, -1):
-        for l in range(columns):
-            x = b[i, l]
-            for j in range(i + 1, n):
-                x -= a[i, j] * b[j, l]
-            b[i, l] = x / a[i, i]
-
-
-@internal
-def add_product(out: Any, a: Any, b: Any, factor: float) -> None:
-    """out += factor a b."""
-    for i in range(a.shape[0]):
-        for l in range(a.shape[1]):
-            x = factor * a[i, l]
-            if x != 0.0:
-                for j in range(b.shape[1]):
-                    out[i, j] += x * b[l, j]
-
-
-@internal
-def add_transposed(out: Any, a: Any, b: Any, factor: float) -> None:
-    """out += factor a^T b."""
-    for l in range(a.shape[0]):
-        for i in range(a.shape[1]):
-            x = factor * a[l, i]
-            if x != 0.0:
-                for j in range(b.shape[1]):
-                    out[i, j] += x * b[l, j]
-
-
-@internal
-def null_space(phi_q: Any, dependent: Any, independent: Any, work: Any) -> None:
+def null_space(phi_q: Any, work: Any) -> None:
     """work.basis = N, with Phi_q N = 0 and the identity in the independent rows."""
+    dependent, independent = work.dependent, work.independent
     m, f = len(dependent), len(independent)
     work.basis[:, :] = 0.0
     for i in range(m):
@@ -142,14 +100,12 @@ def metric(mass: Any, work: Any) -> None:
 
 
 @internal
-def generator(
-    mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, dependent: Any, independent: Any, work: Any,
-    out: Any,
-) -> float:  # fmt: skip
+def generator(mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, work: Any, out: Any) -> float:
     """Matrix (2f, 2f) of (y, p)' = out (y, p); returns a bound of the frequencies, rad/s, from tr((G^-1 K)^2) and
     tr((G^-1 D)^2), which no choice of coordinates changes."""
-    m, f = len(dependent), len(independent)
-    null_space(phi_q, dependent, independent, work)
+    dependent = work.dependent
+    m, f = len(dependent), len(work.independent)
+    null_space(phi_q, work)
     metric(mass, work)
     work.lines[:, :], work.turning[:, :] = 0.0, 0.0
     add_product(work.lines, rate, work.basis, -1.0)
@@ -247,13 +203,14 @@ def orthonormal(mass: Any, dq: Any, dv: Any, r: Any) -> None:
 
 @compiled_unlocked
 def carry(
-    h: float, mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, dependent: Any, independent: Any,
-    dq: Any, dv: Any, r: Any, work: Any,
+    h: float, mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, scale: Any, dq: Any, dv: Any, r: Any,
+    work: Any,
 ) -> Any:  # fmt: skip
     """Carry variations over a step of size h, and make them orthonormal.
 
     The matrices are those at its start, at the Gauss nodes of its substeps of equal size, and at its end, 3 s + 2 in
-    all; mass_rate may be a single one. dq and dv (n, columns) are changed; dv is the part tangent to the constraints.
+    all; mass_rate may be a single one. scale (n,) are the coordinates' scales. dq and dv (n, columns) are changed; dv
+    is the part tangent to the constraints.
     r (columns, columns) gets the upper triangular matrix with which the new ones give what they were before they were
     made orthonormal.
 
@@ -261,10 +218,13 @@ def carry(
     -------
     frequency : the highest met, rad/s. divergence : its integral over the step.
     """
+    steps = (len(mass) - 2) // STAGES
+    # the choice that is best in the middle serves both ends
+    choose(phi_q[len(mass) // 2], scale, work.pivoting, work.dependent, work.independent)
+    independent = work.independent
     f, columns = len(independent), dq.shape[1]
     n, z = dq.shape[0], work.z
-    steps = (len(mass) - 2) // STAGES
-    null_space(phi_q[0], dependent, independent, work)
+    null_space(phi_q[0], work)
     metric(mass[0], work)
     z[:, :] = 0.0
     for i in range(f):
@@ -276,14 +236,14 @@ def carry(
         for i in range(STAGES):
             at = 1 + STAGES * s + i
             found = generator(
-                mass[at], k[at], d[at], mass_rate[at if len(mass_rate) > 1 else 0], phi_q[at], rate[at], dependent,
-                independent, work, work.generators[i],
+                mass[at], k[at], d[at], mass_rate[at if len(mass_rate) > 1 else 0], phi_q[at], rate[at], work,
+                work.generators[i],
             )  # fmt: skip
             frequency = max(frequency, found)
             for j in range(2 * f):
                 divergence += h / steps * _B[i] * work.generators[i, j, j]
         collocate(work.generators, h / steps, z, work.system, work.slopes)
-    null_space(phi_q[-1], dependent, independent, work)
+    null_space(phi_q[-1], work)
     metric(mass[-1], work)
     work.by_p[:, :] = 0.0
     add_product(work.by_p, work.basis, work.inverse, 1.0)

@@ -18,46 +18,47 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Layout:
-    """The present structure of a run and its partition, for dense matrices.
+    """The present structure of a run, for dense matrices.
 
     Attributes
     ----------
     active : rows of Phi that are constraints, (m_act,).
     rows, cols : of the entries of [S, Phi_q^T; Phi_q, 0], in the order of the workspace's values.
     colours : of the columns of Phi_q, (n,); see `colour_columns`.
-    dependent, independent : coordinates, (m_act,) and (f,).
+    scale : of the coordinates, (n,).
     """
 
     active: Ints
     rows: Ints
     cols: Ints
     colours: Ints
-    dependent: Ints
-    independent: Ints
+    scale: Floats
 
     @classmethod
     def of(cls, sim: Simulation) -> "Layout":
         """The layout of the structure that `sim` has now."""
         refuse_rate_rows(sim.assembly)
         structure, n = sim.workspace.structure, sim.assembly.n
-        dependent = structure.dependent
-        if dependent is None:
-            raise RuntimeError("a simulation always has a partition once it is built")
-        independent = np.setdiff1d(np.arange(n), dependent)
         colours = colour_columns(n, structure.rows, structure.cols)
         # another structure may take its place in memory
-        own = (structure.active, structure.rows, structure.cols, colours, dependent, independent)
+        own: tuple[Any, ...] = (
+            structure.active,
+            structure.rows,
+            structure.cols,
+            colours,
+            sim.assembly.coordinate_scale,
+        )
         return cls(*(x.copy() for x in own))
 
     @property
     def n(self) -> int:
         """Number of coordinates."""
-        return len(self.dependent) + len(self.independent)
+        return len(self.scale)
 
     @property
     def freedom(self) -> int:
         """Number of degrees of freedom f."""
-        return len(self.independent)
+        return self.n - len(self.active)
 
     def matrices(self, sim: Simulation, c_q: float = 0.0) -> tuple[Floats, Floats]:
         """M + c_q K (n, n) and Phi_q (m_act, n) at the workspace's point."""
@@ -76,8 +77,7 @@ class Layouts:
     def now(self) -> Layout:
         """The layout of the present structure."""
         workspace = self._sim.workspace
-        dependent = workspace.structure.dependent
-        key = (workspace.key, workspace.dropped, b"" if dependent is None else dependent.tobytes())
+        key = (workspace.key, workspace.dropped)
         found = self._known.get(key)
         if found is None:
             found = self._known[key] = Layout.of(self._sim)

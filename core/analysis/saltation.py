@@ -189,7 +189,8 @@ def _jump(
 
 
 def _restitution(sim: Simulation, law: object, event: Event) -> float:
-    if event.separation_speed == 0.0 or not isinstance(law, ImpactLaw):
+    # what was struck without rebound separates at rounding
+    if event.separation_speed <= MISMATCH * event.approach_speed or not isinstance(law, ImpactLaw):
         return 0.0
     return float(law.restitution)
 

@@ -13,6 +13,7 @@ from ..rounding import NO_STEP
 from ..run.engine import user_errors
 from ..run.simulation import Simulation
 from ..state.run_records import CHUNK, EVENT, REACHED
+from .at_rest import null_basis
 from .flight import STEP_LEFT, SUBSTEP, fly
 from .flow import NODES, STAGES, Work, carry, make_work
 from .layout import Layout, Layouts, mass_rates
@@ -103,9 +104,7 @@ class Variation:
         layout = self._layouts.now()
         look(self.sim)
         mass, phi_q = layout.matrices(self.sim)
-        basis = np.zeros((layout.n, layout.freedom))
-        basis[layout.independent] = np.eye(layout.freedom)
-        basis[layout.dependent] = -np.linalg.solve(phi_q[:, layout.dependent], phi_q[:, layout.independent])
+        basis, _ = null_basis(self.sim, phi_q)
         root: Floats = np.asarray(np.linalg.cholesky(basis.T @ mass @ basis), dtype=np.float64)
         return basis, root, mass
 
@@ -155,7 +154,7 @@ class Variation:
         sim.aim(until, t_end)
         work, room = self._room(layout)
         growth, totals = np.zeros(len(self.exponents)), np.array([self._frequency, 0.0])
-        places = layout.rows, layout.cols, layout.colours, layout.dependent, layout.independent
+        places = layout.rows, layout.cols, layout.colours, layout.scale
         code = fly(
             sim.workspace.record, sim._method.record, sim._loop.record, STEPS_AT_ONCE, places, room, work, self.dq,
             self.dv, growth, totals,
@@ -189,9 +188,7 @@ class Variation:
             dq, dv = self.dq.copy(), self.dv.copy()
             rates = mass_rates(sim, layout, nodes, points, mass)
             last, work = np.zeros((len(self.exponents),) * 2), self._room(layout)[0]
-            frequency, divergence = carry(
-                h, mass, k, d, rates, phi_q, rate, layout.dependent, layout.independent, dq, dv, last, work
-            )
+            frequency, divergence = carry(h, mass, k, d, rates, phi_q, rate, layout.scale, dq, dv, last, work)
             fine = h * frequency <= 1.5 * SUBSTEP * substeps
             self._frequency = float(frequency)
             if fine:
@@ -204,8 +201,7 @@ class Variation:
         """Let the pending events happen, and map the variations."""
         crossing = cross(self.sim, self._layouts, self.dq, self.dv)
         basis, low, mass = self._frame()
-        independent = self._layouts.now().independent
-        y, p = crossing.dq[independent], basis.T @ (mass @ crossing.dv)
+        y, p = np.linalg.lstsq(basis, crossing.dq, rcond=None)[0], basis.T @ (mass @ crossing.dv)
         q, r = np.linalg.qr(np.vstack([low.T @ y, np.linalg.solve(low, p)]))
         lengths = np.abs(np.diag(r))
         kept = np.flatnonzero(lengths > LOST * np.max(lengths, initial=0.0))

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import null_space
+from scipy.optimize import minimize
 from tlismni.core import (
     Axes,
     CoulombFriction,
@@ -111,6 +113,35 @@ class Strike:
         names = [f"v{axis}" for axis in "xyz"] + [f"angular_velocity_{axis}" for axis in "xyz"]
         return np.array([result[f"b{i}.{name}"][at] for i in range(self.count) for name in names])
 
+    def check_friction(self, directions, change, normal, rub, v_t, most):
+        """Where it slides friction is mu P_N against v_T; where it sticks some impulses within the cones, with all
+        others, make up the change of momentum. At any rank."""
+        mu, speed = np.array(self.mu), np.linalg.norm(v_t, axis=1)
+        sliding = speed > 1e-9
+        assert rub[sliding] == pytest.approx((mu * normal)[sliding], abs=most)
+        against = -(mu * normal / np.maximum(speed, 1e-300))[:, None] * v_t * sliding[:, None]
+        left = change - normal @ directions[:, 0] - np.einsum("ki,kij->j", against, directions[:, 1:])
+        across = directions[~sliding, 1:].reshape(-1, directions.shape[2]).T
+        bound = (mu * normal)[~sliding]
+        held = np.linalg.pinv(across) @ left
+        assert np.abs(across @ held - left).max() <= most * (1.0 + np.linalg.norm(directions))
+        if np.linalg.matrix_rank(across, tol=1e-6) == across.shape[1]:
+            assert np.all(np.hypot(*held.reshape(-1, 2).T) <= bound + 1e2 * most)
+            return
+        # many impulses give this change: some must be within the cones; s is the least excess of all that do
+        free = null_space(across, rcond=1e-9)
+
+        def room(x):
+            return bound + x[-1] - np.hypot(*(held + free @ x[:-1]).reshape(-1, 2).T)
+
+        start = np.append(np.zeros(free.shape[1]), 0.0)
+        start[-1] = -room(start).min()
+        found = minimize(
+            lambda x: x[-1], start, method="SLSQP", constraints={"type": "ineq", "fun": room},
+            options={"ftol": 1e-12, "maxiter": 500},
+        )  # fmt: skip
+        assert -room(np.append(found.x[:-1], 0.0)).min() < 1e-7 * (1.0 + bound.max())
+
     def check(self, poisson=False):
         """The blow at t = 0 is one that the laws allow; gives how many contacts slide, stick and are open behind it."""
         result = simulate(self.model, 1e-9, first_step=1e-9, start_tolerance=ANYTHING)
@@ -138,9 +169,8 @@ class Strike:
         assert normal.min() >= 0.0
         assert np.all(rub <= mu * normal + CLOSE * size)
         slides = np.linalg.norm(v_t, axis=1)
-        if np.linalg.matrix_rank(rows, tol=1e-6) == len(rows) and not poisson:
-            off = impulses[:, 1:] * slides[:, None] + (mu * normal)[:, None] * v_t
-            assert np.abs(off).max() <= CLOSE * size * (1.0 + slides.max())
+        if not poisson:
+            self.check_friction(directions, change, normal, rub, v_t, CLOSE * size)
         # complementarity
         if not poisson:
             wanted = v_n + e * (directions[:, 0] @ before)
@@ -152,8 +182,8 @@ class Strike:
         lost = 0.5 * (before @ mass @ before - after @ mass @ after)
         told = sum(event.energy_loss for event in hits.values())
         assert told == pytest.approx(lost, abs=CLOSE * size * (1.0 + np.abs(before).max()))
-        if not e.any():
-            assert lost >= -CLOSE
+        if poisson or not e.any():
+            assert lost >= -CLOSE * size
         return np.array([np.sum((normal > 0) & (slides > 1e-9)), np.sum(slides <= 1e-9), np.sum(normal == 0)])
 
 
@@ -188,6 +218,41 @@ def test_poissons_law_of_random_impacts(most):
     """One contact on a body at most, and two: where some come to rest by the blow, its losses are told all the same."""
     for seed in range(100):
         Strike(seed, PoissonImpact, most).check(poisson=True)
+
+
+def energy_lost(strike):
+    """By the blow at t = 0, J."""
+    result = simulate(strike.model, 1e-9, first_step=1e-9, start_tolerance=ANYTHING)
+    here = np.flatnonzero(result.t == 0.0)
+    before, after = strike.velocities(result, here[0]), strike.velocities(result, here[-1])
+    mass = np.linalg.inv(strike.inverse)
+    return 0.5 * (before @ mass @ before - after @ mass @ after)
+
+
+def test_energy_of_newtons_law_without_friction_and_with_one_restitution_never_grows():
+    """T+ - T- = -(1 - e^2)/2 times the square of the approach in the metric of the contacts' inertia (Glocker 2001)."""
+    for seed in range(100):
+        strike = Strike(seed, NewtonImpact)
+        law = NewtonImpact(restitution=float(strike.rng.random()))
+        smooth = [contact.model_copy(update={"law": law, "friction": None}) for contact in strike.contacts]
+        strike.model = strike.model.model_copy(update={"contacts": tuple(smooth)})
+        assert energy_lost(strike) >= -CLOSE
+
+
+def test_energy_that_newtons_law_adds_is_told(caplog):
+    """With friction, or different restitutions at once, Newton's law may add energy (Kane 1984): a few in two hundred.
+    The run says so, and says it of no other."""
+    grown = []
+    for seed in range(200):
+        caplog.clear()
+        try:
+            lost = energy_lost(Strike(seed, NewtonImpact, 1))
+        except SimulationError:
+            continue
+        told = any("raises the energy" in record.getMessage() for record in caplog.records)
+        assert told == (lost < -1e-6), (seed, lost)
+        grown += [seed] if told else []
+    assert 1 <= len(grown) <= 10
 
 
 @pytest.mark.parametrize("law", [NewtonImpact, PoissonImpact])

@@ -30,6 +30,7 @@ from tlismni.core import (
     simulate,
 )
 from tlismni.models import load
+from tlismni.models.laws import LAW_NAMES
 
 
 def lifted(model: Model, turn: float = 0.0) -> Model:
@@ -87,12 +88,16 @@ def _in_plane(body):
 def test_lifted_model_moves_as_the_planar_one(name, t_end, method):
     model = load(name).model if name != "chain" else load(name, links=3).model
     times = np.linspace(0.0, t_end, 9)
-    rtol = {"ebdf": 1e-13, "irk": 1e-13, "adams": 1e-14}[method]
-    flat, spatial = (simulate(m, t_end, method, rtol=rtol, atol=1e-15, t_eval=times) for m in (model, lifted(model)))
+    # error control of Adams' formulas is no finer than differences of coordinates: fixed steps go further
+    settings = {"rtol": 1e-13, "atol": 1e-15}
+    if method == "adams":
+        settings = {"order": 8, "step": t_end / 1000, "newton_tolerance": 1e-14}
+    flat, spatial = (simulate(m, t_end, method, t_eval=times, **settings) for m in (model, lifted(model)))
     for body in model.bodies:
         for axis in "xy":
             assert np.abs(flat[f"{body.name}.{axis}"] - spatial[f"{body.name}.{axis}"]).max() < 1e-10
-            assert np.abs(flat[f"{body.name}.v{axis}"] - spatial[f"{body.name}.v{axis}"]).max() < 1e-9
+            speed = max(1.0, np.abs(flat.v).max())
+            assert np.abs(flat[f"{body.name}.v{axis}"] - spatial[f"{body.name}.v{axis}"]).max() < 1e-10 * speed
         assert np.abs(spatial[f"{body.name}.z"]).max() < 1e-13
         if isinstance(body, RigidBody2D):
             angle = 2.0 * np.unwrap(np.arctan2(spatial[f"{body.name}.e3"], spatial[f"{body.name}.e0"]) * 2.0) / 2.0
@@ -113,7 +118,10 @@ def test_redundant_rows_of_a_planar_loop_in_space_are_named():
     [
         ("bouncing_ball", 4.0, {}), ("bouncing_ball", 2.0, {"law": "gonthier"}),
         ("bouncing_ball", 2.0, {"law": "hertz"}),
-        ("bouncing_ball", 2.0, {"law": "hunt_crossley"}), ("pendulum_stop", 4.0, {"driven": False}),
+        ("pendulum_stop", 4.0, {"driven": False}),
+        *(("bouncing_ball", 2.0, {"law": law}) for law in LAW_NAMES if law not in ("newton", "hertz", "gonthier")),
+        *(("pendulum_stop", 4.0, {"driven": False, "law": law, "stiffness": 1e5, "restitution": 0.6})
+          for law in ("kelvin_voigt_gap", "lankarani_nikravesh", "flores")),
     ],
 )  # fmt: skip
 def test_lifted_contact_strikes_as_the_planar_one(name, t_end, parameters):

@@ -9,8 +9,12 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def run(name, method="ebdf", **parameters):
+    """The scenario's run, which must meet its constraints at all levels."""
     scenario = load(name, **parameters)
-    return scenario, simulate(scenario.model, scenario.t_end, method, rtol=1e-9, atol=1e-11)
+    result = simulate(scenario.model, scenario.t_end, method, rtol=1e-9, atol=1e-11)
+    for level, most in (("position", 1e-10), ("velocity", 1e-10), ("acceleration", 1e-10 * np.abs(result.a).max())):
+        assert np.abs(result[f"residual.{level}"]).max() < max(most, 1e-10), level
+    return scenario, result
 
 
 def total(result):
@@ -76,6 +80,84 @@ def test_arm_keeps_its_angular_momentum_about_the_vertical():
     assert np.all(np.diff(total(result)) < 1e-7)
 
 
+def test_arm_strikes_its_end_stop_and_the_table():
+    """Each blow of one contact alone has its own restitution; behind the stop the elbow does not go."""
+    _, result = run("arm_stop")
+    first = next(event for event in result.events if event.kind == "impact")
+    assert first.contact == "elbow_stop"
+    assert first.separation_speed == pytest.approx(0.3 * first.approach_speed, rel=1e-8)
+    table = next(event for event in result.events if event.contact == "table")
+    assert table.separation_speed == pytest.approx(0.4 * table.approach_speed, rel=1e-8)
+    assert result["elbow.angle"].min() > -0.4 - 1e-9
+    _, free = run("arm_stop", elbow_limit=None)
+    assert free["elbow.angle"].min() < -1.0 and not any(e.contact == "elbow_stop" for e in free.events)
+    _, soft = run("arm_stop", law="hunt_crossley", stop_stiffness=1e6)
+    start = next(event.t for event in soft.events if event.contact == "elbow_stop")
+    assert start == pytest.approx(first.t, abs=1e-8)
+    with pytest.raises(ScenarioError, match="at or beyond the end stop"):
+        load("arm_stop", elbow_angle=-0.4)
+    with pytest.raises(ScenarioError, match="in the table"):
+        load("arm_stop", shoulder_angle=1.5)
+
+
+def test_arm_with_friction_on_the_table_loses_turning():
+    _, smooth = run("arm_stop")
+    _, rough = run("arm_stop", friction=0.3)
+    assert np.all(np.diff(total(rough)) < 1e-7)
+    rates = [result["column.angular_velocity_z"][-1] for result in (smooth, rough)]
+    assert abs(rates[1] - rates[0]) > 1e-2
+
+
+@pytest.mark.parametrize(
+    "name, parameters",
+    [
+        ("arm_stop", {"shoulder_angle": -0.5, "elbow_angle": 0.3, "shoulder_rate": 1.0, "elbow_rate": -2.0}),
+        ("heavy_top", {"tilt_x": 0.5, "tilt_y": -0.3, "tilt_z": 1.0, "spin": 20.0}),
+        ("universal_pendulum", {"rate_x": 0.7, "rate_y": -1.1}),
+        ("bricard", {"rate": 1.5}),
+        ("spatial_cradle", {"angle_rate": -1.0, "aside_rate": 2.0, "friction": 0.2}),
+        ("dropped_box", {"velocity_y": 0.3, "velocity_z": 1.0, "spin_x": 1.0, "spin_y": 2.0, "inertia_x": 0.02}),
+    ],
+)
+def test_other_starts_meet_the_joints(name, parameters):
+    """The builder's kinematics: nothing has to be moved at the start, and energy is kept or lost."""
+    scenario = load(name, **parameters)
+    result = simulate(scenario.model, 0.2, rtol=1e-9, atol=1e-11)
+    states = [body.initial_state() for body in scenario.model.bodies]
+    assert result.q[0] == pytest.approx(np.concatenate([q for q, _ in states]), abs=1e-13)
+    assert result.v[0] == pytest.approx(np.concatenate([v for _, v in states]), abs=1e-13)
+    assert np.all(np.diff(total(result)) < 1e-7 * np.abs(total(result)).max())
+
+
+def test_starts_say_the_rates_of_the_joints():
+    arm = simulate(load("arm_stop", shoulder_angle=-0.5, elbow_angle=0.3, elbow_rate=-2.0).model, 1e-3)
+    assert [arm[f"{name}.angle"][0] for name in ("shoulder", "elbow")] == pytest.approx([-0.5, 0.3])
+    assert [arm[f"{name}.angular_velocity"][0] for name in ("shoulder", "elbow")] == pytest.approx([0.0, -2.0])
+    loop = simulate(load("bricard", rate=1.5).model, 1e-3)
+    assert [loop[f"hinge{k}.angular_velocity"][0] for k in range(6)] == pytest.approx([1.5, -1.5] * 3)
+
+
+def test_a_heavy_top_that_starts_turned_about_the_vertical_moves_turned():
+    turn = 0.7
+    c, s = np.cos(turn), np.sin(turn)
+    times = [0.1, 0.3]
+    one, other = (
+        simulate(load("heavy_top", tilt_z=z).model, 0.3, "irk", rtol=1e-11, atol=1e-13, t_eval=times)
+        for z in (0.0, turn)
+    )
+    assert other["top.x"] == pytest.approx(c * one["top.x"] - s * one["top.y"], abs=1e-8)
+    assert other["top.y"] == pytest.approx(s * one["top.x"] + c * one["top.y"], abs=1e-8)
+    assert other["top.z"] == pytest.approx(one["top.z"], abs=1e-8)
+
+
+def test_a_hollow_sphere_rolls_off_slower():
+    """k = m R^2/J: it rolls with (k v + R w x n)/(1 + k)."""
+    v, w, radius, inertia = np.array([2.0, -0.5, 0.0]), np.array([30.0, -60.0, 20.0]), 0.1, 2.0 / 3.0 * 0.01
+    _, result = run("spinning_sphere", inertia=inertia, velocity_z=0.5)
+    k = radius**2 / inertia
+    assert vector(result, "ball.v", -1) == pytest.approx((k * v + radius * np.cross(w, UP)) / (1.0 + k), abs=1e-6)
+
+
 def test_slider_crank_in_space_strikes_its_stop():
     _, free = run("spatial_slider_crank_stop", stop=0.5)
     assert not free.events
@@ -127,6 +209,15 @@ def test_tippe_top_turns_over_and_rises_on_its_stem(law):
     assert up[0] > 0.99 and up[-1] < -0.95 and result["top.z"][-1] > result["top.z"][0] + 3e-3
     assert np.all(np.diff(total(result)) < 1e-7 * total(result)[0])
     assert np.ptp(result["energy.balance"]) < 1e-6 * total(result)[0]
+
+
+def test_a_patch_slows_the_spin_of_a_tippe_top():
+    """The torque (2/3) mu N eps takes from the angular momentum about the vertical, friction of a point does not here:
+    upright on a sphere about its axis, C w' = -(2/3) mu m g eps."""
+    eps = 5e-4
+    _, result = run("tippe_top", tilt=0.0, patch_radius=eps)
+    slows = 2.0 / 3.0 * 0.3 * 6e-3 * 9.81 * eps / 7e-7
+    assert result["top.body_angular_velocity_z"] == pytest.approx(180.0 - slows * result.t, abs=1e-4)
 
 
 def test_a_flat_top_stays_upright():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk, ellipkinc
 from tlismni.core import EulerParameters, Simulation, simulate
+from tlismni.core.model.attitude import rotation_matrix
 from tlismni.models import load
 
 HEAVY_TOP = {
@@ -123,6 +124,11 @@ def test_universal_pendulum(method):
     assert np.hypot(np.hypot(*result.q[:, :2].T), result.q[:, 2]) == pytest.approx(2.0, abs=1e-12)
 
 
+def rotation(result, body, at):
+    """Rotation matrix of a body's Euler parameters."""
+    return rotation_matrix([result[f"{body}.e{k}"][at] for k in range(4)])
+
+
 @pytest.mark.parametrize("method", ["ebdf", "irk", "adams"])
 def test_bricard(method):
     half_period = 2.495855756844
@@ -133,6 +139,10 @@ def test_bricard(method):
     f, p = angles[:, 0], -angles[:, 1]
     assert np.sin(p) == pytest.approx(np.sin(f) / (1.0 + np.sin(f)), abs=1e-9)
     assert np.abs(angles[:, [2, 4]] - f[:, None]).max() < 1e-9 and np.abs(angles[:, [3, 5]] + p[:, None]).max() < 1e-9
+    place = [result[f"rod3.{axis}"][1] for axis in "xyz"]
+    turn = rotation(result, "rod3", 1)
+    # P3 is the end of the third rod, the fourth corner
+    assert place + turn @ [0.0, 0.0, 0.5] == pytest.approx([0.5105014612, -1.6491675994, 0.1401231146], abs=1e-7)
     check_levels(result)
     (row,) = result.redundant
     assert row.constraint.startswith("hinge") and {f"hinge{k}" for k in range(5)} <= {*row.repeats, row.constraint}

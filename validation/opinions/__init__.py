@@ -1,5 +1,17 @@
 """Third opinions on the scenarios of the catalogue."""
 
-from . import blows, cranks, rocking, rods, smooth, stick_slip, woodpecker
+from . import blows, cranks, rocking, rods, rolling, smooth, space_cranks, spheres, stick_slip, tops, woodpecker
 
-__all__ = ["blows", "cranks", "rocking", "rods", "smooth", "stick_slip", "woodpecker"]
+__all__ = [
+    "blows",
+    "cranks",
+    "rocking",
+    "rods",
+    "rolling",
+    "smooth",
+    "space_cranks",
+    "spheres",
+    "stick_slip",
+    "tops",
+    "woodpecker",
+]

@@ -16,6 +16,7 @@ from . import (  # noqa: F401
     scalar_joints,
     space,
     space_contacts,
+    space_stops,
     springs3d,
 )
 from .registry import Build, Column, ContactColumns, find_translator, translate, translates

@@ -40,27 +40,32 @@ def sphere_contact(record: SphereOnHalfSpace3D | SphereOnSphere3D, build: Build)
             f"contact '{record.name}' has friction against rolling and spinning, which is not written for exudyn: "
             "leave out `turning` for a comparison"
         )
-    for marker in record.markers():
-        if marker.body != GROUND and len(build.bodies[marker.body].reference) not in (3, 7):
-            raise NotTranslatable(
-                f"contact '{record.name}' is on '{marker.body}', neither a RigidBody3D nor a PointMass3D: put such a "
-                "body there"
-            )
+    check_bodies(record, build)
     a, b = record.markers()
     nodes = Nodes(build, (a.body, b.body))
-    ends = _End(build, a, nodes), _End(build, b, nodes)
+    ends = End(build, a, nodes), End(build, b, nodes)
     if isinstance(record, SphereOnHalfSpace3D):
-        touch = _on_plane(*ends, _vector(record.plane.marker.axes()[:, 2]), record.sphere.radius)
+        touch = _on_plane(*ends, vector(record.plane.marker.axes()[:, 2]), record.sphere.radius)
     else:
         touch = _on_sphere(*ends, record.a.radius, record.b.radius)
     gap = UserGap(tuple(nodes.nodes), nodes.reference, lambda x: (touch(x)[0], [], []))
     add_user_contact(record, build, SpaceForce(record, gap, touch, *ends))
 
 
+def check_bodies(record: Any, build: Build) -> None:
+    """Raise NotTranslatable for a contact on a body without a frame of its own."""
+    for marker in record.markers():
+        if marker.body != GROUND and len(build.bodies[marker.body].reference) not in (3, 7):
+            raise NotTranslatable(
+                f"contact '{record.name}' is on '{marker.body}', neither a RigidBody3D nor a PointMass3D: put such a "
+                "body there"
+            )
+
+
 class SpaceForce(Force):
     """The force of a contact in space, whose friction is against a velocity with two components."""
 
-    def __init__(self, record: Any, gap: UserGap, touch: Touch, a: "_End", b: "_End") -> None:
+    def __init__(self, record: Any, gap: UserGap, touch: Touch, a: "End", b: "End") -> None:
         super().__init__(record, gap)
         self.touch, self.a, self.b = touch, a, b
 
@@ -69,7 +74,7 @@ class SpaceForce(Force):
         x = [r + d for r, d in zip(self.gap.reference, q, strict=True)]
         gap, normal, arcs = self.touch(x)
         relative = self._relative(x, v, arcs[0])
-        rate = _dot(normal, relative)
+        rate = dot(normal, relative)
         nothing, force = [0.0] * len(x), self.normal(gap, rate)
         if force == 0.0:
             return gap, rate, 0.0, 0.0, 0.0, nothing, nothing
@@ -77,8 +82,8 @@ class SpaceForce(Force):
         if not self.rubs:
             return gap, rate, force, 0.0, 0.0, along, nothing
         for arc in arcs[1:]:
-            relative = _plus(relative, self._relative(x, v, arc), arc[2])
-        slide = _plus(relative, normal, -_dot(normal, relative))
+            relative = plus(relative, self._relative(x, v, arc), arc[2])
+        slide = plus(relative, normal, -dot(normal, relative))
         speed = math.hypot(*slide)
         if speed < LEAST_SPEED:
             return gap, rate, force, 0.0, speed, along, nothing
@@ -91,7 +96,7 @@ class SpaceForce(Force):
         return [gap, rate, normal, abs(tangential)]
 
     def _relative(self, x: Numbers, v: Numbers, arc: Arc) -> Vector:
-        return _plus(self.b.velocity(x, v, arc[1]), self.a.velocity(x, v, arc[0]), -1.0)
+        return plus(self.b.velocity(x, v, arc[1]), self.a.velocity(x, v, arc[0]), -1.0)
 
     def _row(self, x: Numbers, way: Vector, arcs: tuple[Arc, ...]) -> list[float]:
         """What the velocity of b less that of a along a way is of the rates."""
@@ -102,7 +107,7 @@ class SpaceForce(Force):
         return row
 
 
-class _End:
+class End:
     """A marker's point as a function of the coordinates, and how the body's matter moves with the rates."""
 
     def __init__(self, build: Build, marker: Marker3D, nodes: Nodes) -> None:
@@ -114,7 +119,7 @@ class _End:
         """The point in space."""
         if not self.at:
             return self.point
-        return _plus(self._origin(x), self.turned(x, self.point), 1.0)
+        return plus(self._origin(x), self.turned(x, self.point), 1.0)
 
     def _origin(self, x: Numbers) -> Vector:
         i, j, k = self.at[:3]
@@ -125,8 +130,8 @@ class _End:
         if not self.turns:
             return way
         e0, e1, e2, e3 = (x[k] for k in self.at[3:])
-        across = _cross((e1, e2, e3), way)
-        return _plus(_plus(way, across, 2.0 * e0), _cross((e1, e2, e3), across), 2.0)
+        across = cross((e1, e2, e3), way)
+        return plus(plus(way, across, 2.0 * e0), cross((e1, e2, e3), across), 2.0)
 
     def velocity(self, x: Numbers, v: Numbers, place: Vector) -> Vector:
         """Of the body's matter at a place: R' + w x arm with w = 2 (e0 e' - e0' e + e x e')."""
@@ -138,8 +143,8 @@ class _End:
         e0, e1, e2, e3 = (x[k] for k in self.at[3:])
         d0, d1, d2, d3 = (v[k] for k in self.at[3:])
         e, d = (e1, e2, e3), (d1, d2, d3)
-        half = _plus(_plus(_cross(e, d), d, e0), e, -d0)
-        return _plus(found, _cross(half, _plus(place, self._origin(x), -1.0)), 2.0)
+        half = plus(plus(cross(e, d), d, e0), e, -d0)
+        return plus(found, cross(half, plus(place, self._origin(x), -1.0)), 2.0)
 
     def add(self, row: list[float], x: Numbers, way: Vector, place: Vector, sign: float) -> None:
         """Add the gradient of that velocity along `way` with respect to the rates."""
@@ -147,51 +152,56 @@ class _End:
             row[k] += sign * value
         if not self.turns:
             return
+        self.add_turn(row, x, cross(plus(place, self._origin(x), -1.0), way), sign)
+
+    def add_turn(self, row: list[float], x: Numbers, axis: Vector, sign: float) -> None:
+        """Add the gradient of w . axis with respect to the rates, w = 2 (e0 e' - e0' e + e x e')."""
+        if not self.turns:
+            return
         e0, e1, e2, e3 = (x[k] for k in self.at[3:])
-        moment = _cross(_plus(place, self._origin(x), -1.0), way)
-        turn = _plus(_cross(moment, (e1, e2, e3)), moment, e0)
-        row[self.at[3]] -= sign * 2.0 * _dot((e1, e2, e3), moment)
+        turn = plus(cross(axis, (e1, e2, e3)), axis, e0)
+        row[self.at[3]] -= sign * 2.0 * dot((e1, e2, e3), axis)
         for k, value in zip(self.at[4:], turn, strict=True):
             row[k] += sign * 2.0 * value
 
 
-def _on_plane(a: _End, b: _End, axis: Vector, radius: float) -> Touch:
+def _on_plane(a: End, b: End, axis: Vector, radius: float) -> Touch:
     def touch(x: Numbers) -> tuple[float, Vector, tuple[Arc, ...]]:
         normal, centre = a.turned(x, axis), b.place(x)
-        height = _dot(normal, _plus(centre, a.place(x), -1.0))
-        lowest = _plus(centre, normal, -radius)
+        height = dot(normal, plus(centre, a.place(x), -1.0))
+        lowest = plus(centre, normal, -radius)
         return height - radius, normal, ((lowest, lowest, 1.0),)
 
     return touch
 
 
-def _on_sphere(a: _End, b: _End, radius_a: float, radius_b: float) -> Touch:
+def _on_sphere(a: End, b: End, radius_a: float, radius_b: float) -> Touch:
     """The sliding velocity is the rate of the arcs that they roll: s (x_b' - x_a') - w_b x R_b n - w_a x R_a n with
     s = (R_a + R_b)/|d|. Friction at one place for both has other levers where they overlap: 5 % at a tenth of R."""
 
     def touch(x: Numbers) -> tuple[float, Vector, tuple[Arc, ...]]:
         first, second = a.place(x), b.place(x)
-        way, radii = _plus(second, first, -1.0), radius_a + radius_b
+        way, radii = plus(second, first, -1.0), radius_a + radius_b
         distance = math.hypot(*way)
         normal = way[0] / distance, way[1] / distance, way[2] / distance
-        rolls = _plus(first, normal, radius_a), _plus(second, normal, -radius_b), 1.0
+        rolls = plus(first, normal, radius_a), plus(second, normal, -radius_b), 1.0
         return distance - radii, normal, (rolls, (first, second, radii / distance - 1.0))
 
     return touch
 
 
-def _vector(values: Any) -> Vector:
+def vector(values: Any) -> Vector:
     x, y, z = (float(value) for value in values)
     return x, y, z
 
 
-def _dot(a: Vector, b: Vector) -> float:
+def dot(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def _cross(a: Vector, b: Vector) -> Vector:
+def cross(a: Vector, b: Vector) -> Vector:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def _plus(a: Vector, b: Vector, factor: float) -> Vector:
+def plus(a: Vector, b: Vector, factor: float) -> Vector:
     return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]

@@ -27,7 +27,7 @@ def spring_damper(record: SpringDamper3D, build: Build) -> None:
 def torsion_spring(record: TorsionSpring3D, build: Build) -> None:
     """ObjectConnectorTorsionalSpringDamper, which counts turns by a node of its own. Its torque is about the z axes of
     both markers, so raises NotTranslatable unless a hinge keeps these together."""
-    if not any(_keeps(joint, record.a, record.b) for joint in build.model.joints):
+    if not any(keeps_axes(joint, record.a, record.b) for joint in build.model.joints):
         raise NotTranslatable(
             f"the axes of '{record.name}' are not held together by a Revolute3D or a Cylindrical3D about them: "
             "exudyn's torsion spring is that of a hinge"
@@ -41,7 +41,7 @@ def torsion_spring(record: TorsionSpring3D, build: Build) -> None:
     )  # fmt: skip
 
 
-def _keeps(joint: object, a: Marker3D, b: Marker3D) -> bool:
+def keeps_axes(joint: object, a: Marker3D, b: Marker3D) -> bool:
     """Whether the joint holds the z axes of two markers together."""
     if not isinstance(joint, Revolute3D | Cylindrical3D):
         return False
