@@ -26,6 +26,7 @@ from .on_cable3d import CableLine3D, CableOnHalfSpace3D, CableSpot, SphereOnCabl
 from .on_mesh3d import MeshPart, SphereOnMesh3D, mesh_parts
 from .polygon2d import DiskOnPolygon2D, Polygon2D
 from .ring2d import DiskInRing2D, Ring2D
+from .rings3d import Torus3D
 from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
 from .segment2d import DiskOnSegment2D, Segment2D
 from .support3d import SmoothShape3D
@@ -163,10 +164,10 @@ def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShap
         return ((a, b),) if a.radius + b.radius > 0.0 else ()
     if isinstance(b, HalfSpace3D):
         a, b = b, a
+    if isinstance(a, HalfSpace3D) and isinstance(b, Cylinder3D | Torus3D):
+        return tuple((a, part) for part in b.touching())
     if isinstance(a, HalfSpace3D) and isinstance(b, Sphere3D | SmoothShape3D):
         return ((a, b),)
-    if isinstance(a, HalfSpace3D) and isinstance(b, Cylinder3D) and b.rim_points == 0:
-        return tuple((a, rim) for rim in b.rims())
     if isinstance(a, HalfSpace3D) and isinstance(b, Cornered3D):
         return tuple((a, corner) for corner in b.corners())
     if isinstance(b, CableLine3D | TriangleMesh3D):

@@ -106,6 +106,7 @@ from tlismni.core import (
     RevoluteSpherical3D,
     RigidBody2D,
     RigidBody3D,
+    Rim3D,
     Ring2D,
     RollingDisk3D,
     RollingSphere3D,
@@ -418,7 +419,8 @@ ELEMENTS["contacts"] += [
     st.builds(
         SmoothOnHalfSpace3D, name=st.just("x"), law=law, plane=st.builds(HalfSpace3D, marker=st.builds(Marker3D)),
         shape=st.builds(Ellipsoid3D, marker=marker3d, half_axes=st.tuples(positive, positive, positive))
-        | st.builds(Torus3D, marker=marker3d, radius=positive, rim_radius=positive),
+        | st.builds(Torus3D, marker=marker3d, radius=positive, rim_radius=positive, rim_points=st.integers(3, 20))
+        | st.builds(Rim3D, marker=marker3d, radius=positive, rim_radius=positive),
     ),
     st.builds(
         SphereInSphere3D, name=st.just("x"), law=law,

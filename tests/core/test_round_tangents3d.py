@@ -17,6 +17,7 @@ from tlismni.core import (
     Marker3D,
     Model,
     NewtonImpact,
+    Rim3D,
     SmoothOnHalfSpace3D,
     Sphere3D,
     SphereInSphere3D,
@@ -27,6 +28,7 @@ from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, MODE, RATIO, S
 SPAN = 1e-3
 """Of the differences: these gaps bend more than those of spheres."""
 HARD, GRIP = NewtonImpact(restitution=0.5), CoulombFriction(coefficient=0.4)
+LYING = Marker3D(body="b", point=(-0.4, 0.1, 0.25), attitude=Axes(z=(0.2, 0.1, 1.0)))
 FAR = Marker3D(body="b", point=(-0.4, 2.6, 0.25), attitude=Axes(z=(1.0, 0.2, 0.1)))
 
 
@@ -43,6 +45,7 @@ def capsules(a, b, first, second, **more):
 SHAPES = {
     "ellipsoid": lambda **more: smooth(Ellipsoid3D(marker=RIGHT, half_axes=(2.1, 3.2, 2.6)), LEFT, **more),
     "torus": lambda **more: smooth(Torus3D(marker=RIGHT_WHEEL, radius=2.4, rim_radius=0.7), GROUND, **more),
+    "rim": lambda **more: smooth(Rim3D(marker=LYING, radius=2.4, rim_radius=0.7, flat_tilt=0.5), GROUND, **more),
     "hollow sphere": lambda **more: SphereInSphere3D(
         name="c", hollow=Sphere3D(marker=LEFT, radius=1.6), sphere=Sphere3D(marker=RIGHT, radius=1.5), **more
     ),
@@ -98,7 +101,7 @@ def gripping(name, slide):
     twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
     point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
     columns = [MODE, SLIDE, RATIO, WAY, AXIS]
-    axis = 1 if name in ("ellipsoid", "torus") else 2
+    axis = 1 if name in ("ellipsoid", "torus", "rim") else 2
     point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis
     return point
 
