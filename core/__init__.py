@@ -150,6 +150,7 @@ if TYPE_CHECKING:
     from .run.state import State
     from .runs import Runs
     from .shapes.angle_stop2d import AngleStop2D
+    from .shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
     from .shapes.box2d import Box2D, DiskOnBox2D
     from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
     from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
@@ -338,8 +339,11 @@ __all__ = [
     "Sphere3D",
     "SphereInSphere3D",
     "SphereOnCable3D",
+    "SphereOnCylinder3D",
     "SphereOnHalfSpace3D",
     "SphereOnMesh3D",
+    "SphereOnRing3D",
+    "SphereOnSmooth3D",
     "SphereOnSphere3D",
     "Spherical3D",
     "SpringDamper2D",
@@ -433,6 +437,7 @@ __getattr__, __dir__ = late_names(
         ".run.state": "State",
         ".runs": "Runs",
         ".shapes.angle_stop2d": "AngleStop2D",
+        ".shapes.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
         ".shapes.box2d": "Box2D DiskOnBox2D",
         ".shapes.contact2d": "Disk2D DiskOnDisk2D DiskOnHalfPlane2D HalfPlane2D",
         ".shapes.contact3d": "HalfSpace3D Sphere3D SphereOnHalfSpace3D SphereOnSphere3D",

@@ -41,7 +41,8 @@ class Cornered3D(Record):
 
 
 class Box3D(Cornered3D):
-    """A box about the marker, its edges along the marker's axes. It touches half-spaces, by its corners."""
+    """A box about the marker, its edges along the marker's axes. It touches spheres, and half-spaces by
+    its corners."""
 
     type: Literal["Box3D"] = "Box3D"
     size: tuple[Positive, Positive, Positive]
@@ -52,7 +53,8 @@ class Box3D(Cornered3D):
 
 
 class ConvexPolyhedron3D(Cornered3D):
-    """The convex hull of points. It touches half-spaces, by its corners; points within the hull touch nothing."""
+    """The convex hull of points. It touches spheres, and half-spaces by its corners; points within it
+    touch nothing."""
 
     type: Literal["ConvexPolyhedron3D"] = "ConvexPolyhedron3D"
     vertices: tuple[tuple[float, float, float], ...]
@@ -101,7 +103,8 @@ class Capsule3D(Cornered3D):
 
 
 class Cylinder3D(Cornered3D):
-    """A cylinder about the marker, its axis along the marker's z axis. It touches half-spaces, by its rims.
+    """A cylinder about the marker, its axis along the marker's z axis. It touches half-spaces, by
+    its rims, and spheres.
 
     It rolls on its rims. Where one of its ends lies flatter than 2.9 degrees, points of the rim carry it: these strike
     in turns, and so it comes to rest.

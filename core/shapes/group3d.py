@@ -23,7 +23,7 @@ class ContactGroup3D(ContactGroup):
 
     type: Literal["ContactGroup3D"] = "ContactGroup3D"
     spheres: tuple[Sphere3D, ...] = ()
-    """They touch spheres, boxes, polyhedra, capsules, meshes, cables and half-spaces."""
+    """They touch all shapes."""
     boxes: tuple[Box3D, ...] = ()
     """They touch spheres, and half-spaces by their corners."""
     polyhedra: tuple[ConvexPolyhedron3D, ...] = ()
@@ -31,11 +31,11 @@ class ContactGroup3D(ContactGroup):
     capsules: tuple[Capsule3D, ...] = ()
     """They touch spheres, capsules and half-spaces."""
     cylinders: tuple[Cylinder3D, ...] = ()
-    """They touch half-spaces, by their rims."""
+    """They touch spheres, and half-spaces by their rims."""
     meshes: tuple[TriangleMesh3D, ...] = ()
     """They touch spheres, and half-spaces by the corners of their hulls."""
     smooth: tuple[Smooth3D, ...] = ()
-    """Ellipsoids, tori and own smooth shapes; they touch half-spaces."""
+    """Ellipsoids, tori and own smooth shapes; they touch spheres and half-spaces."""
     cables: tuple[CableLine3D, ...] = ()
     """They touch spheres anywhere, and half-spaces by points."""
     half_spaces: tuple[HalfSpace3D, ...] = ()

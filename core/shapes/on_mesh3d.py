@@ -12,9 +12,10 @@ from ..model.base import NonNegative
 from ..model.markers import Marker3D
 from ..model.signals import Signal
 from .contact3d import Contact3D, Sphere3D
+from .held3d import ON_MESH
 from .mesh3d import TriangleMesh3D
 from .mesh_contact3d import gripping_mesh3d_kernel, mesh3d_kernel, rubbing_mesh3d_kernel
-from .mesh_nearest3d import ON_MESH, STRIDE, table_of
+from .mesh_nearest3d import STRIDE, table_of
 from .mesh_parts import Points, parts_of
 
 

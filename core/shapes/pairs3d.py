@@ -7,6 +7,7 @@ from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
 from ..model.markers import GROUND
+from .ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cornered3D, Cylinder3D
 from .hull_faces import faces_of
@@ -46,9 +47,7 @@ def touching_in_space(a: SpatialShape, b: SpatialShape) -> Sequence[SpatialPair]
             return _on_half_space(one, other)
     for one, other in ((a, b), (b, a)):
         if isinstance(other, Sphere3D):
-            found = _by_sphere(one, other)
-            if found is not None:
-                return found
+            return _by_sphere(one, other)
     if isinstance(a, Capsule3D) and isinstance(b, Capsule3D):
         return ((a, b),)
     if body_of(a) == body_of(b) == GROUND:
@@ -71,8 +70,7 @@ def _on_half_space(plane: HalfSpace3D, shape: SpatialShape) -> Sequence[SpatialP
     return ((plane, shape),)
 
 
-def _by_sphere(shape: SpatialShape, ball: Sphere3D) -> Sequence[SpatialPair] | None:
-    """None: the shape has no contact with spheres."""
+def _by_sphere(shape: SpatialShape, ball: Sphere3D) -> Sequence[SpatialPair]:
     if isinstance(shape, Sphere3D):
         # two points never touch
         return ((shape, ball),) if shape.radius + ball.radius > 0.0 else ()
@@ -80,9 +78,7 @@ def _by_sphere(shape: SpatialShape, ball: Sphere3D) -> Sequence[SpatialPair] | N
         return tuple((ball, MeshPart(shape, k)) for k in range(len(mesh_parts(shape))))
     if isinstance(shape, Box3D | ConvexPolyhedron3D):
         return ((ball, MeshPart(faces_of(shape), 0, shape.rounding())),)
-    if isinstance(shape, CableLine3D | Capsule3D):
-        return ((shape, ball),)
-    return None
+    return ((shape, ball),)
 
 
 def contact_in_space(
@@ -98,6 +94,12 @@ def contact_in_space(
         return CableOnHalfSpace3D(plane=a, cable=on.cable, thickness=on.thickness, place=other.place, **more)
     if isinstance(a, CableLine3D) and isinstance(other, Sphere3D):
         return SphereOnCable3D(cable=a.cable, thickness=a.thickness, sphere=other, **more)
+    if isinstance(other, Sphere3D) and (isinstance(a, Cylinder3D) or (isinstance(a, Torus3D) and a.rim_radius == 0.0)):
+        return SphereOnCylinder3D(shape=a, sphere=other, **more)
+    if isinstance(a, Torus3D) and isinstance(other, Sphere3D):
+        return SphereOnRing3D(ring=a, sphere=other, **more)
+    if isinstance(a, SmoothShape3D) and isinstance(other, Sphere3D):
+        return SphereOnSmooth3D(shape=a, sphere=other, **more)
     if isinstance(a, Capsule3D) and isinstance(other, Capsule3D | Sphere3D):
         return CapsuleOnCapsule3D(a=a, b=other, **more)
     if isinstance(a, HalfSpace3D) and isinstance(other, SmoothShape3D):

@@ -132,7 +132,7 @@ class Rim3D(SmoothShape3D):
 
 class Torus3D(SmoothShape3D):
     """A ring about the marker's z axis: the circle of `radius` in its xy plane, thickened by `rim_radius`; 0 is a disk
-    with a sharp rim. It touches half-spaces by its rim.
+    with a sharp rim. It touches half-spaces by its rim, and spheres: as a ring with a hole, as a disk with its faces.
 
     In groups it rolls on its rim, and where it lies flatter than 2.9 degrees points of the rim carry it: these strike
     in turns, and so it comes to rest. A single `SmoothOnHalfSpace3D` has the rim alone, at every tilt: the point that

@@ -18,7 +18,8 @@ def ellipsoid_support(x: float, y: float, z: float, a: float, b: float, c: float
 
 
 class Ellipsoid3D(SmoothShape3D):
-    """An ellipsoid about the marker, its half-axes along the marker's axes. It touches half-spaces."""
+    """An ellipsoid about the marker, its half-axes along the marker's axes. It touches spheres and
+    half-spaces."""
 
     type: Literal["Ellipsoid3D"] = "Ellipsoid3D"
     half_axes: tuple[Positive, Positive, Positive]
