@@ -150,6 +150,7 @@ if TYPE_CHECKING:
     from .run.state import State
     from .runs import Runs
     from .shapes.angle_stop2d import AngleStop2D
+    from .shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
     from .shapes.box2d import Box2D, DiskOnBox2D
     from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
     from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
@@ -164,9 +165,10 @@ if TYPE_CHECKING:
     from .shapes.on_mesh3d import SphereOnMesh3D, mesh_parts
     from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
     from .shapes.ring2d import DiskInRing2D, Ring2D
+    from .shapes.rings3d import Rim3D, Torus3D
     from .shapes.rope2d import Rope2D
     from .shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
-    from .shapes.rounds3d import Ellipsoid3D, Torus3D
+    from .shapes.rounds3d import Ellipsoid3D
     from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
     from .shapes.segment2d import DiskOnSegment2D, Segment2D
     from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
@@ -312,6 +314,7 @@ __all__ = [
     "RevoluteSpherical3D",
     "RigidBody2D",
     "RigidBody3D",
+    "Rim3D",
     "Ring2D",
     "RollingDisk3D",
     "RollingSphere3D",
@@ -336,8 +339,11 @@ __all__ = [
     "Sphere3D",
     "SphereInSphere3D",
     "SphereOnCable3D",
+    "SphereOnCylinder3D",
     "SphereOnHalfSpace3D",
     "SphereOnMesh3D",
+    "SphereOnRing3D",
+    "SphereOnSmooth3D",
     "SphereOnSphere3D",
     "Spherical3D",
     "SpringDamper2D",
@@ -431,6 +437,7 @@ __getattr__, __dir__ = late_names(
         ".run.state": "State",
         ".runs": "Runs",
         ".shapes.angle_stop2d": "AngleStop2D",
+        ".shapes.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
         ".shapes.box2d": "Box2D DiskOnBox2D",
         ".shapes.contact2d": "Disk2D DiskOnDisk2D DiskOnHalfPlane2D HalfPlane2D",
         ".shapes.contact3d": "HalfSpace3D Sphere3D SphereOnHalfSpace3D SphereOnSphere3D",
@@ -445,9 +452,10 @@ __getattr__, __dir__ = late_names(
         ".shapes.on_mesh3d": "SphereOnMesh3D mesh_parts",
         ".shapes.polygon2d": "DiskOnPolygon2D Polygon2D",
         ".shapes.ring2d": "DiskInRing2D Ring2D",
+        ".shapes.rings3d": "Rim3D Torus3D",
         ".shapes.rope2d": "Rope2D",
         ".shapes.round3d": "CapsuleOnCapsule3D SmoothOnHalfSpace3D SphereInSphere3D",
-        ".shapes.rounds3d": "Ellipsoid3D Torus3D",
+        ".shapes.rounds3d": "Ellipsoid3D",
         ".shapes.scalar_contact2d": "ScalarContact2D scalar_contact",
         ".shapes.segment2d": "DiskOnSegment2D Segment2D",
         ".shapes.stop3d": "AngleStop3D Rope3D SlideStop3D",

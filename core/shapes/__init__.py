@@ -11,7 +11,8 @@ CONTACTS = LateClasses(
     "DiskOnHalfPlane2D DiskOnDisk2D DiskOnBox2D DiskOnSegment2D DiskOnLine2D DiskOnCable2D DiskInRing2D "
     "DiskOnPolygon2D Rope2D AngleStop2D CoordinateContact SphereOnHalfSpace3D SphereOnSphere3D "
     "SmoothOnHalfSpace3D SphereInSphere3D CapsuleOnCapsule3D SphereOnCable3D "
-    "CableOnHalfSpace3D SphereOnMesh3D AngleStop3D SlideStop3D Rope3D",
+    "CableOnHalfSpace3D SphereOnMesh3D SphereOnSmooth3D SphereOnCylinder3D SphereOnRing3D "
+    "AngleStop3D SlideStop3D Rope3D",
 )
 
 Contact = Annotated[ContactElement, OpenUnion(CONTACTS, ContactElement)]
@@ -21,6 +22,7 @@ __getattr__, __dir__ = late_names(
     __name__,
     {
         ".angle_stop2d": "AngleStop2D",
+        ".ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
         ".box2d": "DiskOnBox2D",
         ".contact2d": "DiskOnDisk2D DiskOnHalfPlane2D",
         ".contact3d": "SphereOnHalfSpace3D SphereOnSphere3D",

@@ -1,19 +1,20 @@
 """Shapes in space that touch half-spaces by corners: boxes, convex polyhedra, capsules, cylinders."""
 
+from collections.abc import Sequence
 from itertools import product
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, field_validator
+from pydantic import field_validator
 
 from ..model.base import NonNegative, Positive, Record
 from ..model.markers import Marker3D
 from .contact3d import Sphere3D
-from .rounds3d import Torus3D
+from .rings3d import RIM_POINTS, RimPoints, Torus3D, check_rim_points
+from .support3d import SmoothShape3D
 
 FEWEST_VERTICES = 2
-FEWEST_RIM_POINTS = 3
 
 
 class Cornered3D(Record):
@@ -40,7 +41,8 @@ class Cornered3D(Record):
 
 
 class Box3D(Cornered3D):
-    """A box about the marker, its edges along the marker's axes. It touches half-spaces, by its corners."""
+    """A box about the marker, its edges along the marker's axes. It touches spheres, and half-spaces by
+    its corners."""
 
     type: Literal["Box3D"] = "Box3D"
     size: tuple[Positive, Positive, Positive]
@@ -51,7 +53,8 @@ class Box3D(Cornered3D):
 
 
 class ConvexPolyhedron3D(Cornered3D):
-    """The convex hull of points. It touches half-spaces, by its corners; points within the hull touch nothing."""
+    """The convex hull of points. It touches spheres, and half-spaces by its corners; points within it
+    touch nothing."""
 
     type: Literal["ConvexPolyhedron3D"] = "ConvexPolyhedron3D"
     vertices: tuple[tuple[float, float, float], ...]
@@ -100,10 +103,11 @@ class Capsule3D(Cornered3D):
 
 
 class Cylinder3D(Cornered3D):
-    """A cylinder about the marker, its axis along the marker's z axis. It touches half-spaces, by its rims.
+    """A cylinder about the marker, its axis along the marker's z axis. It touches half-spaces, by
+    its rims, and spheres.
 
-    The point of a rim that touches runs round without bound as an end comes to lie flat, where there is no one point.
-    What lies or stands on its ends takes `rim_points` in place of smooth rims: it touches by these.
+    It rolls on its rims. Where one of its ends lies flatter than 2.9 degrees, points of the rim carry it: these strike
+    in turns, and so it comes to rest.
     """
 
     type: Literal["Cylinder3D"] = "Cylinder3D"
@@ -111,28 +115,32 @@ class Cylinder3D(Cornered3D):
     """m."""
     length: Positive
     """m."""
-    rim_points: Annotated[int, Field(ge=0)] = 0
-    """Points of each rim that touch, evenly round; 0: smooth rims, for cylinders that roll."""
+    rim_points: RimPoints = RIM_POINTS
+    """Points of each rim that carry where it lies flat, evenly round; 0: rims alone, at every tilt, for cylinders that
+    roll: the point that touches runs round without bound as an end comes to lie flat."""
 
     @field_validator("rim_points")
     @classmethod
     def _stands(cls, count: int) -> int:
-        if 0 < count < FEWEST_RIM_POINTS:
-            raise ValueError(f"{count} points of a rim do not hold a cylinder: give {FEWEST_RIM_POINTS} or more, or 0")
-        return count
+        return check_rim_points(count)
 
     def places(self) -> NDArray[np.float64]:
+        """Points of its rims from the marker's point along its axes, m."""
         angles = 2.0 * np.pi * np.arange(self.rim_points) / max(self.rim_points, 1)
-        rim = [(self.radius * np.cos(a), self.radius * np.sin(a)) for a in angles]
-        return np.array([(x, y, z) for z in (0.5 * self.length, -0.5 * self.length) for x, y in rim]).reshape(-1, 3)
+        rim, half = np.column_stack((np.cos(angles), np.sin(angles))), 0.5 * self.length
+        ends = [np.column_stack((self.radius * rim, np.full(self.rim_points, z))) for z in (half, -half)]
+        return np.concatenate(ends)
 
-    def rims(self) -> tuple[Torus3D, ...]:
-        """Its smooth rims; none if it touches by points."""
-        if self.rim_points > 0:
-            return ()
-        found = []
+    def rims(self) -> tuple[Torus3D, Torus3D]:
+        """Its rims, as disks at its ends."""
+        made = []
         for side in (0.5, -0.5):
             x, y, z = (np.array(self.marker.point) + side * self.length * self.marker.axes()[:, 2]).tolist()
             marker = self.marker.model_copy(update={"point": (x, y, z)})
-            found.append(Torus3D(marker=marker, radius=self.radius))
-        return tuple(found)
+            made.append(Torus3D(marker=marker, radius=self.radius, rim_points=self.rim_points))
+        return made[0], made[1]
+
+    def touching(self) -> Sequence[SmoothShape3D | Sphere3D]:
+        """What of it touches a half-space: its rims, and their points."""
+        parts = [rim.touching() for rim in self.rims()]
+        return (*(part[0] for part in parts), *(point for part in parts for point in part[1:]))

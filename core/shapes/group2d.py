@@ -1,11 +1,9 @@
 """Contacts between groups of shapes, instead of pairs listed by hand.
 
 Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box, a polygon, a segment or a ring
-around it; a box or polygon with a half-plane and with others by the corners; in space a sphere or a capsule with a
-half-space, a sphere and a capsule, what has corners or is smooth with a half-space, a cable with a sphere or a
-half-space, a mesh with a sphere. Pairs on one body are left out.
-Pairs that are far from touching cost nothing during a run: contacts sleep until their margin is used up
-(`location/asleep.py`).
+around it; a box or polygon with a half-plane and with others by the corners; in space see `pairs3d.py`. Pairs on one
+body are left out. Pairs that are far from touching cost nothing during a run: contacts sleep until their margin is used
+up (`location/asleep.py`).
 """
 
 from collections.abc import Iterable, Sequence
@@ -18,22 +16,16 @@ from ..laws.friction import Friction, TurningFriction
 from ..model.markers import GROUND
 from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
-from .cornered3d import Capsule3D, Cornered3D, Cylinder3D
+from .contact3d import Contact3D
 from .groups import ContactGroup
-from .mesh3d import TriangleMesh3D
-from .on_cable3d import CableLine3D, CableOnHalfSpace3D, CableSpot, SphereOnCable3D
-from .on_mesh3d import MeshPart, SphereOnMesh3D, mesh_parts
+from .pairs3d import SpatialPart, SpatialShape, body_of, contact_in_space, no_contact, touching_in_space
 from .polygon2d import DiskOnPolygon2D, Polygon2D
 from .ring2d import DiskInRing2D, Ring2D
-from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
 from .segment2d import DiskOnSegment2D, Segment2D
-from .support3d import SmoothShape3D
 
 PlanarShape = Disk2D | HalfPlane2D | Box2D | Polygon2D | Segment2D | Ring2D
 ANGULAR = (Box2D, Polygon2D)
 """What has corners in the plane."""
-SpatialShape = Sphere3D | HalfSpace3D | Cornered3D | SmoothShape3D | CableLine3D
 GroupShape = PlanarShape | SpatialShape
 
 MOST_PAIRS = 200_000
@@ -48,6 +40,7 @@ def contacts_between(
     friction: Friction | None = None,
     turning: TurningFriction | None = None,
     except_bodies: Iterable[tuple[str, str]] = (),
+    pass_through: Iterable[tuple[str, str]] = (),
 ) -> tuple[Contact2D | Contact3D, ...]:
     """Contacts of all pairs of `shapes` with each other, or of `shapes` with `others`, for a model's `contacts`.
 
@@ -57,10 +50,12 @@ def contacts_between(
     law, friction : of all of them.
     turning : friction against rolling and spinning, of those in space.
     except_bodies : pairs of bodies that do not touch, such as those that a joint holds together.
+    pass_through : pairs of kinds of shapes that have no contact, and pass through each other: ("Box3D", "Cylinder3D").
 
     Raises
     ------
-    ModelError : for more than MOST_PAIRS pairs, and shapes of which no pair can touch.
+    ModelError : for more than MOST_PAIRS pairs, shapes of which no pair can touch, two that have no contact and are not
+        said to pass through each other, and kinds of `pass_through` that are not among the shapes.
     """
     first = tuple(shapes)
     second = None if others is None else tuple(others)
@@ -69,10 +64,13 @@ def contacts_between(
         raise ModelError(f"group '{name}' has {count} pairs of shapes, more than {MOST_PAIRS}: make smaller groups")
     pairs = combinations(first, 2) if second is None else product(first, second)
     apart = {frozenset(pair) for pair in except_bodies}
-    named: dict[str, list[tuple[GroupShape, GroupShape | CableSpot | MeshPart]]] = {}
+    through = _kinds_apart(name, pass_through, (*first, *(second or ())))
+    named: dict[str, list[tuple[GroupShape, GroupShape | SpatialPart]]] = {}
     for a, b in pairs:
-        bodies = _body(a), _body(b)
+        bodies = body_of(a), body_of(b)
         if bodies[0] == bodies[1] or frozenset(bodies) in apart:
+            continue
+        if frozenset((type(a).__name__, type(b).__name__)) in through:
             continue
         found = [*_touching(a, b)]
         named.setdefault(f"{name}_{bodies[0]}_{bodies[1]}", []).extend(found)
@@ -115,6 +113,8 @@ class ContactGroup2D(ContactGroup):
     """What resists sliding; left out: nothing."""
     except_bodies: tuple[tuple[str, str], ...] = ()
     """Pairs of bodies that do not touch, such as those that a joint holds together."""
+    pass_through: tuple[tuple[str, str], ...] = ()
+    """Pairs of kinds of shapes that pass through each other, such as "Box2D" and "Segment2D", which have no contact."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
@@ -122,18 +122,29 @@ class ContactGroup2D(ContactGroup):
             *self.disks, *self.boxes, *self.polygons, *self.segments, *self.half_planes, *self.rings,
         )  # fmt: skip
         return contacts_between(
-            self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies
+            self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies,
+            pass_through=self.pass_through,
+        )  # fmt: skip
+
+
+def _kinds_apart(name: str, pairs: Iterable[tuple[str, str]], shapes: Iterable[GroupShape]) -> set[frozenset[str]]:
+    """The pairs of kinds that pass through each other. Raises ModelError for a kind that is not there."""
+    there, found = sorted({type(shape).__name__ for shape in shapes}), [tuple(pair) for pair in pairs]
+    missing = next((kind for pair in found for kind in pair if kind not in there), None)
+    if missing is not None:
+        raise ModelError(
+            f"group '{name}' lets '{missing}' pass through others, but has no such shape: it has "
+            f"{', '.join(there) or 'none'}; mend the name in pass_through or leave the pair out"
         )
+    return {frozenset(pair) for pair in found}
 
 
-def _body(shape: GroupShape) -> str:
-    return shape.cable if isinstance(shape, CableLine3D) else str(shape.marker.body)
-
-
-def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | CableSpot | MeshPart]]:
+def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | SpatialPart]]:
     """Pairs (what, disk or sphere, or place on a cable) that say the contact of two shapes."""
+    if isinstance(a, SpatialShape) and isinstance(b, SpatialShape):
+        return touching_in_space(a, b)
     if isinstance(a, SpatialShape) or isinstance(b, SpatialShape):
-        return _touching_in_space(a, b)
+        raise no_contact(a, b, "one is of the plane and one of space; make a group of each")
     if isinstance(b, Disk2D):
         return ((a, b),)
     if isinstance(a, Disk2D):
@@ -146,91 +157,31 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
         if isinstance(a, HalfPlane2D):
             return tuple((a, corner) for corner in b.corners())
         remedy = "make the segment a thin box" if isinstance(a, Segment2D) else "put disks at its corners"
-        raise ModelError(
-            f"a {type(b).__name__} on '{_body(b)}' and a {type(a).__name__} on '{_body(a)}' have no contact: {remedy}"
-        )
-    if _body(a) == _body(b) == GROUND:
+        raise no_contact(b, a, f"{remedy}, or let them pass through each other (pass_through)")
+    if body_of(a) == body_of(b) == GROUND:
         return ()
-    raise ModelError(
-        f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: give one of "
-        "them disks at its corners"
-    )
-
-
-def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | CableSpot | MeshPart]]:
-    if isinstance(a, Sphere3D) and isinstance(b, Sphere3D):
-        # two points never touch
-        return ((a, b),) if a.radius + b.radius > 0.0 else ()
-    if isinstance(b, HalfSpace3D):
-        a, b = b, a
-    if isinstance(a, HalfSpace3D) and isinstance(b, Sphere3D | SmoothShape3D):
-        return ((a, b),)
-    if isinstance(a, HalfSpace3D) and isinstance(b, Cylinder3D) and b.rim_points == 0:
-        return tuple((a, rim) for rim in b.rims())
-    if isinstance(a, HalfSpace3D) and isinstance(b, Cornered3D):
-        return tuple((a, corner) for corner in b.corners())
-    if isinstance(b, CableLine3D | TriangleMesh3D):
-        a, b = b, a
-    if isinstance(a, TriangleMesh3D) and isinstance(b, Sphere3D):
-        return tuple((b, MeshPart(a, k)) for k in range(len(mesh_parts(a))))
-    if isinstance(a, CableLine3D) and isinstance(b, Sphere3D):
-        return ((a, b),)
-    if isinstance(a, CableLine3D) and isinstance(b, HalfSpace3D):
-        return tuple((b, CableSpot(a, place)) for place in a.places)
-    if isinstance(b, Capsule3D):
-        a, b = b, a
-    if isinstance(a, Capsule3D) and isinstance(b, Capsule3D | Sphere3D):
-        return ((a, b),)
-    if _body(a) == _body(b) == GROUND:
-        return ()
-    raise ModelError(
-        f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: in space a "
-        "sphere or capsule touches spheres, capsules and half-spaces, all others touch half-spaces, cables and meshes "
-        "spheres too; give it spheres or capsules in their place"
-    )
+    raise no_contact(a, b, "give one of them disks at its corners, or let them pass through each other (pass_through)")
 
 
 def _contact(
-    name: str, a: GroupShape, disk: GroupShape | CableSpot | MeshPart, law: ContactLaw, friction: Friction | None,
+    name: str, a: GroupShape, other: GroupShape | SpatialPart, law: ContactLaw, friction: Friction | None,
     turning: TurningFriction | None,
 ) -> Contact2D | Contact3D:  # fmt: skip
-    if isinstance(disk, MeshPart):
-        assert isinstance(a, Sphere3D)
-        return SphereOnMesh3D(
-            name=name, mesh=disk.mesh, part=disk.part, sphere=a, law=law, friction=friction, turning=turning
-        )
-    if isinstance(disk, CableSpot):
-        assert isinstance(a, HalfSpace3D)
-        on = disk.line
-        return CableOnHalfSpace3D(
-            name=name, plane=a, cable=on.cable, thickness=on.thickness, place=disk.place, law=law, friction=friction,
-            turning=turning,
-        )  # fmt: skip
-    if isinstance(a, CableLine3D) and isinstance(disk, Sphere3D):
-        return SphereOnCable3D(
-            name=name, cable=a.cable, thickness=a.thickness, sphere=disk, law=law, friction=friction, turning=turning
-        )
-    if isinstance(a, Capsule3D) and isinstance(disk, Capsule3D | Sphere3D):
-        return CapsuleOnCapsule3D(name=name, a=a, b=disk, law=law, friction=friction, turning=turning)
-    if isinstance(a, HalfSpace3D) and isinstance(disk, SmoothShape3D):
-        return SmoothOnHalfSpace3D(name=name, plane=a, shape=disk, law=law, friction=friction, turning=turning)
-    if isinstance(disk, Sphere3D):
-        if isinstance(a, HalfSpace3D):
-            return SphereOnHalfSpace3D(name=name, plane=a, sphere=disk, law=law, friction=friction, turning=turning)
-        if isinstance(a, Sphere3D):
-            return SphereOnSphere3D(name=name, a=a, b=disk, law=law, friction=friction, turning=turning)
-    if not isinstance(disk, Disk2D):
+    if isinstance(a, SpatialShape):
+        assert isinstance(other, SpatialShape | SpatialPart)
+        return contact_in_space(name, a, other, law, friction, turning)
+    if not isinstance(other, Disk2D):
         raise TypeError("the second shape of a pair is a disk")
     if isinstance(a, HalfPlane2D):
-        return DiskOnHalfPlane2D(name=name, plane=a, disk=disk, law=law, friction=friction)
+        return DiskOnHalfPlane2D(name=name, plane=a, disk=other, law=law, friction=friction)
     if isinstance(a, Disk2D):
-        return DiskOnDisk2D(name=name, a=a, b=disk, law=law, friction=friction)
+        return DiskOnDisk2D(name=name, a=a, b=other, law=law, friction=friction)
     if isinstance(a, Box2D):
-        return DiskOnBox2D(name=name, shape=a, disk=disk, law=law, friction=friction)
+        return DiskOnBox2D(name=name, shape=a, disk=other, law=law, friction=friction)
     if isinstance(a, Polygon2D):
-        return DiskOnPolygon2D(name=name, shape=a, disk=disk, law=law, friction=friction)
+        return DiskOnPolygon2D(name=name, shape=a, disk=other, law=law, friction=friction)
     if isinstance(a, Ring2D):
-        return DiskInRing2D(name=name, shape=a, disk=disk, law=law, friction=friction)
+        return DiskInRing2D(name=name, shape=a, disk=other, law=law, friction=friction)
     if isinstance(a, Segment2D):
-        return DiskOnSegment2D(name=name, segment=a, disk=disk, law=law, friction=friction)
+        return DiskOnSegment2D(name=name, segment=a, disk=other, law=law, friction=friction)
     raise TypeError("a disk touches no shapes of space")

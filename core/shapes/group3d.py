@@ -23,19 +23,19 @@ class ContactGroup3D(ContactGroup):
 
     type: Literal["ContactGroup3D"] = "ContactGroup3D"
     spheres: tuple[Sphere3D, ...] = ()
-    """They touch spheres, capsules, cables, meshes and half-spaces."""
+    """They touch all shapes."""
     boxes: tuple[Box3D, ...] = ()
-    """They touch half-spaces, by their corners."""
+    """They touch spheres, and half-spaces by their corners."""
     polyhedra: tuple[ConvexPolyhedron3D, ...] = ()
-    """They touch half-spaces, by their corners."""
+    """They touch spheres, and half-spaces by their corners."""
     capsules: tuple[Capsule3D, ...] = ()
     """They touch spheres, capsules and half-spaces."""
     cylinders: tuple[Cylinder3D, ...] = ()
-    """They touch half-spaces, by their rims."""
+    """They touch spheres, and half-spaces by their rims."""
     meshes: tuple[TriangleMesh3D, ...] = ()
     """They touch spheres, and half-spaces by the corners of their hulls."""
     smooth: tuple[Smooth3D, ...] = ()
-    """Ellipsoids, tori and own smooth shapes; they touch half-spaces."""
+    """Ellipsoids, tori and own smooth shapes; they touch spheres and half-spaces."""
     cables: tuple[CableLine3D, ...] = ()
     """They touch spheres anywhere, and half-spaces by points."""
     half_spaces: tuple[HalfSpace3D, ...] = ()
@@ -48,15 +48,17 @@ class ContactGroup3D(ContactGroup):
     """What resists rolling and spinning; left out: nothing."""
     except_bodies: tuple[tuple[str, str], ...] = ()
     """Pairs of bodies that do not touch, such as those that a joint holds together."""
+    pass_through: tuple[tuple[str, str], ...] = ()
+    """Pairs of kinds of shapes that pass through each other, such as "Box3D" and "Box3D", which have no contact."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
-        """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact: shapes with
-        corners and spheres, or other shapes with corners."""
+        """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as two
+        boxes, if `pass_through` does not name them."""
         cornered: tuple[GroupShape, ...] = (
             *self.boxes, *self.polyhedra, *self.capsules, *self.cylinders, *self.meshes, *self.smooth,
             *self.cables,
         )  # fmt: skip
         return contacts_between(
             self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,
-            turning=self.turning, except_bodies=self.except_bodies,
+            turning=self.turning, except_bodies=self.except_bodies, pass_through=self.pass_through,
         )  # fmt: skip

@@ -16,12 +16,17 @@ from ..model.rotation3d import constant, dot, four, onto, plus, times, turned, t
 from .support3d import call_support
 
 SIZE = 14
-HOLLOW, SUPPORT, SEGMENTS, ON_CABLE, POINT_OF_CABLE = range(ANGLE + 1, ANGLE + 6)
+HOLLOW, SUPPORT, SEGMENTS, ON_CABLE, POINT_OF_CABLE, ON_MESH, ON_SMOOTH, ON_CYLINDER, ON_RING = range(
+    ANGLE + 1, ANGLE + 10
+)
 """Kinds of gaps beside DISTANCE and PLACE of `measure3d`: a sphere within the first one, a smooth shape on a
-half-space, segments along the z axes of both markers, a cable against a sphere, a point of one against a half-space."""
+half-space, segments along the z axes of both markers, a cable against a sphere, a point of one against a half-space,
+and a sphere on a mesh (of the nearest triangle PLACE, of the nearest edge SEGMENTS), a smooth shape, a cylinder, a
+ring."""
 MOVE_A, MOVE_B, CHOICE, MOVED = 0, 3, 6, 9
 """Rows of the matrix of moves: derivatives of both points as they move along their bodies, in space; c_k and m_k: the
-latter along the axes of the second marker, or along the z axes of the first and of the second one."""
+latter along the axes of the second marker, or along the z axes of the first and of the second one, or along the axes of
+the first one."""
 MOVES = 12
 PARALLEL = 1e-10
 """Of the squared sine of their angle: segments that are parallel touch in the middle of where they lie side by side."""
@@ -42,7 +47,13 @@ def on_cable(kind: int) -> bool:
 @inlined
 def moves_on(kind: int) -> bool:
     """True where points of contact move on their bodies."""
-    return kind == SUPPORT or kind == SEGMENTS
+    return kind == SUPPORT or kind == SEGMENTS or on_round(kind)
+
+
+@inlined
+def on_round(kind: int) -> bool:
+    """True where a sphere is on a round shape, which is the first."""
+    return kind == ON_SMOOTH or kind == ON_CYLINDER or kind == ON_RING
 
 
 @inlined

@@ -15,12 +15,10 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, vec
 from ..elements.measure3d import AXES_A, PLACE, POINT_A, offset
 from ..model.rotation3d import dot, four, less, turned, turning
-from .held3d import POINT_OF_CABLE, SEGMENTS, hold_segments
+from .held3d import SEGMENTS, hold_segments
 from .mesh_parts import Faces, Points, flat_edges, normals_of
 from .normal3d import SIZE, pair_of
 
-ON_MESH = POINT_OF_CABLE + 1
-"""Kind of the gap, beside those of `held3d.py`: of the nearest triangle PLACE, of the nearest edge SEGMENTS."""
 NORMAL_AT, FLAT_AT, MIDDLE_AT, REACH_AT, STRIDE = 9, 12, 15, 18, 19
 FIRST, COUNT, OPEN = 7, 8, 9
 """Columns of `extra`: where the part's triangles begin in the pool, how many they are, and whether they are not the

@@ -18,7 +18,7 @@ Points = tuple[tuple[float, float, float], ...]
 Faces = tuple[tuple[int, int, int], ...]
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=1024)
 def parts_of(vertices: Points, faces: Faces) -> tuple[tuple[int, ...], ...]:
     """Numbers of the triangles of each part."""
     points, triangles = np.array(vertices), np.array(faces)

@@ -9,7 +9,8 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS, measure
-from .held3d import HOLLOW, SIZE, SUPPORT, bend_held, hold_segments, hold_support, measured, moves_on
+from .held3d import HOLLOW, SIZE, SUPPORT, bend_held, hold_segments, hold_support, measured, moves_on, on_round
+from .held_round3d import hold_on_round
 
 PACKED = SIZE * (SIZE + 1) // 2
 KIND, RADIUS_A, RADIUS_B = 0, 1, 2
@@ -19,7 +20,7 @@ EXTENT_A, EXTENT_B = 4, 5
 """How far points of contact may be from their markers, m; of segments their half lengths."""
 PAIR = 16
 NUMBERS = PAIR + COLUMNS
-"""The numbers of a smooth shape."""
+"""The numbers of a smooth or round shape."""
 SUPPORT_ADDRESS = 6
 """Column of `extra` with the address of a smooth shape's formula; 0: it has none."""
 
@@ -42,9 +43,13 @@ def hold(b: Any, e: int, held: Any, moves: Any) -> int:
         return kind
     moves[:, :] = 0.0
     q, coord = vec(b.q, b.n_extended), imat(b.coord, b.count, SIZE)[e]
-    if kind == SUPPORT:
+    if kind == SUPPORT or on_round(kind):
         address = imat(b.extra, b.count, b.nextra)[e, SUPPORT_ADDRESS]
-        hold_support(q, coord, address, vec(b.par + 8 * (e * b.npar + NUMBERS), 4), held, moves)
+        numbers = vec(b.par + 8 * (e * b.npar + NUMBERS), 4)
+        if kind == SUPPORT:
+            hold_support(q, coord, address, numbers, held, moves)
+        else:
+            kind = hold_on_round(kind, q, coord, address, numbers, held, moves)
     else:
         hold_segments(q, coord, par[EXTENT_A], par[EXTENT_B], held, moves)
     return kind

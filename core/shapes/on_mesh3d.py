@@ -8,12 +8,14 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ..elements.base import Numbering, Row
+from ..model.base import NonNegative
 from ..model.markers import Marker3D
 from ..model.signals import Signal
 from .contact3d import Contact3D, Sphere3D
+from .held3d import ON_MESH
 from .mesh3d import TriangleMesh3D
 from .mesh_contact3d import gripping_mesh3d_kernel, mesh3d_kernel, rubbing_mesh3d_kernel
-from .mesh_nearest3d import ON_MESH, STRIDE, table_of
+from .mesh_nearest3d import STRIDE, table_of
 from .mesh_parts import Points, parts_of
 
 
@@ -30,10 +32,11 @@ class _Numbers:
 
 @dataclass(frozen=True)
 class MeshPart:
-    """A part of a mesh that a sphere touches at one place."""
+    """A part of a mesh, rounded by so much, that a sphere touches at one place."""
 
     mesh: TriangleMesh3D
     part: int
+    rounding: float = 0.0
 
 
 def mesh_parts(mesh: TriangleMesh3D) -> tuple[tuple[int, ...], ...]:
@@ -42,7 +45,8 @@ def mesh_parts(mesh: TriangleMesh3D) -> tuple[tuple[int, ...], ...]:
 
 
 class SphereOnMesh3D(Contact3D):
-    """Contact of a sphere with a part of a mesh: gap = distance of its centre from the nearest point - radius.
+    """Contact of a sphere with a part of a mesh: gap = distance of its centre from the nearest point - radius,
+    less the rounding of the mesh.
 
     The part is a convex piece of the surface, over whose faces, edges and corners the sphere rolls without a jump. A
     convex mesh is one part; of another mesh each part has a contact of its own: `contacts_between` and
@@ -66,13 +70,15 @@ class SphereOnMesh3D(Contact3D):
     """The sphere."""
     part: Annotated[int, Field(ge=0)] = 0
     """Number of the part of the mesh, in the order of its triangles."""
+    rounding: NonNegative = 0.0
+    """By which the mesh is thicker all round, with round edges and corners, m."""
 
     @model_validator(mode="after")
     def _check_shapes(self) -> "SphereOnMesh3D":
-        if not self.sphere.radius > 0.0:
+        if not self.sphere.radius + self.rounding > 0.0:
             raise ValueError(
                 f"contact '{self.name}' is of a point with a mesh, at whose edges it has no normal: give the "
-                "sphere a radius"
+                "sphere a radius, or the mesh a rounding"
             )
         count = len(mesh_parts(self.mesh))
         if self.part >= count:
@@ -89,7 +95,7 @@ class SphereOnMesh3D(Contact3D):
         return (self.sphere.radius, self._reach())
 
     def extent(self) -> float:
-        return self.sphere.radius
+        return self.sphere.radius + self.rounding
 
     def markers(self) -> Sequence[Marker3D]:
         return (self.mesh.marker, self.sphere.marker)
@@ -99,7 +105,9 @@ class SphereOnMesh3D(Contact3D):
         placed = np.array(marker.point) + np.array(self.mesh.vertices) @ marker.axes().T
         table = table_of(cast(Points, tuple(map(tuple, placed.tolist()))), self.mesh.faces, parts[self.part])
         first = numbering.signal(cast(Signal, _Numbers(table)))
-        row = self._row_of(numbering, marker, self.sphere.marker, 0.0, self.sphere.radius, extents=(self._reach(), 0.0))
+        row = self._row_of(
+            numbering, marker, self.sphere.marker, self.rounding, self.sphere.radius, extents=(self._reach(), 0.0)
+        )
         return Row(row.parameters, row.coordinates, (*row.extra, first, len(table) // STRIDE, int(len(parts) > 1)))
 
     def _reach(self) -> float:

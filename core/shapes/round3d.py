@@ -11,10 +11,13 @@ from ..model.open_union import OpenUnion
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .cornered3d import Capsule3D
 from .held3d import HOLLOW, SEGMENTS, SUPPORT
-from .rounds3d import Ellipsoid3D, Torus3D
+from .rings3d import Rim3D, Torus3D
+from .rounds3d import Ellipsoid3D
 from .support3d import SmoothShape3D, support_address
 
-Smooth3D = Annotated[SmoothShape3D, OpenUnion({"Ellipsoid3D": Ellipsoid3D, "Torus3D": Torus3D}, SmoothShape3D)]
+Smooth3D = Annotated[
+    SmoothShape3D, OpenUnion({"Ellipsoid3D": Ellipsoid3D, "Rim3D": Rim3D, "Torus3D": Torus3D}, SmoothShape3D)
+]
 """Smooth shapes, a user's own too."""
 
 

@@ -2,11 +2,12 @@
 
 The velocity of the second shape on the first at the point of contact is u = W(q) v,
     u = s (x_b' - x_a') + w_b x beta_b - w_a x beta_a,
-x the markers' points and w the angular velocities in space, 2 E(p) p'. On a half-space s = 1, beta_b = -R n and
-beta_a = d - R n: the point of contact is on the sphere. Of two spheres s = (R_a + R_b)/|d|, beta_b = -R_b n and
-beta_a = R_a n: u is the rate of the arcs that they roll, and a force along it has no moment on both together; R_a of a
-hollow sphere is negative, and so is |d|. Points of contact that move on their bodies are held in them for W, and their
-moves are part of the derivatives (`held3d.py`). The acceleration is u' = W a + U v with U = d(W v)/dq.
+x the markers' points and w the angular velocities in space, 2 E(p) p'. On a half-space, and on shapes of any curvature,
+s = 1, beta_b = -R n and beta_a = d - R n: the point of contact is on the sphere. Of two spheres s = (R_a + R_b)/|d|,
+beta_b = -R_b n and beta_a = R_a n: u is the rate of the arcs that they roll, and a force along it has no moment on both
+together; R_a of a hollow sphere is negative, and so is |d|. Points of contact that move on their bodies are held in
+them for W, and their moves are part of the derivatives (`held3d.py`). The acceleration is u' = W a + U v with
+U = d(W v)/dq.
 """
 
 import math
@@ -29,7 +30,7 @@ from ..model.rotation3d import (
     turned,
     turning,
 )
-from .held3d import HOLLOW, MOVE_A, MOVE_B, MOVED, SUPPORT, moves_on, on_plane
+from .held3d import HOLLOW, MOVE_A, MOVE_B, MOVED, SUPPORT, moves_on, on_plane, on_round
 from .normal3d import SIZE
 
 W, U, NORMAL, OFFSET, ARM_A, ARM_B, GROWTH = 0, 3, 6, 9, 12, 15, 18
@@ -74,14 +75,14 @@ def tangent_motion(
     w_a, w_b = times(2.0, along(axes_a, pd)), times(2.0, along(axes_b, sd))
     shift = plus(less(three(v, coord, 7), three(v, coord, 0)), less(along(of_w, sd), along(of_u, pd)))
     length = math.sqrt(dot(d, d))
-    spheres, move = not on_plane(kind), moves_on(kind)
+    spheres, move, same = not on_plane(kind), moves_on(kind), on_plane(kind) or on_round(kind)
     # between spheres in spheres with one centre no direction is the normal
     one = 1.0 / length if length > 0.0 else 0.0
     if kind == HOLLOW:
         one = -one
     n = times(one, d) if spheres else turned(of_n, p)
-    size = (ra + rb) * one if spheres else 1.0
-    beta_a = times(ra, n) if spheres else less(d, times(rb, n))
+    size = 1.0 if same else (ra + rb) * one
+    beta_a = less(d, times(rb, n)) if same else times(ra, n)
     beta_b = times(-rb, n)
     zero = (0.0, 0.0, 0.0)
     run_1 = run_2 = run_3 = zero
@@ -89,6 +90,10 @@ def tangent_motion(
         run_1 = along(turning(s, constant(pair, AXES_B)), sd)
         run_2 = along(turning(s, constant(pair, AXES_B + 3)), sd)
         run_3 = along(turning(s, constant(pair, AXES_B + 6)), sd)
+    elif on_round(kind):
+        run_1 = times(-1.0, along(turning(p, constant(pair, AXES_A)), pd))
+        run_2 = times(-1.0, along(turning(p, constant(pair, AXES_A + 3)), pd))
+        run_3 = times(-1.0, along(turning(p, m), pd))
     elif move:
         run_1 = times(-1.0, along(turning(p, m), pd))
         run_2 = along(turning(s, constant(pair, AXES_B + 6)), sd)
@@ -105,10 +110,11 @@ def tangent_motion(
         if spheres:
             apart = plus(by_d, less(goes_b, goes_a))
             by_n = times(one, less(apart, times(dot(n, apart), n)))
-            by_size, by_a = -size * one * dot(n, apart), times(ra, by_n)
         else:
+            apart = plus(by_d, goes_b)
             by_n = of_n[local] if 0 <= local and j < 7 else zero
-            by_size, by_a = 0.0, less(plus(by_d, goes_b), times(rb, by_n))
+        by_size = 0.0 if same else -size * one * dot(n, apart)
+        by_a = less(apart, times(rb, by_n)) if same else times(ra, by_n)
         by_b = times(-rb, by_n)
         of_v, of_q = times(size, by_d), times(by_size, shift)
         of_q = plus(of_q, less(cross(w_b, by_b), cross(w_a, by_a)))
@@ -172,7 +178,9 @@ def _add_moves(
     p, s = four(q, coord, 3, pair[0]), four(q, coord, 10, pair[1])
     for k in range(3):
         on_a, axis = kind != SUPPORT and k == 0, AXES_B + 3 * k
-        if kind != SUPPORT:
+        if on_round(kind):
+            on_a, axis = True, AXES_A + 3 * k
+        elif kind != SUPPORT:
             axis = AXES_A + 6 if on_a else AXES_B + 6
         pull = onto(turning(p if on_a else s, constant(pair, axis)), force)
         first, sign = (3, -factor) if on_a else (10, factor)

@@ -104,9 +104,9 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(ModelError, match=r"vertex \(1.0, 0.0, 0.0\) is given twice"):
         ConvexPolyhedron3D(marker=Marker3D(body="stone"), vertices=[(1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
     box = Box3D(marker=Marker3D(body="stone"), size=(0.3, 0.2, 0.1))
-    with pytest.raises(ModelError, match=r"Box3D on 'stone' and a Sphere3D on 'other' have no contact"):
+    with pytest.raises(ModelError, match=r"Box3D on 'stone' and a Box3D on 'other' have no contact"):
         contacts_between(
-            "g", [box], [Sphere3D(marker=Marker3D(body="other"), radius=1.0)], law=NewtonImpact(restitution=0.0)
+            "g", [box], [Box3D(marker=Marker3D(body="other"), size=(1.0, 1.0, 1.0))], law=NewtonImpact(restitution=0.0)
         )
     with pytest.raises(ModelError, match="radius"):
         Capsule3D(marker=Marker3D(body="stone"), length=0.3, radius=0.0)

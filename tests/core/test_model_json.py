@@ -38,6 +38,7 @@ from tlismni.core import (
     CoordinateRelation,
     CoordinateTerm,
     CoulombFriction,
+    Cylinder3D,
     Cylindrical3D,
     Disk2D,
     DiskInRing2D,
@@ -106,6 +107,7 @@ from tlismni.core import (
     RevoluteSpherical3D,
     RigidBody2D,
     RigidBody3D,
+    Rim3D,
     Ring2D,
     RollingDisk3D,
     RollingSphere3D,
@@ -123,8 +125,11 @@ from tlismni.core import (
     Sphere3D,
     SphereInSphere3D,
     SphereOnCable3D,
+    SphereOnCylinder3D,
     SphereOnHalfSpace3D,
     SphereOnMesh3D,
+    SphereOnRing3D,
+    SphereOnSmooth3D,
     SphereOnSphere3D,
     Spherical3D,
     SpringDamper2D,
@@ -418,7 +423,8 @@ ELEMENTS["contacts"] += [
     st.builds(
         SmoothOnHalfSpace3D, name=st.just("x"), law=law, plane=st.builds(HalfSpace3D, marker=st.builds(Marker3D)),
         shape=st.builds(Ellipsoid3D, marker=marker3d, half_axes=st.tuples(positive, positive, positive))
-        | st.builds(Torus3D, marker=marker3d, radius=positive, rim_radius=positive),
+        | st.builds(Torus3D, marker=marker3d, radius=positive, rim_radius=positive, rim_points=st.integers(3, 20))
+        | st.builds(Rim3D, marker=marker3d, radius=positive, rim_radius=positive),
     ),
     st.builds(
         SphereInSphere3D, name=st.just("x"), law=law,
@@ -428,6 +434,22 @@ ELEMENTS["contacts"] += [
     st.builds(
         SphereOnMesh3D, name=st.just("x"), law=law, sphere=st.builds(Sphere3D, marker=marker3d, radius=positive),
         mesh=st.just(TETRAHEDRON),
+    ),
+    st.builds(
+        SphereOnSmooth3D, name=st.just("x"), law=law, sphere=st.builds(Sphere3D, marker=marker3d, radius=positive),
+        shape=st.builds(
+            Ellipsoid3D, marker=st.builds(Marker3D, point=vector3), half_axes=st.tuples(positive, positive, positive)
+        ),
+    ),
+    st.builds(
+        SphereOnCylinder3D, name=st.just("x"), law=law, sphere=st.builds(Sphere3D, marker=marker3d, radius=positive),
+        shape=st.builds(Cylinder3D, marker=st.builds(Marker3D, point=vector3), radius=positive, length=positive),
+    ),
+    st.builds(
+        SphereOnRing3D, name=st.just("x"), law=law, sphere=st.builds(Sphere3D, marker=marker3d, radius=st.just(1e-3)),
+        ring=st.builds(
+            Torus3D, marker=st.builds(Marker3D, point=vector3), radius=st.just(2.0), rim_radius=st.just(0.5)
+        ),
     ),
     st.builds(
         SphereOnCable3D, name=st.just("x"), law=law, cable=st.just("line"), thickness=positive, sphere=sphere,
@@ -482,8 +504,8 @@ SPATIAL = {
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
     "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
     "SphereOnSphere3D", "SmoothOnHalfSpace3D", "SphereInSphere3D", "CapsuleOnCapsule3D", "SphereOnCable3D",
-    "SphereOnMesh3D", "CableOnHalfSpace3D", "Cable3D", "MaterialPoint3D",
-    "CableClamp3D",
+    "SphereOnMesh3D", "SphereOnSmooth3D", "SphereOnCylinder3D", "SphereOnRing3D", "CableOnHalfSpace3D", "Cable3D",
+    "MaterialPoint3D", "CableClamp3D",
     "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)

@@ -12,14 +12,19 @@ from tlismni.core import (
     Capsule3D,
     CapsuleOnCapsule3D,
     CoulombFriction,
+    Cylinder3D,
     Ellipsoid3D,
     HalfSpace3D,
     Marker3D,
     Model,
     NewtonImpact,
+    Rim3D,
     SmoothOnHalfSpace3D,
     Sphere3D,
     SphereInSphere3D,
+    SphereOnCylinder3D,
+    SphereOnRing3D,
+    SphereOnSmooth3D,
     Torus3D,
 )
 from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
@@ -27,6 +32,10 @@ from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, MODE, RATIO, S
 SPAN = 1e-3
 """Of the differences: these gaps bend more than those of spheres."""
 HARD, GRIP = NewtonImpact(restitution=0.5), CoulombFriction(coefficient=0.4)
+TOWARDS = Marker3D(body="a", point=(0.3, -0.2, 0.1), attitude=Axes(z=(0.7, 0.5, -0.1)))
+ASLANT = Marker3D(body="a", point=(0.3, -0.2, 0.1), attitude=Axes(z=(0.7, 0.5, 0.9)))
+BALL = Sphere3D(marker=RIGHT, radius=2.1)
+LYING = Marker3D(body="b", point=(-0.4, 0.1, 0.25), attitude=Axes(z=(0.2, 0.1, 1.0)))
 FAR = Marker3D(body="b", point=(-0.4, 2.6, 0.25), attitude=Axes(z=(1.0, 0.2, 0.1)))
 
 
@@ -40,15 +49,35 @@ def capsules(a, b, first, second, **more):
     return CapsuleOnCapsule3D(name="c", a=pair[0], b=pair[1], **more)
 
 
+def on_cylinder(marker, radius, length, **more):
+    """By its side where it is long, by its end where it is wide, by its rim where it is small."""
+    return SphereOnCylinder3D(
+        name="c", shape=Cylinder3D(marker=marker, radius=radius, length=length), sphere=BALL, **more
+    )
+
+
 SHAPES = {
     "ellipsoid": lambda **more: smooth(Ellipsoid3D(marker=RIGHT, half_axes=(2.1, 3.2, 2.6)), LEFT, **more),
     "torus": lambda **more: smooth(Torus3D(marker=RIGHT_WHEEL, radius=2.4, rim_radius=0.7), GROUND, **more),
+    "rim": lambda **more: smooth(Rim3D(marker=LYING, radius=2.4, rim_radius=0.7, flat_tilt=0.5), GROUND, **more),
     "hollow sphere": lambda **more: SphereInSphere3D(
         name="c", hollow=Sphere3D(marker=LEFT, radius=1.6), sphere=Sphere3D(marker=RIGHT, radius=1.5), **more
     ),
     "ends": lambda **more: capsules(LEFT, RIGHT_WHEEL, 0.02, 0.03, **more),
     "crossed": lambda **more: capsules(LEFT, FAR, 30.0, 30.0, **more),
     "end on side": lambda **more: capsules(LEFT, RIGHT_WHEEL, 0.02, 30.0, **more),
+    "ball on ellipsoid": lambda **more: SphereOnSmooth3D(
+        name="c", shape=Ellipsoid3D(marker=LEFT, half_axes=(0.15, 0.25, 0.1)), sphere=BALL, **more
+    ),
+    "ball on side": lambda **more: on_cylinder(LEFT, 0.1, 30.0, **more),
+    "ball on end": lambda **more: on_cylinder(TOWARDS, 8.0, 0.02, **more),
+    "ball on rim": lambda **more: on_cylinder(ASLANT, 0.1, 0.02, **more),
+    "ball on disk": lambda **more: SphereOnCylinder3D(
+        name="c", shape=Torus3D(marker=ASLANT, radius=0.1), sphere=BALL, **more
+    ),
+    "ball on ring": lambda **more: SphereOnRing3D(
+        name="c", ring=Torus3D(marker=ASLANT, radius=0.05, rim_radius=0.06), sphere=BALL, **more
+    ),
     "sphere on capsule": lambda **more: CapsuleOnCapsule3D(
         name="c", a=Capsule3D(marker=LEFT, length=30.0, radius=1.6), b=Sphere3D(marker=RIGHT, radius=2.1), **more
     ),
@@ -98,7 +127,7 @@ def gripping(name, slide):
     twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
     point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
     columns = [MODE, SLIDE, RATIO, WAY, AXIS]
-    axis = 1 if name in ("ellipsoid", "torus") else 2
+    axis = 1 if name in ("ellipsoid", "torus", "rim") else 2
     point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis
     return point
 

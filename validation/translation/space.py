@@ -37,6 +37,7 @@ from ...core.model.derived import Columns
 from ...core.model.derived import Derived as Group
 from ...core.model.frame3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
+from ...core.shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
 from ...core.shapes.on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
 from ...core.shapes.on_mesh3d import SphereOnMesh3D
 from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
@@ -76,6 +77,9 @@ no_equal(
     SphereInSphere3D,
     CapsuleOnCapsule3D,
     SphereOnMesh3D,
+    SphereOnSmooth3D,
+    SphereOnCylinder3D,
+    SphereOnRing3D,
 )
 no_equal("none: of cables in space exudyn has no contact with friction", SphereOnCable3D, CableOnHalfSpace3D)
 

@@ -9,6 +9,7 @@ from ...core.description import Model
 from ...core.elements import RigidBody3D, SpatialFrame
 from ...core.model.attitude import parameters_of_matrix
 from ...core.model.markers import Marker3D
+from ...core.shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
 from ...core.shapes.contact3d import Contact3D, Sphere3D
 from ...core.shapes.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
 from ...core.shapes.group3d import ContactGroup3D
@@ -107,12 +108,16 @@ def _single(model: Model) -> list[Contact3D]:
     return [c for c in model.contacts if isinstance(c, Contact3D) and c.name not in made]
 
 
-def _single_shapes(model: Model) -> list[Capsule3D | TriangleMesh3D | SmoothShape3D]:
+def _single_shapes(model: Model) -> list[Cornered3D | SmoothShape3D]:
     """Their shapes other than balls, each once."""
-    found: list[Capsule3D | TriangleMesh3D | SmoothShape3D] = []
+    found: list[Cornered3D | SmoothShape3D] = []
     for contact in _single(model):
         if isinstance(contact, SmoothOnHalfSpace3D):
             found.append(contact.shape)
+        elif isinstance(contact, SphereOnSmooth3D | SphereOnCylinder3D):
+            found.append(contact.shape)
+        elif isinstance(contact, SphereOnRing3D):
+            found.append(contact.ring)
         elif isinstance(contact, SphereOnMesh3D):
             found.append(contact.mesh)
         elif isinstance(contact, CapsuleOnCapsule3D):
