@@ -27,6 +27,7 @@ from ..elements import (
 )
 from ..errors import ModelError
 from ..model.attitude import UPRIGHT, EulerParameters
+from ..model.words import an
 
 if TYPE_CHECKING:
     from .result import Result
@@ -104,7 +105,7 @@ def moved(body: BodyElement, q: Floats, v: Floats) -> dict[str, Any]:
     ------
     ModelError : if it has none for that.
     """
-    raise ModelError(f"a {type(body).__name__} ('{body.name}') cannot say in its record where it is now: {REMEDY}")
+    raise ModelError(f"{an(type(body).__name__)} ('{body.name}') cannot say in its record where it is now: {REMEDY}")
 
 
 @moved.register

@@ -16,6 +16,7 @@ from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
 from ..model.markers import GROUND
+from ..model.words import an
 from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
@@ -146,15 +147,14 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
         if isinstance(a, HalfPlane2D):
             return tuple((a, corner) for corner in b.corners())
         remedy = "make the segment a thin box" if isinstance(a, Segment2D) else "put disks at its corners"
-        raise ModelError(
-            f"a {type(b).__name__} on '{_body(b)}' and a {type(a).__name__} on '{_body(a)}' have no contact: {remedy}"
-        )
+        raise ModelError(f"{_named(b)} and {_named(a)} have no contact: {remedy}")
     if _body(a) == _body(b) == GROUND:
         return ()
-    raise ModelError(
-        f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: give one of "
-        "them disks at its corners"
-    )
+    raise ModelError(f"{_named(a)} and {_named(b)} have no contact: give one of them disks at its corners")
+
+
+def _named(shape: GroupShape) -> str:
+    return f"{an(type(shape).__name__)} on '{_body(shape)}'"
 
 
 def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | CableSpot | MeshPart]]:
@@ -184,7 +184,7 @@ def _touching_in_space(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShap
     if _body(a) == _body(b) == GROUND:
         return ()
     raise ModelError(
-        f"a {type(a).__name__} on '{_body(a)}' and a {type(b).__name__} on '{_body(b)}' have no contact: in space a "
+        f"{_named(a)} and {_named(b)} have no contact: in space a "
         "sphere or capsule touches spheres, capsules and half-spaces, all others touch half-spaces, cables and meshes "
         "spheres too; give it spheres or capsules in their place"
     )

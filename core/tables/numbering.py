@@ -4,8 +4,9 @@ from ..elements.base import BodyElement
 from ..laws import ForceLaw, law_address
 from ..laws.friction import FrictionLaw, friction_address
 from ..model.base import Vector3, in_space
-from ..model.markers import GROUND, Marker, Marker2D
+from ..model.markers import GROUND, Marker, Marker2D, Marker3D
 from ..model.motion import InputMotion
+from ..model.said_angle import SaidAngle, SaysAngle
 from ..model.signals import InputSignal, Signal
 from ..rounding import AT_ORIGIN
 from .parts import Parts
@@ -49,6 +50,8 @@ class ModelNumbering:
             if body.carries is not None:
                 self.starts[body.name] = tuple(body.start_in(self.bodies, self.input_start)[0])
             start += count
+        self._elements, self._said = model.elements, list[SaidAngle]()
+        self._asked = False
 
     def coordinates(self, body: str) -> tuple[int, ...]:
         carried = self._carried(body)
@@ -90,6 +93,17 @@ class ModelNumbering:
     def _start(self, body: str, marker: type[Marker]) -> tuple[float, ...]:
         own = self.starts[body][: len(marker.rest)]
         return own + marker.rest[len(own) :]
+
+    def start_angle(self, a: Marker3D, b: Marker3D, user: str | None = None) -> float:
+        # models of the plane never ask
+        from ..elements.start_angle3d import start_angle
+
+        if not self._asked:
+            self._asked = True
+            for element in self._elements():
+                if isinstance(element, SaysAngle):
+                    self._said += element.said_angles(self.input_start)
+        return start_angle(a, b, self.bodies, self._said, user)
 
     def signal(self, signal: Signal) -> int:
         offset = len(self.pool)
