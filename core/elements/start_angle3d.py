@@ -79,10 +79,11 @@ def start_angle(
     if abs(math.remainder(total - found, WHOLE_TURN)) <= SAME:
         return _nearest(found, total)
     if user is not None and any(abs(angle) > math.pi for angle in turned):
+        near = round(found, 9) + 0.0
         raise ModelError(
             f"'{user}' counts whole turns, and an attitude has more than half a turn about its axis, but the markers "
-            f"stand at {found:.6g} rad or whole turns from there, so nobody knows which is meant: say it by "
-            f"`start_angle`, {found:.6g} or {found + WHOLE_TURN:.6g} or so, of '{user}' or of the joint about that axis"
+            f"stand at {near:.6g} rad or whole turns from there, so nobody knows which is meant: say it by "
+            f"`start_angle`, {near:.6g} or {near + WHOLE_TURN:.6g} or so, of '{user}' or of the joint about that axis"
         )
     return found
 

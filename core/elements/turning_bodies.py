@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable, Mapping
 
-from ..model.markers import Marker3D
+from ..model.markers import Marker
 from ..model.words import an
 from .base import BodyElement
 from .spatial_body import EULER, SpatialFrame
 
 
-def refuse_points(user: str, markers: Iterable[Marker3D], bodies: Mapping[str, BodyElement], instead: str) -> None:
+def refuse_points(user: str, markers: Iterable[Marker], bodies: Mapping[str, BodyElement], instead: str) -> None:
     """Raise ValueError if a marker of the element `user` is on a body that does not turn; `instead` says what to do."""
     for marker in markers:
         body = bodies.get(marker.body)

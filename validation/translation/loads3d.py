@@ -4,7 +4,7 @@ import numpy as np
 
 from ...core.elements import AppliedForce3D, AppliedTorque3D, CableClamp3D
 from ...core.model.markers import GROUND
-from ...core.shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
+from ...core.shapes.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
 from .registry import Build, no_equal, translates
 from .signals import time_function
 from .space import placed
@@ -12,7 +12,7 @@ from .space import placed
 no_equal(
     "a ball on the cable's end point, with an ObjectConnectorCoordinate for each slope that it holds", CableClamp3D
 )
-no_equal("the planar AngleStop2D or Rope2D, where the motion is planar", AngleStop3D, Rope3D)
+no_equal("the planar AngleStop2D or Rope2D, where the motion is planar", AngleStop3D, DistanceStop3D, Rope3D)
 no_equal("a SphereOnHalfSpace3D in closed form, or a planar model with a DiskOnHalfPlane2D", SlideStop3D)
 
 
