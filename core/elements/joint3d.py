@@ -9,7 +9,7 @@ from ..errors import ModelError
 from ..model.derived import Derived
 from ..model.frame3d import Frame3D
 from ..model.markers import GROUND, Marker3D
-from ..model.said_angle import SaidAngle
+from ..model.said_angle import CountedAngle, SaidAngle
 from ..model.signals import Constant, Signal
 from ..model.words import an
 from .base import BodyElement, JointElement, Numbering, Part
@@ -72,6 +72,10 @@ class Joint3D(JointElement):
         ModelError : for a coordinate that it does not have.
         """
         return ends_of(self.name, type(self).__name__, self.coordinates(), coordinate)
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """Those of its coordinates that are angles."""
+        return [CountedAngle(f"{self.name}.{c.name}", c.a, c.b) for c in self.coordinates() if c.kind == "angle"]
 
     def parts(self, numbering: Numbering) -> Sequence[Part]:
         parts = [primitive.part(self.a, self.b, numbering) for primitive in self.primitives()]

@@ -23,7 +23,7 @@ from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..errors import ConsistencyError
 from ..model.markers import Marker3D
-from ..model.said_angle import SaidAngle
+from ..model.said_angle import CountedAngle, SaidAngle
 from ..model.signals import INPUT_SIZE, evaluate_signal
 from ..rounding import MEETING
 from .base import BodyElement, ForceElement, Numbering, Part, Row
@@ -195,6 +195,10 @@ class CountingForce3D(MeasuredForce3D):
             check_start_angle(self.name, self.a, self.b, self.start_angle, bodies)
         elif self.start_angle is not None:
             raise ValueError(f"'{self.name}' acts on no angle: leave `start_angle` out")
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """Its angle, if it acts on one."""
+        return (CountedAngle(f"{self.name}.angle", self.a, self.b),) if self.kind() == ANGLE else ()
 
     def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""

@@ -16,7 +16,7 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive
 from ..model.markers import Marker3D
-from ..model.said_angle import SaidAngle
+from ..model.said_angle import CountedAngle, SaidAngle
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .base import BodyElement, Numbering, Part, Row
 from .measure3d import ANGLE, COLUMNS, columns_of, coordinates_of, measure, product
@@ -162,6 +162,12 @@ class PIDController3D(Pair3D):
             if what == "angle":
                 refuse_points(self.name, (a, b), bodies, "use a RigidBody3D")
         check_start_angle(self.name, self.sensing_a, self.sensing_b, self.start_angle, bodies)
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """The angle that it senses, if it does."""
+        if self.senses != "angle":
+            return ()
+        return (CountedAngle(f"{self.name}.angle", self.sensing_a, self.sensing_b),)
 
     def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""

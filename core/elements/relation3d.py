@@ -18,6 +18,7 @@ from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
 from ..model.derived import Derived
 from ..model.markers import Marker3D
+from ..model.said_angle import CountedAngle
 from .base import BodyElement, Form, JointElement, Numbering, Part, Row
 from .joint3d import channels_of, ends_of
 from .joint_coordinates3d import JointCoordinate
@@ -217,6 +218,10 @@ class Screw3D(Relation3D):
     def ends_of(self, coordinate: str) -> dict[str, Marker3D]:
         """Markers `a` and `b` of "angle" or "position", for what acts on it. Raises ModelError for any other."""
         return ends_of(self.name, "Screw3D", self.coordinates(), coordinate)
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """Its angle."""
+        return (CountedAngle(f"{self.name}.angle", self.a, self.b),)
 
     def derived_channels(self, numbering: Numbering, rows: Sequence[int]) -> Sequence[Derived]:
         return channels_of(self.name, self.coordinates(), numbering)

@@ -19,7 +19,7 @@ from ..model.markers import GROUND, Marker3D
 from ..model.said_angle import SaidAngle
 from ..model.signals import InputSignal, Signal, evaluate_signal
 from ..rounding import NEARLY_PARALLEL
-from .base import BodyElement
+from .base import NO_INPUTS, BodyElement
 from .spatial_body import angle_between, start_of_marker
 
 WHOLE_TURN = 2.0 * math.pi
@@ -63,17 +63,9 @@ def start_angle(
     ModelError : if two elements say angles whole turns apart; and for an element `user` that acts on the angle, if
         attitudes have turns beyond half a turn about the axis that do not say which angle is meant.
     """
-    found = angle_between(a, b, bodies)
-    meant = [(_nearest(found, angle), one.by) for one in said for angle in _seen(a, b, one, bodies)]
-    if meant:
-        value, by = meant[0]
-        for other, who in meant[1:]:
-            if abs(other - value) > math.pi:
-                raise ModelError(
-                    f"{by} says that '{b.body}' starts {value:.6g} rad about the axis from '{a.body}', {who} that it "
-                    f"starts at {other:.6g} rad: let both say the same whole turns, or one nothing"
-                )
-        return value
+    found, by_words = angle_between(a, b, bodies), _said(a, b, bodies, said)
+    if by_words is not None:
+        return by_words
     turned = _turned(a, b, bodies)
     total = math.fsum(turned)
     if abs(math.remainder(total - found, WHOLE_TURN)) <= SAME:
@@ -86,6 +78,41 @@ def start_angle(
             f"`start_angle`, {near:.6g} or {near + WHOLE_TURN:.6g} or so, of '{user}' or of the joint about that axis"
         )
     return found
+
+
+def start_angle_elsewhere(
+    a: Marker3D, b: Marker3D, bodies: Mapping[str, BodyElement], said: Sequence[SaidAngle], usual: float
+) -> float:
+    """The same where bodies start elsewhere than the model says: as start values say it, else the one nearest to that
+    of the model. Raises ModelError as that does."""
+    by_words = _said(a, b, bodies, said)
+    return _nearest(angle_between(a, b, bodies), usual) if by_words is None else by_words
+
+
+class Elsewhere(BodyElement):
+    """A body for the question where its markers are, with other coordinates at the start than its own."""
+
+    q: tuple[float, ...]
+
+    def start_in(
+        self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS
+    ) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        return self.q, ()
+
+
+def _said(a: Marker3D, b: Marker3D, bodies: Mapping[str, BodyElement], said: Sequence[SaidAngle]) -> float | None:
+    found = angle_between(a, b, bodies)
+    meant = [(_nearest(found, angle), one.by) for one in said for angle in _seen(a, b, one, bodies)]
+    if not meant:
+        return None
+    value, by = meant[0]
+    for other, who in meant[1:]:
+        if abs(other - value) > math.pi:
+            raise ModelError(
+                f"{by} says that '{b.body}' starts {value:.6g} rad about the axis from '{a.body}', {who} that it "
+                f"starts at {other:.6g} rad: let both say the same whole turns, or one nothing"
+            )
+    return value
 
 
 def _nearest(angle: float, to: float) -> float:

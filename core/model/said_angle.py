@@ -1,4 +1,4 @@
-"""What an element says of the angle between two markers at the start."""
+"""What an element says of angles between two markers whose turns are counted."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -23,4 +23,23 @@ class SaysAngle(Protocol):
 
     def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
         """What it says, with these start values of the inputs."""
+        ...
+
+
+@dataclass(frozen=True)
+class CountedAngle:
+    """An angle of marker b about the z axis of marker a whose turns an element counts; `name` stands for it among start
+    values."""
+
+    name: str
+    a: Marker3D
+    b: Marker3D
+
+
+@runtime_checkable
+class CountsTurns(Protocol):
+    """An element that counts turns."""
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """The angles."""
         ...

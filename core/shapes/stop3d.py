@@ -20,7 +20,7 @@ from ..elements.turn3d import LOOSE, account_of, turn_part
 from ..elements.turning_bodies import refuse_points
 from ..model.base import Positive
 from ..model.markers import GROUND, Marker3D
-from ..model.said_angle import SaidAngle
+from ..model.said_angle import CountedAngle, SaidAngle
 from .element import ContactElement
 from .normal2d import act, asleep
 from .normal3d import PACKED, SIZE, pair_of
@@ -136,6 +136,10 @@ class AngleStop3D(Stop3D):
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         refuse_points(self.name, self.markers(), bodies, "use a RigidBody3D")
         check_start_angle(self.name, self.a, self.b, self.start_angle, bodies)
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """Its angle."""
+        return (CountedAngle(f"{self.name}.angle", self.a, self.b),)
 
     def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""

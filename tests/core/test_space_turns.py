@@ -25,6 +25,7 @@ from tlismni.core import (
     RigidBody3D,
     RotationVector,
     Servo3D,
+    Spherical3D,
     TorsionSpring3D,
     simulate,
 )
@@ -158,3 +159,46 @@ def test_a_said_angle_is_seen_from_any_pair_about_the_axis():
             assert start_angle(b, a, bodies, [said]) == pytest.approx(-expected, abs=1e-9)
         aside = Marker3D(attitude=Axes(z=(0.0, 1.0, 0.0)))
         assert abs(start_angle(aside, at("rotor", 0.1), bodies, [said])) <= math.pi
+
+
+def spinning():
+    """Two hinges in a row that go round, a stop and a spring about the second, which no joint tells of."""
+    outer = RigidBody3D(name="outer", mass=1.0, inertia=(1.0, 1.0, 1.0), angular_velocity=(0.0, 0.0, 5.0))
+    inner = RigidBody3D(name="inner", mass=1.0, inertia=(1.0, 1.0, 1.0), angular_velocity=(0.0, 0.0, 12.0))
+    ends = {"a": Marker3D(body="outer"), "b": Marker3D(body="inner")}
+    joints = [
+        Revolute3D(name="hinge", a=Marker3D(), b=Marker3D(body="outer"), start_angle=2.0 * math.pi),
+        Spherical3D(name="ball", **ends),
+    ]
+    return Model(
+        gravity=(0.0,) * 3, bodies=[outer, inner], joints=joints,
+        contacts=[AngleStop3D(name="stop", **ends, limit=11.0, law=HARD)],
+        forces=[TorsionSpring3D(name="spring", **ends, stiffness=0.02, start_angle=0.0)],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("way", ["model", "start values"])
+@pytest.mark.parametrize("t", [0.5, 1.3, 2.5])
+def test_runs_that_go_on_know_the_turns(way, t):
+    model = spinning()
+    whole = simulate(model, 3.0, t_eval=[0.0, t, 3.0], rtol=1e-10, atol=1e-12)
+    assert whole["hinge.angle"][1] > 2.0 * math.pi + 2.0 and whole.events
+    if way == "model":
+        rest = simulate(whole.model_at(t), 3.0 - t, rtol=1e-10, atol=1e-12)
+    else:
+        rest = simulate(model, 3.0, t0=t, start_values=whole.start_at(t), rtol=1e-10, atol=1e-12)
+    assert rest["hinge.angle"][0] == pytest.approx(whole["hinge.angle"][1], abs=1e-9)
+    for name in ("hinge.angle", "stop.gap", "energy.strain", "inner.angular_velocity_z"):
+        assert rest[name][-1] == pytest.approx(whole[name][-1], abs=1e-6), name
+
+
+def test_start_values_at_half_a_turn_do_not_flip():
+    """The angle is of the turn nearest to the model's, all the way from there, or as a start value says."""
+    model = rotor(RotationVector(vector=(0.0, 0.0, 0.0)), 1.0, [hinge()])
+    for angle in (math.pi - 1e-13, math.pi, math.pi + 1e-13):
+        place = {"rotor.e0": math.cos(0.5 * angle), "rotor.e3": math.sin(0.5 * angle), "rotor.e0_rate": -0.5,
+                 "rotor.e3_rate": 0.0}  # fmt: skip
+        found = simulate(model, 3.0, start_values=place)
+        assert np.abs(np.diff(found["hinge.angle"])).max() < 1.0 and abs(found["hinge.angle"][0]) < 3.2
+        found = simulate(model, 3.0, start_values={**place, "hinge.angle": angle + 4.0 * math.pi}, rtol=1e-9)
+        assert found["hinge.angle"] == pytest.approx(angle + 4.0 * math.pi + found.t, abs=1e-6)
