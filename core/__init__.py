@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         MaterialPoint3D,
         MovingFrame2D,
         PIDController2D,
+        PIDController3D,
         Planar3D,
         PointMass2D,
         PointMass3D,
@@ -66,10 +67,12 @@ if TYPE_CHECKING:
         ReducedPoint,
         RelationTerm,
         RelativeLoad2D,
+        RelativeLoad3D,
         RelativeMotor2D,
         Revolute2D,
         Revolute3D,
         RevoluteFriction2D,
+        RevoluteFriction3D,
         RevoluteSpherical3D,
         RigidBody2D,
         RigidBody3D,
@@ -79,12 +82,15 @@ if TYPE_CHECKING:
         ScalarJoint2D,
         Screw3D,
         Servo2D,
+        Servo3D,
         SlideFriction2D,
+        SlideFriction3D,
         SlideSpring2D,
         Spherical3D,
         SpringDamper2D,
         SpringDamper3D,
         TableSpring2D,
+        TableSpring3D,
         TorsionSpring2D,
         TorsionSpring3D,
         Universal3D,
@@ -171,7 +177,7 @@ if TYPE_CHECKING:
     from .shapes.rounds3d import Ellipsoid3D
     from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
     from .shapes.segment2d import DiskOnSegment2D, Segment2D
-    from .shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
+    from .shapes.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
     from .shapes.support3d import SmoothShape3D, support_formula
     from .tables.redundancy import RedundantRow
     from .tolerances import OfScales
@@ -235,6 +241,7 @@ __all__ = [
     "DiskOnSegment2D",
     "Distance2D",
     "Distance3D",
+    "DistanceStop3D",
     "Ellipsoid3D",
     "EquationError",
     "EquationSystem",
@@ -285,6 +292,7 @@ __all__ = [
     "NewtonImpact",
     "OfScales",
     "PIDController2D",
+    "PIDController3D",
     "Parameter",
     "Planar3D",
     "PointMass2D",
@@ -306,11 +314,13 @@ __all__ = [
     "RedundantRow",
     "RelationTerm",
     "RelativeLoad2D",
+    "RelativeLoad3D",
     "RelativeMotor2D",
     "Result",
     "Revolute2D",
     "Revolute3D",
     "RevoluteFriction2D",
+    "RevoluteFriction3D",
     "RevoluteSpherical3D",
     "RigidBody2D",
     "RigidBody3D",
@@ -328,10 +338,12 @@ __all__ = [
     "Screw3D",
     "Segment2D",
     "Servo2D",
+    "Servo3D",
     "Simulation",
     "SimulationError",
     "Sine",
     "SlideFriction2D",
+    "SlideFriction3D",
     "SlideSpring2D",
     "SlideStop3D",
     "SmoothOnHalfSpace3D",
@@ -353,6 +365,7 @@ __all__ = [
     "StepFriction",
     "Table",
     "TableSpring2D",
+    "TableSpring3D",
     "TanhFriction",
     "ThrelfallFriction",
     "TlismniError",
@@ -400,12 +413,13 @@ __getattr__, __dir__ = late_names(
             "ConstantVelocity3D CoordinateDriver CoordinateLoad CoordinateRelation Cylindrical3D Distance2D "
             "Distance3D Fixed3D FloatingBeam2D ForceElement Frame2D Gear2D Gear3D Interface3D InterfaceFrame3D "
             "Joint3D JointElement KnifeEdge2D LinearSystem MaterialPoint2D MaterialPoint3D MovingFrame2D "
-            "PIDController2D Planar3D PointMass2D PointMass3D PointOnLine3D PointOnPlane3D PositionDriver3D "
-            "Prismatic2D Prismatic3D Rack2D RackAndPinion3D ReducedBody2D ReducedBody3D ReducedPoint RelationTerm "
-            "RelativeLoad2D RelativeMotor2D Revolute2D Revolute3D RevoluteFriction2D RevoluteSpherical3D "
-            "RigidBody2D RigidBody3D RollingDisk3D RollingSphere3D ScalarForce2D ScalarJoint2D Screw3D Servo2D "
-            "SlideFriction2D SlideSpring2D Spherical3D SpringDamper2D SpringDamper3D TableSpring2D "
-            "TorsionSpring2D TorsionSpring3D Universal3D scalar_constraint scalar_force"
+            "PIDController2D PIDController3D Planar3D PointMass2D PointMass3D PointOnLine3D PointOnPlane3D "
+            "PositionDriver3D Prismatic2D Prismatic3D Rack2D RackAndPinion3D ReducedBody2D ReducedBody3D ReducedPoint "
+            "RelationTerm RelativeLoad2D RelativeLoad3D RelativeMotor2D Revolute2D Revolute3D RevoluteFriction2D "
+            "RevoluteFriction3D RevoluteSpherical3D RigidBody2D RigidBody3D RollingDisk3D RollingSphere3D "
+            "ScalarForce2D ScalarJoint2D Screw3D Servo2D Servo3D SlideFriction2D SlideFriction3D SlideSpring2D "
+            "Spherical3D SpringDamper2D SpringDamper3D TableSpring2D TableSpring3D TorsionSpring2D TorsionSpring3D "
+            "Universal3D scalar_constraint scalar_force"
         ),
         ".equations.errors": "EquationError",
         ".equations.system": "EquationSystem GapContact",
@@ -458,7 +472,7 @@ __getattr__, __dir__ = late_names(
         ".shapes.rounds3d": "Ellipsoid3D",
         ".shapes.scalar_contact2d": "ScalarContact2D scalar_contact",
         ".shapes.segment2d": "DiskOnSegment2D Segment2D",
-        ".shapes.stop3d": "AngleStop3D Rope3D SlideStop3D",
+        ".shapes.stop3d": "AngleStop3D DistanceStop3D Rope3D SlideStop3D",
         ".shapes.support3d": "SmoothShape3D support_formula",
         ".tables.redundancy": "RedundantRow",
         ".tolerances": "OfScales",

@@ -13,6 +13,7 @@ from .compiled.image import twin
 from .compiled.notices import compile_notices
 from .description import Model
 from .errors import ModelError
+from .model.said_angle import CountsTurns
 from .run.blueprint import Blueprint, Unstarted, can_be_copied, take_numbers, what_differs
 from .run.simulation import Simulation
 from .tables.assembly import Assembly
@@ -30,7 +31,8 @@ class CompiledModel:
     ----------
     system : the Model or EquationSystem.
     channels : names of its output channels.
-    start_names : names of the start values: coordinates and their rates, as the channels that show them.
+    start_names : names of the start values: coordinates and their rates, as the channels that show them, and angles
+        whose whole turns are counted.
     """
 
     @compile_notices("this model")
@@ -42,7 +44,8 @@ class CompiledModel:
         self.channels = tuple(channel.name for channel in self.channel_records)
         self.t0 = bare.settings.t0
         self._places = _start_places(bare)
-        self.start_names = tuple(self._places)
+        self._counted = counted_names(self.system)
+        self.start_names = (*self._places, *self._counted)
         self._bare = Blueprint(bare) if can_be_copied(bare.assembly) else None
         self._begun: Blueprint | None = None
         self._lock = Lock()
@@ -78,7 +81,7 @@ class CompiledModel:
     def check_start(self, start: Numbers) -> None:
         """Raise ModelError for start values of unknown name, or that are not finite."""
         for name, value in start.items():
-            if name not in self._places:
+            if name not in self.start_names:
                 raise ModelError(f"there is no start value '{name}'; there are {list(self.start_names)}")
             _finite("start value", name, value)
 
@@ -117,8 +120,9 @@ class CompiledModel:
                 self._begun = Blueprint(begun)
             return self._begun.simulation()
         sim = self._bare.simulation()
-        if system is not self.system:
-            assembly = system.assemble()
+        turned = bool(start) and bool(self._counted)
+        if system is not self.system or turned:
+            assembly = system.assemble(start) if turned else system.assemble()
             differs = what_differs(self._assembly, assembly)
             if differs:
                 return self._built_anew(system, start or {})
@@ -147,8 +151,9 @@ class CompiledModel:
         assembly.q0, assembly.v0 = assembly.q0.copy(), assembly.v0.copy()
         values: tuple[NDArray[np.float64], ...] = (assembly.q0, assembly.v0)
         for name, value in start.items():
-            level, index = self._places[name]
-            values[level][index] = value
+            if name in self._places:
+                level, index = self._places[name]
+                values[level][index] = value
         return assembly
 
 
@@ -167,6 +172,12 @@ def compile_model(system: Any, *arguments: Any, **settings: Any) -> CompiledMode
     ModelError : for bad arguments.
     """
     return CompiledModel(system, *arguments, **settings)
+
+
+def counted_names(system: Any) -> tuple[str, ...]:
+    """Names of the angles whose turns a model counts, which coordinates do not tell."""
+    elements = system.elements() if isinstance(system, Model) else ()
+    return tuple(angle.name for e in elements if isinstance(e, CountsTurns) for angle in e.counted_angles())
 
 
 def _start_places(sim: Simulation) -> dict[str, tuple[int, int]]:

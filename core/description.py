@@ -22,6 +22,7 @@ from .model.outputs import MarkerOutput
 from .model.own_types import find_classes, import_paths, own_classes
 from .model.places import inside
 from .model.signals import InputSignal
+from .model.words import an
 from .shapes import Contact
 from .shapes.groups import Group, with_groups
 
@@ -148,8 +149,8 @@ class Model(Record):
             raise ValueError(f"'{element.name}' acts on coordinate '{coordinate}' of the ground, which does not move")
         if coordinate not in body.coordinate_names:
             raise ValueError(
-                f"'{element.name}' acts on coordinate '{coordinate}' of '{body.name}', but a {type(body).__name__} has "
-                f"only {list(body.coordinate_names[:12])}: use a RigidBody2D, or another coordinate"
+                f"'{element.name}' acts on coordinate '{coordinate}' of '{body.name}', but {an(type(body).__name__)} "
+                f"has only {list(body.coordinate_names[:12])}: use a RigidBody2D, or another coordinate"
             )
 
     def elements(self) -> Iterator[Element]:
@@ -289,11 +290,11 @@ class Model(Record):
         except ModelError as error:
             raise ModelError(f"model file '{path}': {with_lines(error, text)}", error.problems) from None
 
-    def assemble(self) -> Any:
-        """The model as flat tables (`Assembly`)."""
+    def assemble(self, start: Mapping[str, float] | None = None) -> Any:
+        """The model as flat tables (`Assembly`); `start` are other values at the start, see there."""
         from .tables.assembly import assemble
 
-        return assemble(self)
+        return assemble(self, start or {})
 
     def identity(self) -> str:
         """What makes this model the same as another: its JSON."""

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .interface_frame3d import InterfaceFrame3D
     from .joint3d import Joint3D
     from .joint_friction2d import RevoluteFriction2D, SlideFriction2D
+    from .joint_friction3d import RevoluteFriction3D, SlideFriction3D
     from .joints3d import (
         AngleDriver3D,
         ConstantVelocity3D,
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from .material_point3d import MaterialPoint3D
     from .moving_frame2d import MovingFrame2D
     from .pid_controller2d import PIDController2D
+    from .pid_controller3d import PIDController3D
     from .planar_body import PlanarBody, PlanarFrame, PointMass2D, RigidBody2D
     from .prismatic2d import Prismatic2D
     from .rack2d import Rack2D
@@ -61,17 +63,20 @@ if TYPE_CHECKING:
     from .reduced_body3d import Interface3D, ReducedBody3D
     from .relation3d import Gear3D, RackAndPinion3D, Relation3D, Screw3D
     from .relative_load2d import RelativeLoad2D
+    from .relative_load3d import RelativeLoad3D
     from .relative_motor2d import RelativeMotor2D
     from .revolute2d import Revolute2D
     from .rolling_joints3d import RollingDisk3D, RollingSphere3D
     from .scalar_force2d import ScalarForce2D, scalar_force
     from .scalar_joint2d import ScalarJoint2D, scalar_constraint
     from .servo2d import Servo2D
+    from .servo3d import Servo3D
     from .slide_spring2d import SlideSpring2D
     from .spatial_body import PointMass3D, RigidBody3D, SpatialFrame
     from .spring_damper2d import SpringDamper2D
     from .spring_damper3d import AxialSpring3D, SpringDamper3D, TorsionSpring3D
     from .table_spring2d import TableSpring2D
+    from .table_spring3d import TableSpring3D
     from .torsion_spring2d import TorsionSpring2D
 
 BODIES = LateClasses(
@@ -90,7 +95,8 @@ FORCES = LateClasses(
     __name__,
     "SpringDamper2D TableSpring2D TorsionSpring2D SlideSpring2D RevoluteFriction2D SlideFriction2D Bushing2D "
     "Servo2D RelativeLoad2D PIDController2D AppliedForce2D AppliedTorque2D CoordinateLoad AppliedForce3D "
-    "AppliedTorque3D AxialSpring3D SpringDamper3D TorsionSpring3D Bushing3D",
+    "AppliedTorque3D AxialSpring3D SpringDamper3D TorsionSpring3D Bushing3D TableSpring3D RevoluteFriction3D "
+    "SlideFriction3D Servo3D RelativeLoad3D PIDController3D",
 )
 
 Body = Annotated[BodyElement, OpenUnion(BODIES, BodyElement)]
@@ -146,6 +152,7 @@ __all__ = [
     "MaterialPoint3D",
     "MovingFrame2D",
     "PIDController2D",
+    "PIDController3D",
     "Planar3D",
     "PlanarBody",
     "PlanarFrame",
@@ -164,10 +171,12 @@ __all__ = [
     "Relation3D",
     "RelationTerm",
     "RelativeLoad2D",
+    "RelativeLoad3D",
     "RelativeMotor2D",
     "Revolute2D",
     "Revolute3D",
     "RevoluteFriction2D",
+    "RevoluteFriction3D",
     "RevoluteSpherical3D",
     "RigidBody2D",
     "RigidBody3D",
@@ -177,13 +186,16 @@ __all__ = [
     "ScalarJoint2D",
     "Screw3D",
     "Servo2D",
+    "Servo3D",
     "SlideFriction2D",
+    "SlideFriction3D",
     "SlideSpring2D",
     "SpatialFrame",
     "Spherical3D",
     "SpringDamper2D",
     "SpringDamper3D",
     "TableSpring2D",
+    "TableSpring3D",
     "TorsionSpring2D",
     "TorsionSpring3D",
     "Universal3D",
@@ -216,6 +228,7 @@ __getattr__, __dir__ = late_names(
         ".interface_frame3d": "InterfaceFrame3D",
         ".joint3d": "Joint3D",
         ".joint_friction2d": "RevoluteFriction2D SlideFriction2D",
+        ".joint_friction3d": "RevoluteFriction3D SlideFriction3D",
         ".joints3d": (
             "AngleDriver3D ConstantVelocity3D Cylindrical3D Distance3D Fixed3D Planar3D PointOnLine3D "
             "PointOnPlane3D PositionDriver3D Prismatic3D Revolute3D RevoluteSpherical3D Spherical3D Universal3D"
@@ -226,6 +239,7 @@ __getattr__, __dir__ = late_names(
         ".material_point3d": "MaterialPoint3D",
         ".moving_frame2d": "MovingFrame2D",
         ".pid_controller2d": "PIDController2D",
+        ".pid_controller3d": "PIDController3D",
         ".planar_body": "PlanarBody PlanarFrame PointMass2D RigidBody2D",
         ".prismatic2d": "Prismatic2D",
         ".rack2d": "Rack2D",
@@ -233,17 +247,20 @@ __getattr__, __dir__ = late_names(
         ".reduced_body3d": "Interface3D ReducedBody3D",
         ".relation3d": "Gear3D RackAndPinion3D Relation3D Screw3D",
         ".relative_load2d": "RelativeLoad2D",
+        ".relative_load3d": "RelativeLoad3D",
         ".relative_motor2d": "RelativeMotor2D",
         ".revolute2d": "Revolute2D",
         ".rolling_joints3d": "RollingDisk3D RollingSphere3D",
         ".scalar_force2d": "ScalarForce2D scalar_force",
         ".scalar_joint2d": "ScalarJoint2D scalar_constraint",
         ".servo2d": "Servo2D",
+        ".servo3d": "Servo3D",
         ".slide_spring2d": "SlideSpring2D",
         ".spatial_body": "PointMass3D RigidBody3D SpatialFrame",
         ".spring_damper2d": "SpringDamper2D",
         ".spring_damper3d": "AxialSpring3D SpringDamper3D TorsionSpring3D",
         ".table_spring2d": "TableSpring2D",
+        ".table_spring3d": "TableSpring3D",
         ".torsion_spring2d": "TorsionSpring2D",
     },
 )

@@ -8,9 +8,10 @@ from typing import Any, ClassVar, Protocol
 from ..model.base import Name, Vector3
 from ..model.channels import Channel
 from ..model.derived import Derived
-from ..model.markers import Marker, Marker2D
+from ..model.markers import Marker, Marker2D, Marker3D
 from ..model.open_union import OpenRecord
 from ..model.signals import Signal
+from ..model.words import an
 from .coordinate import Coordinate
 
 NO_INPUTS: Mapping[str, float] = MappingProxyType({})
@@ -65,6 +66,11 @@ class Numbering(Protocol):
 
     def start(self, marker: Marker) -> tuple[float, ...]:
         """Those of a marker's body."""
+        ...
+
+    def start_angle(self, a: Marker3D, b: Marker3D, user: str | None = None) -> float:
+        """Angle of marker b about the z axis of marker a at the start, rad, whole turns included (`start_angle3d`);
+        `user` is the name of an element that acts on it."""
         ...
 
     def signal(self, signal: Signal) -> int:
@@ -261,13 +267,13 @@ class BodyElement(Element):
         kind = type(self).__name__
         if self.carries is None:
             raise ValueError(
-                f"'{user}' needs a point of '{self.name}', but a {kind} has only its coordinates "
+                f"'{user}' needs a point of '{self.name}', but {an(kind)} has only its coordinates "
                 f"{list(self.coordinate_names[:12])}: act on one of these by name (CoordinateDriver, "
                 "CoordinateLoad), on a MaterialPoint2D of a flexible body, or use a RigidBody2D"
             )
         if not isinstance(marker, self.carries):
             raise ValueError(
-                f"'{user}' puts a {type(marker).__name__} on '{self.name}', but a {kind} carries "
+                f"'{user}' puts {an(type(marker).__name__)} on '{self.name}', but {an(kind)} carries "
                 f"{self.carries.__name__}s: elements of the plane (2D) go with planar bodies, those of space (3D) with "
                 "spatial ones"
             )

@@ -1,11 +1,13 @@
 """Linear bushing in space between two markers: six forces from six deflections, along the axes of marker a.
 
-z = (s, f): s_k = a_k . (x_b - x_a), and f = 2 sign(e0) e with (e0, e) the Euler parameters of marker b seen from marker
-a, which is the rotation vector while it is small. Forces are -(dz/dq)^T (K z + C z'): those of an energy z.K z/2 and
-of damping that never feeds energy, for deflections of any size. f is bilinear in both bodies' Euler parameters.
+z = (s, f): s_k = a_k . (x_b - x_a), and f = 2 e with (e0, e) the Euler parameters of marker b seen from marker a, of
+both signs that with e0 > 0 at the start. f is the rotation vector while it is small; about one axis it is
+2 sin(angle/2). Forces are -(dz/dq)^T (K z + C z'): those of an energy z.K z/2 and of damping that never feeds energy,
+for deflections of any size and any number of turns, since e goes on smoothly through half a turn. f is bilinear in both
+bodies' Euler parameters.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -15,15 +17,18 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.attitude import Vector4
+from ..model.attitude import product as seen
 from ..model.rotation3d import body_axes, four
 from ..rounding import SYMMETRY
-from .base import Numbering, Row
+from .base import BodyElement, Numbering, Row
 from .measure3d import columns_of, coordinates_of, place_of, product
-from .spring_damper3d import FULL, Pair3D
+from .measured_force3d import FULL, Pair3D
+from .turning_bodies import refuse_points
 
 Vector6 = tuple[float, float, float, float, float, float]
 Matrix6 = tuple[Vector6, Vector6, Vector6, Vector6, Vector6, Vector6]
 NONE: Vector6 = (0.0,) * 6
+SIGN = 106
 
 
 @internal
@@ -44,11 +49,12 @@ def _unit(j: int) -> Any:
 
 @internal
 def tilt_of(q: Any, coord: Any, par: Any, k: int, gradient: Any, hessian: Any) -> float:
-    """f_k, with its derivatives. Parameters behind those of the markers: the Euler parameters of both (8)."""
+    """f_k, with its derivatives. Parameters behind those of the markers: the Euler parameters of both (8); last of all
+    twice the sign of e0 at the start."""
     p, s = four(q, coord, 3, par[0]), four(q, coord, 10, par[1])
     m, w = (par[26], par[27], par[28], par[29]), (par[30], par[31], par[32], par[33])
     a, b = seen_from(p, m), seen_from(s, w)
-    sign = 2.0 if a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] >= 0.0 else -2.0
+    sign = par[SIGN]
     gradient[:] = 0.0
     hessian[:, :] = 0.0
     # f = 2 G(a) b = -2 G(b) a, and the columns of a by p are those of unit parameters
@@ -74,7 +80,7 @@ def tilt_of(q: Any, coord: Any, par: Any, k: int, gradient: Any, hessian: Any) -
 
 @internal
 def bushing3d_kernel(job: int, t: float, b: Any) -> None:
-    par, coord, extra = mat(b.par, b.count, 106), imat(b.coord, b.count, 14), imat(b.extra, b.count, 1)
+    par, coord, extra = mat(b.par, b.count, SIGN + 1), imat(b.coord, b.count, 14), imat(b.extra, b.count, 1)
     q, v = vec(b.q, b.n_extended), vec(b.v, b.n_extended)
     z, rate, force = np.empty(6), np.empty(6), np.empty(6)
     gradient, hessian = np.empty((6, 14)), np.empty((6, 14, 14))
@@ -123,8 +129,9 @@ class Bushing3D(Pair3D):
     """Elastic bushing: pulls marker `b` to marker `a` and its axes to those of `a`, with six stiffnesses and dampings.
 
     In the order x, y, z (N/m, N s/m), about x, about y, about z (N m/rad, N m s/rad), along the axes of marker a; or as
-    matrices of six rows, which couple them. It is meant for turns of less than half a turn: there its torque changes
-    sign at once.
+    matrices of six rows, which couple them. Its angles are 2 sin(angle/2): about one axis a stiffness k gives the
+    torque k sin(angle), largest at a quarter of a turn and zero at half of one. A coupling of turns with displacements
+    changes its sign after a whole turn.
     """
 
     type: Literal["Bushing3D"] = "Bushing3D"
@@ -154,11 +161,16 @@ class Bushing3D(Pair3D):
                 )
         return self
 
+    def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
+        refuse_points(self.name, self.markers(), bodies, "use springs between points, or a RigidBody3D")
+
     def row(self, numbering: Numbering) -> Row:
+        of_a, of_b = (seen(numbering.start(m)[3:7], m.attitude.parameters()) for m in (self.a, self.b))
+        sign = 2.0 if float(np.dot(of_a, of_b)) >= 0.0 else -2.0
         own: tuple[Vector4, Vector4] = (self.a.attitude.parameters(), self.b.attitude.parameters())
         parameters = (
             *columns_of(self.a, self.b, numbering), *own[0], *own[1], *_matrix(self.stiffness).ravel().tolist(),
-            *_matrix(self.damping).ravel().tolist(),
+            *_matrix(self.damping).ravel().tolist(), sign,
         )  # fmt: skip
         return Row(parameters, coordinates_of(self.a, self.b, numbering), (numbering.work("dampers"),))
 

@@ -73,6 +73,7 @@ class Dot1(Primitive):
     axis_a: Axis
     axis_b: Axis
     value: float = 0.0
+    holds_axes: ClassVar[bool] = True
     load: ClassVar[Any] = dot1_load
     form: ClassVar[Form] = Form(dot1_3d_kernel, 1, ROTATIONS, BY_ROTATION)
 

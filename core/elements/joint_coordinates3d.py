@@ -1,14 +1,16 @@
-"""Channels of a joint in space that turns about the z axis of its markers, or slides along it."""
+"""The ways in which a joint in space moves, turning about an axis or sliding along one, and their channels."""
 
 import math
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
 from ..compiled.jit import internal
+from ..model.attitude import EulerParameters, product
 from ..model.channels import Channel
 from ..model.derived import NOT_KNOWN, Derived, Places
 from ..model.frame3d import ARM, FRAME, Frame3D, four_of, in_space, point_of, three_of, vector_of
+from ..model.markers import Marker3D
 from ..model.rotation3d import along, cross, dot, less, plus, space_rate, times, turning
-from .turn3d import account_of
 
 TURN = 2.0 * math.pi
 VELOCITY, ACCOUNT = 2 * FRAME, 4 * FRAME
@@ -60,20 +62,41 @@ class _JointCoordinate(Derived):
         return [*found, *(at.work(name) for name in self.accounts)]
 
 
+@dataclass(frozen=True)
+class JointCoordinate:
+    """One way in which a joint moves: the angle of marker b about the z axis of marker a, or its place along it.
+
+    The markers are on the bodies of the joint's own, turned so that the z axis is the axis of this motion; of the angle
+    about an axis that is fixed to the second body, marker a is there.
+    """
+
+    name: str
+    """Its channel is JOINT.name."""
+    rate: str
+    """That of its rate."""
+    kind: Literal["angle", "place"]
+    a: Marker3D
+    b: Marker3D
+    text: str
+    """What it is."""
+    account: str = ""
+    """Of an angle: the name of the account that counts its turns (`turn3d`) is that of an element of this name."""
+
+
 class JointAngle(_JointCoordinate):
     """Angle (rad) from the x axis of marker a to that of marker b about the z axis of marker a, and its rate.
 
-    The axes tell it but for whole turns; the joint's account tells these. `start` is the angle at its beginning.
+    The axes tell it but for whole turns; the account `account` tells these. `start` is the angle at its beginning.
     """
 
     kernel = joint_angle
 
-    def __init__(self, name: str, a: Frame3D, b: Frame3D, start: float) -> None:
+    def __init__(self, joint: str, of: JointCoordinate, a: Frame3D, b: Frame3D, start: float, account: str) -> None:
         super().__init__(a, b)
-        self._start, self.accounts = start, (account_of(name),)
+        self._start, self.accounts = start, (account,)
         self.channels = (
-            Channel(f"{name}.angle", "rad", f"angle of {name}, turns counted"),
-            Channel(f"{name}.angular_velocity", "rad/s", f"rate of the angle of {name}"),
+            Channel(f"{joint}.{of.name}", "rad", f"{of.text} of {joint}, turns counted"),
+            Channel(f"{joint}.{of.rate}", "rad/s", f"rate of the {of.text} of {joint}"),
         )
 
     def numbers(self) -> list[float]:
@@ -85,12 +108,24 @@ class JointPosition(_JointCoordinate):
 
     kernel = joint_position
 
-    def __init__(self, name: str, a: Frame3D, b: Frame3D) -> None:
+    def __init__(self, joint: str, of: JointCoordinate, a: Frame3D, b: Frame3D) -> None:
         super().__init__(a, b)
         self.channels = (
-            Channel(f"{name}.position", "m", f"place of b along the axis of {name}"),
-            Channel(f"{name}.velocity", "m/s", f"rate of the position of {name}"),
+            Channel(f"{joint}.{of.name}", "m", f"{of.text} of {joint}"),
+            Channel(f"{joint}.{of.rate}", "m/s", f"rate of the {of.text} of {joint}"),
         )
 
     def numbers(self) -> list[float]:
         return [*self._a.marker.point, *self._b.marker.point, *self._a.axes()[6:]]
+
+
+def turned_marker(marker: Marker3D, z: Literal["x", "y", "z", "-y"]) -> Marker3D:
+    """The same place with other axes: the new z axis is this one of the old axes; of "x" the new x axis is the old y,
+    of "y" the old z, of "-y" the old x."""
+    parameters = {
+        "x": (0.5, 0.5, 0.5, 0.5), "y": (0.5, -0.5, -0.5, -0.5), "-y": (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0),
+    }  # fmt: skip
+    if z == "z":
+        return marker
+    attitude = EulerParameters(values=product(marker.attitude.parameters(), parameters[z]))
+    return Marker3D(body=marker.body, point=marker.point, attitude=attitude)

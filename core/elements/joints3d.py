@@ -3,18 +3,21 @@
 Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4, has the same table.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
+from ..model.said_angle import SaidAngle
 from ..model.signals import Constant, Signal, Step
 from .distance3d import Separation
 from .dot1_3d import Dot1
 from .dot2_3d import Dot2
-from .joint3d import Joint3D
+from .joint3d import Joint3D, TurningJoint3D
+from .joint_coordinates3d import JointCoordinate, turned_marker
 from .point3d import Point
 from .primitive3d import Axis, Primitive
+from .start_angle3d import value_at_start
 from .twist3d import Twist
 
 _PARALLEL = (Dot1("z", "x"), Dot1("z", "y"))
@@ -36,11 +39,10 @@ class Spherical3D(Joint3D):
         return (Point(),)
 
 
-class Revolute3D(Joint3D):
+class Revolute3D(TurningJoint3D):
     """Hinge: the points and the z axes of both markers are one (5 rows)."""
 
     type: Literal["Revolute3D"] = "Revolute3D"
-    turns: ClassVar[bool] = True
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
 
     def primitives(self) -> Sequence[Primitive]:
@@ -48,9 +50,28 @@ class Revolute3D(Joint3D):
 
 
 class Universal3D(Joint3D):
-    """Cardan joint: the points are one, and the x axis of marker a stays across the y axis of marker b (4 rows)."""
+    """Cardan joint: the points are one, and the x axis of marker a stays across the y axis of marker b (4 rows).
+
+    Coordinates: `angle_1` of the cross about the x axis of marker a, `angle_2` of b about its y axis, the cross's other
+    arm; b's axes are those of a turned by the first about x and then by the second about y.
+    """
 
     type: Literal["Universal3D"] = "Universal3D"
+    across: ClassVar[Sequence[tuple[Axis, Axis]]] = (("x", "y"),)
+
+    def coordinates(self) -> Sequence[JointCoordinate]:
+        first, second, name = "angle about x of marker a", "angle about y of marker b", self.name
+        return (
+            JointCoordinate(
+                "angle_1", "angular_velocity_1", "angle", turned_marker(self.a, "x"), turned_marker(self.b, "x"),
+                first, f"{name}.1",
+            ),
+            # seen from b, about its y axis backwards
+            JointCoordinate(
+                "angle_2", "angular_velocity_2", "angle", turned_marker(self.b, "-y"), turned_marker(self.a, "-y"),
+                second, f"{name}.2",
+            ),
+        )  # fmt: skip
 
     def primitives(self) -> Sequence[Primitive]:
         return (Point(), _NO_TURN)
@@ -77,11 +98,10 @@ class Fixed3D(Joint3D):
         return (Point(), *_PARALLEL, _NO_TURN)
 
 
-class Cylindrical3D(Joint3D):
+class Cylindrical3D(TurningJoint3D):
     """The z axes of both markers are one line, along which and about which b moves (4 rows)."""
 
     type: Literal["Cylindrical3D"] = "Cylindrical3D"
-    turns: ClassVar[bool] = True
     slides: ClassVar[bool] = True
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
 
@@ -100,12 +120,20 @@ class Prismatic3D(Joint3D):
         return (*_PARALLEL, _NO_TURN, *_ON_AXIS)
 
 
-class Planar3D(Joint3D):
-    """The xy planes of both markers are one, in which b moves and turns (3 rows)."""
+class Planar3D(TurningJoint3D):
+    """The xy planes of both markers are one, in which b moves and turns (3 rows). Coordinates: the place of b along
+    the x and y axes of marker a, and its angle."""
 
     type: Literal["Planar3D"] = "Planar3D"
-    turns: ClassVar[bool] = True
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
+
+    def coordinates(self) -> Sequence[JointCoordinate]:
+        x, y = turned_marker(self.a, "x"), turned_marker(self.a, "y")
+        return (
+            *super().coordinates(),
+            JointCoordinate("x", "vx", "place", x, self.b, "place of b along x"),
+            JointCoordinate("y", "vy", "place", y, self.b, "place of b along y"),
+        )
 
     def primitives(self) -> Sequence[Primitive]:
         return (*_PARALLEL, Dot2("z"))
@@ -193,7 +221,11 @@ class AngleDriver3D(_Driven):
 
     type: Literal["AngleDriver3D"] = "AngleDriver3D"
     angle: Signal
-    """rad over time."""
+    """rad over time; its value at the start says whole turns for all that counts turns about the same axis."""
+
+    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+        """What it says of the angle at the start."""
+        return (SaidAngle(self.a, self.b, value_at_start(self.angle, inputs), f"'{self.name}'"),)
 
     def primitives(self) -> Sequence[Primitive]:
         return (Twist(("x", "x"), ("y", "x"), self.angle),)

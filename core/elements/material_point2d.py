@@ -18,6 +18,7 @@ from ..compiled.views import imat, mat, vec
 from ..model.base import Name, Vector2
 from ..model.channels import Channel
 from ..model.markers import GROUND
+from ..model.words import an
 from .base import NO_INPUTS, BodyElement, Form, Numbering, Row
 from .coordinate import Coordinate
 from .flexible_body import FlexibleBody, PointShape
@@ -178,7 +179,7 @@ class MaterialPoint2D(PlanarFrame):
         body = bodies.get(self.body)
         if not isinstance(body, FlexibleBody):
             flexible = sorted(name for name, b in bodies.items() if isinstance(b, FlexibleBody))
-            what = "does not exist" if body is None else f"is a {type(body).__name__}, which has none"
+            what = "does not exist" if body is None else f"is {an(type(body).__name__)}, which has none"
             raise ValueError(f"'{self.name}' is a material point of '{self.body}', which {what}: name a flexible body "
                              f"({flexible or 'there is none yet'}), or put a Marker2D on a rigid body")  # fmt: skip
         body.material_point(self.point)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import TypeVar
 
+from ..model.words import an
 from .base import BodyElement
 
 Body = TypeVar("Body", bound=BodyElement)
@@ -16,7 +17,7 @@ def body_named(user: str, place: str, name: str, kind: type[Body], bodies: Mappi
     body = bodies.get(name)
     if not isinstance(body, kind):
         found = sorted(other for other, b in bodies.items() if isinstance(b, kind))
-        what = "does not exist" if body is None else f"is a {type(body).__name__}"
+        what = "does not exist" if body is None else f"is {an(type(body).__name__)}"
         raise ValueError(f"'{user}' is {place} of '{name}', which {what}: name a {kind.__name__} "
                          f"({found or 'there is none yet'}), or use a Marker3D on a rigid body")  # fmt: skip
     return body

@@ -14,7 +14,6 @@ from typing import Any, Literal
 
 from pydantic import model_validator
 
-from ..compiled.jit import inlined
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive
@@ -24,7 +23,7 @@ from .base import ForceElement, Form, Numbering, PairElement2D, Row
 from .formula2d import MARKER_COLUMNS, Arguments, caller_of, form_ahead
 from .geometry2d import add_hessian, add_product, along
 from .measures2d import MEASURES, Measure
-from .servo2d import FULL, saturated
+from .saturation import saturated, slope_rate
 
 KIND = "pid_controller2d"
 ENDS, SENSORS = Arguments(("a", "b"), ()), Arguments(("sensing_a", "sensing_b"), ())
@@ -32,15 +31,6 @@ WIDTH = 6
 """Coordinates of two markers: the driven ones come first, then those that are sensed, then z."""
 STATE = 2 * WIDTH
 SIZE = STATE + 1
-
-
-@inlined
-def slope_rate(force: float, limit: float) -> float:
-    """How the slope of `saturated` changes with the asked force."""
-    part = force / limit
-    if abs(part) > FULL:
-        return 0.0
-    return -9.0 * part**7 / limit * (1.0 + part**8) ** -2.125
 
 
 @cache

@@ -1,7 +1,8 @@
 """Joints in space that tie two coordinates of joints together: Phi = c_1 x_1 + c_2 x_2 - (its value at the start).
 
-x is an angle about or a place along the z axis of a marker, turns counted. What the joint exerts on the bodies follows
-from the gradients of both.
+x is an angle about or a place along the z axis of a marker, turns counted; only how far it has gone since the start
+matters, so that nobody need say with how many turns it starts. What the joint exerts on the bodies follows from the
+gradients of both.
 """
 
 import math
@@ -15,11 +16,16 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
+from ..model.derived import Derived
 from ..model.markers import Marker3D
+from ..model.said_angle import CountedAngle
 from .base import BodyElement, Form, JointElement, Numbering, Part, Row
+from .joint3d import channels_of, ends_of
+from .joint_coordinates3d import JointCoordinate
 from .measure3d import ANGLE, PLACE, columns_of, coordinates_of, measure, product
 from .spatial_body import angle_between, start_of_marker
 from .turn3d import LOOSE, account_of, turn_part
+from .turning_bodies import refuse_points
 
 Pair = tuple[Marker3D, Marker3D]
 
@@ -90,6 +96,9 @@ class Relation3D(JointElement):
                     f"'{self.name}' needs the motion of a marker on '{b.body}' as seen from another body, but both of "
                     "its markers are there: put the one whose z axis is the axis on the frame or the ground"
                 )
+        for _, kind, pair in self.terms():
+            if kind == ANGLE:
+                refuse_points(self.name, pair, bodies, "use a RigidBody3D")
 
     def parts(self, numbering: Numbering) -> Sequence[Part]:
         parameters: list[float] = []
@@ -198,6 +207,24 @@ class Screw3D(Relation3D):
 
     def terms(self) -> Sequence[tuple[float, int, Pair]]:
         return (-self.lead / (2.0 * math.pi), ANGLE, (self.a, self.b)), (1.0, PLACE, (self.a, self.b))
+
+    def coordinates(self) -> Sequence[JointCoordinate]:
+        """The ways in which it moves that have channels."""
+        return (
+            JointCoordinate("angle", "angular_velocity", "angle", self.a, self.b, "angle", f"{self.name}.1"),
+            JointCoordinate("position", "velocity", "place", self.a, self.b, "place of b along the axis"),
+        )
+
+    def ends_of(self, coordinate: str) -> dict[str, Marker3D]:
+        """Markers `a` and `b` of "angle" or "position", for what acts on it. Raises ModelError for any other."""
+        return ends_of(self.name, "Screw3D", self.coordinates(), coordinate)
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """Its angle."""
+        return (CountedAngle(f"{self.name}.angle", self.a, self.b),)
+
+    def derived_channels(self, numbering: Numbering, rows: Sequence[int]) -> Sequence[Derived]:
+        return channels_of(self.name, self.coordinates(), numbering)
 
     def multiplier_channels(self) -> Sequence[Channel]:
         return (Channel(f"{self.name}.thread_force", "N", "axial force of the body b on the thread of a"),)

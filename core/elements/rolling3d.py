@@ -295,6 +295,7 @@ class Rolling(Primitive):
     """Of the circle about which the rim is rounded, m; 0: a sphere."""
     rim_radius: float
     """Of the rounding, m; 0: a sharp rim."""
+    holds_axes: ClassVar[bool] = True
     load: ClassVar[Any] = rolling_load
     form: ClassVar[Form] = Form(
         rolling3d_kernel,

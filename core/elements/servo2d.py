@@ -7,14 +7,12 @@ A servo that saturates gives F (1 + (F/L)^8)^(-1/8) instead, L its largest force
 5e-4), and no more than L. It is smooth, so that nothing has to be located.
 """
 
-import math
 from collections.abc import Sequence
 from functools import cache
 from typing import Any, Literal
 
 from pydantic import model_validator
 
-from ..compiled.jit import inlined
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import NonNegative, Positive
@@ -24,20 +22,9 @@ from .formula2d import MARKER_COLUMNS, Arguments, caller_of
 from .geometry2d import add_hessian, add_product, along
 from .measured2d import MeasuredElement2D
 from .measures2d import MEASURES
+from .saturation import saturated
 
 KIND = "servo2d"
-FULL = 1e4
-"""Asked force over the largest one beyond which the difference from that is below rounding."""
-
-
-@inlined
-def saturated(force: float, limit: float) -> tuple[float, float]:
-    """The force that comes out of an asked one, and how much of a change of that comes out."""
-    part = force / limit
-    if abs(part) > FULL:
-        return math.copysign(limit, force), 0.0
-    spare = 1.0 / (1.0 + part**8)
-    return force * spare**0.125, spare**1.125
 
 
 @cache

@@ -12,21 +12,7 @@ from ..model.base import NonNegative
 from ..model.signals import INPUT_SIZE, Table, evaluate_signal
 from .base import ForceElement, Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, add_hessian, add_product, along, distance
-
-
-@internal
-def _energy(pool: Any, offset: int, length: float) -> float:
-    """Integral of the spline from its first length, J: the four coefficients of each interval follow the lengths."""
-    n, total = int(pool[offset + 1]), 0.0
-    knots = pool[offset + 2 : offset + 2 + n]
-    for i in range(n - 1):
-        last = i == n - 2
-        x = (length if last or length < knots[i + 1] else knots[i + 1]) - knots[i]
-        c = offset + 2 + n + 4 * i
-        total += x * (pool[c + 3] + x * (pool[c + 2] / 2.0 + x * (pool[c + 1] / 3.0 + x * pool[c] / 4.0)))
-        if last or length < knots[i + 1]:
-            break
-    return total
+from .table_energy import energy_of_table
 
 
 @internal
@@ -51,7 +37,7 @@ def table_spring2d_kernel(job: int, t: float, b: Any) -> None:
             by_value, by_rate = coef[0] * stiffness + coef[1] * c, coef[0] * c
             add_product(values, slot, gradient, gradient, hessian, v, coord[e], by_value, by_rate)
         elif job == ENERGY:
-            vec(b.energy, 3)[2] += _energy(pool, extra[e, 0], length)
+            vec(b.energy, 3)[2] += energy_of_table(pool, extra[e, 0], length)
         elif job == POWER:
             vec(b.a, b.n_extended)[extra[e, 1]] += c * rate * rate
 

@@ -107,6 +107,7 @@ class Twist(Primitive):
     second: tuple[Axis, Axis]
     angle: Signal | None = None
     """f, rad."""
+    holds_axes: ClassVar[bool] = True
     load: ClassVar[Any] = twist_load
     form: ClassVar[Form] = Form(twist3d_kernel, 1, ROTATIONS, BY_ROTATION)
 

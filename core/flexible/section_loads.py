@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..between import Between
 from ..elements.flexible_body import FlexibleBody, Section
 from ..errors import ModelError
+from ..model.words import an
 
 if TYPE_CHECKING:
     from ..results.result import Result
@@ -101,7 +102,7 @@ def stress(
     found = section(result, body, points, times)
     if found.axial_force.size and np.all(np.isnan(found.axial_force)):
         raise ModelError(
-            f"stress in '{body.name}' needs its axial force, which a {type(body).__name__} tells only with "
+            f"stress in '{body.name}' needs its axial force, which {an(type(body).__name__)} tells only with "
             "axial_stiffness and axial_modes (or an axial attachment): give it these, or ask for bending_stress alone"
         )
     return found.axial_force / area - found.bending_moment * height / second_moment

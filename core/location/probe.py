@@ -41,11 +41,14 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
     own["asleep"] = np.zeros(count, dtype=np.int64)
     near, probes = np.zeros((count, NEAR_SIZE), dtype=np.int64), np.zeros(count, BATCH)
     near[:, KIND] = EQUATIONS
+    scattered: set[int] = set()
     for number, batch in enumerate(assembly.batches):
-        for k in np.unique(batch.contact[batch.contact >= 0]):
+        for k in np.unique(batch.contact[batch.contact >= 0]).tolist():
             elements = np.flatnonzero(batch.contact == k)
-            if probes[k]["count"] or elements[-1] - elements[0] != len(elements) - 1:
-                near[k] = EQUATIONS, 0, 0  # in pieces here and there
+            if k in scattered or probes[k]["count"] or elements[-1] - elements[0] != len(elements) - 1:
+                # in pieces here and there: nobody looks at these, and no address of one may stay
+                scattered.add(k)
+                near[k], probes[k] = (EQUATIONS, 0, 0), np.zeros((), BATCH)
                 continue
             probes[k] = workspace.batch_table(number)
             for name in ("slot_s", "slot_j", "slot_jt", "values"):

@@ -1,9 +1,11 @@
 """Attitudes in space: where a frame's axes point, said in one of several ways, and their Euler parameters.
 
 p = (e0, e1, e2, e3), a unit vector; the rotation matrix A(p) has the frame's axes as columns. p and -p mean the same.
+Angles that a way is said by may be larger than half a turn; `turns` are these, which Euler parameters do not tell.
 """
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Annotated, Literal
 
@@ -16,6 +18,9 @@ from .base import Record, Vector3
 
 Vector4 = tuple[float, float, float, float]
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+Turn = tuple[Vector3, float]
+"""Unit axis and angle, rad."""
+SEQUENCE = re.compile(r"[xyz]{3}")
 
 
 def product(p: Sequence[float], q: Sequence[float]) -> Vector4:
@@ -84,6 +89,10 @@ class EulerParameters(Record):
         """Euler parameters of norm 1."""
         return _unit(self.values)
 
+    def turns(self) -> Sequence[Turn]:
+        """The turns that it is said by: none."""
+        return ()
+
 
 class RotationVector(Record):
     """The attitude by a turn about one axis: the vector's direction is the axis, its length the angle, rad."""
@@ -98,6 +107,14 @@ class RotationVector(Record):
         part = 0.5 if angle == 0.0 else math.sin(0.5 * angle) / angle
         return _unit((math.cos(0.5 * angle), *(part * x for x in self.vector)))
 
+    def turns(self) -> Sequence[Turn]:
+        """The turn that it is said by."""
+        angle = math.hypot(*self.vector)
+        if angle == 0.0:
+            return ()
+        x, y, z = self.vector
+        return (((x / angle, y / angle, z / angle), angle),)
+
 
 class AxisAngles(Record):
     """The attitude by three turns in a row, each about an axis of the frame as it is turned by then.
@@ -106,13 +123,19 @@ class AxisAngles(Record):
     """
 
     type: Literal["AxisAngles"] = "AxisAngles"
-    sequence: Annotated[str, Field(pattern=r"^[xyz]{3}$")] = "xyz"
+    sequence: Annotated[str, Field(json_schema_extra={"pattern": f"^{SEQUENCE.pattern}$"})] = "xyz"
     """Axes of the three turns."""
     angles: Vector3
     """rad."""
 
     @model_validator(mode="after")
     def _check(self) -> "AxisAngles":
+        if not SEQUENCE.fullmatch(self.sequence):
+            raise ValueError(
+                f"sequence {self.sequence!r} must be three small letters out of x, y and z, one for each turn: 'zxz' "
+                "(Euler's angles), 'xyz' (Cardan's), 'zyx' (yaw, pitch, roll) or any other without a letter twice "
+                "running"
+            )
         if self.sequence[0] == self.sequence[1] or self.sequence[1] == self.sequence[2]:
             raise ValueError(
                 f"sequence '{self.sequence}' turns about one axis twice running, which is one turn: take another axis "
@@ -127,6 +150,17 @@ class AxisAngles(Record):
             x, y, z = (math.sin(0.5 * angle) * part for part in AXES[axis])
             p = product(p, (math.cos(0.5 * angle), x, y, z))
         return _unit(p)
+
+    def turns(self) -> Sequence[Turn]:
+        """The turns that it is said by, about axes of the frame around it."""
+        p: Vector4 = (1.0, 0.0, 0.0, 0.0)
+        found: list[Turn] = []
+        for axis, angle in zip(self.sequence, self.angles, strict=True):
+            x, y, z = (rotation_matrix(_unit(p)) @ AXES[axis]).tolist()
+            found.append(((x, y, z), angle))
+            u, v, w = (math.sin(0.5 * angle) * part for part in AXES[axis])
+            p = product(p, (math.cos(0.5 * angle), u, v, w))
+        return found
 
 
 class Axes(Record):
@@ -166,6 +200,10 @@ class Axes(Record):
         x = near - (near @ z) * z
         x /= np.linalg.norm(x)
         return parameters_of_matrix(np.stack([x, np.cross(z, x), z], axis=1))
+
+    def turns(self) -> Sequence[Turn]:
+        """The turns that it is said by: none."""
+        return ()
 
 
 Attitude = Annotated[EulerParameters | RotationVector | AxisAngles | Axes, Field(discriminator="type")]

@@ -6,6 +6,8 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from .words import an
+
 LONGEST = 60
 """Characters of a value that are shown."""
 ALONE = "must be a list: write a single one in brackets, [...]"
@@ -111,7 +113,7 @@ def _called(kind: str, name: Any) -> str:
 
 def shown(given: Any) -> str:
     if isinstance(given, BaseModel):
-        return f"a {_called(type(given).__name__, _get(given, 'name'))}"
+        return an(_called(type(given).__name__, _get(given, "name")))
     text = repr(given)
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 

@@ -13,6 +13,7 @@ from ..elements import (
     BodyElement,
     Cable2D,
     Cable3D,
+    Element,
     FloatingBody2D,
     InterfaceFrame3D,
     LinearSystem,
@@ -25,8 +26,12 @@ from ..elements import (
     RigidBody2D,
     RigidBody3D,
 )
+from ..elements.turn3d import account_of
 from ..errors import ModelError
 from ..model.attitude import UPRIGHT, EulerParameters
+from ..model.said_angle import CountsTurns
+from ..model.words import an
+from ..tables.numbering import ModelNumbering
 
 if TYPE_CHECKING:
     from .result import Result
@@ -63,7 +68,27 @@ def start_at(result: "Result", t: float | None = None) -> dict[str, float]:
     row, layout = row_at(result, t), result.layout
     every = np.arange(result.samples.shape[1])
     states = {int(column) for part in ("q", "v") for column in every[layout[part]]}
-    return {name: float(result[name][row]) for name, column in result.plain_columns().items() if column in states}
+    found = {name: float(result[name][row]) for name, column in result.plain_columns().items() if column in states}
+    return {**found, **_turned(result, row, found)}
+
+
+def _turned(result: "Result", row: int, start: Mapping[str, float]) -> dict[str, float]:
+    """Angles with their whole turns, which coordinates do not tell: as channels show them, else as accounts count."""
+    model = result.system
+    if not isinstance(model, Model):
+        return {}
+    known = set(result.channels)
+    counted = [angle for e in model.elements() if isinstance(e, CountsTurns) for angle in e.counted_angles()]
+    found = {angle.name: float(result[angle.name][row]) for angle in counted if angle.name in known}
+    # the others are about the axis of one of these, or nobody has recorded them
+    accounts: Mapping[str, int] = getattr(getattr(result._table, "layout", None), "work", {})
+    for angle in counted:
+        account = accounts.get(account_of(angle.name.rpartition(".")[0]))
+        if angle.name not in found and account is not None:
+            began = ModelNumbering(model).start_angle(angle.a, angle.b)
+            around = began + float(result.samples[row, account])
+            found[angle.name] = ModelNumbering(model, {**start, angle.name: around}).start_angle(angle.a, angle.b)
+    return found
 
 
 def model_at(result: "Result", t: float | None = None) -> Model:
@@ -93,7 +118,18 @@ def model_from(model: Model, start: Mapping[str, float]) -> Model:
         q = np.array([start[f"{body.name}.{c.name}"] for c in records])
         v = np.array([start[f"{body.name}.{c.rate}"] for c in records])
         bodies.append(type(body).model_validate({**body.model_dump(), **moved(body, q, v)}))
-    return Model(**{**{name: getattr(model, name) for name in Model.model_fields}, "bodies": tuple(bodies)})
+    parts = {name: getattr(model, name) for name in Model.model_fields}
+    numbering = ModelNumbering(model, start)
+    turned = {kind: tuple(_with_turns(e, numbering) for e in parts[kind]) for kind in ("joints", "forces", "contacts")}
+    return Model(**{**parts, **turned, "bodies": tuple(bodies)})
+
+
+def _with_turns(element: Element, numbering: ModelNumbering) -> Element:
+    """An element that says at which angle it starts, with that of now."""
+    if not isinstance(element, CountsTurns) or "start_angle" not in type(element).model_fields:
+        return element
+    angles = [numbering.start_angle(angle.a, angle.b) for angle in element.counted_angles()]
+    return element.model_copy(update={"start_angle": angles[0]}) if angles else element
 
 
 @singledispatch
@@ -104,7 +140,7 @@ def moved(body: BodyElement, q: Floats, v: Floats) -> dict[str, Any]:
     ------
     ModelError : if it has none for that.
     """
-    raise ModelError(f"a {type(body).__name__} ('{body.name}') cannot say in its record where it is now: {REMEDY}")
+    raise ModelError(f"{an(type(body).__name__)} ('{body.name}') cannot say in its record where it is now: {REMEDY}")
 
 
 @moved.register

@@ -12,7 +12,7 @@ CONTACTS = LateClasses(
     "DiskOnPolygon2D Rope2D AngleStop2D CoordinateContact SphereOnHalfSpace3D SphereOnSphere3D "
     "SmoothOnHalfSpace3D SphereInSphere3D CapsuleOnCapsule3D SphereOnCable3D "
     "CableOnHalfSpace3D SphereOnMesh3D SphereOnSmooth3D SphereOnCylinder3D SphereOnRing3D "
-    "AngleStop3D SlideStop3D Rope3D",
+    "AngleStop3D SlideStop3D Rope3D DistanceStop3D",
 )
 
 Contact = Annotated[ContactElement, OpenUnion(CONTACTS, ContactElement)]
@@ -38,6 +38,6 @@ __getattr__, __dir__ = late_names(
         ".rope2d": "Rope2D",
         ".round3d": "CapsuleOnCapsule3D SmoothOnHalfSpace3D SphereInSphere3D",
         ".segment2d": "DiskOnSegment2D",
-        ".stop3d": "AngleStop3D Rope3D SlideStop3D",
+        ".stop3d": "AngleStop3D DistanceStop3D Rope3D SlideStop3D",
     },
 )

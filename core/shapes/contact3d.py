@@ -1,14 +1,15 @@
 """Contacts in space: spheres and half-spaces, a law along the normal, and friction."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from ..elements.base import Form, Numbering, Row
+from ..elements.base import BodyElement, Form, Numbering, Row
 from ..elements.measure3d import DISTANCE, PLACE, columns_of, coordinates_of
+from ..elements.turning_bodies import refuse_points
 from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
 from ..model.base import NonNegative, Record
@@ -86,6 +87,12 @@ class Contact3D(ContactElement):
                 "contacts in the plane: leave out one of the two"
             )
         return self
+
+    def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
+        super().check_in(bodies)
+        if self.turning is not None:
+            instead = "leave `turning` out, or use a RigidBody3D"
+            refuse_points(self.name, self.markers(), bodies, instead)
 
     def spheres(self) -> Sequence[Sphere3D]:
         """The spheres that it brings in touch."""

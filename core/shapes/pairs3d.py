@@ -7,6 +7,7 @@ from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
 from ..model.markers import GROUND
+from ..model.words import an
 from .ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cornered3D, Cylinder3D
@@ -30,9 +31,8 @@ def body_of(shape: Any) -> str:
 
 def no_contact(a: Any, b: Any, remedy: str) -> ModelError:
     """What is raised for two shapes that have no contact."""
-    return ModelError(
-        f"a {type(a).__name__} on '{body_of(a)}' and a {type(b).__name__} on '{body_of(b)}' have no contact: {remedy}"
-    )
+    one, other = (f"{an(type(shape).__name__)} on '{body_of(shape)}'" for shape in (a, b))
+    return ModelError(f"{one} and {other} have no contact: {remedy}")
 
 
 def touching_in_space(a: SpatialShape, b: SpatialShape) -> Sequence[SpatialPair]:

@@ -14,10 +14,13 @@ from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.base import BodyElement, Form, Numbering, Part, Row
 from ..elements.measure3d import ANGLE, DISTANCE, PLACE, columns_of, coordinates_of, measure
-from ..elements.spatial_body import angle_between, start_of_marker
+from ..elements.spatial_body import start_of_marker
+from ..elements.start_angle3d import check_start_angle
 from ..elements.turn3d import LOOSE, account_of, turn_part
+from ..elements.turning_bodies import refuse_points
 from ..model.base import Positive
 from ..model.markers import GROUND, Marker3D
+from ..model.said_angle import CountedAngle, SaidAngle
 from .element import ContactElement
 from .normal2d import act, asleep
 from .normal3d import PACKED, SIZE, pair_of
@@ -98,7 +101,7 @@ class Stop3D(ContactElement):
         if self.measured == ANGLE:
             account, start = (
                 numbering.work(account_of(self.name), LOOSE),
-                angle_between(self.a, self.b, numbering.bodies),
+                numbering.start_angle(self.a, self.b, self.name),
             )
             counted = [turn_part(self.name, self.a, self.b, numbering)]
         numbers = (float(self.measured), self.sign, self.bound, start, 0.0, 0.0, 0.0)
@@ -126,6 +129,21 @@ class AngleStop3D(Stop3D):
     """rad."""
     side: Literal["upper", "lower"] = "upper"
     """Whether the angle stays below the limit or above it."""
+    start_angle: float | None = None
+    """The angle at the start, rad, whole turns included; left out: as a joint, a driver or another element about the
+    same axis says, or the turns by which attitudes are given, else between -pi and pi."""
+
+    def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
+        refuse_points(self.name, self.markers(), bodies, "use a RigidBody3D")
+        check_start_angle(self.name, self.a, self.b, self.start_angle, bodies)
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """Its angle."""
+        return (CountedAngle(f"{self.name}.angle", self.a, self.b),)
+
+    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+        """What it says of the angle at the start."""
+        return () if self.start_angle is None else (SaidAngle(self.a, self.b, self.start_angle, f"'{self.name}'"),)
 
     @property
     def sign(self) -> float:
@@ -174,11 +192,36 @@ class Rope3D(Stop3D):
         return self.length
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
-        if not all(marker.body == GROUND or marker.body in bodies for marker in self.markers()):
-            return  # the model says which name is unknown
-        (x, _), (y, _) = (start_of_marker(marker, bodies) for marker in self.markers())
-        if float(np.linalg.norm(y - x)) < LEAST * self.length:
-            raise ValueError(
-                f"the ends of rope '{self.name}' meet at the start, where it has no direction: start with one of them "
-                "a little aside"
-            )
+        _refuse_meeting(f"the ends of rope '{self.name}'", self, bodies)
+
+
+class DistanceStop3D(Stop3D):
+    """The distance of the points of markers `a` and `b` stays below or above `limit`; see `Rope3D`."""
+
+    type: Literal["DistanceStop3D"] = "DistanceStop3D"
+    measured: ClassVar[int] = DISTANCE
+
+    limit: Positive
+    """m."""
+    side: Literal["upper", "lower"] = "upper"
+    """Whether the distance stays below the limit or above it."""
+
+    @property
+    def sign(self) -> float:
+        return 1.0 if self.side == "upper" else -1.0
+
+    @property
+    def bound(self) -> float:
+        return self.limit
+
+    def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
+        _refuse_meeting(f"the markers of '{self.name}'", self, bodies)
+
+
+def _refuse_meeting(ends: str, stop: Stop3D, bodies: Mapping[str, BodyElement]) -> None:
+    """Raise ValueError if the ends of a distance meet at the start."""
+    if not all(marker.body == GROUND or marker.body in bodies for marker in stop.markers()):
+        return  # the model says which name is unknown
+    (x, _), (y, _) = (start_of_marker(marker, bodies) for marker in stop.markers())
+    if float(np.linalg.norm(y - x)) < LEAST * stop.bound:
+        raise ValueError(f"{ends} meet at the start, where it has no direction: start with one of them a little aside")

@@ -19,7 +19,7 @@ from ..model.derived import Derived
 from ..model.motion import InputMotion
 from ..model.outputs import MarkerOutput
 from ..shapes.geometry_kinds import EQUATIONS, kind_of
-from .numbering import AT_REST, ModelNumbering
+from .numbering import AT_REST, NO_START, ModelNumbering
 from .parts import Parts
 
 
@@ -184,8 +184,10 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
     return np.ascontiguousarray(np.array(rows, dtype=dtype).reshape(len(rows), -1))
 
 
-def assemble(model: Parts) -> Assembly:
-    """The model as flat tables. Raises ModelError without bodies, and for a contact of a body with itself."""
+def assemble(model: Parts, start: Mapping[str, float] = NO_START) -> Assembly:
+    """The model as flat tables; `start` are values at the start other than the model's, by the names of channels, of
+    which only the turns of angles are taken here. Raises ModelError without bodies, and for a contact of a body with
+    itself."""
     if not model.bodies:
         raise ModelError(f"model '{model.name}' has no bodies, so nothing can move: give it at least one in `bodies`")
     for contact in model.contacts:
@@ -195,7 +197,7 @@ def assemble(model: Parts) -> Assembly:
                 f"both shapes of contact '{contact.name}' are on '{bodies[0]}': their gap never changes; "
                 "give it shapes on two bodies"
             )
-    numbering = ModelNumbering(model)
+    numbering = ModelNumbering(model, start)
     grouped: dict[tuple[int, int], list[tuple[Element, Row, tuple[int, ...]]]] = {}
     forms: dict[tuple[int, int], Form] = {}
     row_names: list[str] = []

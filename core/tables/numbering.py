@@ -1,15 +1,20 @@
 """Numbers of coordinates, signals and work accounts while a model's tables are built."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from ..elements.base import BodyElement
 from ..laws import ForceLaw, law_address
 from ..laws.friction import FrictionLaw, friction_address
 from ..model.base import Vector3, in_space
-from ..model.markers import GROUND, Marker, Marker2D
+from ..model.markers import GROUND, Marker, Marker2D, Marker3D
 from ..model.motion import InputMotion
+from ..model.said_angle import CountsTurns, SaidAngle, SaysAngle
 from ..model.signals import InputSignal, Signal
 from ..rounding import AT_ORIGIN
 from .parts import Parts
 
+NO_START: Mapping[str, float] = MappingProxyType({})
 AT_REST = 1
 """Extended vectors end in one place that stays zero, for what does not move, and the work accounts."""
 
@@ -17,7 +22,7 @@ AT_REST = 1
 class ModelNumbering:
     """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
 
-    def __init__(self, model: Parts) -> None:
+    def __init__(self, model: Parts, start: Mapping[str, float] = NO_START) -> None:
         self.gravity: Vector3 = in_space(model.gravity)
         self.length = _length(model)
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
@@ -42,13 +47,17 @@ class ModelNumbering:
             self.internal_names += [f"{element.name}.{name}" for name in states]
         self.n = n_bodies + len(self.internal_names)
         self.index[GROUND] = ()
-        start = 0
+        at = 0
         for body in model.bodies:
             count = len(self.names[body.name])
-            self.index[body.name] = tuple(range(start, start + count))
+            self.index[body.name] = tuple(range(at, at + count))
             if body.carries is not None:
                 self.starts[body.name] = tuple(body.start_in(self.bodies, self.input_start)[0])
-            start += count
+            at += count
+        self._elements, self._start_values, self._asked = model.elements, start, False
+        self._said: list[SaidAngle] = []
+        self._said_now: list[SaidAngle] = []
+        self._moved: dict[str, BodyElement] = {}
 
     def coordinates(self, body: str) -> tuple[int, ...]:
         carried = self._carried(body)
@@ -90,6 +99,32 @@ class ModelNumbering:
     def _start(self, body: str, marker: type[Marker]) -> tuple[float, ...]:
         own = self.starts[body][: len(marker.rest)]
         return own + marker.rest[len(own) :]
+
+    def start_angle(self, a: Marker3D, b: Marker3D, user: str | None = None) -> float:
+        # models of the plane never ask
+        from ..elements.start_angle3d import start_angle, start_angle_elsewhere
+
+        if not self._asked:
+            self._ask()
+        usual = start_angle(a, b, self.bodies, self._said, user)
+        return start_angle_elsewhere(a, b, self._moved, self._said_now, usual) if self._start_values else usual
+
+    def _ask(self) -> None:
+        """What elements say of angles at the start, and start values of them."""
+        from ..elements.start_angle3d import Elsewhere
+
+        self._asked, values = True, self._start_values
+        for element in self._elements():
+            if isinstance(element, SaysAngle):
+                self._said += element.said_angles(self.input_start)
+            if values and isinstance(element, CountsTurns):
+                counted = (angle for angle in element.counted_angles() if angle.name in values)
+                self._said_now += [SaidAngle(c.a, c.b, values[c.name], f"start value '{c.name}'") for c in counted]
+        if values:
+            for name, q in self.starts.items():
+                if name != GROUND:
+                    now = [values.get(f"{name}.{c}", x) for c, x in zip(self.names[name], q, strict=True)]
+                    self._moved[name] = Elsewhere(name=name, q=tuple(now))
 
     def signal(self, signal: Signal) -> int:
         offset = len(self.pool)

@@ -17,7 +17,9 @@ UNITS_DEPEND = {
     "Gear3D": {"radius_a", "radius_b"}, "Parameter": {"value", "minimum", "maximum"}, "Polynomial": {"coefficients"},
     "Ramp": {"before", "after"}, "RelationTerm": {"factor"},
     "PIDController2D": {"gain", "integral_gain", "rate_gain", "largest"},
-    "Servo2D": {"gain", "rate_gain", "largest"},
+    "PIDController3D": {"gain", "integral_gain", "rate_gain", "largest"},
+    "Servo2D": {"gain", "rate_gain", "largest"}, "Servo3D": {"gain", "rate_gain", "largest"},
+    "TableSpring3D": {"lengths_table", "forces", "damping"},
     "Sine": {"amplitude", "offset"}, "Step": {"before", "after"}, "Table": {"values"},
 }  # fmt: skip
 MATRICES = {"Interface3D", "LinearSystem", "ReducedBody2D", "ReducedBody3D", "ReducedPoint"}

@@ -51,6 +51,7 @@ from tlismni.core import (
     DiskOnSegment2D,
     Distance2D,
     Distance3D,
+    DistanceStop3D,
     Ellipsoid3D,
     EulerParameters,
     Fixed3D,
@@ -82,6 +83,7 @@ from tlismni.core import (
     NewtonImpact,
     Parameter,
     PIDController2D,
+    PIDController3D,
     Planar3D,
     PointMass2D,
     PointMass3D,
@@ -100,10 +102,12 @@ from tlismni.core import (
     ReducedPoint,
     RelationTerm,
     RelativeLoad2D,
+    RelativeLoad3D,
     RelativeMotor2D,
     Revolute2D,
     Revolute3D,
     RevoluteFriction2D,
+    RevoluteFriction3D,
     RevoluteSpherical3D,
     RigidBody2D,
     RigidBody3D,
@@ -117,8 +121,10 @@ from tlismni.core import (
     Screw3D,
     Segment2D,
     Servo2D,
+    Servo3D,
     Sine,
     SlideFriction2D,
+    SlideFriction3D,
     SlideSpring2D,
     SlideStop3D,
     SmoothOnHalfSpace3D,
@@ -137,6 +143,7 @@ from tlismni.core import (
     Step,
     Table,
     TableSpring2D,
+    TableSpring3D,
     TorsionSpring2D,
     TorsionSpring3D,
     Torus3D,
@@ -397,6 +404,29 @@ ELEMENTS["forces"] += [
         rate_gain=number, sensor_a=marker, sensor_b=marker, sensed=MEASURES, largest=positive,
     ),
 ]  # fmt: skip
+ENDS3D = {"name": st.just("x"), "a": st.builds(Marker3D), "b": st.just(Marker3D(body="s", point=(1.0, 0.0, 0.0)))}
+TURNS = st.none() | st.integers(-3, 3).map(lambda n: 2.0 * np.pi * n)
+ELEMENTS["joints"] += [st.builds(kind, **ENDS3D, start_angle=TURNS) for kind in (Revolute3D, Cylindrical3D, Planar3D)]
+ELEMENTS["forces"] += [
+    st.builds(SpringDamper3D, **ENDS3D, stiffness=positive, natural_length=signal),
+    st.builds(
+        TableSpring3D, **ENDS3D, lengths_table=st.just((0.5, 1.0, 2.0, 3.0)), damping=positive,
+        forces=st.tuples(number, number, number, number), measure=MEASURES,
+    ),
+    st.builds(RelativeLoad3D, **ENDS3D, load=signal, measure=MEASURES),
+    st.builds(RevoluteFriction3D, **ENDS3D, torque=positive, transition_rate=positive),
+    st.builds(SlideFriction3D, **ENDS3D, force=positive, transition_speed=positive),
+    st.builds(
+        Servo3D, **ENDS3D, target=signal, measure=MEASURES, gain=positive, rate_gain=positive, of_rate=st.just(False)
+    ),
+    st.builds(
+        PIDController3D, **ENDS3D, target=signal, measure=MEASURES, gain=positive, integral_gain=positive,
+        rate_gain=number, sensor_a=marker3d, sensor_b=marker3d, sensed=MEASURES, largest=positive,
+    ),
+]  # fmt: skip
+ELEMENTS["contacts"].append(
+    st.builds(DistanceStop3D, **ENDS3D, law=law, limit=st.floats(0.5, 2.0), side=st.sampled_from(["upper", "lower"]))
+)
 ELEMENTS["contacts"] += [
     st.builds(Rope2D, **ENDS, law=law, length=positive),
     st.builds(AngleStop2D, **ENDS, law=law, limit=number, side=SIDES),
@@ -506,7 +536,8 @@ SPATIAL = {
     "SphereOnSphere3D", "SmoothOnHalfSpace3D", "SphereInSphere3D", "CapsuleOnCapsule3D", "SphereOnCable3D",
     "SphereOnMesh3D", "SphereOnSmooth3D", "SphereOnCylinder3D", "SphereOnRing3D", "CableOnHalfSpace3D", "Cable3D",
     "MaterialPoint3D", "CableClamp3D",
-    "AngleStop3D", "SlideStop3D", "Rope3D", "RollingDisk3D", "RollingSphere3D",
+    "AngleStop3D", "SlideStop3D", "Rope3D", "DistanceStop3D", "RollingDisk3D", "RollingSphere3D",
+    "TableSpring3D", "RelativeLoad3D", "RevoluteFriction3D", "SlideFriction3D", "Servo3D", "PIDController3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
 SOLID = RigidBody3D(name="s", mass=1.0, inertia=(1.0, 1.0, 1.0))

@@ -29,6 +29,7 @@ from tlismni.core import (
     Marker3D,
     MaterialPoint3D,
     Model,
+    PIDController3D,
     Planar3D,
     PointMass3D,
     PointOnLine3D,
@@ -37,15 +38,20 @@ from tlismni.core import (
     Prismatic3D,
     RackAndPinion3D,
     ReducedBody3D,
+    RelativeLoad3D,
     Revolute3D,
+    RevoluteFriction3D,
     RevoluteSpherical3D,
     RigidBody3D,
     RollingDisk3D,
     RollingSphere3D,
     RotationVector,
     Screw3D,
+    Servo3D,
+    SlideFriction3D,
     Spherical3D,
     SpringDamper3D,
+    TableSpring3D,
     TorsionSpring3D,
     Universal3D,
 )
@@ -90,13 +96,46 @@ STIFF = (3.0, 2.0, 4.0, 1.1, 0.7, 0.9)
 COUPLED = tuple(tuple(STIFF[i] if i == j else 0.02 * (i + j) for j in range(6)) for i in range(6))
 LOAD = {"force_x": SINE, "force_y": Constant(value=1.4), "force_z": Constant(value=-0.6)}
 TORQUE = {"torque_x": SINE, "torque_y": Constant(value=1.4), "torque_z": Constant(value=-0.6)}
+MEASURES = ("angle", "slide", "distance")
+TABLE = {"lengths_table": (-2.0, 0.2, 1.0, 3.0), "forces": (-1.0, 0.2, 1.5, 4.0), "damping": 0.3}
 FORCES = {
     "spring": (SpringDamper3D, {"stiffness": 3.0, "damping": 0.7, "natural_length": 0.9}),
     "axial spring": (AxialSpring3D, {"stiffness": 3.0, "damping": 0.7, "natural_position": 0.2}),
     "torsion spring": (TorsionSpring3D, {"stiffness": 3.0, "damping": 0.7, "natural_angle": 0.2}),
     "bushing": (Bushing3D, {"stiffness": STIFF, "damping": (0.2, 0.3, 0.1, 0.2, 0.1, 0.3)}),
     "coupled bushing": (Bushing3D, {"stiffness": COUPLED, "damping": COUPLED}),
-}
+    "spring whose length moves": (SpringDamper3D, {"stiffness": 3.0, "damping": 0.7, "natural_length": SINE}),
+    "friction about an axis": (RevoluteFriction3D, {"torque": 0.8, "transition_rate": 9.0}),
+    "friction along an axis": (SlideFriction3D, {"force": 0.8, "transition_speed": 9.0}),
+    "rate servo": (Servo3D, {"target": SINE, "rate_gain": 0.7, "of_rate": True}),
+    **{f"{m} table": (TableSpring3D, {"measure": m, **TABLE}) for m in MEASURES},
+    **{f"{m} load": (RelativeLoad3D, {"measure": m, "load": SINE}) for m in MEASURES},
+    **{
+        f"{m} servo, largest {largest}": (
+            Servo3D, {"measure": m, "target": SINE, "gain": 2.0, "rate_gain": 0.7, "largest": largest}
+        )
+        for m, largest in (("angle", None), ("slide", 6.0), ("distance", 6.0))
+    },
+    **{
+        f"controller of {driven} by {sensed}": (
+            PIDController3D,
+            {
+                "target": SINE, "measure": driven, "sensor_a": LEFT, "sensor_b": sensor, "sensed": sensed, "gain": 2.0,
+                "integral_gain": 0.9, "rate_gain": 0.7, "largest": largest,
+            },
+        )
+        for driven, sensed, sensor, largest in (
+            ("angle", "slide", MASS, None), ("slide", "angle", RIGHT, 6.0), ("distance", "distance", MASS, 6.0)
+        )
+    },
+    "controller of what it drives": (
+        PIDController3D, {"target": SINE, "measure": "slide", "gain": -2.0, "integral_gain": -0.9}
+    ),
+}  # fmt: skip
+OF_ATTITUDES = (
+    "torsion spring", "bushing", "coupled bushing", "friction about an axis", "rate servo", "angle table", "angle load",
+    "angle servo, largest None", "controller of angle by slide",
+)  # fmt: skip
 GEAR = Gear3D(name="j", frame_a=GROUND, wheel_a=LEFT, frame_b=LEFT, wheel_b=RIGHT, radius_a=0.7, radius_b=-0.4)
 RACK = RackAndPinion3D(name="j", frame=GROUND, wheel=LEFT, guide=GROUND, rack=RIGHT, radius=0.3)
 WHEELS = {
@@ -140,6 +179,7 @@ CASES = {
         f"{what} {where}": {"forces": [kind(name="f", a=a, b=b, **fields)]}
         for what, (kind, fields) in FORCES.items()
         for where, (a, b) in PAIRS.items()
+        if where != "a point mass" or what not in OF_ATTITUDES
     },
     **{
         f"force{' that follows' * follower} {marker.body}": {

@@ -41,6 +41,7 @@ from ...core.shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, S
 from ...core.shapes.on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
 from ...core.shapes.on_mesh3d import SphereOnMesh3D
 from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
+from ...core.tables.numbering import ModelNumbering
 from ..errors import NotTranslatable
 from .bodies import node_columns
 from .registry import BodyItems, Build, Derived, no_equal, translates
@@ -129,25 +130,33 @@ def _derive(build: Build, group: Group, bodies: Sequence[str], work: Work | None
 
 
 def _derive_coordinates(record: Joint3D, build: Build) -> None:
-    """The joint's angle and position, turns counted along the samples."""
-    bodies = [marker.body for marker in (record.a, record.b) if marker.body != GROUND]
-    first, frames = 0, []
-    for marker in (record.a, record.b):
-        size = 0 if marker.body == GROUND else len(build.bodies[marker.body].reference)
-        frames.append(Frame3D.of(marker, [first + k if k < size else -1 for k in range(7)]))
-        first += size
-    a, b = frames
-    if record.turns:
-        group = JointAngle(record.name, a, b, 0.0)
+    """The joint's coordinates, turns counted along the samples from the start."""
+    numbering = ModelNumbering(build.model)
+    for coordinate in record.coordinates():
+        bodies = [marker.body for marker in (coordinate.a, coordinate.b) if marker.body != GROUND]
+        first, frames = 0, []
+        for marker in (coordinate.a, coordinate.b):
+            size = 0 if marker.body == GROUND else len(build.bodies[marker.body].reference)
+            frames.append(Frame3D.of(marker, [first + k if k < size else -1 for k in range(7)]))
+            first += size
+        a, b = frames
+        if coordinate.kind == "place":
+            _derive(build, JointPosition(record.name, coordinate, a, b), bodies)
+            continue
+        start = numbering.start_angle(coordinate.a, coordinate.b)
+        group = JointAngle(record.name, coordinate, a, b, start, coordinate.account)
+        _derive(build, group, bodies, _turned(group))
 
-        def turned(q: np.ndarray) -> np.ndarray:
-            still, nothing = np.zeros_like(q), np.zeros((len(q), 0))
-            within_a_turn = group(Columns(q, still, still, nothing, lambda _: np.zeros(len(q))))
-            return np.unwrap(within_a_turn[:, 0])
 
-        _derive(build, group, bodies, turned)
-    if record.slides:
-        _derive(build, JointPosition(record.name, a, b), bodies)
+def _turned(group: JointAngle) -> Work:
+    """How far an angle has gone since the start, of which the first sample is within half a turn."""
+
+    def turned(q: np.ndarray) -> np.ndarray:
+        still, nothing = np.zeros_like(q), np.zeros((len(q), 0))
+        angle = np.unwrap(group(Columns(q, still, still, nothing, lambda _: np.zeros(len(q))))[:, 0])
+        return angle - angle[0]
+
+    return turned
 
 
 def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = None) -> int:

@@ -2,7 +2,7 @@
 
 import math
 
-from ...core.shapes.stop3d import AngleStop3D, Rope3D, SlideStop3D
+from ...core.shapes.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
 from ..errors import NotTranslatable
 from .contact_laws import is_native
 from .registry import Build, translates
@@ -12,8 +12,8 @@ from .user_contacts import Force, Numbers, add_user_contact
 from .user_gaps import Nodes, UserGap
 
 
-@translates(SlideStop3D, Rope3D)
-def slide_stop(record: SlideStop3D | Rope3D, build: Build) -> None:
+@translates(SlideStop3D, Rope3D, DistanceStop3D)
+def slide_stop(record: SlideStop3D | Rope3D | DistanceStop3D, build: Build) -> None:
     """A user function. Raises NotTranslatable for constraint contact."""
     is_native(record, on_flexible=False)
     check_bodies(record, build)
@@ -22,7 +22,7 @@ def slide_stop(record: SlideStop3D | Rope3D, build: Build) -> None:
     if isinstance(record, SlideStop3D):
         touch = _along(*ends, vector(record.a.axes()[:, 2]), record.limit, record.sign)
     else:
-        touch = _taut(*ends, record.length)
+        touch = _apart(*ends, record.bound, record.sign)
     gap = UserGap(tuple(nodes.nodes), nodes.reference, lambda x: (touch(x)[0], [], []))
     add_user_contact(record, build, SpaceForce(record, gap, touch, *ends))
 
@@ -67,14 +67,14 @@ def _along(a: End, b: End, axis: Vector, limit: float, sign: float) -> Touch:
     return touch
 
 
-def _taut(a: End, b: End, length: float) -> Touch:
-    """length - |x_b - x_a|."""
+def _apart(a: End, b: End, limit: float, sign: float) -> Touch:
+    """sign (limit - |x_b - x_a|)."""
 
     def touch(x: Numbers) -> tuple[float, Vector, tuple[Arc, ...]]:
         first, second = a.place(x), b.place(x)
         way = plus(second, first, -1.0)
         distance = math.hypot(*way)
-        normal = -way[0] / distance, -way[1] / distance, -way[2] / distance
-        return length - distance, normal, ((first, second, 1.0),)
+        normal = -sign * way[0] / distance, -sign * way[1] / distance, -sign * way[2] / distance
+        return sign * (limit - distance), normal, ((first, second, 1.0),)
 
     return touch

@@ -2,12 +2,28 @@
 
 import numpy as np
 
-from ...core.elements import Cylindrical3D, Revolute3D, SpringDamper3D, TorsionSpring3D
-from ...core.elements.spatial_body import angle_between
+from ...core.elements import (
+    Cylindrical3D,
+    PIDController3D,
+    RelativeLoad3D,
+    Revolute3D,
+    RevoluteFriction3D,
+    Servo3D,
+    SlideFriction3D,
+    SpringDamper3D,
+    TableSpring3D,
+    TorsionSpring3D,
+)
 from ...core.model.markers import Marker3D
+from ...core.tables.numbering import ModelNumbering
 from ..errors import NotTranslatable
-from .registry import Build, translates
+from .registry import Build, no_equal, translates
 from .space import placed
+
+no_equal(
+    "the planar element of the same name, where the motion is planar", PIDController3D, RelativeLoad3D,
+    RevoluteFriction3D, Servo3D, SlideFriction3D, TableSpring3D,
+)  # fmt: skip
 
 PARALLEL = 1e-9
 """Distance of unit vectors that are one."""
@@ -15,7 +31,11 @@ PARALLEL = 1e-9
 
 @translates(SpringDamper3D)
 def spring_damper(record: SpringDamper3D, build: Build) -> None:
-    """ObjectConnectorSpringDamper."""
+    """ObjectConnectorSpringDamper. Raises NotTranslatable for a natural length over time."""
+    if not isinstance(record.natural_length, float | int):
+        raise NotTranslatable(
+            f"the natural length of '{record.name}' is driven: no translation to exudyn is written for that"
+        )
     markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
     build.add(
         "ObjectConnectorSpringDamper", markerNumbers=markers, stiffness=record.stiffness, damping=record.damping,
@@ -33,7 +53,7 @@ def torsion_spring(record: TorsionSpring3D, build: Build) -> None:
             "exudyn's torsion spring is that of a hinge"
         )
     markers = [placed(marker, build, record.name, marker.axes()) for marker in (record.a, record.b)]
-    start = angle_between(record.a, record.b, {body.name: body for body in build.model.bodies})
+    start = ModelNumbering(build.model).start_angle(record.a, record.b, record.name)
     turns = build.add("NodeGenericData", numberOfDataCoordinates=1, initialCoordinates=[start])
     build.add(
         "ObjectConnectorTorsionalSpringDamper", markerNumbers=markers, nodeNumber=turns, stiffness=record.stiffness,

@@ -14,18 +14,22 @@ from ...core.elements import (
     Distance3D,
     Fixed3D,
     Gear3D,
+    PIDController3D,
     Planar3D,
     PointOnLine3D,
     PointOnPlane3D,
     Prismatic3D,
     RackAndPinion3D,
+    RelativeLoad3D,
     Revolute3D,
     RevoluteSpherical3D,
     RollingDisk3D,
     RollingSphere3D,
     Screw3D,
+    Servo3D,
     Spherical3D,
     SpringDamper3D,
+    TableSpring3D,
     TorsionSpring3D,
     Universal3D,
 )
@@ -34,7 +38,7 @@ from ...core.model.markers import GROUND, Marker3D
 from ...core.shapes.contact3d import HalfSpace3D, SphereOnHalfSpace3D
 from ...core.shapes.on_cable3d import CableOnHalfSpace3D
 from ...core.shapes.round3d import SmoothOnHalfSpace3D
-from ...core.shapes.stop3d import Rope3D
+from ...core.shapes.stop3d import DistanceStop3D, Rope3D
 from ..scene import Floats
 from . import meshes
 from .colours import BASE, FLOOR, JOINT, WIRE
@@ -160,9 +164,33 @@ def _(element: SpringDamper3D | AxialSpring3D, stage: Stage3D) -> None:
 
 
 @place.register
+def _(element: TableSpring3D, stage: Stage3D) -> None:
+    if element.measure == "angle":
+        _coil(element.a, stage)
+    else:
+        stage.link(element.name, "spring-damper" if element.damping > 0.0 else "spring", element.a, element.b)
+        _support(element, stage)
+
+
+@place.register
+def _(element: Servo3D | PIDController3D | RelativeLoad3D, stage: Stage3D) -> None:
+    """A cylinder between its ends; a drum about the axis that it turns."""
+    if element.measure == "angle":
+        u = 1.6 * PIN * stage.size
+        stage.solid(element.b, meshes.cylinder(), (u, u, 0.05 * stage.size), WIRE)
+    else:
+        stage.link(element.name, "damper", element.a, element.b)
+        _support(element, stage)
+
+
+@place.register
 def _(element: TorsionSpring3D, stage: Stage3D) -> None:
+    _coil(element.a, stage)
+
+
+def _coil(marker: Marker3D, stage: Stage3D) -> None:
     u = 0.032 * stage.size
-    stage.solid(element.a, meshes.coil(), (u, u, 0.05 * stage.size), WIRE, shift=(0.0, 0.0, -0.025 * stage.size))
+    stage.solid(marker, meshes.coil(), (u, u, 0.05 * stage.size), WIRE, shift=(0.0, 0.0, -0.025 * stage.size))
 
 
 @place.register
@@ -172,7 +200,7 @@ def _(element: Bushing3D, stage: Stage3D) -> None:
 
 
 @place.register
-def _(element: Rope3D, stage: Stage3D) -> None:
+def _(element: Rope3D | DistanceStop3D, stage: Stage3D) -> None:
     stage.link(element.name, "rope", element.a, element.b)
     _support(element, stage)
 

@@ -1,0 +1,45 @@
+"""What an element says of angles between two markers whose turns are counted."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from .markers import Marker3D
+
+
+@dataclass(frozen=True)
+class SaidAngle:
+    """That the x axis of marker b is at `angle` (rad) from that of marker a, about the z axis of a; `by` says it."""
+
+    a: Marker3D
+    b: Marker3D
+    angle: float
+    by: str
+
+
+@runtime_checkable
+class SaysAngle(Protocol):
+    """An element that says angles of markers at the start."""
+
+    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+        """What it says, with these start values of the inputs."""
+        ...
+
+
+@dataclass(frozen=True)
+class CountedAngle:
+    """An angle of marker b about the z axis of marker a whose turns an element counts; `name` stands for it among start
+    values."""
+
+    name: str
+    a: Marker3D
+    b: Marker3D
+
+
+@runtime_checkable
+class CountsTurns(Protocol):
+    """An element that counts turns."""
+
+    def counted_angles(self) -> Sequence[CountedAngle]:
+        """The angles."""
+        ...
