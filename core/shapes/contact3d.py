@@ -12,13 +12,21 @@ from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
-from ..rounding import STILL
+from ..rounding import LEAST_DEFLECTION, STILL
+from .bristle3d import bristle_sphere3d_kernel
 from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
+from .held3d import HOLLOW, SUPPORT
 from .normal3d import SIZE
 from .support3d import SUPPORT_NUMBERS
+
+BRISTLES = {
+    PLACE: ("bristle_x", "bristle_y"), SUPPORT: ("bristle_x", "bristle_y"),
+    DISTANCE: ("bristle_x", "bristle_y", "bristle_z"), HOLLOW: ("bristle_x", "bristle_y", "bristle_z"),
+}  # fmt: skip
+"""Components of the bristles' deflection along the axes of the first marker, by the kind of the gap."""
 
 
 class HalfSpace3D(Record):
@@ -44,13 +52,14 @@ class Contact3D(ContactElement):
     """Base of the contacts in space.
 
     Class attributes: `kernel` without friction, `rubbing_kernel` with a regularised law, `gripping_kernel` with
-    Coulomb's; `kind`, the measure of both markers that the gap is, less the radii; `width`, the number of coordinates
-    that it depends on.
+    Coulomb's, `bristle_kernel` with LuGre's; `kind`, the measure of both markers that the gap is, less the radii;
+    `width`, the number of coordinates that it depends on.
     """
 
     kernel: ClassVar[Any] = sphere3d_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_sphere3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_sphere3d_kernel
+    bristle_kernel: ClassVar[Any] = bristle_sphere3d_kernel
     kind: ClassVar[int]
     width: ClassVar[int] = SIZE
 
@@ -67,10 +76,11 @@ class Contact3D(ContactElement):
 
     @model_validator(mode="after")
     def _friction_in_space(self) -> "Contact3D":
-        if isinstance(self.friction, LuGreFriction):
+        if isinstance(self.friction, LuGreFriction) and type(self).kind not in BRISTLES:
             raise ValueError(
-                f"contact '{self.name}': LuGre friction has one bristle and belongs to contacts in the plane; give it "
-                "one of the other laws, such as BrownMcPhee"
+                f"contact '{self.name}' is a {type(self).__name__}, over whose edges or along whose axis the bristles "
+                "of LuGre friction are not carried: in space they are for spheres on spheres and for spheres, corners "
+                "and smooth shapes on half-spaces; give it one of the other laws, such as BrownMcPhee"
             )
         one_by_one = isinstance(self.law, NewtonImpact) and self.law.propagation == "sequential"
         if one_by_one and isinstance(self.friction, CoulombFriction):
@@ -88,11 +98,24 @@ class Contact3D(ContactElement):
         """A contact with Coulomb friction has rows of both tangents behind that of the gap, with another law of
         friction one of the sliding speed."""
         kind, n = type(self), self.width
-        full = tuple((i, j) for i in range(n) for j in range(n))
+        size = n + len(self.internal_coordinates())
+        full = tuple((i, j) for i in range(size) for j in range(size))
         if isinstance(self.friction, CoulombFriction):
             return Form(kind.gripping_kernel, 3, full, tuple((k, j) for k in range(3) for j in range(n)), (1, 2))
         kernel, rows = (kind.kernel, 1) if self.friction is None else (kind.rubbing_kernel, 2)
+        if isinstance(self.friction, LuGreFriction):
+            kernel = kind.bristle_kernel
         return Form(kernel, rows, full, tuple((0, j) for j in range(n)))
+
+    def internal_coordinates(self) -> Sequence[str]:
+        return BRISTLES[type(self).kind] if isinstance(self.friction, LuGreFriction) else ()
+
+    def rows(self, numbering: Numbering) -> Sequence[Row]:
+        row = self.row(numbering)
+        if not isinstance(self.friction, LuGreFriction):
+            return (row,)
+        more = (LEAST_DEFLECTION * numbering.length, self.friction.parameters()[-1])
+        return (Row((*row.parameters, *more), (*row.coordinates, *numbering.internal(self.name)), row.extra),)
 
     def lengths(self) -> Sequence[float]:
         return tuple(sphere.radius for sphere in self.spheres())
