@@ -13,11 +13,9 @@ from tlismni.core import (
     Hertz,
     HuntCrossley,
     KelvinVoigt,
-    LuGreFriction,
     Model,
     NewtonImpact,
     Sphere3D,
-    SphereInSphere3D,
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
     TanhFriction,
@@ -42,11 +40,6 @@ def on_sphere(law, a, b, **more):
     return SphereOnSphere3D(name="c", a=first, b=second, law=law, **more)
 
 
-def in_sphere(law, a, b, **more):
-    hollow, ball = Sphere3D(marker=a, radius=2.1), Sphere3D(marker=b, radius=1.6)
-    return SphereInSphere3D(name="c", hollow=hollow, sphere=ball, law=law, **more)
-
-
 KELVIN = KelvinVoigt(stiffness=4.0, damping=0.8)
 HUNT = HuntCrossley(stiffness=3.0, exponent=1.5, restitution=0.6)
 PLACES = {"two bodies": (LEFT, RIGHT), "ground": (GROUND, RIGHT), "a point mass": (LEFT, MASS)}
@@ -66,18 +59,6 @@ CASES |= {
     for shape in (on_plane, on_sphere)
     for where, ends in PLACES.items()
     for law in (KELVIN, HUNT)
-}
-
-
-BRISTLES = LuGreFriction(
-    coefficient=0.4, static_coefficient=0.6, stribeck_speed=1.5, bristle_stiffness=0.7, bristle_damping=0.4,
-    viscous_damping=0.2,
-)  # fmt: skip
-CASES |= {
-    f"{shape.__name__}, {where}, {law.type}, LuGre {name}": (shape(law, *ends, friction=BRISTLES, **more), ACTIVE)
-    for shape in (on_plane, on_sphere, in_sphere)
-    for where, ends in PLACES.items()
-    for law, name, more in ((KELVIN, "", {}), (HUNT, "turning", {"turning": TURNS}))
 }
 
 
