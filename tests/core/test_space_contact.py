@@ -180,7 +180,6 @@ def test_point_mass_in_space_strikes_a_moving_plane():
 
 
 def test_refused():
-    _, ball = sphere("ball")
     with pytest.raises(ModelError, match="two points"):
         SphereOnSphere3D(
             name="c", a=Sphere3D(marker=Marker3D()), b=Sphere3D(marker=Marker3D(body="b")),
