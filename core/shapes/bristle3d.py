@@ -23,17 +23,18 @@ from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along as rate_along
-from ..elements.measure3d import AXES_A, COLUMNS, POINT_A, POINT_B, offset
+from ..elements.measure3d import AXES_A, COLUMNS
 from ..laws.friction.lugre import lugre_slip
 from ..model.rotation3d import along, constant, dot, four, less, plus, times, turned, turning
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
 from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, on_plane
 from .normal2d import act, asleep, evaluate_law
-from .normal3d import PACKED, SIZE, gap_of, hold
+from .normal3d import PACKED, SIZE, gap_of, hold, pair_of
+from .normal_rate3d import turn_normal
 from .sliding2d import FRICTION
 from .slip3d import add_slip, slip_of_batch
-from .tangent3d import NORMAL, OFFSET, ROWS, U, W, column, product_with, put
+from .tangent3d import NORMAL, ROWS, U, W, column, product_with, put
 from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_arms
 
 BENT = 3
@@ -42,32 +43,14 @@ ZERO = (0.0, 0.0, 0.0)
 
 
 @internal
-def _normal_turns(b: Any, coord: Any, pair: Any, work: Any, n: Any, n_rate: Any, turns: Any) -> None:
-    """Derivatives of n' by the coordinates, of spheres, to turns (3, 14): n = d/|d|, n' = (d' - n (n.d'))/|d|."""
-    q, v = vec(b.q, b.n_extended), vec(b.v, b.n_extended)
-    d, _, _ = offset(q, coord, pair, four(q, coord, 3, pair[0]), four(q, coord, 10, pair[1]))
-    square = dot(d, d)
-    # between spheres in spheres with one centre no direction is the normal
-    one = dot(n, d) / square if square > 0.0 else 0.0
-    goes = product_with(work, OFFSET, v, coord)
-    rate_a = turning(four(v, coord, 3, 0.0), constant(pair, POINT_A))
-    rate_b = turning(four(v, coord, 10, 0.0), constant(pair, POINT_B))
-    for j in range(SIZE):
-        local, by_n, change = j % 7 - 3, column(work, NORMAL, j), ZERO
-        if local >= 0:
-            change = times(-1.0, rate_a[local]) if j < 7 else rate_b[local]
-        by = less(change, plus(times(dot(n, goes), by_n), times(dot(by_n, goes) + dot(n, change), n)))
-        put(turns, 0, j, times(one, less(by, times(dot(n, column(work, OFFSET, j)), n_rate))))
-
-
-@internal
-def _bend(
+def bend(
     kind: int, b: Any, job: int, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any, work: Any
 ) -> None:
     """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
     width, both = work.shape[1], b.ncoord
     coord, k, bristles = imat(b.coord, b.count, both)[e], extra[0], both - width
+    pair = pair_of(b, e)
     q, v = vec(b.q, b.n_extended), vec(b.v, b.n_extended)
     n, u, beta_a, beta_b, size = slip_of_batch(kind, b, par, coord, held, moves, work)
     across = dot(n, u)
@@ -94,7 +77,7 @@ def _bend(
     # X_l, and the columns of its turning
     axes, in_body, energy = np.empty((3 * BENT, 5)), ZERO, 0.0
     for i in range(bristles):
-        axis, zeta = constant(held, AXES_A + 3 * i), v[coord[width + i]]
+        axis, zeta = constant(pair, AXES_A + 3 * i), v[coord[width + i]]
         of_axis = turning(p, axis)
         put(axes, 3 * i, 0, turned(of_axis, p))
         for j in range(4):
@@ -139,7 +122,7 @@ def _bend(
     add_slip(kind, b, par, values, slot, coord, held, moves, work, beta_a, beta_b, size, pull, -c_q)
     changes, turns, rate_z = np.empty(width), np.empty((3, width)), turning(pd, in_body)
     if curved:
-        _normal_turns(b, coord, held, work, n, n_rate, turns)
+        turn_normal(kind, b, coord, held, moves, work, n, n_rate, turns)
     one = 1.0 / speed if speed > 0.0 else 0.0
     for j in range(both):
         by_n, by_z, by_carried, slides, of_normal, by_shift = ZERO, ZERO, ZERO, ZERO, 0.0, 0.0
@@ -199,7 +182,7 @@ def bristle_sphere3d_kernel(job: int, t: float, b: Any) -> None:
         kind = hold(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        _bend(kind, b, job, e, g, held, moves, gradient, hessian, work)
+        bend(kind, b, job, e, g, held, moves, gradient, hessian, work)
 
 
 are(SPHERE, bristle_sphere3d_kernel)

@@ -27,8 +27,6 @@ from lugre_models import (
 from tlismni.core import (
     Axes,
     Box3D,
-    Capsule3D,
-    CapsuleOnCapsule3D,
     ContactGroup3D,
     CoordinateDriver,
     Ellipsoid3D,
@@ -43,6 +41,7 @@ from tlismni.core import (
     Sine,
     SmoothOnHalfSpace3D,
     SphereInSphere3D,
+    SphereOnCable3D,
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
     simulate,
@@ -200,6 +199,5 @@ def test_state_goes_on_bit_for_bit():
 
 
 def test_shapes_whose_bristles_are_not_carried_are_refused():
-    rod = Capsule3D(marker=Marker3D(body="rod"), length=0.3, radius=0.05)
-    with pytest.raises(ModelError, match=r"contact 'c' is a CapsuleOnCapsule3D, .* BrownMcPhee"):
-        CapsuleOnCapsule3D(name="c", a=rod, b=sphere("ball", 0.1), law=LAW, friction=BRISTLES)
+    with pytest.raises(ModelError, match=r"contact 'c' is a SphereOnCable3D, .* BrownMcPhee"):
+        SphereOnCable3D(name="c", cable="rope", sphere=sphere("ball", 0.1), law=LAW, friction=BRISTLES)

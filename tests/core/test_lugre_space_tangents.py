@@ -8,6 +8,8 @@ from test_contact_tangents3d import HUNT, KELVIN, PLACES, TURNS, on_plane, on_sp
 from test_tangents import Point, differences, draw, quick
 from test_tangents3d import A, B, P
 from tlismni.core import (
+    Capsule3D,
+    CapsuleOnCapsule3D,
     Ellipsoid3D,
     HalfSpace3D,
     LuGreFriction,
@@ -15,6 +17,8 @@ from tlismni.core import (
     SmoothOnHalfSpace3D,
     Sphere3D,
     SphereInSphere3D,
+    SphereOnMesh3D,
+    TriangleMesh3D,
 )
 from tlismni.core.laws.friction.lugre import lugre_formula, lugre_slip
 from tlismni.core.state.modes import ACTIVE, OPEN
@@ -30,13 +34,40 @@ def egg_on_plane(law, a, b, **more):
     return SmoothOnHalfSpace3D(name="c", plane=HalfSpace3D(marker=a), shape=shape, law=law, **more)
 
 
+def capsules(law, a, b, **more):
+    """Both points of contact are free."""
+    first, second = Capsule3D(marker=a, length=6.0, radius=1.2), Capsule3D(marker=b, length=7.0, radius=1.1)
+    return CapsuleOnCapsule3D(name="c", a=first, b=second, law=law, **more)
+
+
+def ball_on_capsule(law, a, b, **more):
+    first, second = Capsule3D(marker=a, length=6.0, radius=1.2), Sphere3D(marker=b, radius=1.1)
+    return CapsuleOnCapsule3D(name="c", a=first, b=second, law=law, **more)
+
+
+def end_on_capsule(law, a, b, **more):
+    """The nearest point of the first one is its end."""
+    first, second = Capsule3D(marker=a, length=0.01, radius=1.2), Capsule3D(marker=b, length=7.0, radius=1.1)
+    return CapsuleOnCapsule3D(name="c", a=first, b=second, law=law, **more)
+
+
+def on_mesh(law, a, b, **more):
+    vertices = ((0.5, 0.1, 0.2), (-0.4, 0.6, -0.1), (-0.3, -0.5, 0.0), (0.0, 0.0, -0.7))
+    faces = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
+    mesh = TriangleMesh3D(marker=a, vertices=vertices, faces=faces)
+    return SphereOnMesh3D(name="c", mesh=mesh, sphere=Sphere3D(marker=b, radius=2.0), law=law, **more)
+
+
 SOFT = LuGreFriction(
     coefficient=0.4, static_coefficient=0.6, stribeck_speed=1.5, bristle_stiffness=0.7, bristle_damping=0.4,
     viscous_damping=0.2,
 )  # fmt: skip
 # the normal forces of these tests are below its least one, where bristles slip and rub in proportion to them
 STIFF = SOFT.model_copy(update={"bristle_stiffness": 3e9, "bristle_damping": 1.0})
-SHAPES = (on_plane, on_sphere, in_sphere, egg_on_plane)
+SHAPES = (
+    on_plane, on_sphere, in_sphere, egg_on_plane, capsules, ball_on_capsule, end_on_capsule, on_mesh,
+)  # fmt: skip
+TURNING = (egg_on_plane, capsules, end_on_capsule)
 CASES = {
     f"{shape.__name__}, {where}, {name}": shape(law, *ends, friction=friction, **more)
     for shape in SHAPES
@@ -44,7 +75,7 @@ CASES = {
     for law, name, friction, more in (
         (KELVIN, "linear", SOFT, {}), (HUNT, "turning", SOFT, {"turning": TURNS}), (HUNT, "stiff", STIFF, {}),
     )
-    if not (shape is egg_on_plane and where == "a point mass")
+    if not (shape in TURNING and where == "a point mass")
 }  # fmt: skip
 
 
