@@ -121,7 +121,10 @@ def what_differs(a: Assembly, b: Assembly) -> str:
         if not (same and x.tangent_pattern == y.tangent_pattern and x.jacobian_pattern == y.jacobian_pattern):
             return "elements"
     for c, d in zip(a.contacts, b.contacts, strict=True):
-        kept = ("name", "row", "slide_row", "impulse_account", "dissipation_account", "bristle", "kind", "units")
+        kept = (
+            "name", "row", "slide_row", "impulse_account", "dissipation_account", "bristle", "bristles", "kind",
+            "units",
+        )  # fmt: skip
         same = all(getattr(c, name) == getattr(d, name) for name in kept)
         if not (same and type(c.law) is type(d.law) and type(c.friction) is type(d.friction)):
             return f"contact '{c.name}'"

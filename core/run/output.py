@@ -90,6 +90,10 @@ class ChannelTable:
             if contact.bristle >= 0:
                 channel = Channel(f"{contact.name}.bristle", contact.units[1], "deflection of the friction's bristles")
                 self._formulas.append((channel, layout.v.start + contact.bristle))
+            for index, name in contact.bristles:
+                axis = name[-1]
+                text = f"deflection of the friction's bristles along the first marker's {axis} axis"
+                self._formulas.append((Channel(f"{contact.name}.{name}", "m", text), layout.v.start + index))
         self._add_energies(assembly)
         for column, level, unit in zip(layout.residuals, LEVELS, ("m", "m/s", "m/s2"), strict=True):
             text = f"largest constraint violation at {level} level"

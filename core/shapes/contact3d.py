@@ -14,13 +14,22 @@ from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
-from ..rounding import STILL
+from ..rounding import LEAST_DEFLECTION, STILL
+from .bristle3d import bristle_sphere3d_kernel
 from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
+from .held3d import HOLLOW, SEGMENTS, SUPPORT
+from .mesh_nearest3d import ON_MESH
 from .normal3d import SIZE
 from .support3d import SUPPORT_NUMBERS
+
+_ALONG, _IN_SPACE = ("bristle_x", "bristle_y"), ("bristle_x", "bristle_y", "bristle_z")
+BRISTLES = {
+    PLACE: _ALONG, SUPPORT: _ALONG, DISTANCE: _IN_SPACE, HOLLOW: _IN_SPACE, SEGMENTS: _IN_SPACE, ON_MESH: _IN_SPACE,
+}  # fmt: skip
+"""Components of the bristles' deflection along the axes of the first marker, by the kind of the gap."""
 
 
 class HalfSpace3D(Record):
@@ -52,13 +61,14 @@ class Contact3D(ContactElement):
     """Base of the contacts in space.
 
     Class attributes: `kernel` without friction, `rubbing_kernel` with a regularised law, `gripping_kernel` with
-    Coulomb's; `kind`, the measure of both markers that the gap is, less the radii; `width`, the number of coordinates
-    that it depends on.
+    Coulomb's, `bristle_kernel` with LuGre's; `kind`, the measure of both markers that the gap is, less the radii;
+    `width`, the number of coordinates that it depends on.
     """
 
     kernel: ClassVar[Any] = sphere3d_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_sphere3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_sphere3d_kernel
+    bristle_kernel: ClassVar[Any] = bristle_sphere3d_kernel
     kind: ClassVar[int]
     width: ClassVar[int] = SIZE
 
@@ -75,10 +85,11 @@ class Contact3D(ContactElement):
 
     @model_validator(mode="after")
     def _friction_in_space(self) -> "Contact3D":
-        if isinstance(self.friction, LuGreFriction):
+        if isinstance(self.friction, LuGreFriction) and type(self).kind not in BRISTLES:
             raise ValueError(
-                f"contact '{self.name}': LuGre friction has one bristle and belongs to contacts in the plane; give it "
-                "one of the other laws, such as BrownMcPhee"
+                f"contact '{self.name}' is a {type(self).__name__}, along which the bristles of LuGre friction are not "
+                "carried: in space they are for spheres, corners and smooth shapes on half-spaces, and for spheres and "
+                "capsules on each other, in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
             )
         one_by_one = isinstance(self.law, NewtonImpact) and self.law.propagation == "sequential"
         if one_by_one and isinstance(self.friction, CoulombFriction):
@@ -105,7 +116,20 @@ class Contact3D(ContactElement):
         if isinstance(self.friction, CoulombFriction):
             return Form(kind.gripping_kernel, 3, _entries(n, n), _entries(3, n), (1, 2))
         kernel, rows = (kind.kernel, 1) if self.friction is None else (kind.rubbing_kernel, 2)
-        return Form(kernel, rows, _entries(n, n), _entries(1, n))
+        if isinstance(self.friction, LuGreFriction):
+            kernel = kind.bristle_kernel
+        size = n + len(self.internal_coordinates())
+        return Form(kernel, rows, _entries(size, size), _entries(1, n))
+
+    def internal_coordinates(self) -> Sequence[str]:
+        return BRISTLES[type(self).kind] if isinstance(self.friction, LuGreFriction) else ()
+
+    def rows(self, numbering: Numbering) -> Sequence[Row]:
+        row = self.row(numbering)
+        if not isinstance(self.friction, LuGreFriction):
+            return (row,)
+        more = (LEAST_DEFLECTION * numbering.length, self.friction.parameters()[-1])
+        return (Row((*row.parameters, *more), (*row.coordinates, *numbering.internal(self.name)), row.extra),)
 
     def lengths(self) -> Sequence[float]:
         return tuple(sphere.radius for sphere in self.spheres())

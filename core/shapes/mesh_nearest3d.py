@@ -17,7 +17,7 @@ from ..elements.measure3d import AXES_A, PLACE, POINT_A, offset
 from ..model.rotation3d import dot, four, less, turned, turning
 from .held3d import SEGMENTS, hold_segments
 from .mesh_parts import Faces, Points, flat_edges, normals_of
-from .normal3d import SIZE, pair_of
+from .normal3d import pair_of
 
 NORMAL_AT, FLAT_AT, MIDDLE_AT, REACH_AT, STRIDE = 9, 12, 15, 18, 19
 FIRST, COUNT, OPEN = 7, 8, 9
@@ -104,7 +104,7 @@ def hold_on_mesh(b: Any, e: int, held: Any, moves: Any) -> int:
     for i in range(len(pair)):
         held[i] = pair[i]
     moves[:, :] = 0.0
-    q, coord, pool = vec(b.q, b.n_extended), imat(b.coord, b.count, SIZE)[e], vec(b.signals, b.n_signals)
+    q, coord, pool = vec(b.q, b.n_extended), imat(b.coord, b.count, b.ncoord)[e], vec(b.signals, b.n_signals)
     for i in range(3):
         held[POINT_A + i] = 0.0
     p, s = four(q, coord, 3, held[0]), four(q, coord, 10, held[1])

@@ -42,7 +42,7 @@ def hold(b: Any, e: int, held: Any, moves: Any) -> int:
     if not moves_on(kind):
         return kind
     moves[:, :] = 0.0
-    q, coord = vec(b.q, b.n_extended), imat(b.coord, b.count, SIZE)[e]
+    q, coord = vec(b.q, b.n_extended), imat(b.coord, b.count, b.ncoord)[e]
     if kind == SUPPORT or on_round(kind):
         address = imat(b.extra, b.count, b.nextra)[e, SUPPORT_ADDRESS]
         numbers = vec(b.par + 8 * (e * b.npar + NUMBERS), 4)
@@ -60,7 +60,7 @@ def gap_of(kind: int, b: Any, e: int, held: Any, moves: Any, gradient: Any, hess
     """Gap of this kind of element e of a batch, m, whose points are held; its derivatives go into gradient (14,),
     hessian (14, 14) and its upper triangle row by row (105,)."""
     par = mat(b.par, b.count, b.npar)[e]
-    coord = imat(b.coord, b.count, SIZE)[e]
+    coord = imat(b.coord, b.count, b.ncoord)[e]
     g = measure(measured(kind), vec(b.q, b.n_extended), coord, held, 0.0, gradient, hessian)
     if moves_on(kind):
         bend_held(hessian, moves)

@@ -18,6 +18,7 @@ from ..model.channels import Channel
 from ..model.derived import Derived
 from ..model.motion import InputMotion
 from ..model.outputs import MarkerOutput
+from ..shapes.element import ContactElement
 from ..shapes.geometry_kinds import EQUATIONS, kind_of
 from .numbering import AT_REST, NO_START, ModelNumbering
 from .parts import Parts
@@ -55,7 +56,10 @@ class ContactInfo:
     """How many rows of tangents there are from `slide_row` on, with Coulomb friction: 1 in the plane, 2 in space."""
     friction: Friction | None = None
     bristle: int = -1
-    """Index of its friction's internal coordinate, whose velocity is the deflection of the bristles; -1: none."""
+    """Index of its friction's internal coordinate in the plane, whose velocity is the deflection of the bristles; -1:
+    none."""
+    bristles: tuple[tuple[int, str], ...] = ()
+    """In space: index and name of each component of that deflection."""
     kind: int = EQUATIONS
     """What is known of its geometry."""
     units: tuple[str, str] = ("m", "m")
@@ -180,6 +184,12 @@ class Assembly:
         return self.n + AT_REST + self.work_names.index(name)
 
 
+def _bristles_of(contact: ContactElement, numbering: ModelNumbering) -> tuple[int, tuple[tuple[int, str], ...]]:
+    """Index of a contact's one bristle, or -1, and indices and names of the components of several."""
+    found = tuple(zip(numbering.internal(contact.name), contact.internal_coordinates(), strict=True))
+    return (found[0][0], ()) if len(found) == 1 else (-1, found)
+
+
 def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
     return np.ascontiguousarray(np.array(rows, dtype=dtype).reshape(len(rows), -1))
 
@@ -279,7 +289,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START) -> Assembly:
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 max(len(contact_rows[c.name]) - 1, 1),
                 c.friction,
-                next(iter(numbering.internal(c.name)), -1),
+                *_bristles_of(c, numbering),
                 kind=kind_of(c.form().kernel),
                 units=c.units_in(numbering.bodies),
             )

@@ -11,7 +11,6 @@ from tlismni.core import (
     HalfSpace3D,
     Hertz,
     KelvinVoigt,
-    LuGreFriction,
     Marker3D,
     Model,
     ModelError,
@@ -181,12 +180,8 @@ def test_point_mass_in_space_strikes_a_moving_plane():
 
 
 def test_refused():
-    _, ball = sphere("ball")
     with pytest.raises(ModelError, match="two points"):
         SphereOnSphere3D(
             name="c", a=Sphere3D(marker=Marker3D()), b=Sphere3D(marker=Marker3D(body="b")),
             law=NewtonImpact(restitution=0.5),
         )  # fmt: skip
-    bristles = LuGreFriction(coefficient=0.3, stribeck_speed=0.1, bristle_stiffness=1e4)
-    with pytest.raises(ModelError, match="LuGre"):
-        SphereOnHalfSpace3D(name="c", plane=HalfSpace3D(), sphere=ball, law=Hertz(stiffness=1.0), friction=bristles)

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from ...core.laws.friction import LuGreFriction
 from ...core.model.markers import GROUND, Marker3D
 from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from ..errors import NotTranslatable
@@ -34,6 +35,11 @@ def sphere_contact(record: SphereOnHalfSpace3D | SphereOnSphere3D, build: Build)
         raise NotTranslatable(
             f"contact '{record.name}' has Coulomb friction in space, for which no sticking spring in two directions is "
             "written; a force law with a regularised friction is compared"
+        )
+    if isinstance(record.friction, LuGreFriction):
+        raise NotTranslatable(
+            f"contact '{record.name}' has LuGre friction in space, whose bristles in two directions are not written "
+            "for exudyn; give it a law without bristles, such as BrownMcPhee, for a comparison"
         )
     if record.turning is not None:
         raise NotTranslatable(

@@ -7,7 +7,7 @@ At constant speed z goes to g/s0 sgn v, so that F_t = -(g sgn v + s2 v); |z| nev
 import math
 from typing import Any, Literal
 
-from ...compiled.jit import compiled
+from ...compiled.jit import compiled, internal
 from ...model.base import NonNegative, Positive
 from .coefficients import StaticAndKinetic
 
@@ -44,6 +44,20 @@ def lugre_formula(
         -(s1 * rate_v + s2),
         -s1 * rate_n,
     )
+
+
+@internal
+def lugre_slip(speed: float, normal: float, s0: float, kinetic: float, static: float, vs: float) -> Any:
+    """(h, dh/d speed, dh/dF_n), 1/s, at F_n > 0: bristles slip by h z as z' = u - h z, whatever the direction of u.
+
+    h = s0 |u|/g(|u|, F_n). In one dimension that is `lugre_formula`.
+    """
+    x = speed / vs
+    excess = (static - kinetic) * math.exp(-x * x)
+    mu = kinetic + excess
+    each = s0 / (mu * normal)
+    h = each * speed
+    return h, each + h * 2.0 * x * excess / (vs * mu), -h / normal
 
 
 class LuGreFriction(StaticAndKinetic):
