@@ -20,8 +20,7 @@ from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
-from .held3d import HOLLOW, SEGMENTS, SUPPORT
-from .mesh_nearest3d import ON_MESH
+from .held3d import HOLLOW, ON_MESH, SEGMENTS, SUPPORT
 from .normal3d import SIZE
 from .support3d import SUPPORT_NUMBERS
 
