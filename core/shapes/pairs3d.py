@@ -52,6 +52,8 @@ def touching_in_space(a: SpatialShape, b: SpatialShape) -> Sequence[SpatialPair]
         return capsule_contacts(a, b)
     if body_of(a) == body_of(b) == GROUND:
         return ()
+    if isinstance(a, HalfSpace3D) and isinstance(b, HalfSpace3D):
+        raise no_contact(a, b, "both reach to infinity; take a box for the one that moves")
     kinds = type(a).__name__, type(b).__name__
     raise no_contact(
         a, b, "in space all shapes touch spheres and half-spaces, and capsules capsules. Give one of them spheres or "
