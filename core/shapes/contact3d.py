@@ -136,14 +136,14 @@ class Contact3D(ContactElement):
     def _row_of(
         self, numbering: Numbering, a: Marker3D, b: Marker3D, radius_a: float, radius_b: float, *,
         extents: tuple[float, float] = (0.0, 0.0), numbers: tuple[float, ...] = (0.0,) * SUPPORT_NUMBERS,
-        address: int = 0,
+        address: int = 0, tilt: float = 0.0,
     ) -> Row:  # fmt: skip
         """Row of the markers a and b; extents : how far points of contact may be from them, m; numbers, address : of a
-        smooth shape's formula."""
+        smooth shape's formula; tilt : sine of the angle below which segments draw back."""
         law = self._law_columns(numbering)
         # small against all speeds that weight causes
         still = STILL * math.sqrt(numbering.length * (math.hypot(*numbering.gravity) or numbering.length))
-        geometry = (float(self.kind), radius_a, radius_b, still, *extents, 0.0)
+        geometry = (float(self.kind), radius_a, radius_b, still, *extents, tilt)
         turning = (0.0, 0.0, 1.0) if self.turning is None else self.turning.parameters()
         return Row(
             (*geometry, *law.parameters, *columns_of(a, b, numbering), *numbers, *turning),

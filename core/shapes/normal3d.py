@@ -9,7 +9,19 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS, measure
-from .held3d import HOLLOW, SIZE, SUPPORT, bend_held, hold_segments, hold_support, measured, moves_on, on_round
+from .crossing3d import draw_back
+from .held3d import (
+    HOLLOW,
+    SEGMENTS,
+    SIZE,
+    SUPPORT,
+    bend_held,
+    hold_segments,
+    hold_support,
+    measured,
+    moves_on,
+    on_round,
+)
 from .held_round3d import hold_on_round
 
 PACKED = SIZE * (SIZE + 1) // 2
@@ -18,6 +30,8 @@ KIND, RADIUS_A, RADIUS_B = 0, 1, 2
 sphere negative."""
 EXTENT_A, EXTENT_B = 4, 5
 """How far points of contact may be from their markers, m; of segments their half lengths."""
+TILT = 6
+"""Sine of the angle of two segments below which their gap draws back (`crossing3d.py`); 0: never."""
 PAIR = 16
 NUMBERS = PAIR + COLUMNS
 """The numbers of a smooth or round shape."""
@@ -72,6 +86,8 @@ def gap_of(kind: int, b: Any, e: int, held: Any, moves: Any, gradient: Any, hess
             gradient[i] = out * gradient[i] if out != 0.0 else 0.0
             for j in range(SIZE):
                 hessian[i, j] = out * hessian[i, j] if out != 0.0 else 0.0
+    if kind == SEGMENTS and par[TILT] > 0.0:
+        g += draw_back(vec(b.q, b.n_extended), coord, held, par[TILT], par[RADIUS_A] + par[RADIUS_B], gradient, hessian)
     k = 0
     for i in range(SIZE):
         for j in range(i, SIZE):

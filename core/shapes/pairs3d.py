@@ -16,11 +16,11 @@ from .mesh3d import TriangleMesh3D
 from .on_cable3d import CableLine3D, CableOnHalfSpace3D, CableSpot, SphereOnCable3D
 from .on_mesh3d import MeshPart, SphereOnMesh3D, mesh_parts
 from .rings3d import Torus3D
-from .round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
+from .round3d import CapsuleOnCapsule3D, Crossing, SmoothOnHalfSpace3D, capsule_contacts
 from .support3d import SmoothShape3D
 
 SpatialShape = Sphere3D | HalfSpace3D | Cornered3D | SmoothShape3D | CableLine3D
-SpatialPart = CableSpot | MeshPart
+SpatialPart = CableSpot | Crossing | MeshPart
 SpatialPair = tuple[SpatialShape, SpatialShape | SpatialPart]
 
 
@@ -49,9 +49,11 @@ def touching_in_space(a: SpatialShape, b: SpatialShape) -> Sequence[SpatialPair]
         if isinstance(other, Sphere3D):
             return _by_sphere(one, other)
     if isinstance(a, Capsule3D) and isinstance(b, Capsule3D):
-        return ((a, b),)
+        return capsule_contacts(a, b)
     if body_of(a) == body_of(b) == GROUND:
         return ()
+    if isinstance(a, HalfSpace3D) and isinstance(b, HalfSpace3D):
+        raise no_contact(a, b, "both reach to infinity; take a box for the one that moves")
     kinds = type(a).__name__, type(b).__name__
     raise no_contact(
         a, b, "in space all shapes touch spheres and half-spaces, and capsules capsules. Give one of them spheres or "
@@ -100,7 +102,9 @@ def contact_in_space(
         return SphereOnRing3D(ring=a, sphere=other, **more)
     if isinstance(a, SmoothShape3D) and isinstance(other, Sphere3D):
         return SphereOnSmooth3D(shape=a, sphere=other, **more)
-    if isinstance(a, Capsule3D) and isinstance(other, Capsule3D | Sphere3D):
+    if isinstance(a, Capsule3D) and isinstance(other, Crossing):
+        return CapsuleOnCapsule3D(a=a, b=other.capsule, parallel_tilt=other.tilt, **more)
+    if isinstance(a, Capsule3D) and isinstance(other, Sphere3D):
         return CapsuleOnCapsule3D(a=a, b=other, **more)
     if isinstance(a, HalfSpace3D) and isinstance(other, SmoothShape3D):
         return SmoothOnHalfSpace3D(plane=a, shape=other, **more)

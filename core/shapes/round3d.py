@@ -1,6 +1,7 @@
 """Contacts of round shapes in space: smooth shapes on half-spaces, spheres in hollow spheres, capsules."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -49,6 +50,32 @@ class SmoothOnHalfSpace3D(Contact3D):
         return (self.plane.marker, self.shape.marker)
 
 
+SHORTER = 1e-3
+"""Of its length: so much a capsule is shorter for all but the ends of the first one: no two contacts say the same."""
+TILT = 0.1
+"""Of the sum of the radii over the longer length: sine of the angle below which ends carry. At this angle the axes of
+two that lie on one another by their ends are nearer by TILT^2/8 of the sum of the radii, less than they draw back."""
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A capsule against another one, as far as they are not parallel."""
+
+    capsule: Capsule3D
+    tilt: float
+
+
+def capsule_contacts(a: Capsule3D, b: Capsule3D) -> Sequence[tuple[Capsule3D, Crossing | Sphere3D]]:
+    """Pairs that are the contacts of two capsules: of their axes, and of the ends of each with the other."""
+    short_a, short_b = (c.model_copy(update={"length": (1.0 - SHORTER) * c.length}) for c in (a, b))
+    tilt = min(TILT * (a.radius + b.radius) / max(a.length, b.length), 0.5)
+    return (
+        (short_a, Crossing(short_b, tilt)),
+        *((b, end) for end in a.corners()),
+        *((short_a, end) for end in b.corners()),
+    )
+
+
 class SphereInSphere3D(Contact3D):
     """Contact of a sphere with the inside of a hollow one: gap = difference of the radii - distance of the centres."""
 
@@ -88,7 +115,8 @@ class SphereInSphere3D(Contact3D):
 class CapsuleOnCapsule3D(Contact3D):
     """Contact of two capsules, or of a capsule and a sphere, at their nearest points.
 
-    Capsules that are parallel touch in the middle of where they lie side by side, at one place.
+    Capsules that are parallel touch in the middle of where they lie side by side, at one place, which is no way to lie
+    on one another: `contacts_between` and groups make five contacts, of the axes and of the ends (`capsule_contacts`).
     """
 
     type: Literal["CapsuleOnCapsule3D"] = "CapsuleOnCapsule3D"
@@ -98,6 +126,9 @@ class CapsuleOnCapsule3D(Contact3D):
     """The first capsule."""
     b: Annotated[Capsule3D | Sphere3D, Field(discriminator="type")]
     """The second one, or a sphere."""
+    parallel_tilt: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0
+    """Sine of the angle of two capsules below which their gap draws back, by up to 0.002 of the sum of the radii, where
+    contacts of their ends carry, dimensionless; 0: nowhere."""
 
     def spheres(self) -> Sequence[Sphere3D]:
         return (*self.a.corners(), *(self.b.corners() if isinstance(self.b, Capsule3D) else (self.b,)))
@@ -110,7 +141,15 @@ class CapsuleOnCapsule3D(Contact3D):
 
     def row(self, numbering: Numbering) -> Row:
         halves = 0.5 * self.a.length, 0.5 * self.b.length if isinstance(self.b, Capsule3D) else 0.0
-        return self._row_of(numbering, self.a.marker, self.b.marker, self.a.radius, self.b.radius, extents=halves)
+        return self._row_of(
+            numbering,
+            self.a.marker,
+            self.b.marker,
+            self.a.radius,
+            self.b.radius,
+            extents=halves,
+            tilt=self.parallel_tilt,
+        )
 
     def markers(self) -> Sequence[Marker3D]:
         return (self.a.marker, self.b.marker)

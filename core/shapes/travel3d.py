@@ -5,8 +5,9 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..elements.measure3d import POINT_A, POINT_B
+from .crossing3d import BACK, STEEPEST
 from .held3d import on_plane
-from .normal3d import EXTENT_A, EXTENT_B, KIND, PAIR
+from .normal3d import EXTENT_A, EXTENT_B, KIND, PAIR, RADIUS_A, RADIUS_B, TILT
 
 TURN = 2.0 * 1.01
 """|d(A u)| <= 2 |u| |dp| for |p| = 1; the dense output between two rows leaves that by less than the rest."""
@@ -34,6 +35,8 @@ def way_of_sphere(q: Any, coord: Any, par: Any, way: Any) -> float:
     turns_a, turns_b = TURN * _at(way, coord, 3, 4), TURN * _at(way, coord, 10, 4)
     total = moves_a + moves_b + arm_b * turns_b
     if not on_plane(int(par[KIND])):
+        if par[TILT] > 0.0:
+            total += STEEPEST * BACK * (par[RADIUS_A] + par[RADIUS_B]) / par[TILT] * (turns_a + turns_b)
         return total + arm_a * turns_a
     if turns_a > 0.0:
         far = 0.0

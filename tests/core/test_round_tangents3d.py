@@ -64,6 +64,7 @@ SHAPES = {
         name="c", hollow=Sphere3D(marker=LEFT, radius=1.6), sphere=Sphere3D(marker=RIGHT, radius=1.5), **more
     ),
     "ends": lambda **more: capsules(LEFT, RIGHT_WHEEL, 0.02, 0.03, **more),
+    "nearly parallel": lambda **more: capsules(LEFT, RIGHT, 0.02, 0.03, parallel_tilt=0.5, **more),
     "crossed": lambda **more: capsules(LEFT, FAR, 30.0, 30.0, **more),
     "end on side": lambda **more: capsules(LEFT, RIGHT_WHEEL, 0.02, 30.0, **more),
     "ball on ellipsoid": lambda **more: SphereOnSmooth3D(

@@ -1,0 +1,46 @@
+"""How the contact of the axes of two capsules makes way for contacts of their ends where they lie side by side.
+
+Nearly parallel the nearest points of two axes run from end to end as the capsules turn a little; parallel, these touch
+along a line, whose ends are ends of capsules. So below a small angle, of the sine `tilt`, the gap of the axes grows by
+BACK (R_a + R_b) (1 - u)^3, u the squared sine over the squared tilt, and contacts of the ends carry.
+"""
+
+import math
+from typing import Any
+
+from ..compiled.jit import internal
+from ..elements.measure3d import AXES_A, AXES_B, add_bent
+from ..model.rotation3d import constant, dot, four, onto, turned, turning
+
+BACK = 2e-3
+"""Of the sum of the radii."""
+STEEPEST = 6.0 * math.sqrt(0.2) * 0.8**2
+"""Of BACK (R_a + R_b)/tilt: the largest change by an angle, where u = 1/5."""
+
+
+@internal
+def draw_back(q: Any, coord: Any, held: Any, tilt: float, radii: float, gradient: Any, hessian: Any) -> float:
+    """By how much the gap is larger, m; its derivatives are added to gradient (14,) and hessian (14, 14)."""
+    p, s = four(q, coord, 3, held[0]), four(q, coord, 10, held[1])
+    axis_a, axis_b = constant(held, AXES_A + 6), constant(held, AXES_B + 6)
+    of_a, of_b = turning(p, axis_a), turning(s, axis_b)
+    a, b = turned(of_a, p), turned(of_b, s)
+    c, square, deep = dot(a, b), tilt * tilt, BACK * radii
+    rest = 1.0 - (1.0 - c * c) / square
+    if rest <= 0.0:
+        return 0.0
+    by_c = deep * 6.0 * c * rest * rest / square
+    by_cc = deep * (6.0 * rest * rest / square + 24.0 * c * c * rest / (square * square))
+    by_p, by_s = onto(of_a, b), onto(of_b, a)
+    for i in range(4):
+        gradient[3 + i] += by_c * by_p[i]
+        gradient[10 + i] += by_c * by_s[i]
+        for j in range(4):
+            hessian[3 + i, 3 + j] += by_cc * by_p[i] * by_p[j]
+            hessian[10 + i, 10 + j] += by_cc * by_s[i] * by_s[j]
+            mixed = by_cc * by_p[i] * by_s[j] + by_c * dot(of_a[i], of_b[j])
+            hessian[3 + i, 10 + j] += mixed
+            hessian[10 + j, 3 + i] += mixed
+    add_bent(hessian, 3, by_c, b, axis_a)
+    add_bent(hessian, 10, by_c, a, axis_b)
+    return deep * rest**3
