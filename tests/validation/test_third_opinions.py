@@ -49,6 +49,8 @@ RUNS: list[tuple[str, dict[str, Any], float | None]] = [
     ("spinning_sphere", {**LAW, "transition_speed": 1e-2}, 0.6),
     ("tippe_top", {}, 1.0),
     ("tippe_top", {"law": "hertz"}, 0.05),
+    ("spatial_cradle", {}, 0.4),
+    ("spatial_cradle", {"law": "hertz", "stiffness": 1e7, "angle_rate": -1.0, "aside_rate": 1.0}, 0.25),
 ]
 
 

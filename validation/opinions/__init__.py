@@ -1,6 +1,19 @@
 """Third opinions on the scenarios of the catalogue."""
 
-from . import blows, cranks, rocking, rods, rolling, smooth, space_cranks, spheres, stick_slip, tops, woodpecker
+from . import (
+    blows,
+    cranks,
+    rocking,
+    rods,
+    rolling,
+    smooth,
+    space_cradle,
+    space_cranks,
+    spheres,
+    stick_slip,
+    tops,
+    woodpecker,
+)
 
 __all__ = [
     "blows",
@@ -9,6 +22,7 @@ __all__ = [
     "rods",
     "rolling",
     "smooth",
+    "space_cradle",
     "space_cranks",
     "spheres",
     "stick_slip",
