@@ -1,6 +1,7 @@
 """Third opinions on the scenarios of the catalogue."""
 
 from . import (
+    arm,
     blows,
     cranks,
     rocking,
@@ -16,6 +17,7 @@ from . import (
 )
 
 __all__ = [
+    "arm",
     "blows",
     "cranks",
     "rocking",
