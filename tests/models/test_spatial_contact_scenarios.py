@@ -215,9 +215,17 @@ def test_a_patch_slows_the_spin_of_a_tippe_top():
     """The torque (2/3) mu N eps takes from the angular momentum about the vertical, friction of a point does not here:
     upright on a sphere about its axis, C w' = -(2/3) mu m g eps."""
     eps = 5e-4
-    _, result = run("tippe_top", tilt=0.0, patch_radius=eps)
+    _, result = run("tippe_top", tilt=0.0, spin_tilt=0.0, patch_radius=eps)
     slows = 2.0 / 3.0 * 0.3 * 6e-3 * 9.81 * eps / 7e-7
     assert result["top.body_angular_velocity_z"] == pytest.approx(180.0 - slows * result.t, abs=1e-4)
+
+
+def test_a_top_that_spins_about_its_axis_soon_rolls():
+    """The torque of friction at a point rights it before it turns over; then nothing slides any more."""
+    _, result = run("tippe_top", spin_tilt=0.0)
+    tilt = 2.0 * np.arcsin(np.hypot(result["top.e1"], result["top.e2"]))
+    assert tilt.max() < 0.11 and tilt[-1] < 0.06
+    assert [event.kind for event in result.events] == ["close", "stick"]
 
 
 def test_a_flat_top_stays_upright():

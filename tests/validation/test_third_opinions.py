@@ -49,6 +49,11 @@ RUNS: list[tuple[str, dict[str, Any], float | None]] = [
     ("spinning_sphere", {**LAW, "transition_speed": 1e-2}, 0.6),
     ("tippe_top", {}, 1.0),
     ("tippe_top", {"law": "hertz"}, 0.05),
+    ("spatial_cradle", {}, 0.4),
+    ("arm_stop", {}, 0.29),
+    ("arm_stop", {"elbow_limit": None, "shoulder_angle": -0.3, "elbow_rate": 1.0}, 0.45),
+    ("arm_stop", LAW, 0.25),
+    ("spatial_cradle", {"law": "hertz", "stiffness": 1e7, "angle_rate": -1.0, "aside_rate": 1.0}, 0.25),
 ]
 
 
