@@ -122,7 +122,8 @@ class CompiledModel:
         sim = self._bare.simulation()
         turned = bool(start) and bool(self._counted)
         if system is not self.system or turned:
-            assembly = system.assemble(start) if turned else system.assemble()
+            of_model = isinstance(system, Model)
+            assembly = system.assemble(start if turned else None, self.t0) if of_model else system.assemble()
             differs = what_differs(self._assembly, assembly)
             if differs:
                 return self._built_anew(system, start or {})

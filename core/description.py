@@ -290,11 +290,11 @@ class Model(Record):
         except ModelError as error:
             raise ModelError(f"model file '{path}': {with_lines(error, text)}", error.problems) from None
 
-    def assemble(self, start: Mapping[str, float] | None = None) -> Any:
-        """The model as flat tables (`Assembly`); `start` are other values at the start, see there."""
+    def assemble(self, start: Mapping[str, float] | None = None, t0: float = 0.0) -> Any:
+        """The model as flat tables (`Assembly`); `start` are other values at the start t0, s, see there."""
         from .tables.assembly import assemble
 
-        return assemble(self, start or {})
+        return assemble(self, start or {}, t0)
 
     def identity(self) -> str:
         """What makes this model the same as another: its JSON."""

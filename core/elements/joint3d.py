@@ -139,7 +139,7 @@ class TurningJoint3D(Joint3D):
         super().check_in(bodies)
         check_start_angle(self.name, self.a, self.b, self.start_angle, bodies)
 
-    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+    def said_angles(self, inputs: Mapping[str, float], t: float) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""
         return () if self.start_angle is None else (SaidAngle(self.a, self.b, self.start_angle, f"'{self.name}'"),)
 

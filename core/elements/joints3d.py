@@ -223,9 +223,9 @@ class AngleDriver3D(_Driven):
     angle: Signal
     """rad over time; its value at the start says whole turns for all that counts turns about the same axis."""
 
-    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+    def said_angles(self, inputs: Mapping[str, float], t: float) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""
-        return (SaidAngle(self.a, self.b, value_at_start(self.angle, inputs), f"'{self.name}'"),)
+        return (SaidAngle(self.a, self.b, value_at_start(self.angle, inputs, t), f"'{self.name}'", False),)
 
     def primitives(self) -> Sequence[Primitive]:
         return (Twist(("x", "x"), ("y", "x"), self.angle),)

@@ -200,6 +200,6 @@ class CountingForce3D(MeasuredForce3D):
         """Its angle, if it acts on one."""
         return (CountedAngle(f"{self.name}.angle", self.a, self.b),) if self.kind() == ANGLE else ()
 
-    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+    def said_angles(self, inputs: Mapping[str, float], t: float) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""
         return () if self.start_angle is None else (SaidAngle(self.a, self.b, self.start_angle, f"'{self.name}'"),)

@@ -169,7 +169,7 @@ class PIDController3D(Pair3D):
             return ()
         return (CountedAngle(f"{self.name}.angle", self.sensing_a, self.sensing_b),)
 
-    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+    def said_angles(self, inputs: Mapping[str, float], t: float) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""
         if self.start_angle is None:
             return ()

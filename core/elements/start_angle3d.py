@@ -1,6 +1,6 @@
 """The angle between two markers in space at the start, whole turns included.
 
-Axes tell it but for whole turns. These are said, in this order, by `start_angle` of a joint, stop or spring, or the
+Axes tell it but for whole turns. These are said, in this order, by `start_angle` of a joint, stop or spring, or by the
 value of a driver, between the same two bodies about the same axis; by the angles of attitudes, where their turns about
 that axis add up to it; else there are none: the angle is between -pi and pi.
 """
@@ -30,11 +30,11 @@ SAME = 1e-6
 """rad; how well the turns of attitudes must add up to be taken."""
 
 
-def value_at_start(signal: Signal, inputs: Mapping[str, float]) -> float:
-    """A time function at t = 0, with these start values of the inputs."""
+def value_at_start(signal: Signal, inputs: Mapping[str, float], t: float) -> float:
+    """A time function at time t, with these start values of the inputs."""
     if isinstance(signal, InputSignal):
         return signal.gain * inputs[signal.channel]
-    return float(interpreted(evaluate_signal)(np.array(signal.pool({})), np.zeros(0), 0, 0.0)[0])
+    return float(interpreted(evaluate_signal)(np.array(signal.pool({})), np.zeros(0), 0, t)[0])
 
 
 def check_start_angle(
@@ -102,9 +102,10 @@ class Elsewhere(BodyElement):
 
 def _said(a: Marker3D, b: Marker3D, bodies: Mapping[str, BodyElement], said: Sequence[SaidAngle]) -> float | None:
     found = angle_between(a, b, bodies)
-    meant = [(_nearest(found, angle), one.by) for one in said for angle in _seen(a, b, one, bodies)]
+    heard = [(one, angle) for one in said for angle in _seen(a, b, one, bodies)]
+    meant = [(_nearest(found, angle), one.by) for one, angle in heard if one.firm]
     if not meant:
-        return None
+        return next((_nearest(found, angle) for _, angle in heard), None)
     value, by = meant[0]
     for other, who in meant[1:]:
         if abs(other - value) > math.pi:

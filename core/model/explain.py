@@ -1,5 +1,6 @@
 """What is wrong with a record, in words: which element, which field, what was needed, what was given."""
 
+import re
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
@@ -73,11 +74,17 @@ def _clause(problem: Any, record: type[BaseModel], data: Mapping[str, Any]) -> s
     if kind == "extra_forbidden":
         words, given = _no_such_field(field.rpartition(".")[2], owner.split(" ")[0], record), ...
     elif kind == "string_pattern_mismatch":
-        words = NAME_PATTERN
+        words = _wanted(problem["ctx"]["pattern"])
     else:
         words = NEEDED[kind].format(**problem.get("ctx", {})) if kind in NEEDED else problem["msg"]
     what = "" if given is ... or kind == "missing" else f" (given: {shown(given)})"
     return f"{owner}: {field}: {words}{what}" if field else f"{owner}: {words}{what}"
+
+
+def _wanted(pattern: str) -> str:
+    """What a text must be that has to match a pattern: one of several words, or a name."""
+    words = re.fullmatch(r"\^\(([a-z|]+)\)\$", pattern)
+    return f"must be one of {', '.join(words[1].split('|'))}" if words else NAME_PATTERN
 
 
 def _place(loc: Sequence[Any], record: type[BaseModel], data: Any, to_the_end: bool) -> tuple[str, str | None, str]:

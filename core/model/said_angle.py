@@ -9,20 +9,24 @@ from .markers import Marker3D
 
 @dataclass(frozen=True)
 class SaidAngle:
-    """That the x axis of marker b is at `angle` (rad) from that of marker a, about the z axis of a; `by` says it."""
+    """That the x axis of marker b is at `angle` (rad) from that of marker a, about the z axis of a; `by` says it.
+
+    What is not `firm` is asked where nobody else says anything.
+    """
 
     a: Marker3D
     b: Marker3D
     angle: float
     by: str
+    firm: bool = True
 
 
 @runtime_checkable
 class SaysAngle(Protocol):
     """An element that says angles of markers at the start."""
 
-    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
-        """What it says, with these start values of the inputs."""
+    def said_angles(self, inputs: Mapping[str, float], t: float) -> Sequence[SaidAngle]:
+        """What it says, with these start values of the inputs, for a run that starts at t, s."""
         ...
 
 

@@ -71,8 +71,9 @@ def together(memory: Memory, found: Sequence[Parameter], settings: Mapping[str, 
 
 
 def _each_its_own(copies: "_Copies", found: Sequence[Parameter]) -> bool:
-    """Whether with other values of all parameters at once each word that only one of them leads is what that makes of
-    it, and one that none leads stays: then two that lead no word both do together what each does alone."""
+    """Whether with other values of all parameters at once each word is what those make of it together that lead it,
+    and one that none leads stays: then two that lead no word both do together what each does alone. (A length that
+    rates of zero are multiplied with leads no velocity.)"""
     memory = copies.memory
     for first in range(len(FACTORS) if len(found) > 1 else 0):
         near = {p.name: _near(p, FACTORS[(first + k) % len(FACTORS)]) for k, p in enumerate(found)}
@@ -84,13 +85,24 @@ def _each_its_own(copies: "_Copies", found: Sequence[Parameter]) -> bool:
         if all_at_once is None or None in alone:
             continue
         rows = memory.words([{}, *(copy for copy in alone if copy is not None), all_at_once])
-        for values in rows.values():
+        led: dict[tuple[int, ...], list[int]] = {}
+        for place, values in rows.items():
             bits = values.view(np.int64)
-            leaders = np.flatnonzero(bits[1:-1] != bits[0])
-            if len(leaders) < 2 and bits[-1] != (bits[1 + leaders[0]] if len(leaders) else bits[0]):
-                return False
-        return True
+            led.setdefault(tuple(int(k) for k in np.flatnonzero(bits[1:-1] != bits[0])), []).append(place)
+        return all(_only_these(copies, found, near, leaders, places) for leaders, places in led.items())
     return False
+
+
+def _only_these(
+    copies: "_Copies", found: Sequence[Parameter], near: Mapping[str, float], leaders: Sequence[int],
+    places: Sequence[Place],
+) -> bool:  # fmt: skip
+    """Whether these words have the same bits with other values of their leaders as with other values of all."""
+    few = {found[k].name: near[found[k].name] for k in leaders}
+    some, everything = copies.of(**few) if few else {}, copies.of(**near)
+    if some is None or everything is None:
+        return False
+    return not set(places) & set(copies.memory.words([some, everything]))
 
 
 def _near(p: Parameter, factor: float) -> float:

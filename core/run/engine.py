@@ -111,7 +111,7 @@ class Engine(ContactSide):
         if not isinstance(system, Model) and not _is_equations(system):
             raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
         self.system = system
-        self.assembly: Assembly = system.assemble()
+        self.assembly: Assembly = system.assemble(t0=t0) if isinstance(system, Model) else system.assemble()
         self.workspace = Workspace(self.assembly, state_fields(self.assembly))
         self.table = ChannelTable(system, self.assembly)
         self.events: list[Event] = []

@@ -141,7 +141,7 @@ class AngleStop3D(Stop3D):
         """Its angle."""
         return (CountedAngle(f"{self.name}.angle", self.a, self.b),)
 
-    def said_angles(self, inputs: Mapping[str, float]) -> Sequence[SaidAngle]:
+    def said_angles(self, inputs: Mapping[str, float], t: float) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""
         return () if self.start_angle is None else (SaidAngle(self.a, self.b, self.start_angle, f"'{self.name}'"),)
 

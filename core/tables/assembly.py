@@ -194,10 +194,10 @@ def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
     return np.ascontiguousarray(np.array(rows, dtype=dtype).reshape(len(rows), -1))
 
 
-def assemble(model: Parts, start: Mapping[str, float] = NO_START) -> Assembly:
-    """The model as flat tables; `start` are values at the start other than the model's, by the names of channels, of
-    which only the turns of angles are taken here. Raises ModelError without bodies, and for a contact of a body with
-    itself."""
+def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.0) -> Assembly:
+    """The model as flat tables, for runs that start at t0, s; `start` are other values at the start than its own, by
+    names of channels, of which only the turns of angles are taken here. Raises ModelError without bodies, and for a
+    contact of a body with itself."""
     if not model.bodies:
         raise ModelError(f"model '{model.name}' has no bodies, so nothing can move: give it at least one in `bodies`")
     for contact in model.contacts:
@@ -207,7 +207,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START) -> Assembly:
                 f"both shapes of contact '{contact.name}' are on '{bodies[0]}': their gap never changes; "
                 "give it shapes on two bodies"
             )
-    numbering = ModelNumbering(model, start)
+    numbering = ModelNumbering(model, start, t0)
     grouped: dict[tuple[int, int], list[tuple[Element, Row, tuple[int, ...]]]] = {}
     forms: dict[tuple[int, int], Form] = {}
     row_names: list[str] = []

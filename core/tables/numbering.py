@@ -22,7 +22,7 @@ AT_REST = 1
 class ModelNumbering:
     """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
 
-    def __init__(self, model: Parts, start: Mapping[str, float] = NO_START) -> None:
+    def __init__(self, model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.0) -> None:
         self.gravity: Vector3 = in_space(model.gravity)
         self.length = _length(model)
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
@@ -55,6 +55,7 @@ class ModelNumbering:
                 self.starts[body.name] = tuple(body.start_in(self.bodies, self.input_start)[0])
             at += count
         self._elements, self._start_values, self._asked = model.elements, start, False
+        self._t0 = t0
         self._said: list[SaidAngle] = []
         self._said_now: list[SaidAngle] = []
         self._moved: dict[str, BodyElement] = {}
@@ -116,7 +117,7 @@ class ModelNumbering:
         self._asked, values = True, self._start_values
         for element in self._elements():
             if isinstance(element, SaysAngle):
-                self._said += element.said_angles(self.input_start)
+                self._said += element.said_angles(self.input_start, self._t0)
             if values and isinstance(element, CountsTurns):
                 counted = (angle for angle in element.counted_angles() if angle.name in values)
                 self._said_now += [SaidAngle(c.a, c.b, values[c.name], f"start value '{c.name}'") for c in counted]

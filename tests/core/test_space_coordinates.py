@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from tlismni.core import (
+    AngleDriver3D,
     AngleStop3D,
     AxisAngles,
     Cylindrical3D,
@@ -18,6 +19,7 @@ from tlismni.core import (
     RigidBody3D,
     RotationVector,
     Screw3D,
+    Sine,
     SlideStop3D,
     Spherical3D,
     TorsionSpring3D,
@@ -140,3 +142,16 @@ def test_coordinates_that_a_joint_does_not_have():
     joint = Universal3D(name="cross", a=Marker3D(), b=Marker3D(body="rod"))
     with pytest.raises(ModelError, match=r"a Universal3D has \['angle_1', 'angle_2'\]"):
         joint.ends_of("angle")
+
+
+def test_a_driver_about_an_arm_of_the_cross():
+    swing = Sine(amplitude=0.3, angular_frequency=4.0, offset=0.4)
+
+    def model():
+        base = cross_pendulum(0.4, -0.7, (1.2, 0.0))
+        driver = AngleDriver3D(name="driver", **base.joints[0].ends_of("angle_1"), angle=swing)
+        return base.model_copy(update={"joints": (*base.joints, driver)})
+
+    result = simulate(model(), 2.0, **TIGHT)
+    assert result["joint.angle_1"] == pytest.approx(0.4 + 0.3 * np.sin(4.0 * result.t), abs=1e-9)
+    assert np.abs(result["energy.balance"]).max() < 1e-7

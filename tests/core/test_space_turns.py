@@ -202,3 +202,18 @@ def test_start_values_at_half_a_turn_do_not_flip():
         assert np.abs(np.diff(found["hinge.angle"])).max() < 1.0 and abs(found["hinge.angle"][0]) < 3.2
         found = simulate(model, 3.0, start_values={**place, "hinge.angle": angle + 4.0 * math.pi}, rtol=1e-9)
         assert found["hinge.angle"] == pytest.approx(angle + 4.0 * math.pi + found.t, abs=1e-6)
+
+
+def test_a_driven_run_goes_on_or_starts_late():
+    """The driver says the turn at the time when the run starts; what the joint says counts more."""
+    driver = AngleDriver3D(name="driver", **ENDS, angle=Polynomial(coefficients=(3.5, 1.0, 2.0)))
+    model = rotor(TURNED, 1.0, joints=[hinge(), driver])
+    whole = simulate(model, 4.0, t_eval=[0.0, 3.0, 4.0], rtol=1e-9)
+    expected = 3.5 + 4.0 + 2.0 * 16.0
+    assert whole["hinge.angle"][-1] == pytest.approx(expected, abs=1e-6)
+    late = whole.model_at(3.0)
+    assert late.joints[0].start_angle == pytest.approx(3.5 + 3.0 + 18.0, abs=1e-6)
+    unsaid = late.model_copy(update={"joints": (hinge(), driver)})
+    for going_on in (late, unsaid):
+        result = simulate(going_on, 4.0, t0=3.0, rtol=1e-9)
+        assert result["hinge.angle"][-1] == pytest.approx(expected, abs=1e-6)
