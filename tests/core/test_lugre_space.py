@@ -27,6 +27,8 @@ from lugre_models import (
 from tlismni.core import (
     Axes,
     Box3D,
+    Capsule3D,
+    CapsuleOnCapsule3D,
     ContactGroup3D,
     CoordinateDriver,
     Ellipsoid3D,
@@ -43,7 +45,9 @@ from tlismni.core import (
     SphereInSphere3D,
     SphereOnCable3D,
     SphereOnHalfSpace3D,
+    SphereOnMesh3D,
     SphereOnSphere3D,
+    TriangleMesh3D,
     simulate,
 )
 
@@ -169,6 +173,50 @@ def test_egg_rolls_on_the_floor_and_a_marble_in_a_bowl():
     normal = places / np.linalg.norm(places, axis=0)
     assert np.ptp(np.unwrap(np.arctan2(places[1], places[0]))) > 2.0
     assert np.abs((normal * bent).sum(axis=0)).max() < 1e-6 * np.linalg.norm(bent, axis=0).max()
+
+
+def plate_with(mesh):
+    """A ball thrown onto a floor, or onto a plate of triangles at its place."""
+    body = ball(position=(-0.3, 0.05, 0.25), velocity=(1.2, 0.3, 0.0), angular_velocity=(0.0, 3.0, 6.0))
+    parts = {"name": "c", "law": LAW, "friction": BRISTLES}
+    if not mesh:
+        contact = SphereOnHalfSpace3D(plane=HalfSpace3D(), sphere=sphere("ball", 0.15), **parts)
+    else:
+        corners = tuple((2.0 * x, 2.0 * y, z) for z in (-1.0, 0.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0))
+        faces = (
+            (4, 5, 7), (4, 7, 6), (0, 3, 1), (0, 2, 3), (0, 1, 5), (0, 5, 4), (1, 3, 7), (1, 7, 5), (3, 2, 6),
+            (3, 6, 7), (2, 0, 4), (2, 4, 6),
+        )  # fmt: skip
+        plate = TriangleMesh3D(marker=Marker3D(), vertices=corners, faces=faces)
+        contact = SphereOnMesh3D(mesh=plate, sphere=sphere("ball", 0.15), **parts)
+    times = np.linspace(0.0, 0.8, 81)
+    return simulate(Model(bodies=[body], contacts=[contact], gravity=DOWN), 0.8, **TIGHT, t_eval=times)
+
+
+def test_ball_on_a_plate_of_triangles_moves_as_on_a_floor():
+    floor, plate = plate_with(False), plate_with(True)
+    for name in ("ball.x", "ball.y", "ball.z", "ball.angular_velocity_x", "c.bristle_x", "c.bristle_y"):
+        assert np.abs(floor[name] - plate[name]).max() < 1e-7, name
+    assert np.abs(plate["c.bristle_z"]).max() < 1e-12
+    assert [e.kind for e in floor.events] == [e.kind for e in plate.events]
+
+
+def test_capsule_rolls_over_another_and_falls_off():
+    """Held by its bristles it tips and rolls off a fixed capsule askew below it: the ledger closes."""
+    fixed = Capsule3D(
+        marker=Marker3D(attitude=RotationVector(vector=(0.0, 0.5 * math.pi, 0.0))), length=1.0, radius=0.1
+    )
+    rod = RigidBody3D(
+        name="rod", mass=1.0, inertia=(0.02, 0.02, 2e-3), position=(0.02, 0.01, 0.1999),
+        attitude=RotationVector(vector=(0.5 * math.pi, 0.0, 0.0)), angular_velocity=(0.0, 1.0, 0.5),
+    )  # fmt: skip
+    moving = Capsule3D(marker=Marker3D(body="rod"), length=0.6, radius=0.1)
+    contact = CapsuleOnCapsule3D(name="c", a=fixed, b=moving, law=LAW, friction=BRISTLES)
+    result = simulate(Model(bodies=[rod], contacts=[contact], gravity=DOWN), 1.0, rtol=1e-8, atol=1e-11)
+    assert np.abs(result["energy.balance"]).max() < 1e-6
+    bent = np.array([result[f"c.bristle_{axis}"] for axis in "xyz"])
+    assert np.linalg.norm(bent, axis=0).max() > 1e-5
+    assert np.linalg.norm(bent, axis=0).max() <= STATIC * result["c.normal_force"].max() / S0 * (1.0 + 1e-6)
 
 
 # ---- the record -----------------------------------------------------------------------------------------------------
