@@ -18,14 +18,15 @@ from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
-from .held3d import HOLLOW, SEGMENTS, SUPPORT
+from .held3d import HOLLOW, POINT_OF_CABLE, SEGMENTS, SUPPORT
 from .mesh_nearest3d import ON_MESH
 from .normal3d import SIZE
 from .support3d import SUPPORT_NUMBERS
 
 _ALONG, _IN_SPACE = ("bristle_x", "bristle_y"), ("bristle_x", "bristle_y", "bristle_z")
 BRISTLES = {
-    PLACE: _ALONG, SUPPORT: _ALONG, DISTANCE: _IN_SPACE, HOLLOW: _IN_SPACE, SEGMENTS: _IN_SPACE, ON_MESH: _IN_SPACE,
+    PLACE: _ALONG, SUPPORT: _ALONG, POINT_OF_CABLE: _ALONG, DISTANCE: _IN_SPACE, HOLLOW: _IN_SPACE,
+    SEGMENTS: _IN_SPACE, ON_MESH: _IN_SPACE,
 }  # fmt: skip
 """Components of the bristles' deflection along the axes of the first marker, by the kind of the gap."""
 
@@ -80,8 +81,8 @@ class Contact3D(ContactElement):
         if isinstance(self.friction, LuGreFriction) and type(self).kind not in BRISTLES:
             raise ValueError(
                 f"contact '{self.name}' is a {type(self).__name__}, along which the bristles of LuGre friction are not "
-                "carried: in space they are for spheres, corners and smooth shapes on half-spaces, and for spheres and "
-                "capsules on each other, in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
+                "carried: in space they are for all shapes on half-spaces, and for spheres and capsules on each other, "
+                "in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
             )
         one_by_one = isinstance(self.law, NewtonImpact) and self.law.propagation == "sequential"
         if one_by_one and isinstance(self.friction, CoulombFriction):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from helpers import events
+from helpers import G, events
 from lugre_models import (
     BRISTLES,
     DOWN,
@@ -27,12 +27,15 @@ from lugre_models import (
 from tlismni.core import (
     Axes,
     Box3D,
+    Cable3D,
+    CableLine3D,
     Capsule3D,
     CapsuleOnCapsule3D,
     ContactGroup3D,
     CoordinateDriver,
     Ellipsoid3D,
     HalfSpace3D,
+    KelvinVoigt,
     Marker3D,
     Model,
     ModelError,
@@ -217,6 +220,26 @@ def test_capsule_rolls_over_another_and_falls_off():
     bent = np.array([result[f"c.bristle_{axis}"] for axis in "xyz"])
     assert np.linalg.norm(bent, axis=0).max() > 1e-5
     assert np.linalg.norm(bent, axis=0).max() <= STATIC * result["c.normal_force"].max() / S0 * (1.0 + 1e-6)
+
+
+def test_cable_falls_on_a_slope_and_is_held_by_the_bristles_of_its_points():
+    slope = math.tan(0.1)
+    cable = Cable3D(
+        name="cable", elements=3, length=1.0, mass_per_length=1.0, axial_stiffness=1e4, bending_stiffness=0.5,
+        axial_damping=5.0, position=(0.0, 0.0, 0.04), attitude=RotationVector(vector=(0.0, 0.0, 0.4)),
+    )  # fmt: skip
+    group = ContactGroup3D(
+        name="g", cables=(CableLine3D(cable="cable", thickness=0.02, points=4),),
+        half_spaces=(HalfSpace3D(marker=Marker3D(attitude=Axes(z=(slope, 0.0, 1.0)), point=(0.0, 0.0, -0.15))),),
+        law=KelvinVoigt(stiffness=5e3, damping=50.0), friction=BRISTLES,
+    )  # fmt: skip
+    result = simulate(Model(bodies=[cable], groups=[group], gravity=DOWN), 2.0, rtol=1e-7, atol=1e-10)
+    assert np.abs(result["energy.balance"]).max() < 1e-6
+    names = [name for name in result.channels if name.endswith(".friction_force")]
+    assert len(names) == 4
+    assert sum(result[name][-1] for name in names) == pytest.approx(G * math.sin(0.1), rel=0.1)
+    late = result.t > 1.8
+    assert np.ptp(result["cable.x0"][late]) < 1e-3
 
 
 # ---- the record -----------------------------------------------------------------------------------------------------
