@@ -13,7 +13,7 @@ from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
 from ..rounding import LEAST_DEFLECTION, STILL
-from .bristle3d import bristle_sphere3d_kernel
+from .bristle3d import BRISTLE_INDICES, bristle_sphere3d_kernel
 from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
@@ -117,7 +117,9 @@ class Contact3D(ContactElement):
         if not isinstance(self.friction, LuGreFriction):
             return (row,)
         more = (LEAST_DEFLECTION * numbering.length, self.friction.parameters()[-1])
-        return (Row((*row.parameters, *more), (*row.coordinates, *numbering.internal(self.name)), row.extra),)
+        # spheres and meshes share a kernel, and its table of indices
+        extra = (*row.extra, *(0,) * (BRISTLE_INDICES - len(row.extra)))
+        return (Row((*row.parameters, *more), (*row.coordinates, *numbering.internal(self.name)), extra),)
 
     def lengths(self) -> Sequence[float]:
         return tuple(sphere.radius for sphere in self.spheres())

@@ -14,7 +14,7 @@ from ..elements.material_point3d import MaterialPoint3D
 from ..elements.named_body import body_named
 from ..model.base import Name, NonNegative, Record
 from ..model.markers import Marker3D
-from .bristle_cable3d import bristle_cable3d_kernel
+from .bristle3d import bristle_cable3d_kernel
 from .cable_contact3d import cable3d_contact_kernel, gripping_cable3d_kernel, rubbing_cable3d_kernel
 from .cable_foot3d import VECTORS, WIDTH
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D

@@ -10,7 +10,6 @@ from pydantic import Field, model_validator
 from ..elements.base import Numbering, Row
 from ..model.markers import Marker3D
 from ..model.signals import Signal
-from .bristle_mesh3d import bristle_mesh3d_kernel
 from .contact3d import Contact3D, Sphere3D
 from .mesh3d import TriangleMesh3D
 from .mesh_contact3d import gripping_mesh3d_kernel, mesh3d_kernel, rubbing_mesh3d_kernel
@@ -59,7 +58,6 @@ class SphereOnMesh3D(Contact3D):
     kernel: ClassVar[Any] = mesh3d_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_mesh3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_mesh3d_kernel
-    bristle_kernel: ClassVar[Any] = bristle_mesh3d_kernel
     kind: ClassVar[int] = ON_MESH
 
     mesh: TriangleMesh3D

@@ -45,6 +45,7 @@ from tlismni.core import (
     Simulation,
     Sine,
     SmoothOnHalfSpace3D,
+    Sphere3D,
     SphereInSphere3D,
     SphereOnCable3D,
     SphereOnHalfSpace3D,
@@ -193,7 +194,13 @@ def plate_with(mesh):
         plate = TriangleMesh3D(marker=Marker3D(), vertices=corners, faces=faces)
         contact = SphereOnMesh3D(mesh=plate, sphere=sphere("ball", 0.15), **parts)
     times = np.linspace(0.0, 0.8, 81)
-    return simulate(Model(bodies=[body], contacts=[contact], gravity=DOWN), 0.8, **TIGHT, t_eval=times)
+    # one table of indices for both kinds
+    beside = SphereOnSphere3D(
+        name="beside", a=Sphere3D(marker=Marker3D(point=(0.0, -1.5, 0.0)), radius=0.1), b=sphere("ball", 0.15), law=LAW,
+        friction=BRISTLES,
+    )  # fmt: skip
+    model = Model(bodies=[body], contacts=[contact, beside], gravity=DOWN)
+    return simulate(model, 0.8, **TIGHT, t_eval=times)
 
 
 def test_ball_on_a_plate_of_triangles_moves_as_on_a_floor():
