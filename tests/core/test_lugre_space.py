@@ -39,6 +39,7 @@ from tlismni.core import (
     Marker3D,
     Model,
     ModelError,
+    Parameter,
     Polynomial,
     RigidBody3D,
     RotationVector,
@@ -52,6 +53,7 @@ from tlismni.core import (
     SphereOnMesh3D,
     SphereOnSphere3D,
     TriangleMesh3D,
+    compile_model,
     simulate,
 )
 
@@ -279,3 +281,16 @@ def test_state_goes_on_bit_for_bit():
 def test_shapes_whose_bristles_are_not_carried_are_refused():
     with pytest.raises(ModelError, match=r"contact 'c' is a SphereOnCable3D, .* BrownMcPhee"):
         SphereOnCable3D(name="c", cable="rope", sphere=sphere("ball", 0.1), law=LAW, friction=BRISTLES)
+
+
+def test_run_of_a_compiled_model_with_another_stiffness():
+    """Of its bristles: bit for bit that of the model built with it, over contacts that end."""
+    stiffness = Parameter(name="stiffness", targets=["c.friction.bristle_stiffness"])
+    model = _bouncing().model_copy(update={"parameters": (stiffness,)})
+    run = compile_model(model).simulation({"stiffness": 2e4})
+    alone = Simulation(model.with_parameters({"stiffness": 2e4}))
+    for t in (0.25, 1.0):
+        for sim in (run, alone):
+            sim.advance(t)
+        assert run.values().tobytes() == alone.values().tobytes()
+        assert run.state().to_bytes() == alone.state().to_bytes()
