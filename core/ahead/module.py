@@ -149,7 +149,7 @@ def _mangled(module: str) -> str:
     return "".join(f"{len(part)}{part}" for part in f"tlismni.core.{module}".split("."))
 
 
-_SELDOM = tuple(_mangled(module) for module in ("analysis", "linalg.analyze", "events.impulse_step", "repair"))
+_SELDOM = tuple(_mangled(module) for module in ("analysis", "cones", "events", "linalg.analyze", "repair"))
 """Where few bytes are worth more than speed: nothing is repeated there to save a jump."""
 
 

@@ -27,10 +27,13 @@ from ..elements.measure3d import AXES_A, COLUMNS
 from ..laws.friction.lugre import lugre_slip
 from ..model.rotation3d import along, constant, dot, four, less, plus, times, turned, turning
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from .cable_contact3d import gap_of_cable
+from .cable_foot3d import FOOT_ROWS, WIDTH
 from .geometry_kinds import SPHERE, are
-from .held3d import MOVES, on_plane
+from .held3d import MOVES, ON_MESH, POINT_OF_CABLE, on_plane
+from .mesh_nearest3d import OPEN, hold_on_mesh
 from .normal2d import act, asleep, evaluate_law
-from .normal3d import PACKED, SIZE, gap_of, hold, pair_of
+from .normal3d import KIND, SIZE, gap_of, hold, pair_of
 from .normal_rate3d import turn_normal
 from .sliding2d import FRICTION
 from .slip3d import add_slip, slip_of_batch
@@ -39,11 +42,13 @@ from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_
 
 BENT = 3
 """Components of a deflection, at most."""
+BRISTLE_INDICES = OPEN + 1
+"""Columns of `extra`: those of the shape with most of them."""
 ZERO = (0.0, 0.0, 0.0)
 
 
 @internal
-def bend(
+def _bend(
     kind: int, b: Any, job: int, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any, work: Any
 ) -> None:
     """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
@@ -173,16 +178,33 @@ def bend(
 
 
 @internal
-def bristle_sphere3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
+def _act_all(job: int, b: Any, width: int, rows: int) -> None:
+    """All elements of a batch, whose gaps depend on `width` coordinates; rows : of what says how points move. Kernels
+    share it, so that there is one in machine code."""
+    gradient, hessian, packed = np.empty(width), np.empty((width, width)), np.empty(width * (width + 1) // 2)
+    work, held, moves = np.empty((ROWS, width)), np.empty(COLUMNS), np.empty((rows, width))
+    par = mat(b.par, b.count, b.npar)
     for e in range(b.count):
         if asleep(b, e):
             continue
-        kind = hold(b, e, held, moves)
-        g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
+        kind = int(par[e, KIND])
+        if kind == POINT_OF_CABLE:
+            _, g = gap_of_cable(b, e, held, moves, gradient, hessian, packed)
+        else:
+            kind = hold_on_mesh(b, e, held, moves) if kind == ON_MESH else hold(b, e, held, moves)
+            g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        bend(kind, b, job, e, g, held, moves, gradient, hessian, work)
+        _bend(kind, b, job, e, g, held, moves, gradient, hessian, work)
+
+
+@internal
+def bristle_sphere3d_kernel(job: int, t: float, b: Any) -> None:
+    _act_all(job, b, SIZE, MOVES)
+
+
+@internal
+def bristle_cable3d_kernel(job: int, t: float, b: Any) -> None:
+    _act_all(job, b, WIDTH, FOOT_ROWS)
 
 
 are(SPHERE, bristle_sphere3d_kernel)

@@ -22,12 +22,12 @@ from .tangent3d import ROWS
 
 
 @internal
-def _gap(b: Any, e: int, held: Any, moves: Any, gradient: Any, hessian: Any, packed: Any) -> Any:
+def gap_of_cable(b: Any, e: int, held: Any, moves: Any, gradient: Any, hessian: Any, packed: Any) -> Any:
     """(element that acts, gap in m) of the contact whose elements begin with e; derivatives and moves are filled in."""
     par, own_gradient, own_hessian = mat(b.par, b.count, b.npar)[e], np.empty(SIZE), np.empty((SIZE, SIZE))
     q = np.empty(SIZE)
     piece = hold_on_cable(b, e, held, moves)
-    gather(vec(b.q, b.n_extended), imat(b.coord, b.count, WIDTH)[piece], moves, q)
+    gather(vec(b.q, b.n_extended), imat(b.coord, b.count, b.ncoord)[piece], moves, q)
     g = measure(measured(int(par[KIND])), q, OWN, held, 0.0, own_gradient, own_hessian)
     spread_gap(own_gradient, own_hessian, moves, gradient, hessian, packed)
     return piece, g - par[RADIUS_A] - par[RADIUS_B]
@@ -40,7 +40,7 @@ def cable3d_contact_kernel(job: int, t: float, b: Any) -> None:
     e = 0
     while e < b.count:
         if not asleep(b, e):
-            piece, g = _gap(b, e, held, moves, gradient, hessian, packed)
+            piece, g = gap_of_cable(b, e, held, moves, gradient, hessian, packed)
             act(b, job, piece, g, gradient, packed)
         e += extra[e, PIECES]
 
@@ -53,7 +53,7 @@ def rubbing_cable3d_kernel(job: int, t: float, b: Any) -> None:
     e = 0
     while e < b.count:
         if not asleep(b, e):
-            piece, g = _gap(b, e, held, moves, gradient, hessian, packed)
+            piece, g = gap_of_cable(b, e, held, moves, gradient, hessian, packed)
             act(b, job, piece, g, gradient, packed)
             regularised(int(par[e, KIND]), b, job, piece, g, held, moves, gradient, hessian, work)
         e += extra[e, PIECES]
@@ -67,7 +67,7 @@ def gripping_cable3d_kernel(job: int, t: float, b: Any) -> None:
     e = 0
     while e < b.count:
         if not asleep(b, e):
-            piece, g = _gap(b, e, held, moves, gradient, hessian, packed)
+            piece, g = gap_of_cable(b, e, held, moves, gradient, hessian, packed)
             act(b, job, piece, g, gradient, packed)
             grip(int(par[e, KIND]), b, job, piece, gradient, held, moves, work)
         e += extra[e, PIECES]

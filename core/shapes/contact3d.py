@@ -15,18 +15,19 @@ from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
 from ..rounding import LEAST_DEFLECTION, STILL
-from .bristle3d import bristle_sphere3d_kernel
+from .bristle3d import BRISTLE_INDICES, bristle_sphere3d_kernel
 from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
 from .gripping3d import gripping_sphere3d_kernel
-from .held3d import HOLLOW, ON_MESH, SEGMENTS, SUPPORT
+from .held3d import HOLLOW, ON_MESH, POINT_OF_CABLE, SEGMENTS, SUPPORT
 from .normal3d import SIZE
 from .support3d import SUPPORT_NUMBERS
 
 _ALONG, _IN_SPACE = ("bristle_x", "bristle_y"), ("bristle_x", "bristle_y", "bristle_z")
 BRISTLES = {
-    PLACE: _ALONG, SUPPORT: _ALONG, DISTANCE: _IN_SPACE, HOLLOW: _IN_SPACE, SEGMENTS: _IN_SPACE, ON_MESH: _IN_SPACE,
+    PLACE: _ALONG, SUPPORT: _ALONG, POINT_OF_CABLE: _ALONG, DISTANCE: _IN_SPACE, HOLLOW: _IN_SPACE,
+    SEGMENTS: _IN_SPACE, ON_MESH: _IN_SPACE,
 }  # fmt: skip
 """Components of the bristles' deflection along the axes of the first marker, by the kind of the gap."""
 
@@ -87,8 +88,8 @@ class Contact3D(ContactElement):
         if isinstance(self.friction, LuGreFriction) and type(self).kind not in BRISTLES:
             raise ValueError(
                 f"contact '{self.name}' is a {type(self).__name__}, along which the bristles of LuGre friction are not "
-                "carried: in space they are for spheres, corners and smooth shapes on half-spaces, and for spheres and "
-                "capsules on each other, in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
+                "carried: in space they are for all shapes on half-spaces, and for spheres and capsules on each other, "
+                "in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
             )
         one_by_one = isinstance(self.law, NewtonImpact) and self.law.propagation == "sequential"
         if one_by_one and isinstance(self.friction, CoulombFriction):
@@ -128,7 +129,9 @@ class Contact3D(ContactElement):
         if not isinstance(self.friction, LuGreFriction):
             return (row,)
         more = (LEAST_DEFLECTION * numbering.length, self.friction.parameters()[-1])
-        return (Row((*row.parameters, *more), (*row.coordinates, *numbering.internal(self.name)), row.extra),)
+        # spheres and meshes share a kernel, and its table of indices
+        extra = (*row.extra, *(0,) * (BRISTLE_INDICES - len(row.extra)))
+        return (Row((*row.parameters, *more), (*row.coordinates, *numbering.internal(self.name)), extra),)
 
     def lengths(self) -> Sequence[float]:
         return tuple(sphere.radius for sphere in self.spheres())

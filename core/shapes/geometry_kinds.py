@@ -9,7 +9,7 @@ half-space or a mesh."""
 
 _KINDS: dict[Any, int] = {}
 MAY_SLEEP = (DISKS, PLANE, SEGMENT, SPHERE)
-"""Kinds whose kernels leave out contacts that sleep (`location/asleep.py`), but those with bristles."""
+"""Kinds whose kernels leave out contacts that sleep (`location/asleep.py`), but those with bristles in the plane."""
 
 
 def are(kind: int, *kernels: Any) -> None:

@@ -14,6 +14,7 @@ from ..elements.material_point3d import MaterialPoint3D
 from ..elements.named_body import body_named
 from ..model.base import Name, NonNegative, Record
 from ..model.markers import Marker3D
+from .bristle3d import bristle_cable3d_kernel
 from .cable_contact3d import cable3d_contact_kernel, gripping_cable3d_kernel, rubbing_cable3d_kernel
 from .cable_foot3d import VECTORS, WIDTH
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
@@ -52,6 +53,7 @@ class CableContact3D(Contact3D):
     kernel: ClassVar[Any] = cable3d_contact_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_cable3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_cable3d_kernel
+    bristle_kernel: ClassVar[Any] = bristle_cable3d_kernel
     width: ClassVar[int] = WIDTH
 
     cable: Name

@@ -11,7 +11,6 @@ from ..elements.base import Numbering, Row
 from ..model.base import NonNegative
 from ..model.markers import Marker3D
 from ..model.signals import Signal
-from .bristle_mesh3d import bristle_mesh3d_kernel
 from .contact3d import Contact3D, Sphere3D
 from .held3d import ON_MESH
 from .mesh3d import TriangleMesh3D
@@ -63,7 +62,6 @@ class SphereOnMesh3D(Contact3D):
     kernel: ClassVar[Any] = mesh3d_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_mesh3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_mesh3d_kernel
-    bristle_kernel: ClassVar[Any] = bristle_mesh3d_kernel
     kind: ClassVar[int] = ON_MESH
 
     mesh: TriangleMesh3D

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from helpers import events
+from helpers import G, events
 from lugre_models import (
     BRISTLES,
     DOWN,
@@ -27,23 +27,33 @@ from lugre_models import (
 from tlismni.core import (
     Axes,
     Box3D,
+    Cable3D,
+    CableLine3D,
+    Capsule3D,
+    CapsuleOnCapsule3D,
     ContactGroup3D,
     CoordinateDriver,
     Ellipsoid3D,
     HalfSpace3D,
+    KelvinVoigt,
     Marker3D,
     Model,
     ModelError,
+    Parameter,
     Polynomial,
     RigidBody3D,
     RotationVector,
     Simulation,
     Sine,
     SmoothOnHalfSpace3D,
+    Sphere3D,
     SphereInSphere3D,
     SphereOnCable3D,
     SphereOnHalfSpace3D,
+    SphereOnMesh3D,
     SphereOnSphere3D,
+    TriangleMesh3D,
+    compile_model,
     simulate,
 )
 
@@ -171,6 +181,76 @@ def test_egg_rolls_on_the_floor_and_a_marble_in_a_bowl():
     assert np.abs((normal * bent).sum(axis=0)).max() < 1e-6 * np.linalg.norm(bent, axis=0).max()
 
 
+def plate_with(mesh):
+    """A ball thrown onto a floor, or onto a plate of triangles at its place."""
+    body = ball(position=(-0.3, 0.05, 0.25), velocity=(1.2, 0.3, 0.0), angular_velocity=(0.0, 3.0, 6.0))
+    parts = {"name": "c", "law": LAW, "friction": BRISTLES}
+    if not mesh:
+        contact = SphereOnHalfSpace3D(plane=HalfSpace3D(), sphere=sphere("ball", 0.15), **parts)
+    else:
+        corners = tuple((2.0 * x, 2.0 * y, z) for z in (-1.0, 0.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0))
+        faces = (
+            (4, 5, 7), (4, 7, 6), (0, 3, 1), (0, 2, 3), (0, 1, 5), (0, 5, 4), (1, 3, 7), (1, 7, 5), (3, 2, 6),
+            (3, 6, 7), (2, 0, 4), (2, 4, 6),
+        )  # fmt: skip
+        plate = TriangleMesh3D(marker=Marker3D(), vertices=corners, faces=faces)
+        contact = SphereOnMesh3D(mesh=plate, sphere=sphere("ball", 0.15), **parts)
+    times = np.linspace(0.0, 0.8, 81)
+    # one table of indices for both kinds
+    beside = SphereOnSphere3D(
+        name="beside", a=Sphere3D(marker=Marker3D(point=(0.0, -1.5, 0.0)), radius=0.1), b=sphere("ball", 0.15), law=LAW,
+        friction=BRISTLES,
+    )  # fmt: skip
+    model = Model(bodies=[body], contacts=[contact, beside], gravity=DOWN)
+    return simulate(model, 0.8, **TIGHT, t_eval=times)
+
+
+def test_ball_on_a_plate_of_triangles_moves_as_on_a_floor():
+    floor, plate = plate_with(False), plate_with(True)
+    for name in ("ball.x", "ball.y", "ball.z", "ball.angular_velocity_x", "c.bristle_x", "c.bristle_y"):
+        assert np.abs(floor[name] - plate[name]).max() < 1e-7, name
+    assert np.abs(plate["c.bristle_z"]).max() < 1e-12
+    assert [e.kind for e in floor.events] == [e.kind for e in plate.events]
+
+
+def test_capsule_rolls_over_another_and_falls_off():
+    """Held by its bristles it tips and rolls off a fixed capsule askew below it: the ledger closes."""
+    fixed = Capsule3D(
+        marker=Marker3D(attitude=RotationVector(vector=(0.0, 0.5 * math.pi, 0.0))), length=1.0, radius=0.1
+    )
+    rod = RigidBody3D(
+        name="rod", mass=1.0, inertia=(0.02, 0.02, 2e-3), position=(0.02, 0.01, 0.1999),
+        attitude=RotationVector(vector=(0.5 * math.pi, 0.0, 0.0)), angular_velocity=(0.0, 1.0, 0.5),
+    )  # fmt: skip
+    moving = Capsule3D(marker=Marker3D(body="rod"), length=0.6, radius=0.1)
+    contact = CapsuleOnCapsule3D(name="c", a=fixed, b=moving, law=LAW, friction=BRISTLES)
+    result = simulate(Model(bodies=[rod], contacts=[contact], gravity=DOWN), 1.0, rtol=1e-8, atol=1e-11)
+    assert np.abs(result["energy.balance"]).max() < 1e-6
+    bent = np.array([result[f"c.bristle_{axis}"] for axis in "xyz"])
+    assert np.linalg.norm(bent, axis=0).max() > 1e-5
+    assert np.linalg.norm(bent, axis=0).max() <= STATIC * result["c.normal_force"].max() / S0 * (1.0 + 1e-6)
+
+
+def test_cable_falls_on_a_slope_and_is_held_by_the_bristles_of_its_points():
+    slope = math.tan(0.1)
+    cable = Cable3D(
+        name="cable", elements=3, length=1.0, mass_per_length=1.0, axial_stiffness=1e4, bending_stiffness=0.5,
+        axial_damping=5.0, position=(0.0, 0.0, 0.04), attitude=RotationVector(vector=(0.0, 0.0, 0.4)),
+    )  # fmt: skip
+    group = ContactGroup3D(
+        name="g", cables=(CableLine3D(cable="cable", thickness=0.02, points=4),),
+        half_spaces=(HalfSpace3D(marker=Marker3D(attitude=Axes(z=(slope, 0.0, 1.0)), point=(0.0, 0.0, -0.15))),),
+        law=KelvinVoigt(stiffness=5e3, damping=50.0), friction=BRISTLES,
+    )  # fmt: skip
+    result = simulate(Model(bodies=[cable], groups=[group], gravity=DOWN), 2.0, rtol=1e-7, atol=1e-10)
+    assert np.abs(result["energy.balance"]).max() < 1e-6
+    names = [name for name in result.channels if name.endswith(".friction_force")]
+    assert len(names) == 4
+    assert sum(result[name][-1] for name in names) == pytest.approx(G * math.sin(0.1), rel=0.1)
+    late = result.t > 1.8
+    assert np.ptp(result["cable.x0"][late]) < 1e-3
+
+
 # ---- the record -----------------------------------------------------------------------------------------------------
 
 
@@ -201,3 +281,16 @@ def test_state_goes_on_bit_for_bit():
 def test_shapes_whose_bristles_are_not_carried_are_refused():
     with pytest.raises(ModelError, match=r"contact 'c' is a SphereOnCable3D, .* BrownMcPhee"):
         SphereOnCable3D(name="c", cable="rope", sphere=sphere("ball", 0.1), law=LAW, friction=BRISTLES)
+
+
+def test_run_of_a_compiled_model_with_another_stiffness():
+    """Of its bristles: bit for bit that of the model built with it, over contacts that end."""
+    stiffness = Parameter(name="stiffness", targets=["c.friction.bristle_stiffness"])
+    model = _bouncing().model_copy(update={"parameters": (stiffness,)})
+    run = compile_model(model).simulation({"stiffness": 2e4})
+    alone = Simulation(model.with_parameters({"stiffness": 2e4}))
+    for t in (0.25, 1.0):
+        for sim in (run, alone):
+            sim.advance(t)
+        assert run.values().tobytes() == alone.values().tobytes()
+        assert run.state().to_bytes() == alone.state().to_bytes()

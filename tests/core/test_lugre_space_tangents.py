@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from test_cable_tangents3d import CLOSE, POINTS, plane, states
+from test_cable_tangents3d import differences as cable_differences
 from test_contact_tangents3d import HUNT, KELVIN, PLACES, TURNS, on_plane, on_sphere
 from test_tangents import Point, differences, draw, quick
 from test_tangents3d import A, B, P
@@ -108,6 +110,16 @@ def test_tangent_is_the_derivative_of_the_residual(case):
         assert np.abs(matrix[:n, :n] - s).max() < off
 
     check()
+
+
+@pytest.mark.parametrize("place", POINTS)
+def test_tangent_of_a_cable_on_a_half_space(place):
+    point = Point(plane(place, law=HUNT, friction=SOFT), ACTIVE)
+    for state in states(point):
+        point.at(*state)
+        assert abs(point.workspace.arrays["monitor"][0]) > 0.01
+        matrix, s = point.tangent(0.6, 0.8), cable_differences(point, state)
+        assert np.abs(matrix[: point.n, : point.n] - s).max() < CLOSE * max(1.0, np.abs(s).max())
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if case.endswith("linear") and "sphere" in case])

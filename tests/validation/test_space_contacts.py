@@ -9,6 +9,7 @@ from tlismni.core import (
     HalfSpace3D,
     Hertz,
     HuntCrossley,
+    LuGreFriction,
     Marker3D,
     Model,
     NewtonImpact,
@@ -108,4 +109,13 @@ def test_a_constraint_is_refused(friction):
     )  # fmt: skip
     given = Model(bodies=[ball("one", (0.0, 0.0, 1.0), (0.0,) * 3)], contacts=[floor])
     with pytest.raises(NotTranslatable, match="contact 'floor' is a constraint"):
+        run_exudyn(given, 0.1, 1e-3)
+
+
+def test_bristles_are_refused():
+    """Those of the plane are compared."""
+    friction = LuGreFriction(coefficient=0.3, stribeck_speed=0.01, bristle_stiffness=1e4)
+    floor = SphereOnHalfSpace3D(name="floor", plane=HalfSpace3D(), sphere=sphere("one"), law=SOFT, friction=friction)
+    given = Model(bodies=[ball("one", (0.0, 0.0, 1.0), (0.0,) * 3)], contacts=[floor])
+    with pytest.raises(NotTranslatable, match="contact 'floor' has LuGre friction in space"):
         run_exudyn(given, 0.1, 1e-3)
