@@ -85,7 +85,7 @@ def _each_its_own(copies: "_Copies", found: Sequence[Parameter]) -> bool:
         if all_at_once is None or None in alone:
             continue
         rows = memory.words([{}, *(copy for copy in alone if copy is not None), all_at_once])
-        led: dict[tuple[int, ...], list[int]] = {}
+        led: dict[tuple[int, ...], list[Place]] = {}
         for place, values in rows.items():
             bits = values.view(np.int64)
             led.setdefault(tuple(int(k) for k in np.flatnonzero(bits[1:-1] != bits[0])), []).append(place)
