@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal, record_view
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import imat, ivec, mat, vec
 from ..laws import call_law
 from ..methods.history import history_time
 from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, GAP_ROUNDING, LEAST_APPROACH
@@ -153,11 +153,11 @@ def _settling_speed(dr: Any, ws: Any, k: int, pressing: float, mass: float, size
 @internal
 def _let_bristles_go(dr: Any, ws: Any, k: int) -> None:
     """LuGre's bristles stand straight again; what they held is lost."""
-    bristle, v = ivec(dr.bristle, ws.n_contacts)[k], vec(ws.v, ws.n_ext)
-    if bristle >= 0:
-        held = 0.5 * vec(dr.bristle_stiffness, ws.n_contacts)[k] * v[bristle] ** 2
-        mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, LOSS_JUMP] += held
-        v[bristle] = 0.0
+    places, v = imat(dr.bristles, ws.n_contacts, 2), vec(ws.v, ws.n_ext)
+    held = 0.5 * vec(dr.bristle_stiffness, ws.n_contacts)[k]
+    for i in range(places[k, 0], places[k, 0] + places[k, 1]):
+        mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, LOSS_JUMP] += held * v[i] ** 2
+        v[i] = 0.0
 
 
 @internal

@@ -122,7 +122,7 @@ def what_differs(a: Assembly, b: Assembly) -> str:
             return "elements"
     for c, d in zip(a.contacts, b.contacts, strict=True):
         kept = (
-            "name", "row", "slide_row", "impulse_account", "dissipation_account", "bristle", "bristles", "kind",
+            "name", "row", "slide_row", "impulse_account", "dissipation_account", "bristles", "kind",
             "units",
         )  # fmt: skip
         same = all(getattr(c, name) == getattr(d, name) for name in kept)

@@ -84,6 +84,11 @@ def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
     }
 
 
+def _bristles(contact: ContactInfo) -> tuple[int, int]:
+    """Where the components of its bristles' deflection begin, and how many they are."""
+    return (contact.bristles[0][0], len(contact.bristles)) if contact.bristles else (0, 0)
+
+
 def _forces_of(contacts: Sequence[ContactInfo]) -> dict[str, NDArray[Any]]:
     """What the record takes from contacts that act as forces; zeros for the others."""
     laws = [c.law if isinstance(c.law, ForceLaw) else None for c in contacts]
@@ -99,7 +104,7 @@ def _forces_of(contacts: Sequence[ContactInfo]) -> dict[str, NDArray[Any]]:
         "ends_early": np.array([law is not None and law.release == "force" for law in laws], dtype=np.int64),
         "impulse_account": np.array([c.impulse_account for c in contacts], dtype=np.int64),
         "dissipation_account": np.array([c.dissipation_account for c in contacts], dtype=np.int64),
-        "bristle": np.array([c.bristle for c in contacts], dtype=np.int64),
+        "bristles": np.array([_bristles(c) for c in contacts], dtype=np.int64).reshape(-1, 2),
         "bristle_stiffness": np.array(stiffness, dtype=np.float64),
     }
 

@@ -87,13 +87,11 @@ class ChannelTable:
             self._formulas.append((channel, layout.multipliers.start + row))
         for k, contact in enumerate(assembly.contacts):
             self._add_contact(k, contact)
-            if contact.bristle >= 0:
-                channel = Channel(f"{contact.name}.bristle", contact.units[1], "deflection of the friction's bristles")
-                self._formulas.append((channel, layout.v.start + contact.bristle))
             for index, name in contact.bristles:
-                axis = name[-1]
-                text = f"deflection of the friction's bristles along the first marker's {axis} axis"
-                self._formulas.append((Channel(f"{contact.name}.{name}", "m", text), layout.v.start + index))
+                along = f" along the first marker's {name[-1]} axis" if len(contact.bristles) > 1 else ""
+                text = f"deflection of the friction's bristles{along}"
+                channel = Channel(f"{contact.name}.{name}", contact.units[1], text)
+                self._formulas.append((channel, layout.v.start + index))
         self._add_energies(assembly)
         for column, level, unit in zip(layout.residuals, LEVELS, ("m", "m/s", "m/s2"), strict=True):
             text = f"largest constraint violation at {level} level"

@@ -114,7 +114,7 @@ DRIVE = np.dtype(
             # (m/s; < 0: a part of the model's), 1 if the force may end before the gap opens
             "force_law", "force_numbers", "least_approach", "ends_early",
             "impulse_account", "dissipation_account",  # places in v
-            "bristle", "bristle_stiffness",           # place in v, -1: none; N/m
+            "bristles", "bristle_stiffness",          # (n_contacts, 2): first place in v, how many; N/m
             "pending",                                # (n_contacts,) int64: 1 where an event has to be handled
             "found",                                  # (n_contacts, FOUND_SIZE) float64: of the location of events
             "events", "event_rows",                   # (event_rows, EVENT_SIZE) float64: a buffer that Python empties

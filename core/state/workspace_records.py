@@ -18,8 +18,6 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_sticking",
-            # (contacts, 2) int64, (contacts,): `tables/bristles.py`
-            "contact_bristles", "bristle_stiffness",
             "asleep",  # (contacts,) int64: 1 where a contact is not evaluated (`location/asleep.py`)
             # (contacts,) codes of `switch.py`; the present structure, and one that is not to be given up (0: none)
             "wanted", "structure", "kept",

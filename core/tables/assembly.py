@@ -55,11 +55,9 @@ class ContactInfo:
     tangents: int = 1
     """How many rows of tangents there are from `slide_row` on, with Coulomb friction: 1 in the plane, 2 in space."""
     friction: Friction | None = None
-    bristle: int = -1
-    """Index of its friction's internal coordinate in the plane, whose velocity is the deflection of the bristles; -1:
-    none."""
     bristles: tuple[tuple[int, str], ...] = ()
-    """In space: index and name of each component of that deflection."""
+    """Index and name of each component of the deflection of its friction's bristles, which is the velocity of an
+    internal coordinate: one in the plane."""
     kind: int = EQUATIONS
     """What is known of its geometry."""
     units: tuple[str, str] = ("m", "m")
@@ -184,10 +182,8 @@ class Assembly:
         return self.n + AT_REST + self.work_names.index(name)
 
 
-def _bristles_of(contact: ContactElement, numbering: ModelNumbering) -> tuple[int, tuple[tuple[int, str], ...]]:
-    """Index of a contact's one bristle, or -1, and indices and names of the components of several."""
-    found = tuple(zip(numbering.internal(contact.name), contact.internal_coordinates(), strict=True))
-    return (found[0][0], ()) if len(found) == 1 else (-1, found)
+def _bristles_of(contact: ContactElement, numbering: ModelNumbering) -> tuple[tuple[int, str], ...]:
+    return tuple(zip(numbering.internal(contact.name), contact.internal_coordinates(), strict=True))
 
 
 def _table(rows: Sequence[Sequence[float]], dtype: type) -> NDArray:
@@ -289,7 +285,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 max(len(contact_rows[c.name]) - 1, 1),
                 c.friction,
-                *_bristles_of(c, numbering),
+                _bristles_of(c, numbering),
                 kind=kind_of(c.form().kernel),
                 units=c.units_in(numbering.bodies),
             )

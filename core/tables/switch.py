@@ -15,7 +15,6 @@ from ..compiled.kernels import batch_at
 from ..compiled.views import ivec, mat, vec
 from ..state.modes import ACTIVE, ALONG, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
 from ..state.workspace_records import CONDITION, FACTOR_AGE, OK, RATE_SIZE, call_engage, partition_at, structure_at
-from .bristles import let_idle_ones_go
 
 APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
 """A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too; in
@@ -97,7 +96,6 @@ def take_partition(ws: Any, address: int) -> None:
 @internal
 def engage_modes(ws: Any) -> int:
     """Take the structure of the contacts' present modes: OK, or WANT_ROOM with the same structure as before."""
-    let_idle_ones_go(ws)
     want(ws)
     codes, wanted, same = ivec(structure_at(ws.structure).codes, ws.n_contacts), ivec(ws.wanted, ws.n_contacts), True
     for k in range(ws.n_contacts):

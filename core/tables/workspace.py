@@ -27,7 +27,6 @@ from ..state.workspace_records import (
     WORKSPACE,
 )
 from .assembly import Assembly
-from .bristles import bristle_places, bristle_stiffness
 from .building import engage_wanted
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
@@ -45,7 +44,7 @@ _SHARED = (
 
 _OF_NOW = (*OF_STRUCTURE, *OF_PARTITION)
 """Arrays of the present structure and partition."""
-_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows", "contact_bristles")
+_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows")
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
 _STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["serial"]
@@ -112,8 +111,6 @@ class Workspace:
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
             "contact_sticking": sticking(a),
-            "contact_bristles": bristle_places(a.contacts),
-            "bristle_stiffness": bristle_stiffness(a.contacts),
             "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
             "asleep": np.zeros(max(contacts, 1), dtype=np.int64),
             "probe": np.zeros(0),
@@ -231,7 +228,6 @@ class Workspace:
             own.arrays["par"][...] = batch.par
         arrays["signals"][:] = assembly.signals
         arrays["contact_sticking"][:] = sticking(assembly)
-        arrays["bristle_stiffness"][:] = bristle_stiffness(assembly.contacts)
         arrays["contact_release"][:] = [release(contact.law) for contact in assembly.contacts]
         arrays["scale"][:] = assembly.coordinate_scale
         arrays["level_scale"][:] = level_scale(assembly)
