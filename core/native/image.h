@@ -51,7 +51,7 @@ typedef struct {
 } Exclusion;
 
 /* The functions that the C code calls: the first ones of the image's list. */
-enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, BY_IMPULSES, LOCATE, ALONG, IN_TIME, BEGIN, MATRIX_WORDS,
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, GO_BY_IMPULSES, LOCATE, ALONG, IN_TIME, BEGIN, MATRIX_WORDS,
        SAVE_MATRICES, RESTORE_MATRICES, WANT, NORMALISE, CALLED };
 
 typedef void (*Function)(void);

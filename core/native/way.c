@@ -76,7 +76,7 @@ static tlismni_status repair(tlismni_run *run) {
 
 /* Go on in steps of impulses where no other step can be made; `code` if there are none. */
 static tlismni_status by_impulses(tlismni_run *run, int64_t code) {
-    bool pushes = call(run, BY_IMPULSES, run->model->places.drive) == SETTLED;
+    bool pushes = call(run, GO_BY_IMPULSES, run->model->places.drive) == SETTLED;
     return pushes ? TLISMNI_OK : (tlismni_status)code;
 }
 

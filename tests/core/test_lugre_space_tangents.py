@@ -77,7 +77,7 @@ CASES = {
     for law, name, friction, more in (
         (KELVIN, "linear", SOFT, {}), (HUNT, "turning", SOFT, {"turning": TURNS}), (HUNT, "stiff", STIFF, {}),
     )
-    if not (shape in TURNING and where == "a point mass")
+    if where != "a point mass" or not (shape in TURNING or more)  # a point does not turn
 }  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from tlismni.core import (
     AppliedTorque3D,
     Axes,
     AxisAngles,
+    Box3D,
     Bushing3D,
     ConsistencyError,
     Constant,
@@ -156,9 +157,9 @@ def test_what_turns_a_point_mass_is_refused(element):
 
 def test_names_that_begin_with_a_vowel_have_their_article():
     ellipsoid = Ellipsoid3D(marker=Marker3D(body="other"), half_axes=(0.1, 0.2, 0.3))
-    sphere = Sphere3D(marker=Marker3D(), radius=0.1)
+    box = Box3D(marker=Marker3D(), size=(0.1, 0.1, 0.1))
     with pytest.raises(ModelError, match="an Ellipsoid3D on 'other'"):
-        contacts_between("c", [sphere], [ellipsoid], law=HARD)
+        contacts_between("c", [box], [ellipsoid], law=HARD)
 
 
 def test_contradictory_joints_are_refused():
