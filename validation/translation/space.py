@@ -44,7 +44,8 @@ from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, Sphe
 from ...core.tables.numbering import ModelNumbering
 from ..errors import NotTranslatable
 from .bodies import node_columns
-from .registry import BodyItems, Build, Derived, no_equal, translates
+from .redundant import less
+from .registry import BodyItems, Build, Derived, frees, no_equal, translates
 
 Work = Callable[[np.ndarray], np.ndarray]
 
@@ -67,6 +68,7 @@ CONSTRAINED: dict[type[Joint3D], list[int]] = {
     PointOnPlane3D: [0, 0, 1, 0, 0, 0],
 }
 """Axes that ObjectJointGeneric holds: three translations and three rotations in the frame of marker a."""
+frees(*CONSTRAINED, Spherical3D)
 YZ = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Columns: our z, x, y axes as x, y, z. exudyn's universal joint holds y of a across z of b, ours x across y."""
 
@@ -177,9 +179,10 @@ def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = 
 
 @translates(Spherical3D)
 def spherical(record: Spherical3D, build: Build) -> None:
-    """ObjectJointSpherical."""
+    """ObjectJointSpherical, along the axes of space as ours."""
     markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
-    build.add("ObjectJointSpherical", markerNumbers=markers)
+    held = [int(k not in build.redundant.get(record.name, ())) for k in range(3)]
+    build.add("ObjectJointSpherical", markerNumbers=markers, constrainedAxes=held)
 
 
 @translates(Distance3D)
@@ -194,9 +197,12 @@ def distance(record: Distance3D, build: Build) -> None:
 @translates(*CONSTRAINED)
 def generic(record: Joint3D, build: Build) -> None:
     """ObjectJointGeneric; its multipliers of rotations are no torques, so that only the motion is compared."""
-    order = YZ if isinstance(record, Universal3D) else np.eye(3)
+    constrained, order = CONSTRAINED[type(record)], YZ if isinstance(record, Universal3D) else np.eye(3)
+    if record.name in build.redundant:
+        constrained, order = less(record, build.redundant[record.name], build.model)
+        build.notes.append(f"{record.name}: exudyn's holds {sum(constrained)} axes, without the redundant equations")
     markers = [placed(marker, build, record.name, marker.axes() @ order) for marker in (record.a, record.b)]
-    build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=CONSTRAINED[type(record)])
+    build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=constrained)
     _derive_coordinates(record, build)
 
 
