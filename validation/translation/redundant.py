@@ -1,6 +1,6 @@
 """Redundant equations: what exudyn's joints hold less of.
 
-exudyn keeps every row of a joint, and with one that others imply its matrix is singular. So a joint that owns such a row
+exudyn keeps every row of a joint, and with one that others imply its matrix is singular. So a joint that owns one
 becomes one of exudyn's that leaves that axis free. Which rows these are says the Jacobian at the start of the model, as
 in our solver; that the freed axis stays held all the same is seen in the comparison of the motions.
 """
