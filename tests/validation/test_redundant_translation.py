@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from exudyn_agreement import agree
 from tlismni.core import (
     Axes,
     Fixed3D,
@@ -20,31 +21,14 @@ from tlismni.core import (
     RotationVector,
     SpringDamper3D,
     Universal3D,
-    simulate,
 )
 from tlismni.models import load
-from tlismni.validation import ExudynSettings, run_exudyn
+from tlismni.validation import run_exudyn
 from tlismni.validation.errors import NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.translation.redundant import less, redundant_rows
 
 needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="needs exudyn 1.13")
-TRAPEZOIDAL = ExudynSettings(integrator="trapezoidal")
-
-
-def agree(model, channels, end, step, within=1e-5):
-    """Both within their error bars: Richardson's of exudyn, ten times the tolerance of ours."""
-    times = np.linspace(0.0, end, 21)
-    ours, rough = (simulate(model, end, "irk", tol, 0.01 * tol, t_eval=times) for tol in (1e-9, 1e-8))
-    runs = [run_exudyn(model, end, h, TRAPEZOIDAL) for h in (step, 0.5 * step, 0.25 * step)]
-    for channel in channels:
-        first, second, third = (np.interp(times, r.t, r[channel]) for r in runs)
-        limits = second + (second - first) / 3.0, third + (third - second) / 3.0
-        bar = np.abs(limits[1] - limits[0]).max() + np.abs(ours[channel] - rough[channel]).max()
-        scale = np.ptp(ours[channel])
-        assert scale > 1e-2, channel
-        assert bar < within * scale, channel
-        assert np.abs(limits[1] - ours[channel]).max() < bar + 1e-8 * scale, channel
 
 
 @needs_exudyn

@@ -49,8 +49,8 @@ def add_equation(record: Element, build: Build, nodes: Nodes, equation: Scalar, 
         jacobianUserFunction=jacobian,
     )  # fmt: skip
     if build.sensors:
-        (channel,) = record.multiplier_channels()
-        build.columns.append(Column(channel.name, build.sensor(item, "Force"), 0))
+        for channel in record.multiplier_channels():  # one, or of drivers in space none
+            build.columns.append(Column(channel.name, build.sensor(item, "Force"), 0))
 
 
 def _pair(record: PairElement2D, build: Build, measure: Measure, motion: TimeFunction | None = None,

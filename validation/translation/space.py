@@ -5,22 +5,16 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...core.elements import (
-    AngleDriver3D,
-    AxialSpring3D,
-    Bushing3D,
     ConstantVelocity3D,
     Cylindrical3D,
     Distance3D,
     Fixed3D,
-    Gear3D,
     Joint3D,
     Planar3D,
     PointMass3D,
     PointOnLine3D,
     PointOnPlane3D,
-    PositionDriver3D,
     Prismatic3D,
-    RackAndPinion3D,
     Revolute3D,
     RevoluteSpherical3D,
     RigidBody3D,
@@ -49,13 +43,9 @@ from .registry import BodyItems, Build, Derived, frees, no_equal, translates
 
 Work = Callable[[np.ndarray], np.ndarray]
 
-no_equal("a Revolute3D with user functions for its offset", AngleDriver3D)
-no_equal("an ObjectConnectorCoordinate between the coordinates of joint-space bodies", Gear3D, RackAndPinion3D, Screw3D)
-no_equal("a Prismatic3D with user functions for its offset", PositionDriver3D)
 no_equal("a Universal3D, where the joint bends little", ConstantVelocity3D)
 no_equal("a sphere on a ground plane with large friction", RollingSphere3D)
 no_equal("a thin rod between a Revolute3D and a Spherical3D", RevoluteSpherical3D)
-no_equal("an ObjectConnectorRigidBodySpringDamper with the same stiffness", Bushing3D, AxialSpring3D)
 
 CONSTRAINED: dict[type[Joint3D], list[int]] = {
     Fixed3D: [1, 1, 1, 1, 1, 1],
@@ -131,7 +121,7 @@ def _derive(build: Build, group: Group, bodies: Sequence[str], work: Work | None
     build.derived += [Derived(channel.name, one(k)) for k, channel in enumerate(group.channels)]
 
 
-def _derive_coordinates(record: Joint3D, build: Build) -> None:
+def derive_coordinates(record: Joint3D | Screw3D, build: Build) -> None:
     """The joint's coordinates, turns counted along the samples from the start."""
     numbering = ModelNumbering(build.model)
     for coordinate in record.coordinates():
@@ -203,7 +193,7 @@ def generic(record: Joint3D, build: Build) -> None:
         build.notes.append(f"{record.name}: exudyn's holds {sum(constrained)} axes, without the redundant equations")
     markers = [placed(marker, build, record.name, marker.axes() @ order) for marker in (record.a, record.b)]
     build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=constrained)
-    _derive_coordinates(record, build)
+    derive_coordinates(record, build)
 
 
 @translates(RollingDisk3D)
