@@ -8,7 +8,9 @@ from exudyn_agreement import agree
 from tlismni.core import (
     AngleDriver3D,
     Axes,
+    ConstantVelocity3D,
     Cylindrical3D,
+    Distance3D,
     Gear3D,
     Marker3D,
     Model,
@@ -17,6 +19,7 @@ from tlismni.core import (
     Prismatic3D,
     RackAndPinion3D,
     Revolute3D,
+    RevoluteSpherical3D,
     RigidBody3D,
     RotationVector,
     Screw3D,
@@ -76,6 +79,65 @@ def test_a_screw_between_bodies_that_fly() -> None:
     joints = [Cylindrical3D(name="sleeve", **at), Screw3D(name="screw", **at, lead=0.12)]
     model = Model(bodies=bodies, joints=joints, forces=[pull])
     agree(model, (*MOTION, "sleeve.angle", "screw.angle", "screw.position"), 0.5, 1.25e-3)
+
+
+def test_a_rod_that_is_driven_between_bodies_that_fly() -> None:
+    bodies, _ = pair(along=0.3, about=1.0)
+    at = {"a": Marker3D(body="one", point=(0.1, 0.05, 0.0)), "b": Marker3D(body="two", point=(0.0, -0.02, 0.03))}
+    ends = [np.array(body.position) + at[k].point for body, k in zip(bodies, "ab", strict=True)]
+    way = ends[1] - ends[0]
+    length = float(np.linalg.norm(way))
+    speeds = [
+        np.array(body.velocity) + np.cross(body.angular_velocity, at[k].point)
+        for body, k in zip(bodies, "ab", strict=True)
+    ]
+    rate = float(way @ (speeds[1] - speeds[0])) / length
+    rod = Distance3D(name="rod", **at, length=Polynomial(coefficients=(length, rate, 2.0)))
+    agree(Model(bodies=bodies, joints=[rod]), (*MOTION, "two.angular_velocity_y"), 0.5, 1.25e-3)
+
+
+def test_a_rod_with_a_hinge_at_one_end() -> None:
+    """Its foot turns about a vertical axis; a weight hangs from its ball joint."""
+    base = RigidBody3D(name="base", mass=3.0, inertia=(0.1, 0.1, 0.08), angular_velocity=(0.0, 0.0, 4.0))
+    weight = RigidBody3D(
+        name="weight", mass=1.0, inertia=(0.01, 0.02, 0.03), position=(0.6, 0.0, 0.0), velocity=(0.0, 2.4, 0.0),
+        angular_velocity=(1.0, 2.0, 0.0),
+    )  # fmt: skip
+    foot = Axes(z=(0.0, 1.0, 0.0), x=(1.0, 0.0, 0.0))
+    joints = [
+        Revolute3D(name="column", a=Marker3D(), b=Marker3D(body="base")),
+        RevoluteSpherical3D(
+            name="rod",
+            a=Marker3D(body="base", point=(0.1, 0.0, 0.0), attitude=foot),
+            b=Marker3D(body="weight"),
+            length=0.5,
+        ),
+    ]
+    model = Model(bodies=[base, weight], joints=joints, gravity=(0.0, 0.0, -9.81))
+    agree(model, ("column.angle", "weight.x", "weight.y", "weight.z"), 0.5, 1.25e-3)
+
+
+def test_a_homokinetic_joint_that_bends() -> None:
+    bodies = (
+        RigidBody3D(name="one", mass=1.0, inertia=(0.02, 0.02, 0.03), angular_velocity=(0.0, 0.0, 20.0)),
+        RigidBody3D(
+            name="two", mass=1.0, inertia=(0.03, 0.04, 0.02), position=(0.0, 0.0, 0.3),
+            angular_velocity=(2.0, 1.0, 20.0),
+            velocity=tuple(np.cross((2.0, 1.0, 20.0), (0.0, 0.0, 0.15))),
+        ),
+    )  # fmt: skip
+    joints = [
+        Revolute3D(name="shaft", a=Marker3D(), b=Marker3D(body="one")),
+        ConstantVelocity3D(
+            name="joint",
+            a=Marker3D(body="one", point=(0.0, 0.0, 0.15)),
+            b=Marker3D(body="two", point=(0.0, 0.0, -0.15)),
+        ),
+    ]
+    model = Model(bodies=bodies, joints=joints, gravity=(0.0, 1.0, -9.81))
+    tilt = simulate(model, 0.4, "irk", 1e-8, 1e-10)
+    assert max(abs(tilt["two.x"])) > 0.05
+    agree(model, ("shaft.angle", "two.x", "two.y", "two.z"), 0.4, 1e-3)
 
 
 def same_force(model: Model, channel: str) -> None:

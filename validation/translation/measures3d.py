@@ -73,6 +73,22 @@ def angle_from(build: Build, a: Marker3D, b: Marker3D, nodes: Nodes, start: floa
     return value
 
 
+def twist(build: Build, a: Marker3D, b: Marker3D, nodes: Nodes) -> Scalar:
+    """x_a . y_b - y_a . x_b: zero where b is bent from a about an axis across z, without turning about z."""
+    first, second = End(build, a, nodes), End(build, b, nodes)
+    (x_a, y_a), (x_b, y_b) = ([vector(axis) for axis in marker.axes().T[:2]] for marker in (a, b))
+
+    def value(x: Numbers) -> tuple[float, list[float]]:
+        along, across = first.turned(x, x_a), first.turned(x, y_a)
+        way, side, row = second.turned(x, x_b), second.turned(x, y_b), [0.0] * len(x)
+        axis = plus(cross(side, along), cross(way, across), -1.0)
+        second.add_turn(row, x, axis, 1.0)
+        first.add_turn(row, x, axis, -1.0)
+        return dot(along, side) - dot(across, way), row
+
+    return value
+
+
 def weighted(terms: Sequence[tuple[float, Scalar]]) -> Scalar:
     """Sum of measures times factors."""
 

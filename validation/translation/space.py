@@ -5,9 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...core.elements import (
-    ConstantVelocity3D,
     Cylindrical3D,
-    Distance3D,
     Fixed3D,
     Joint3D,
     Planar3D,
@@ -16,7 +14,6 @@ from ...core.elements import (
     PointOnPlane3D,
     Prismatic3D,
     Revolute3D,
-    RevoluteSpherical3D,
     RigidBody3D,
     RollingDisk3D,
     RollingSphere3D,
@@ -43,9 +40,7 @@ from .registry import BodyItems, Build, Derived, frees, no_equal, translates
 
 Work = Callable[[np.ndarray], np.ndarray]
 
-no_equal("a Universal3D, where the joint bends little", ConstantVelocity3D)
 no_equal("a sphere on a ground plane with large friction", RollingSphere3D)
-no_equal("a thin rod between a Revolute3D and a Spherical3D", RevoluteSpherical3D)
 
 CONSTRAINED: dict[type[Joint3D], list[int]] = {
     Fixed3D: [1, 1, 1, 1, 1, 1],
@@ -173,15 +168,6 @@ def spherical(record: Spherical3D, build: Build) -> None:
     markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
     held = [int(k not in build.redundant.get(record.name, ())) for k in range(3)]
     build.add("ObjectJointSpherical", markerNumbers=markers, constrainedAxes=held)
-
-
-@translates(Distance3D)
-def distance(record: Distance3D, build: Build) -> None:
-    """ObjectConnectorDistance. Raises NotTranslatable for a length over time."""
-    if not isinstance(record.length, float | int):
-        raise NotTranslatable(f"the length of '{record.name}' is driven: no translation to exudyn is written for that")
-    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
-    build.add("ObjectConnectorDistance", markerNumbers=markers, distance=record.length)
 
 
 @translates(*CONSTRAINED)

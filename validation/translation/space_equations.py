@@ -1,18 +1,28 @@
-"""Drivers, gears, racks and screws in space: one equation each, as `scalar_joints.py` does in the plane.
+"""Rods, homokinetic joints, drivers, gears, racks and screws in space: equations of one number each, as
+`scalar_joints.py` has them in the plane.
 
-The drivers turn and move what a joint leaves free, so that their multipliers are loads of that joint and are not read.
+The multipliers of the joints and drivers are no loads of the model's, and are not read.
 """
 
 import math
 
-from ...core.elements import AngleDriver3D, Gear3D, PositionDriver3D, RackAndPinion3D, Screw3D
+from ...core.elements import (
+    AngleDriver3D,
+    ConstantVelocity3D,
+    Distance3D,
+    Gear3D,
+    PositionDriver3D,
+    RackAndPinion3D,
+    RevoluteSpherical3D,
+    Screw3D,
+)
 from ...core.elements.base import JointElement
 from .measures import Scalar
-from .measures3d import angle, angle_from, slide, weighted
+from .measures3d import angle, angle_from, distance, slide, twist, weighted
 from .registry import Build, translates
 from .scalar_joints import add_equation
 from .signals import time_function
-from .space import derive_coordinates
+from .space import derive_coordinates, placed
 from .space_contacts import check_bodies
 from .user_gaps import Nodes, Numbers
 
@@ -33,6 +43,35 @@ def _kept(record: JointElement, build: Build, nodes: Nodes, value: Scalar) -> No
         return found - start, row
 
     add_equation(record, build, nodes, equation)
+
+
+@translates(Distance3D)
+def rod(record: Distance3D, build: Build) -> None:
+    """ObjectConnectorDistance; a user function for a length over time."""
+    if isinstance(record.length, float | int):
+        markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
+        build.add("ObjectConnectorDistance", markerNumbers=markers, distance=record.length)
+        return
+    nodes, motion = _nodes(record, build), time_function(record.length, build.model)
+    add_equation(record, build, nodes, distance(build, record.a, record.b, nodes), motion)
+
+
+@translates(RevoluteSpherical3D)
+def rod_on_a_hinge(record: RevoluteSpherical3D, build: Build) -> None:
+    """A rod, and its end in the xy plane of a."""
+    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
+    build.add("ObjectConnectorDistance", markerNumbers=markers, distance=record.length)
+    nodes = _nodes(record, build)
+    add_equation(record, build, nodes, slide(build, record.a, record.b, nodes))
+
+
+@translates(ConstantVelocity3D)
+def homokinetic(record: ConstantVelocity3D, build: Build) -> None:
+    """ObjectJointSpherical, and no twist."""
+    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
+    build.add("ObjectJointSpherical", markerNumbers=markers)
+    nodes = _nodes(record, build)
+    add_equation(record, build, nodes, twist(build, record.a, record.b, nodes))
 
 
 @translates(AngleDriver3D)
