@@ -13,6 +13,7 @@ from tlismni.core import (
     Marker3D,
     Model,
     PointMass3D,
+    Prismatic2D,
     Prismatic3D,
     Revolute2D,
     Revolute3D,
@@ -21,6 +22,7 @@ from tlismni.core import (
     RotationVector,
     SpringDamper3D,
     Universal3D,
+    simulate,
 )
 from tlismni.models import load
 from tlismni.validation import run_exudyn
@@ -108,19 +110,43 @@ def test_what_a_joint_holds_without_an_equation():
         less(Revolute3D(name="j", a=tilted, b=on), frozenset({1}), model)
 
 
-@needs_exudyn
-def test_a_joint_that_exudyn_cannot_hold_in_part_is_refused():
-    """Three cranks of one length under a beam in the plane."""
-    places = (-0.5, 0.1, 0.5)
+def three_cranks():
+    """Of one length and direction, under a beam in the plane."""
+    lean, places = 1.2, (-0.5, 0.1, 0.5)
+    ux, uy = 0.2 * math.cos(lean), 0.2 * math.sin(lean)
     cranks = [
-        RigidBody2D(name=f"crank{k}", mass=1.0, inertia=0.1, position=(x, 0.2), angle=0.5 * math.pi)
+        RigidBody2D(name=f"crank{k}", mass=1.0, inertia=0.1, position=(x + ux, uy), angle=lean)
         for k, x in enumerate(places)
     ]
-    beam = RigidBody2D(name="beam", mass=3.0, inertia=1.0, position=(0.0, 0.4))
+    beam = RigidBody2D(name="beam", mass=3.0, inertia=1.0, position=(2.0 * ux, 2.0 * uy))
     joints = []
     for k, x in enumerate(places):
         low, high = Marker2D(body=f"crank{k}", point=(-0.2, 0.0)), Marker2D(body=f"crank{k}", point=(0.2, 0.0))
         joints.append(Revolute2D(name=f"foot{k}", a=Marker2D(point=(x, 0.0)), b=low))
         joints.append(Revolute2D(name=f"head{k}", a=high, b=Marker2D(body="beam", point=(x, 0.0))))
-    with pytest.raises(NotTranslatable, match=r"redundant.*Revolute2D keeps all.*Revolute3D"):
-        run_exudyn(Model(bodies=[*cranks, beam], joints=joints), 0.1, 1e-2)
+    return Model(bodies=[*cranks, beam], joints=joints, gravity=(0.0, -9.81))
+
+
+@needs_exudyn
+def test_three_cranks_in_the_plane():
+    """The forces too are unique once the same equation is left out on both sides."""
+    model = three_cranks()
+    assert sum(map(len, redundant_rows(model).values())) == 1
+    agree(model, ("beam.x", "beam.y", "crank0.angle", "crank2.angle"), 0.2, 1e-3)
+    ours, theirs = simulate(model, 0.2, "irk", 1e-9, 1e-11), run_exudyn(model, 0.2, 2e-4)
+    for channel in (f"{joint}{k}.force_{axis}" for joint in ("foot", "head") for k in range(3) for axis in "xy"):
+        assert theirs[channel][-1] == pytest.approx(ours[channel][-1], rel=1e-5), channel
+
+
+@needs_exudyn
+def test_a_joint_that_exudyn_cannot_hold_in_part_is_refused():
+    """A carriage on two guides in the plane."""
+    body = RigidBody2D(name="carriage", mass=1.0, inertia=0.1)
+    guides = [
+        Prismatic2D(
+            name=f"guide{k}", a=Marker2D(point=(0.0, 0.1 * k)), b=Marker2D(body="carriage", point=(0.0, 0.1 * k))
+        )
+        for k in range(2)
+    ]
+    with pytest.raises(NotTranslatable, match=r"guide.*is redundant.*Prismatic2D keeps all.*Revolute3D"):
+        run_exudyn(Model(bodies=[body], joints=guides), 0.1, 1e-2)

@@ -118,10 +118,10 @@ def _dependent(matrix: np.ndarray, preferences: np.ndarray) -> list[int]:
 
 def leaves_out(record: object, row: int, model: Model) -> bool:
     """Whether exudyn's equal of a joint can do without this one of its equations."""
-    if not isinstance(record, Joint3D) or not can_free(record):
+    if not can_free(record):
         return False
-    if isinstance(record, Spherical3D):
-        return True  # along the axes of space, as ours
+    if isinstance(record, Spherical3D) or not isinstance(record, Joint3D):
+        return True  # along the axes of space, or of the plane, as ours
     held = rows_of(record)[row]
     return not isinstance(held, Place) or _axis_of_a(record, held, model) is not None
 
