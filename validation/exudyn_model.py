@@ -6,6 +6,7 @@ from ..core.description import Model
 from .errors import NotTranslatable
 from .exudyn_import import import_exudyn
 from .translation import Build, translate
+from .translation.redundant import redundant_rows
 
 
 def build_exudyn_model(model: Model, *, sensors: bool = True) -> Build:
@@ -27,7 +28,7 @@ def build_exudyn_model(model: Model, *, sensors: bool = True) -> Build:
     mbs = container.AddSystem()
     ground = mbs.AddObject(exudyn.items.ObjectGround())
     ground_node = mbs.AddNode(exudyn.items.NodePointGround())
-    build = Build(exudyn, mbs, model, sensors, ground, ground_node)
+    build = Build(exudyn, mbs, model, sensors, ground, ground_node, redundant=redundant_rows(model))
     for element in model.elements():
         translate(element, build)
     if model.inputs:

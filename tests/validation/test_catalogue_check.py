@@ -14,9 +14,7 @@ needs_exudyn = pytest.mark.skipif(not exudyn_available(), reason="exudyn cannot 
 COMPARABLE = [case for case in cases() if not case.not_comparable]
 HALVES = ("split_striker", "split_wall")
 """Scenarios that are compared as the whole that they are halves of."""
-NOT_COMPARED = (*HALVES, "bricard")
-"""And what `CASES` gives a reason for."""
-FIRST = [next(case for case in COMPARABLE if case.scenario == name) for name in names() if name not in NOT_COMPARED]
+FIRST = [next(case for case in COMPARABLE if case.scenario == name) for name in names() if name not in HALVES]
 FLUCTUATING = ("woodpecker",)
 """Compared in full only: exudyn's limit is expensive there."""
 WITH_THIRD_OPINION = (
@@ -41,7 +39,7 @@ def test_every_scenario_has_a_case_that_can_be_compared_and_every_case_a_scenari
     assert set(CASES) <= set(names())
     for case in cases():
         load(case.scenario, **case.parameters)
-    assert {case.scenario for case in COMPARABLE} == set(names()) - set(NOT_COMPARED)
+    assert {case.scenario for case in COMPARABLE} == set(names()) - set(HALVES)
     assert len({case.name for case in cases()}) == len(cases())
 
 

@@ -3,6 +3,7 @@
 # importing a file puts its translators in the registry
 from . import (  # noqa: F401
     bodies,
+    bushings3d,
     cables,
     contacts,
     flexible,
@@ -16,6 +17,7 @@ from . import (  # noqa: F401
     scalar_joints,
     space,
     space_contacts,
+    space_equations,
     space_stops,
     springs3d,
 )

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,13 @@ from ...core.elements.base import Element
 from ...core.model.markers import GROUND
 from ..errors import NotTranslatable
 from .bodies import add_motion
-from .registry import Build, Column, Derived, translates
+from .measures import place_of
+from .registry import Build, Column, Derived, frees, translates
+from .scalar_joints import add_equation
 from .signals import time_function
+from .user_gaps import Nodes, Numbers
+
+frees(Revolute2D)
 
 
 def _force_columns(record: Element, build: Build, item: Any, output: str, factors: tuple[float, ...]) -> None:
@@ -25,10 +31,34 @@ def _force_columns(record: Element, build: Build, item: Any, output: str, factor
 
 @translates(Revolute2D)
 def revolute(record: Revolute2D, build: Build) -> None:
-    """ObjectJointRevolute2D. Its Force output is the opposite of the force on body b."""
+    """ObjectJointRevolute2D. Its Force output is the opposite of the force on body b.
+
+    Without redundant equations those left along x or y, one by one.
+    """
+    if record.name in build.redundant:
+        _pin_in_part(record, build, build.redundant[record.name])
+        return
     markers = [build.point(record.a), build.point(record.b)]
     item = build.add("ObjectJointRevolute2D", markerNumbers=markers)
     _force_columns(record, build, item, "Force", (-1.0, -1.0))
+
+
+def _pin_in_part(record: Revolute2D, build: Build, left_out: frozenset[int]) -> None:
+    nodes = Nodes(build, (record.a.body, record.b.body))
+    first, second = place_of(build, record.a, nodes), place_of(build, record.b, nodes)
+
+    def apart(x: Numbers, along: tuple[float, float]) -> tuple[float, list[float]]:
+        a, b, gradient = first(x), second(x), [0.0] * len(nodes.reference)
+        a.push(gradient, *along)
+        b.push(gradient, -along[0], -along[1])
+        return along[0] * (a.x - b.x) + along[1] * (a.y - b.y), gradient
+
+    for row, (along, channel) in enumerate(zip(((1.0, 0.0), (0.0, 1.0)), record.multiplier_channels(), strict=True)):
+        if row in left_out:  # no force there, as with us
+            build.derived.append(Derived(channel.name, lambda found: np.zeros(len(next(iter(found.values()))))))
+        else:
+            add_equation(record, build, nodes, partial(apart, along=along), row=row)
+    build.notes.append(f"{record.name}: exudyn's holds {2 - len(left_out)} ways, without the redundant equations")
 
 
 @translates(Prismatic2D)

@@ -1,6 +1,6 @@
 """Which function translates which record, and what the functions share while a model is built."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -16,6 +16,7 @@ from ..exudyn_import import Exudyn
 Translator = Callable[[Any, "Build"], None]
 _TRANSLATORS: dict[type, Translator] = {}
 _ROUTES: dict[type, str] = {}
+_FREES: set[type] = set()
 T = TypeVar("T", bound=Translator)
 
 
@@ -30,6 +31,16 @@ def translates(*records: type) -> Callable[[T], T]:
     return register
 
 
+def frees(*records: type) -> None:
+    """Say that the translators of these types leave out redundant equations, as `Build.redundant` says."""
+    _FREES.update(records)
+
+
+def can_free(record: Any) -> bool:
+    """Whether the translator of `record` leaves out redundant equations."""
+    return type(record) in _FREES
+
+
 def no_equal(route: str, *records: type) -> None:
     """Say that exudyn has no equal of records of these types, and the nearest `route` to a comparison."""
     for record in records:
@@ -37,8 +48,16 @@ def no_equal(route: str, *records: type) -> None:
 
 
 def translate(record: Any, build: "Build") -> None:
-    """Add the exudyn equal of `record`. Raises NotTranslatable if there is none."""
-    find_translator(record)(record, build)
+    """Add the exudyn equal of `record`. Raises NotTranslatable if there is none, or a redundant equation stays."""
+    translator = find_translator(record)
+    if getattr(record, "name", None) in build.redundant and not can_free(record):
+        rows = ", ".join(str(row) for row in sorted(build.redundant[record.name]))
+        raise NotTranslatable(
+            f"equation {rows} of '{record.name}' is redundant, and exudyn, whose {type(record).__name__} keeps all of "
+            "them, has a singular matrix then. Joints that can leave equations out there are "
+            f"{sorted(t.__name__ for t in _FREES)}; make this joint hold less, or put one of those in the loop"
+        )
+    translator(record, build)
 
 
 def find_translator(record: Any) -> Translator:
@@ -158,6 +177,8 @@ class Build:
     derived: list[Derived] = field(default_factory=list)
     flexible: bool = False
     """Whether a body is flexible, so that exudyn should keep its Jacobian."""
+    redundant: Mapping[str, frozenset[int]] = field(default_factory=dict)
+    """Equations of joints, counted from 0 in each, that others imply and exudyn must not get."""
     before_step: list[Callable[[Any, float], None]] = field(default_factory=list)
     """Called at the start of each step with (mbs, t)."""
     notes: list[str] = field(default_factory=list)

@@ -1,4 +1,5 @@
 """Forces between two markers along an angle, a way or a distance: an ObjectGenericODE2 that shares the bodies' nodes.
+In the plane and in space.
 
 It has no mass, only the generalised force -F(x, x', t) grad x as its user function. exudyn's own spring-dampers take
 user functions too, but know distances (and angles within a turn) only, and no way along an axis that turns.
@@ -12,30 +13,52 @@ from scipy.interpolate import CubicSpline
 
 from ...core.elements import (
     PIDController2D,
+    PIDController3D,
     RelativeLoad2D,
+    RelativeLoad3D,
     RevoluteFriction2D,
+    RevoluteFriction3D,
     Servo2D,
+    Servo3D,
     SlideFriction2D,
+    SlideFriction3D,
     SlideSpring2D,
     TableSpring2D,
+    TableSpring3D,
     TorsionSpring2D,
 )
 from ...core.elements.base import PairElement2D
-from .measures import MEASURES, scalar
+from ...core.elements.measured_force3d import CountingForce3D, MeasuredForce3D
+from ...core.tables.numbering import ModelNumbering
+from .measures import MEASURES, Scalar, scalar
+from .measures3d import MEASURES3D, angle_from
 from .registry import Build, no_equal, translates
 from .signals import time_function
+from .space_contacts import check_bodies
 from .user_gaps import Nodes, Numbers
 
 Effort = Callable[[float, float, float], float]
 """(x, x', t) -> force or torque against the growth of x."""
 
 no_equal("a Servo2D, which has no integral of the error", PIDController2D)
+no_equal("a Servo3D, which has no integral of the error", PIDController3D)
 
 
-def add_effort(record: PairElement2D, build: Build, measure: str, effort: Effort) -> None:
+def measured(record: PairElement2D | MeasuredForce3D, build: Build, measure: str, nodes: Nodes) -> Scalar:
+    """The measure between the markers of `record`. Raises NotTranslatable on points of flexible bodies in space."""
+    if not isinstance(record, MeasuredForce3D):
+        return scalar(build, record.a, record.b, MEASURES[measure], nodes)
+    check_bodies(record, build)
+    if measure == "angle" and isinstance(record, CountingForce3D):
+        start = ModelNumbering(build.model).start_angle(record.a, record.b, record.name)
+        return angle_from(build, record.a, record.b, nodes, start)
+    return MEASURES3D[measure](build, record.a, record.b, nodes)
+
+
+def add_effort(record: PairElement2D | MeasuredForce3D, build: Build, measure: str, effort: Effort) -> None:
     """The force of `record`. exudyn forms the tangent by differences of it."""
     nodes = Nodes(build, (record.a.body, record.b.body))
-    value = scalar(build, record.a, record.b, MEASURES[measure], nodes)
+    value = measured(record, build, measure, nodes)
 
     def force(mbs: object, t: float, item: int, q: Numbers, v: Numbers) -> list[float]:
         x, gradient = value(list(map(add, nodes.reference, q)))
@@ -60,36 +83,37 @@ def slide_spring(record: SlideSpring2D, build: Build) -> None:
     add_effort(record, build, "slide", lambda x, rate, t: k * (x - free) + c * rate)
 
 
-@translates(TableSpring2D)
-def table_spring(record: TableSpring2D, build: Build) -> None:
+@translates(TableSpring2D, TableSpring3D)
+def table_spring(record: TableSpring2D | TableSpring3D, build: Build) -> None:
     """scipy's cubic spline through the table, and a damper."""
     pull, c = CubicSpline(record.lengths_table, record.forces), record.damping
-    add_effort(record, build, "distance", lambda x, rate, t: float(pull(x)) + c * rate)
+    measure = record.measure if isinstance(record, TableSpring3D) else "distance"
+    add_effort(record, build, measure, lambda x, rate, t: float(pull(x)) + c * rate)
 
 
-@translates(RevoluteFriction2D)
-def revolute_friction(record: RevoluteFriction2D, build: Build) -> None:
+@translates(RevoluteFriction2D, RevoluteFriction3D)
+def revolute_friction(record: RevoluteFriction2D | RevoluteFriction3D, build: Build) -> None:
     """T tanh(phi'/w)."""
     size, width = record.torque, record.transition_rate
     add_effort(record, build, "angle", lambda x, rate, t: size * math.tanh(rate / width))
 
 
-@translates(SlideFriction2D)
-def slide_friction(record: SlideFriction2D, build: Build) -> None:
+@translates(SlideFriction2D, SlideFriction3D)
+def slide_friction(record: SlideFriction2D | SlideFriction3D, build: Build) -> None:
     """F tanh(s'/v)."""
     size, width = record.force, record.transition_speed
     add_effort(record, build, "slide", lambda x, rate, t: size * math.tanh(rate / width))
 
 
-@translates(RelativeLoad2D)
-def relative_load(record: RelativeLoad2D, build: Build) -> None:
+@translates(RelativeLoad2D, RelativeLoad3D)
+def relative_load(record: RelativeLoad2D | RelativeLoad3D, build: Build) -> None:
     """The load makes the measure grow."""
     load = time_function(record.load, build.model)
     add_effort(record, build, record.measure, lambda x, rate, t: -load.value(t))
 
 
-@translates(Servo2D)
-def servo(record: Servo2D, build: Build) -> None:
+@translates(Servo2D, Servo3D)
+def servo(record: Servo2D | Servo3D, build: Build) -> None:
     """Gains on what is missing, with the smooth limit that the record states."""
     target = time_function(record.target, build.model)
     gain, rate_gain, limit = record.gain, record.rate_gain, record.largest

@@ -19,8 +19,9 @@ from .user_gaps import Nodes, Numbers
 
 
 def add_equation(record: Element, build: Build, nodes: Nodes, equation: Scalar, motion: TimeFunction | None = None,
-                 *, rate_only: bool = False) -> None:  # fmt: skip
-    """equation(q) = motion(t), or with `rate_only` gradient . q' = 0. The channel of its multiplier is read.
+                 *, rate_only: bool = False, row: int = 0) -> None:  # fmt: skip
+    """equation(q) = motion(t), or with `rate_only` gradient . q' = 0. The channel of its multiplier is read: of a joint
+    with several equations that of its `row`.
 
     Raises
     ------
@@ -49,8 +50,8 @@ def add_equation(record: Element, build: Build, nodes: Nodes, equation: Scalar, 
         jacobianUserFunction=jacobian,
     )  # fmt: skip
     if build.sensors:
-        (channel,) = record.multiplier_channels()
-        build.columns.append(Column(channel.name, build.sensor(item, "Force"), 0))
+        for channel in record.multiplier_channels()[row : row + 1]:  # of drivers in space there is none
+            build.columns.append(Column(channel.name, build.sensor(item, "Force"), 0))
 
 
 def _pair(record: PairElement2D, build: Build, measure: Measure, motion: TimeFunction | None = None,

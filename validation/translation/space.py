@@ -5,24 +5,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...core.elements import (
-    AngleDriver3D,
-    AxialSpring3D,
-    Bushing3D,
-    ConstantVelocity3D,
     Cylindrical3D,
-    Distance3D,
     Fixed3D,
-    Gear3D,
     Joint3D,
     Planar3D,
     PointMass3D,
     PointOnLine3D,
     PointOnPlane3D,
-    PositionDriver3D,
     Prismatic3D,
-    RackAndPinion3D,
     Revolute3D,
-    RevoluteSpherical3D,
     RigidBody3D,
     RollingDisk3D,
     RollingSphere3D,
@@ -44,17 +35,12 @@ from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, Sphe
 from ...core.tables.numbering import ModelNumbering
 from ..errors import NotTranslatable
 from .bodies import node_columns
-from .registry import BodyItems, Build, Derived, no_equal, translates
+from .redundant import less
+from .registry import BodyItems, Build, Derived, frees, no_equal, translates
 
 Work = Callable[[np.ndarray], np.ndarray]
 
-no_equal("a Revolute3D with user functions for its offset", AngleDriver3D)
-no_equal("an ObjectConnectorCoordinate between the coordinates of joint-space bodies", Gear3D, RackAndPinion3D, Screw3D)
-no_equal("a Prismatic3D with user functions for its offset", PositionDriver3D)
-no_equal("a Universal3D, where the joint bends little", ConstantVelocity3D)
 no_equal("a sphere on a ground plane with large friction", RollingSphere3D)
-no_equal("a thin rod between a Revolute3D and a Spherical3D", RevoluteSpherical3D)
-no_equal("an ObjectConnectorRigidBodySpringDamper with the same stiffness", Bushing3D, AxialSpring3D)
 
 CONSTRAINED: dict[type[Joint3D], list[int]] = {
     Fixed3D: [1, 1, 1, 1, 1, 1],
@@ -67,6 +53,7 @@ CONSTRAINED: dict[type[Joint3D], list[int]] = {
     PointOnPlane3D: [0, 0, 1, 0, 0, 0],
 }
 """Axes that ObjectJointGeneric holds: three translations and three rotations in the frame of marker a."""
+frees(*CONSTRAINED, Spherical3D)
 YZ = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Columns: our z, x, y axes as x, y, z. exudyn's universal joint holds y of a across z of b, ours x across y."""
 
@@ -129,7 +116,7 @@ def _derive(build: Build, group: Group, bodies: Sequence[str], work: Work | None
     build.derived += [Derived(channel.name, one(k)) for k, channel in enumerate(group.channels)]
 
 
-def _derive_coordinates(record: Joint3D, build: Build) -> None:
+def derive_coordinates(record: Joint3D | Screw3D, build: Build) -> None:
     """The joint's coordinates, turns counted along the samples from the start."""
     numbering = ModelNumbering(build.model)
     for coordinate in record.coordinates():
@@ -177,27 +164,22 @@ def placed(marker: Marker3D, build: Build, user: str, axes: np.ndarray | None = 
 
 @translates(Spherical3D)
 def spherical(record: Spherical3D, build: Build) -> None:
-    """ObjectJointSpherical."""
+    """ObjectJointSpherical, along the axes of space as ours."""
     markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
-    build.add("ObjectJointSpherical", markerNumbers=markers)
-
-
-@translates(Distance3D)
-def distance(record: Distance3D, build: Build) -> None:
-    """ObjectConnectorDistance. Raises NotTranslatable for a length over time."""
-    if not isinstance(record.length, float | int):
-        raise NotTranslatable(f"the length of '{record.name}' is driven: no translation to exudyn is written for that")
-    markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
-    build.add("ObjectConnectorDistance", markerNumbers=markers, distance=record.length)
+    held = [int(k not in build.redundant.get(record.name, ())) for k in range(3)]
+    build.add("ObjectJointSpherical", markerNumbers=markers, constrainedAxes=held)
 
 
 @translates(*CONSTRAINED)
 def generic(record: Joint3D, build: Build) -> None:
     """ObjectJointGeneric; its multipliers of rotations are no torques, so that only the motion is compared."""
-    order = YZ if isinstance(record, Universal3D) else np.eye(3)
+    constrained, order = CONSTRAINED[type(record)], YZ if isinstance(record, Universal3D) else np.eye(3)
+    if record.name in build.redundant:
+        constrained, order = less(record, build.redundant[record.name], build.model)
+        build.notes.append(f"{record.name}: exudyn's holds {sum(constrained)} axes, without the redundant equations")
     markers = [placed(marker, build, record.name, marker.axes() @ order) for marker in (record.a, record.b)]
-    build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=CONSTRAINED[type(record)])
-    _derive_coordinates(record, build)
+    build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=constrained)
+    derive_coordinates(record, build)
 
 
 @translates(RollingDisk3D)

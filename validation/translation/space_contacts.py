@@ -59,12 +59,11 @@ def sphere_contact(record: SphereOnHalfSpace3D | SphereOnSphere3D, build: Build)
 
 
 def check_bodies(record: Any, build: Build) -> None:
-    """Raise NotTranslatable for a contact on a body without a frame of its own."""
+    """Raise NotTranslatable for a contact, or a force, on a body without a frame of its own."""
     for marker in record.markers():
         if marker.body != GROUND and len(build.bodies[marker.body].reference) not in (3, 7):
             raise NotTranslatable(
-                f"contact '{record.name}' is on '{marker.body}', neither a RigidBody3D nor a PointMass3D: put such a "
-                "body there"
+                f"'{record.name}' is on '{marker.body}', neither a RigidBody3D nor a PointMass3D: put such a body there"
             )
 
 

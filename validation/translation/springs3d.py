@@ -3,27 +3,20 @@
 import numpy as np
 
 from ...core.elements import (
+    AxialSpring3D,
     Cylindrical3D,
-    PIDController3D,
-    RelativeLoad3D,
+    Prismatic3D,
     Revolute3D,
-    RevoluteFriction3D,
-    Servo3D,
-    SlideFriction3D,
     SpringDamper3D,
-    TableSpring3D,
     TorsionSpring3D,
 )
-from ...core.model.markers import Marker3D
+from ...core.model.markers import GROUND, Marker3D
 from ...core.tables.numbering import ModelNumbering
 from ..errors import NotTranslatable
-from .registry import Build, no_equal, translates
+from .registry import Build, translates
+from .scalar_forces import add_effort
+from .signals import time_function
 from .space import placed
-
-no_equal(
-    "the planar element of the same name, where the motion is planar", PIDController3D, RelativeLoad3D,
-    RevoluteFriction3D, Servo3D, SlideFriction3D, TableSpring3D,
-)  # fmt: skip
 
 PARALLEL = 1e-9
 """Distance of unit vectors that are one."""
@@ -31,16 +24,43 @@ PARALLEL = 1e-9
 
 @translates(SpringDamper3D)
 def spring_damper(record: SpringDamper3D, build: Build) -> None:
-    """ObjectConnectorSpringDamper. Raises NotTranslatable for a natural length over time."""
-    if not isinstance(record.natural_length, float | int):
-        raise NotTranslatable(
-            f"the natural length of '{record.name}' is driven: no translation to exudyn is written for that"
-        )
+    """ObjectConnectorSpringDamper; a user function for a natural length over time."""
+    k, c, length = record.stiffness, record.damping, record.natural_length
+    if not isinstance(length, float | int):
+        free = time_function(length, build.model)
+        add_effort(record, build, "distance", lambda x, rate, t: k * (x - free.value(t)) + c * rate)
+        return
     markers = [placed(marker, build, record.name) for marker in (record.a, record.b)]
     build.add(
-        "ObjectConnectorSpringDamper", markerNumbers=markers, stiffness=record.stiffness, damping=record.damping,
-        referenceLength=record.natural_length,
+        "ObjectConnectorSpringDamper", markerNumbers=markers, stiffness=k, damping=c, referenceLength=length,
     )  # fmt: skip
+
+
+@translates(AxialSpring3D)
+def axial_spring(record: AxialSpring3D, build: Build) -> None:
+    """ObjectConnectorLinearSpringDamper on the ground's axes, or where a joint keeps b on the axis of a.
+
+    Elsewhere a user function: exudyn's leaves out how the axis turns in its rate, and the moment of a force at b on a.
+    """
+    k, c, free = record.stiffness, record.damping, record.natural_position
+    if record.a.body == GROUND or any(keeps_on_axis(joint, record.a, record.b) for joint in build.model.joints):
+        markers = [placed(record.a, build, record.name, record.a.axes()), _with_axes(record.b, build, record.name)]
+        build.add(
+            "ObjectConnectorLinearSpringDamper", markerNumbers=markers, stiffness=k, damping=c, offset=free,
+            axisMarker0=[0.0, 0.0, 1.0],
+        )  # fmt: skip
+    else:
+        add_effort(record, build, "slide", lambda x, rate, t: k * (x - free) + c * rate)
+
+
+def _with_axes(marker: Marker3D, build: Build, user: str) -> int:
+    point = marker.body != GROUND and not build.bodies[marker.body].rigid
+    return placed(marker, build, user, None if point else marker.axes())
+
+
+def keeps_on_axis(joint: object, a: Marker3D, b: Marker3D) -> bool:
+    """Whether the joint has these markers and lets b move along the z axis of a only."""
+    return isinstance(joint, Prismatic3D | Cylindrical3D) and (joint.a, joint.b) == (a, b)
 
 
 @translates(TorsionSpring3D)
