@@ -1,19 +1,21 @@
-"""Impacts of contacts with two tangents, with exact friction cones (`cones/friction_cones.py`)."""
+"""Impacts of contacts with two tangents, with exact friction cones (`cones/friction_cones.py`), at once or in turn."""
 
 import math
 from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
+from ..cones.one_cone import one_cone
 from ..rounding import UNSOLVED
 from ..tables.evaluate import evaluate_residuals
-from .impact import MOST_BOUNCES, MOST_ROUNDS, restitution
-from .laws import POISSON
+from .impact import MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, restitution
+from .laws import POISSON, SEQUENTIAL
 from .rates_in_space import masses, push_in_space, read_rates_in_space, solve_cones_in_space
 from .records import (
     APPROACH,
     BASE,
     COUNT,
+    ENDLESS_BLOWS,
     ENDLESS_ROUNDS,
     FRICTION,
     IMPULSE,
@@ -55,8 +57,9 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     read_rates_in_space(ev, ws)
     for i in range(ws.m_act):
         joint_rates[i] = phid[active[i]]
-    largest, left = 0.0, math.inf
+    largest, left, sequential = 0.0, math.inf, False
     for i in range(count):
+        sequential = sequential or ivec(dr.law, ws.n_contacts)[ivec(ev.contacts, ev.most)[i]] == SEQUENTIAL
         col(ev, IMPULSE)[i] = col(ev, FRICTION)[i] = loss[i] = 0.0
         col(ev, APPROACH)[i] = max(-rate[i], 0.0)
         largest = max(largest, abs(rate[i]), abs(slide[i]), abs(sway[i]))
@@ -74,7 +77,7 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             approach = col(ev, APPROACH)[i]
             col(ev, APPROACH)[i] = approach if approach > rounding[i] else -rate[i]
             before_n[i], before_t[i], before_s[i] = rate[i], slide[i], sway[i]
-        status = _blow(ev, dr, ws, turn >= MOST_BOUNCES)
+        status = _sequence(ev, ws) if sequential else _blow(ev, dr, ws, turn >= MOST_BOUNCES)
         if status != SETTLED:
             return status
         for i in range(count):
@@ -127,3 +130,35 @@ def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
         if not back:
             break
     return SETTLED
+
+
+@internal
+def _sequence(ev: Any, ws: Any) -> int:
+    """One blow after another, the fastest approach first, until none approaches."""
+    count, low = whole(ev)[COUNT], whole(ev)[WITHOUT] != 0
+    a, v, p, rounding = masses(ev, count), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count), col(ev, ROUNDING)
+    for i in range(count):
+        v[i], v[count + i], v[2 * count + i] = col(ev, RATE)[i], col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i]
+        p[i] = p[count + i] = p[2 * count + i] = 0.0
+    for _ in range(MOST_BLOWS):
+        i = 0
+        for k in range(count):
+            i = k if v[k] < v[i] else i
+        if v[i] >= -rounding[i]:
+            push_in_space(ev, ws, p)
+            for r in range(count):
+                col(ev, P_N)[r], col(ev, P_T)[r], col(ev, P_S)[r] = p[r], p[count + r], p[2 * count + r]
+            return SETTLED
+        j, k = count + i, 2 * count + i
+        own, wanted = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k]), v[i] * (1.0 + restitution(ev, low, i))
+        found, one, first, second = one_cone(own, (wanted, v[j], v[k]), col(ev, KINETIC)[i], 0.0)
+        if not found:
+            return NO_IMPACT
+        p[i] += one
+        p[j] += first
+        p[k] += second
+        for r in range(3 * count):
+            v[r] += a[r, i] * one + a[r, j] * first + a[r, k] * second
+        # exactly, so that the same contact is not struck again by rounding
+        v[i] = max(v[i], 0.0)
+    return ENDLESS_BLOWS

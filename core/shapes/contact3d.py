@@ -10,7 +10,6 @@ from pydantic import model_validator
 from ..elements.base import BodyElement, Form, Numbering, Row
 from ..elements.measure3d import DISTANCE, PLACE, columns_of, coordinates_of
 from ..elements.turning_bodies import refuse_points
-from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker3D
@@ -90,12 +89,6 @@ class Contact3D(ContactElement):
                 f"contact '{self.name}' is a {type(self).__name__}, along which the bristles of LuGre friction are not "
                 "carried: in space they are for all shapes on half-spaces, and for spheres and capsules on each other, "
                 "in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
-            )
-        one_by_one = isinstance(self.law, NewtonImpact) and self.law.propagation == "sequential"
-        if one_by_one and isinstance(self.friction, CoulombFriction):
-            raise ValueError(
-                f"contact '{self.name}': blows one after another (propagation='sequential') with friction are for "
-                "contacts in the plane: leave out one of the two"
             )
         return self
 
