@@ -39,12 +39,16 @@ CORNERS = 4
 def add_body(stage: Stage3D, body: SpatialFrame) -> None:
     """The solids of a body."""
     size = stage.size
-    ends = [point for point in attached(stage.motion.model, body.name) if math.hypot(*point) > 2.0 * ROD * size]
+    model = stage.motion.model
+    ends = [point for point in attached(model, body.name) if math.hypot(*point) > 2.0 * ROD * size]
+    balls = [ball for ball in _balls(model) if ball.marker.body == body.name and ball.radius > 0.0]
+    # a ball at the end of an arm does not hover there
+    apart = [ball.marker.point for ball in balls if math.hypot(*ball.marker.point) > ball.radius]
     shaped = body.name in stage.shaped or _touching(stage, body.name)
     link = not shaped and len(ends) > 1
     if not shaped and not link and not (isinstance(body, RigidBody3D) and _uniform(stage, body)):
         stage.solid(Marker3D(body=body.name), meshes.ball(), (POINT * size,) * 3)
-    for end in ends:
+    for end in dict.fromkeys((*ends, *apart)):
         stage.rod(body.name, (0.0, 0.0, 0.0), end, (LINK if link else ROD) * size, meshes.cylinder())
 
 
@@ -123,6 +127,11 @@ def _single_shapes(model: Model) -> list[Cornered3D | SmoothShape3D]:
         elif isinstance(contact, CapsuleOnCapsule3D):
             found += [shape for shape in (contact.a, contact.b) if isinstance(shape, Capsule3D)]
     return [shape for k, shape in enumerate(found) if shape not in found[:k]]
+
+
+def _balls(model: Model) -> list[Sphere3D]:
+    """Those of groups, and of contacts that stand by themselves."""
+    return [*(shape for shape in _grouped(model) if isinstance(shape, Sphere3D)), *single_balls(model)]
 
 
 def single_balls(model: Model) -> list[Sphere3D]:
