@@ -120,7 +120,7 @@ def test_thirty_disks_that_hold_each_other_at_their_limits(seed, rest_ratio):
     """Contacts without force beside each other, that stick at their limits, whose sliding is none, that would jam alone
     and do not together; rounds of impacts that feed each other."""
     count = 30
-    check_rest(Simulation(heap(count, 0.3, 0.4, seed, rest_ratio), "ebdf"), count, 1.5, 1e-7)
+    check_rest(Simulation(heap(count, 0.3, 0.4, seed, rest_ratio), "ebdf"), count, 2.0, 1e-7)
 
 
 @pytest.mark.full
