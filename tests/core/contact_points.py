@@ -37,18 +37,23 @@ def state_at(point, q, seed):
     ]  # fmt: skip
 
 
+def check_tangent(point, state, h=1e-3, tolerance=1e-7):
+    """The part of the matrix that belongs to the motion is the derivative of the residuals; gives the matrix."""
+    c_q, c_v, n, no_lam = 0.6, 0.8, point.n, np.zeros(point.m)
+    point.at(*state)
+    matrix = point.tangent(c_q, c_v)
+    s = np.array([point.derivative(0, (0.0, c_q * e, c_v * e, e, no_lam), state, h) for e in np.eye(n)]).T
+    assert np.abs(matrix[:n, :n] - s).max() < tolerance * max(1.0, np.abs(s).max())
+    return matrix
+
+
 def check_derivatives(point, state, h=1e-3, tolerance=1e-7, distances=slice(None)):
     """The matrix is the derivative of the residuals, and the levels are those of each other, by central differences of
     span h. The shapes must stay in the same region of their contour. `distances`: rows whose position level is one."""
     n, active = point.n, point.workspace.structure.active
-    c_q, c_v, nothing, no_lam = 0.6, 0.8, np.zeros(point.n), np.zeros(point.m)
-    point.at(*state)
-    matrix = point.tangent(c_q, c_v)
-    unit = np.eye(n)
-    s = np.array([point.derivative(0, (0.0, c_q * e, c_v * e, e, no_lam), state, h) for e in unit]).T
+    nothing, no_lam, unit = np.zeros(point.n), np.zeros(point.m), np.eye(n)
+    matrix = check_tangent(point, state, h, tolerance)
     jacobian = np.array([point.derivative(1, (0.0, e, nothing, nothing, no_lam), state, h) for e in unit]).T[active]
-    scale = max(1.0, np.abs(s).max())
-    assert np.abs(matrix[:n, :n] - s).max() < tolerance * scale
     assert np.abs(matrix[n:, :n] - jacobian).max(initial=0.0) < tolerance
     for k, row in enumerate(active):
         force = point.derivative(0, (0.0, nothing, nothing, nothing, np.eye(point.m)[row]), state, h)

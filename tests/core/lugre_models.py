@@ -1,4 +1,4 @@
-"""Models in space with LuGre's friction, for tests."""
+"""LuGre's friction for tests of plane and space, and models in space with it."""
 
 from helpers import G
 from tlismni.core import (

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from contact_points import ContactPoint, check_derivatives, state_at
 from helpers import G, events, on
+from lugre_models import BRISTLES, LAW, MASS, MU, NORMAL, S0, S1, S2, STATIC, STIFFNESS, STRIBECK, TIGHT
 from scipy.integrate import solve_ivp
 from tlismni.core import (
     AppliedForce2D,
@@ -37,16 +38,6 @@ from tlismni.core import (
     simulate,
 )
 from tlismni.core.state.modes import ACTIVE, OPEN
-
-TIGHT = {"rtol": 1e-9, "atol": 1e-12}
-MASS, STIFFNESS = 2.0, 1e5
-NORMAL = MASS * G
-LAW = KelvinVoigt(stiffness=STIFFNESS, damping=300.0)
-MU, STATIC, STRIBECK, S0, S1, S2 = 0.3, 0.5, 0.01, 1e4, 60.0, 1.0
-BRISTLES = LuGreFriction(
-    coefficient=MU, static_coefficient=STATIC, stribeck_speed=STRIBECK, bristle_stiffness=S0, bristle_damping=S1,
-    viscous_damping=S2,
-)  # fmt: skip
 
 
 def resting(*forces, speed=0.0, friction=BRISTLES, **parts):

@@ -35,6 +35,7 @@ from tlismni.core import (
 from tlismni.core.flexible.section_loads import section
 from tlismni.models import load, names
 from tlismni.viewer import animate, show
+from tlismni.viewer.build import scene_of_start
 from tlismni.viewer.scene import Scene
 from tlismni.viewer.space import meshes
 from tlismni.viewer.space.build import is_spatial
@@ -323,3 +324,14 @@ def test_a_browser_that_cannot_draw_in_space_says_so_and_shows_the_rest(tmp_path
     )
     assert "WebGL" in found["told"] and ".gif" in found["told"] and found["height"] > 10.0
     assert found["cards"] > 0 and found["failures"] == []
+
+
+def test_a_ball_at_the_end_of_an_arm_is_drawn_with_the_arm() -> None:
+    """A bar goes from the body's middle to it, as to the joint at the other end."""
+    scenario = load("arm_stop")
+    scene = scene_of_start(scenario.model)
+    number = [frame.name for frame in scene.frames].index("lower")
+    tip = next(c.sphere.marker.point for c in scenario.model.contacts if c.name == "table")
+    solids = [solid for solid in scene.solids if solid.frame == number]
+    bars = [solid.at[0] for solid in solids if solid.size[2] == pytest.approx(tip[0])]
+    assert sorted(bars) == pytest.approx([-0.5 * tip[0], 0.5 * tip[0]])
