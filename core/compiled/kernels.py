@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from . import types
-from .jit import address_of, caller, record_view
+from .jit import address_of, caller, internal, record_view
+from .views import ivec
 
 # What a kernel is asked to do.
 RESIDUAL = 0  # add to r, phi, phid, phidd at the current (t, q, v, a, lam)
@@ -34,7 +35,9 @@ BATCH = np.dtype(
             "slot_s",    # (count, ncoord*ncoord) int64: where d r_i / d q_j goes in `values`
             "slot_j",    # (count, nrow*ncoord) int64: where Phi_q goes in `values`
             "slot_jt",   # (count, nrow*ncoord) int64: where its transpose goes
+            "line",      # (count,) int64: which line of these three tables is an element's; 0: all have their own
             "extra",     # (count, nextra) int64: element-specific indices (contact number, work accounts ...)
+            "shown",     # (1 + count,) int64: how many elements are looked at, and which; 0: all are
             # current arrays of the system (shared by all batches)
             "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor",
             "signals",   # float64 pool of the time functions' parameters
@@ -54,6 +57,25 @@ call_kernel = caller(KERNEL_SIGNATURE)
 
 batch_at = record_view(BATCH_TYPE)
 """batch_at(address): the batch record there."""
+
+
+@internal
+def line_of(b: Any, e: int) -> int:
+    """The line of the slot tables that is element e's. Of contacts that take no part in the equations there are none:
+    they share the first, whose slots belong nowhere."""
+    return e if b.line == 0 else int(ivec(b.line, b.count)[e])
+
+
+@internal
+def shown(b: Any) -> int:
+    """How many elements of a batch of contacts are not of pairs that are far from each other."""
+    return int(b.count) if b.shown == 0 else int(ivec(b.shown, 1)[0])
+
+
+@internal
+def shown_at(b: Any, i: int) -> int:
+    """The element that is number i of these."""
+    return i if b.shown == 0 else int(ivec(b.shown, b.count + 1)[i + 1])
 
 
 def kernel_address(kernel: Any) -> int:

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import inlined, internal
-from ..compiled.kernels import RESIDUAL
+from ..compiled.kernels import RESIDUAL, line_of
 from ..compiled.packed import curvature
-from ..compiled.views import imat, vec
+from ..compiled.views import imat, ivec, vec
 
 HESSIAN_PAIRS = np.array([(i, j) for i in range(6) for j in range(i, 6)], dtype=np.int64)
 """Upper triangle in the order of the Hessian tuples returned here."""
@@ -208,10 +208,11 @@ def constrain(b: Any, job: int, e: int, row: int, local_row: int, g: float, grad
             r[coord[i]] += gradient[i] * lam
     else:
         values = vec(b.values, b.n_values)
-        slot = imat(b.slot_s + 8 * e * n * n, n, n)
+        line = line_of(b, e)
+        slot = imat(b.slot_s + 8 * line * n * n, n, n)
         add_hessian(values, slot, gradient, hessian, vec(b.coef, 2)[0] * lam)
-        slot_j = imat(b.slot_j, b.count, n * b.nrow)[e]
-        slot_jt = imat(b.slot_jt, b.count, n * b.nrow)[e]
+        slot_j = ivec(b.slot_j + 8 * line * n * b.nrow, n * b.nrow)
+        slot_jt = ivec(b.slot_jt + 8 * line * n * b.nrow, n * b.nrow)
         for i in range(len(gradient)):
             values[slot_j[n * local_row + i]] += gradient[i]
             values[slot_jt[n * local_row + i]] += gradient[i]

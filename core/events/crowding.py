@@ -13,7 +13,7 @@ next row is twice as long.
 
 from typing import Any
 
-from ..compiled.jit import internal, record_view
+from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..location.probe import can_look
 from ..methods.history import history_time
@@ -26,7 +26,6 @@ from ..state.run_records import (
     COUNTS_SIZE,
     CROWDED,
     HERE,
-    LOOP_TYPE,
     PUSH_STEP,
     PUSHED_FROM,
     PUSHED_UNTIL,
@@ -34,6 +33,7 @@ from ..state.run_records import (
     PUSHES_LEFT,
     WINDOW_COUNT,
     WINDOW_START,
+    loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
 from ..tables.levels import position_level
@@ -55,8 +55,6 @@ FEW_AGAIN = 16
 """Instants within the time of one step behind a row, after which the next begins."""
 SOON = 64
 """Steps of impulses: what crowds again within the time of so many behind the last row goes on crowding."""
-
-loop_at = record_view(LOOP_TYPE)
 
 
 @internal

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import internal, record_view
+from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
 from ..laws import call_law
 from ..methods.history import history_time
@@ -25,10 +25,10 @@ from ..state.run_records import (
     CLOCK_SIZE,
     CLOSE,
     FORCE_NUMBERS,
-    LOOP_TYPE,
     OPENS,
     STEP_SIZE,
     call_accelerations,
+    loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from ..tables.evaluate import evaluate_residuals
@@ -37,7 +37,6 @@ from .laws import FORCE
 from .records import COUNT, NO_ACCELERATIONS, SETTLED, call_part, delassus, whole
 from .report import report
 
-loop_at = record_view(LOOP_TYPE)
 HALVINGS = 50
 """Of the search for a static penetration."""
 

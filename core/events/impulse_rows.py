@@ -3,11 +3,11 @@ about."""
 
 from typing import Any
 
-from ..compiled.jit import internal, record_view
+from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.row_sweeps import along, list_columns
 from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
-from ..state.run_records import LOOP_TYPE
+from ..state.run_records import loop_at
 from .crowding import near_level
 from .rates_in_space import masses
 from .records import (
@@ -36,9 +36,6 @@ what is wanted, its impulse, and how far that may go, in parts of the normal one
 ROW_NUMBERS = 6
 ROW_ROOM = ROW_NUMBERS + 3
 """Numbers of each row, with those that `press_apart` works with."""
-
-
-loop_at = record_view(LOOP_TYPE)
 
 
 @internal

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled.jit import internal, record_view
+from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.row_sweeps import along, press_apart, sweep_rows
 from ..methods.history import history_time
@@ -20,11 +20,11 @@ from ..state.run_records import (
     CALM,
     CLOCK_SIZE,
     IMPACT,
-    LOOP_TYPE,
     PUSHED_FROM,
     PUSHES,
     PUSHES_LEFT,
     call_accelerations,
+    loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from ..tables.evaluate import evaluate_energy
@@ -63,8 +63,6 @@ FEW = 5.0
 QUIET, QUIET_PART = 6, 0.125
 """Steps in which no contact comes, goes or bounces, after which the crowd is over: so many, and such a part of the row,
 so that a crowd that comes back at once is not looked at again and again."""
-
-loop_at = record_view(LOOP_TYPE)
 
 
 @internal

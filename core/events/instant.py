@@ -23,6 +23,7 @@ from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
 from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
 from ..tables.assembly import Assembly
+from ..tables.patterns import entries_of_few
 from .balance import find_forces
 from .balance_in_space import find_forces_in_space
 from .carrying import keep
@@ -76,7 +77,7 @@ class Instant:
         self._assembly = assembly
         n, n_ext, m, contacts = assembly.n, assembly.n_extended, assembly.m + 1, max(len(assembly.contacts), 1)
         most = self.most = max(min(most, contacts), 1)
-        entries = sum(len(b.coord) * len(b.jacobian_pattern) for b in assembly.batches)
+        entries = entries_of_few(assembly, most)[1]
         space = self.rows_space = rows_space or 4 * (entries + n)
         # normals and tangents of so many contacts
         blocks = 1 + assembly.tangents
@@ -105,7 +106,7 @@ class Instant:
                 "space_a": spatial * spatial, "space_b": spatial, "space_p": spatial,
                 "pressing_a": spatial * spatial, "torques": (spatial // 3) * n,
                 "space_room": spatial * spatial + 4 * spatial + friction_cones_size(most) if spatial else 0,
-                "slots_work": n + sum(len(b.coord) * len(b.tangent_pattern) for b in assembly.batches),
+                "slots_work": min(n * n, n + entries_of_few(assembly, contacts)[0]),
             },
             {
                 "most": most, "work_size": work, "rows_space": space, "cones": self._cones.address,

@@ -12,9 +12,10 @@ from ..compiled.views import ivec, mat, vec
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ROOM
+from ..location.probe import can_look, gradient_alone, tell_gradients
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
-from ..state.run_records import COUNTS_SIZE, HERE, call_accelerations
+from ..state.run_records import COUNTS_SIZE, HERE, call_accelerations, loop_at
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_energy, evaluate_tangent
 from ..tables.levels import acceleration_level, position_level, rate_level
@@ -63,8 +64,22 @@ def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
 
 
 @internal
-def find_gradient(ws: Any, row: int, out: Any) -> None:
-    """Gradient (n,) of row `row` of Phi, which is none of the matrix."""
+def tell_touching(ev: Any, ws: Any, lc: Any) -> None:
+    """Where some of the touching contacts cannot be evaluated alone, evaluate all of them with the system."""
+    contacts, alone = ivec(ev.contacts, ev.most), True
+    for i in range(whole(ev)[COUNT]):
+        alone = alone and can_look(lc, contacts[i])
+    if not alone:
+        evaluate_tangent(ws, 0.0, 0.0)
+
+
+@internal
+def find_gradient(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
+    """Gradient (n,) of row `row`, one of contact k, after `tell_touching`, and `tell_gradients` where k can be
+    evaluated alone."""
+    if can_look(lc, k):
+        gradient_alone(ws, lc, k, row, out)
+        return
     start, values = ivec(ws.gradient_start, ws.m_ext), vec(ws.values, ws.n_values)
     for i in range(ws.n):
         out[i] = 0.0
@@ -85,14 +100,17 @@ def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     # as constraints that stick, the contacts say their gradients; no matrix holds them
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
-    evaluate_tangent(ws, 0.0, 0.0)
+    lc = loop_at(dr.loop)
+    tell_touching(ev, ws, lc)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
     directions = mat(ev.directions, 2 * count, ws.n)
     for i in range(count):
         k = contacts[i]
-        find_gradient(ws, rows[k], directions[i])
+        if can_look(lc, k):
+            tell_gradients(ws, lc, k)
+        find_gradient(ws, lc, k, rows[k], directions[i])
         if slides[k] >= 0:
-            find_gradient(ws, slides[k], directions[count + i])
+            find_gradient(ws, lc, k, slides[k], directions[count + i])
         else:
             clear(directions[count + i], ws.n)
         memory[k, MODE] = OPEN

@@ -7,24 +7,23 @@ the first ones'; inverse masses of all three are in `masses`. The tangents of a 
 
 from typing import Any
 
-from ..compiled.jit import internal, record_view
+from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg import lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ROOM
+from ..location.probe import can_look, tell_gradients
 from ..rounding import IMMOVABLE
 from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
 from ..state.modes import STICKS as STUCK
-from ..state.run_records import LOOP_TYPE
+from ..state.run_records import loop_at
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.switch import engage_modes
 from .rates_in_space import masses, read_rates_in_space
 from .records import ALONE, COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
 from .torques_in_space import find_torques, press_with_torques
-from .touching import entries_of, find_gradient, refuse_immovable
-
-loop_at = record_view(LOOP_TYPE)
+from .touching import entries_of, find_gradient, refuse_immovable, tell_touching
 
 
 @internal
@@ -41,19 +40,22 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return WANT_MEMORY
     # the rows of those that slid or stuck now tell both velocities
     evaluate_residuals(ws)
-    find_torques(ev, ws, loop_at(dr.loop), count)
+    lc = loop_at(dr.loop)
+    find_torques(ev, ws, lc, count)
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
-    evaluate_tangent(ws, 0.0, 0.0)
+    tell_touching(ev, ws, lc)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
     static, directions = vec(ws.contact_sticking, ws.n_contacts), mat(ev.directions, 3 * count, n)
     for i in range(count):
         k = contacts[i]
-        find_gradient(ws, rows[k], directions[i])
+        if can_look(lc, k):
+            tell_gradients(ws, lc, k)
+        find_gradient(ws, lc, k, rows[k], directions[i])
         for block in range(2):
             to = directions[(block + 1) * count + i]
             if slides[k] >= 0 and static[k] > 0.0:
-                find_gradient(ws, slides[k] + block, to)
+                find_gradient(ws, lc, k, slides[k] + block, to)
             else:
                 clear(to, n)
         memory[k, MODE] = OPEN

@@ -9,14 +9,17 @@ sleeps changes no bit of the motion, and nothing of it is part of the state: who
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.kernels import RESIDUAL, call_kernel
+from ..compiled.kernels import RESIDUAL, batch_at, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
 from ..methods.history import history_row, history_time
 from ..state.modes import MEMORY_SIZE, MODE, OPEN
 from ..state.run_records import WATCH
+from .balls import MARKS, VALID
 from .certain import way_of_gap
 from .probe import KERNEL, NEAR_SIZE, SLEEPS, probe_of
 
+AWAKE, ASLEEP, DEEPLY = 0, 1, 2
+"""A contact is evaluated; its margin is looked at; it is one of a pair that the broad phase looks after."""
 FAR = 8.0
 """A contact falls asleep with a gap of this many ways that it can go in a step like the last one."""
 PLAINLY = 1e-6
@@ -52,7 +55,7 @@ def look_now(ws: Any, lc: Any, k: int) -> None:
 @internal
 def wake(ws: Any, ms: Any, lc: Any, k: int) -> None:
     """Contact k is looked at again, from the newest row on."""
-    ivec(ws.asleep, ws.n_contacts)[k] = 0
+    ivec(ws.asleep, ws.n_contacts)[k] = AWAKE
     row, slide = ivec(ws.contact_rows, ws.n_contacts)[k], ivec(ws.contact_slide_rows, ws.n_contacts)[k]
     start, n = history_row(ws, ms, 0), ws.n_ext
     _evaluate_alone(ws, lc, k, history_time(ms, 0), start, start[n:], start[2 * n :])
@@ -65,12 +68,31 @@ def wake(ws: Any, ms: Any, lc: Any, k: int) -> None:
 
 
 @internal
+def show_elements(ws: Any) -> None:
+    """Let kernels go through the elements of those contacts alone that do not sleep deeply."""
+    asleep, batches = ivec(ws.asleep, ws.n_contacts), ivec(ws.batches, ws.n_kernels)
+    for x in range(ws.n_kernels):
+        batch = batch_at(batches[x])
+        if batch.shown == 0:
+            continue
+        shown, extra, count = ivec(batch.shown, batch.count + 1), imat(batch.extra, batch.count, batch.nextra), 0
+        for e in range(batch.count):
+            if asleep[extra[e, 0]] != DEEPLY:
+                count += 1
+                shown[count] = e
+        shown[0] = count
+
+
+@internal
 def wake_all(ws: Any, ms: Any, lc: Any) -> None:
-    """No contact sleeps any more."""
-    asleep = ivec(ws.asleep, ws.n_contacts)
+    """No contact sleeps any more, and the broad phase begins again."""
+    asleep, looked = ivec(ws.asleep, ws.n_contacts), ivec(ws.looked, ws.n_contacts + 1)
     for k in range(ws.n_contacts):
-        if asleep[k] != 0:
+        looked[k + 1] = k
+        if asleep[k] != AWAKE:
             wake(ws, ms, lc, k)
+    looked[0], ivec(lc.broad, MARKS)[VALID] = ws.n_contacts, 0
+    show_elements(ws)
 
 
 @internal
@@ -78,17 +100,18 @@ def look_at_all(ws: Any, lc: Any) -> None:
     """The rows of sleeping contacts at the current point, for those who record them."""
     asleep = ivec(ws.asleep, ws.n_contacts)
     for k in range(ws.n_contacts):
-        if asleep[k] != 0:
+        if asleep[k] != AWAKE:
             look_now(ws, lc, k)
 
 
 @internal
 def sleeps_on(ws: Any, ms: Any, lc: Any, k: int) -> bool:
     """True if contact k sleeps and its gap cannot close within the step that ends at the current point, for which
-    `set_travel` has been called; else it is awake."""
-    if ivec(ws.asleep, ws.n_contacts)[k] == 0:
+    `set_travel` and `broad_phase.keep_watch` have been called; else it is awake."""
+    asleep = ivec(ws.asleep, ws.n_contacts)[k]
+    if asleep == AWAKE:
         return False
-    if vec(lc.margin, ws.n_contacts)[k] > way_of_gap(ws, lc, k, 0):
+    if asleep == DEEPLY or vec(lc.margin, ws.n_contacts)[k] > way_of_gap(ws, lc, k, 0):
         return True
     wake(ws, ms, lc, k)
     return False
@@ -107,9 +130,11 @@ def doze(ws: Any, lc: Any) -> None:
         mat(lc.watch, ws.n_contacts, WATCH),
     )
     memory, near = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), imat(lc.near, ws.n_contacts, NEAR_SIZE)
-    for k in range(ws.n_contacts):
-        if asleep[k] != 0:
+    looked = ivec(ws.looked, ws.n_contacts + 1)
+    for p in range(looked[0]):
+        k = looked[p + 1]
+        if asleep[k] != AWAKE:
             margin[k] -= way_of_gap(ws, lc, k, 0)
         elif memory[k, MODE] == OPEN and near[k, SLEEPS] != 0 and watch[k, 0] > PLAINLY * scale[rows[k]]:
             if watch[k, 0] > FAR * way_of_gap(ws, lc, k, 0):
-                asleep[k], margin[k] = 1, watch[k, 0]
+                asleep[k], margin[k] = ASLEEP, watch[k, 0]

@@ -104,7 +104,9 @@ def forces_may_vanish(ws: Any, ms: Any, lc: Any, h: float) -> bool:
     known = rows_available(ms) > 1
     ratio = (history_time(ms, 0) - history_time(ms, 1)) / h if known else 1.0
     before = history_row(ws, ms, 1)[4 * ws.n_ext :] if known else start
-    for k in range(ws.n_contacts):
+    looked = ivec(ws.looked, ws.n_contacts + 1)
+    for p in range(looked[0]):
+        k = looked[p + 1]
         if memory[k, MODE] != CLOSED:
             continue
         if not known or h > longest * (1.0 + AS_LONG):

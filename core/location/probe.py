@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.jit import internal
-from ..compiled.kernels import BATCH, RESIDUAL, batch_at, call_kernel
+from ..compiled.kernels import BATCH, RESIDUAL, TANGENT, batch_at, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
 from ..methods.history import history_row, history_time
 from ..shapes.geometry_kinds import EQUATIONS, MAY_SLEEP
 from ..tables.evaluate import evaluate_residuals
+from ..tables.patterns import contacts_alone
 from ..tables.workspace import Workspace
 
 NEAR_SIZE = 3
@@ -41,25 +42,33 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
     own["asleep"] = np.zeros(count, dtype=np.int64)
     near, probes = np.zeros((count, NEAR_SIZE), dtype=np.int64), np.zeros(count, BATCH)
     near[:, KIND] = EQUATIONS
-    scattered: set[int] = set()
-    for number, batch in enumerate(assembly.batches):
-        for k in np.unique(batch.contact[batch.contact >= 0]).tolist():
-            elements = np.flatnonzero(batch.contact == k)
-            if k in scattered or probes[k]["count"] or elements[-1] - elements[0] != len(elements) - 1:
-                # in pieces here and there: nobody looks at these, and no address of one may stay
-                scattered.add(k)
-                near[k], probes[k] = (EQUATIONS, 0, 0), np.zeros((), BATCH)
-                continue
-            probes[k] = workspace.batch_table(number)
-            for name in ("slot_s", "slot_j", "slot_jt", "values"):
-                probes[k][name] = 0  # of the present structure: probes have no tangent
-            probes[k]["count"] = len(elements)
-            for name, table in (("par", batch.par), ("coord", batch.coord), ("row", batch.row), ("extra", batch.extra)):
-                probes[k][name] = table[elements[0]].ctypes.data
-            for name, array in own.items():
-                probes[k][name] = array.ctypes.data
-            kind = assembly.contacts[k].kind
-            near[k] = kind, batch.address, kind in MAY_SLEEP and k not in assembly.massless_contacts
+    batches, tables = assembly.batches, [workspace.batch_table(number) for number in range(len(assembly.batches))]
+    alone = contacts_alone(assembly)
+    # a tangent of a contact alone: Phi_q goes to places of its own one after another, all else nowhere
+    blocks = [(n * batches[x].coord.shape[1], batches[x].coord.shape[1], batches[x].row.shape[1])
+              for x, _, n in alone if x is not None]  # fmt: skip
+    gradients = max((wide * rows for wide, _, rows in blocks), default=0)
+    all_of_it = max((wide * max(width, rows) for wide, width, rows in blocks), default=0)
+    places, nowhere = np.arange(gradients), np.full(all_of_it, gradients, dtype=np.int64)
+    own |= {"values": np.zeros(gradients + 1), "places": places, "nowhere": nowhere}
+    common = {name: own[name].ctypes.data for name in own if name not in ("places", "nowhere")}
+    common |= {"slot_j": places.ctypes.data, "slot_s": nowhere.ctypes.data, "slot_jt": nowhere.ctypes.data}
+    common |= {"line": 0, "shown": 0, "n_values": gradients + 1}
+    massless = assembly.massless_contacts
+    for number, batch in enumerate(batches):
+        here = np.array([(k, first, n) for k, (x, first, n) in enumerate(alone) if x == number], dtype=np.int64)
+        if not len(here):
+            continue
+        of, first = here[:, 0], here[:, 1]
+        probes[of] = tables[number]
+        probes["count"][of] = here[:, 2]
+        for name, table in (("par", batch.par), ("coord", batch.coord), ("row", batch.row), ("extra", batch.extra)):
+            probes[name][of] = table.ctypes.data + table.strides[0] * first
+        for name, address in common.items():
+            probes[name][of] = address
+        kinds = [assembly.contacts[k].kind for k in of.tolist()]
+        near[of, KIND], near[of, KERNEL] = kinds, batch.address
+        near[of, SLEEPS] = [kind in MAY_SLEEP and k not in massless for k, kind in zip(of.tolist(), kinds, strict=True)]
     return {
         "near": near, "probes": probes.view(np.int64).reshape(count, -1),
         **{f"probe_{name}": array for name, array in own.items()},
@@ -133,6 +142,40 @@ def look(ws: Any, ms: Any, lc: Any, k: int, row: int, h: float, s: float, view: 
         vec(lc.probe_phid, ws.m_ext)[row],
         vec(lc.probe_phidd, ws.m_ext)[row],
     )
+
+
+@internal
+def tell_gradients(ws: Any, lc: Any, k: int) -> None:
+    """Evaluate the gradients of contact k at the current point, in the mode that it has, for `gradient_alone`."""
+    batch, n, coef = probe_of(lc, k), ws.n_ext, vec(ws.coef, 2)
+    coord = ivec(batch.coord, batch.count * batch.ncoord)
+    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
+    to_q, to_v, to_a = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n)
+    for i in coord:
+        to_q[i], to_v[i], to_a[i] = q[i], v[i], a[i]
+    values = vec(lc.probe_values, batch.n_values)
+    for e in range(batch.count * batch.nrow * batch.ncoord):
+        values[e] = 0.0
+    coef[0] = coef[1] = 0.0
+    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], TANGENT, vec(ws.t, 1)[0], batch)
+
+
+@internal
+def gradient_alone(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
+    """Gradient (n,) of row `row`, one of contact k, of which `tell_gradients` has told."""
+    batch = probe_of(lc, k)
+    coord, rows = imat(batch.coord, batch.count, batch.ncoord), imat(batch.row, batch.count, batch.nrow)
+    values = vec(lc.probe_values, batch.n_values)
+    for i in range(ws.n):
+        out[i] = 0.0
+    for e in range(batch.count):
+        for j in range(batch.nrow):
+            if rows[e, j] != row:
+                continue
+            begin = (e * batch.nrow + j) * batch.ncoord
+            for i in range(batch.ncoord):
+                if coord[e, i] < ws.n:
+                    out[coord[e, i]] += values[begin + i]
 
 
 @internal

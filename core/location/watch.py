@@ -10,6 +10,7 @@ from ..state.run_records import WATCH
 from ..tables.held import held_friction, is_held
 from ..tables.levels import force_level, position_level, rate_size
 from .asleep import sleeps_on
+from .broad_phase import keep_watch
 from .certain import first_root, way_of_gap
 from .force_watch import forces_may_vanish, forces_vanish, sliding_turns
 from .probe import BRACKET, HAPPENS, set_travel
@@ -21,7 +22,9 @@ def remember(ws: Any, lc: Any) -> None:
     sliding distance too."""
     watch = mat(lc.watch, max(ws.n_contacts, 1), WATCH)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    looked = ivec(ws.looked, ws.n_contacts + 1)
+    for p in range(looked[0]):
+        k = looked[p + 1]
         if slides[k] >= 0:
             watch[k, 3] = vec(ws.phid, ws.m_ext)[slides[k]]
             watch[k, 4] = vec(ws.phidd, ws.m_ext)[slides[k]]
@@ -128,8 +131,11 @@ def find_events(ws: Any, ms: Any, lc: Any, h: float, everyone: bool) -> bool:
     if ws.n_contacts == 0:
         return False
     set_travel(ws, ms, lc, h)
+    keep_watch(ws, ms, lc)
+    looked = ivec(ws.looked, ws.n_contacts + 1)
     brackets, found, none = mat(lc.brackets, ws.n_contacts, BRACKET), False, FORCE_ROUNDING * force_level(ws)
-    for k in range(ws.n_contacts):
+    for p in range(looked[0]):
+        k = looked[p + 1]
         inside = not sleeps_on(ws, ms, lc, k) and _event_inside(ws, ms, lc, k, h, none)
         if inside and not everyone:
             return True

@@ -5,6 +5,7 @@ from typing import Any
 from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import ivec, mat, vec
 from ..location.asleep import doze, look_at_all
+from ..location.broad_phase import go_on
 from ..location.watch import remember
 from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
@@ -158,6 +159,7 @@ def accept(ws: Any, ms: Any, lc: Any) -> None:
     push(ws, ms)
     remember(ws, lc)
     doze(ws, lc)
+    go_on(ws, lc)
     ivec(ws.counters, COUNTERS_SIZE)[STEPS] += 1
     if lc.log_capacity > 0:
         _write_log(ws, ms, lc)

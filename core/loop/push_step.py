@@ -11,6 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..events.crowding import end_pushing, near_level
 from ..location.asleep import sleeps_on
+from ..location.broad_phase import keep_watch
 from ..location.probe import set_travel
 from ..location.trials import make_trial
 from ..methods.history import history_time, recall
@@ -58,6 +59,7 @@ def make_push_step(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     if h == remaining:
         vec(ws.t, 1)[0] = clock[STOP_TIME]
     set_travel(ws, ms, lc, h)
+    keep_watch(ws, ms, lc)
     level, rows, phi = near_level(ws, h), ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext)
     pending, scale, touches, deepest = ivec(dr.pending, ws.n_contacts), vec(ws.row_scale, ws.m_ext), False, 0.0
     for k in range(ws.n_contacts):

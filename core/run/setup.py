@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
 from ..events.progress import GUARD_SIZE
+from ..location.balls import build_balls
 from ..location.probe import build_probes
 from ..location.watch import find_events
 from ..loop.controllers import CONTROLLERS
@@ -98,6 +99,7 @@ def build_loop(
     length = sample_length(assembly.n, assembly.m, len(assembly.contacts), len(assembly.work_names))
     capacity = max(16, min(4096, _LARGEST_BUFFER // length)) if record else 0
     log_capacity = _LOG_ROWS if step_records else 0
+    balls = build_balls(assembly)
     clock, watch = workspace.state["clock"][0], workspace.state["watch"][0]
     _set_clock(clock, formula, settings, assembly.longest_step)
     return ArrayRecord(
@@ -107,6 +109,7 @@ def build_loop(
             "watch": watch,
             "leap": assembly.leap,
             **build_probes(workspace),
+            **balls,
             "samples": empty_buffer(max(capacity, 1), length),
             "cursor": np.zeros(1, dtype=np.int64),
             "log": empty_buffer(max(log_capacity, 1), len(LOG_COLUMNS)),
@@ -123,6 +126,7 @@ def build_loop(
             "rows": formula.rows,
             "capacity": capacity,
             "may_sleep": 0,
+            "n_balls": len(balls["balls"]),
             "stride": max(int(record), 1),
             "sample_length": length,
         },

@@ -9,7 +9,7 @@ leaves z as it is.
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
+from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, line_of
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import add_product, along, bend_of, levels
 from ..laws.friction.lugre import lugre_formula
@@ -55,7 +55,7 @@ def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: An
         vec(b.r, b.n_extended)[coord[w]] -= zd
     elif job == TANGENT:
         values = vec(b.values, b.n_values)
-        slot = imat(b.slot_s + 8 * e * n * n, n, n)
+        slot = imat(b.slot_s + 8 * line_of(b, e) * n * n, n, n)
         c_q, c_v = vec(b.coef, 2)[0], vec(b.coef, 2)[1]
         for i in range(len(gradient)):
             values[slot[i, w]] -= c_v * f_z * gradient[i]

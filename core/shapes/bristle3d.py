@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
+from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, line_of, shown, shown_at
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along as rate_along
 from ..elements.measure3d import AXES_A, COLUMNS
@@ -123,7 +123,7 @@ def _bend(
         return
     values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
     c_q, c_v = coef[0], coef[1]
-    slot = imat(b.slot_s + 8 * both * both * e, both, both)
+    slot = imat(b.slot_s + 8 * both * both * line_of(b, e), both, both)
     add_slip(kind, b, par, values, slot, coord, held, moves, work, beta_a, beta_b, size, pull, -c_q)
     changes, turns, rate_z = np.empty(width), np.empty((3, width)), turning(pd, in_body)
     if curved:
@@ -184,7 +184,8 @@ def _act_all(job: int, b: Any, width: int, rows: int) -> None:
     gradient, hessian, packed = np.empty(width), np.empty((width, width)), np.empty(width * (width + 1) // 2)
     work, held, moves = np.empty((ROWS, width)), np.empty(COLUMNS), np.empty((rows, width))
     par = mat(b.par, b.count, b.npar)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         kind = int(par[e, KIND])

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.kernels import POWER, RESIDUAL, TANGENT
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT, line_of, shown, shown_at
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along as rate_along
 from ..elements.measure3d import COLUMNS
@@ -105,7 +105,7 @@ def regularised(
         vec(b.a, b.n_extended)[extra[3]] -= force * speed - normal * power
     elif job == TANGENT:
         values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
-        slot = imat(b.slot_s + 8 * width * width * e, width, width)
+        slot = imat(b.slot_s + 8 * width * width * line_of(b, e), width, width)
         if not found > 0.0:
             by_normal = 0.0
         add_slip(
@@ -140,7 +140,8 @@ def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
     par = mat(b.par, b.count, b.npar)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.kernels import RESIDUAL
+from ..compiled.kernels import RESIDUAL, shown, shown_at
 from ..compiled.views import mat
 from ..elements.measure3d import COLUMNS
 from .geometry_kinds import SPHERE, are
@@ -20,7 +20,8 @@ def sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     held, moves = np.empty(COLUMNS), np.empty((MOVES, SIZE))
     par = mat(b.par, b.count, b.npar)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import inlined, internal
-from ..compiled.kernels import POWER, RESIDUAL, TANGENT
-from ..compiled.views import imat, mat, vec
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT, line_of, shown, shown_at
+from ..compiled.views import imat, ivec, mat, vec
 from ..elements.measure3d import COLUMNS
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
@@ -172,12 +172,10 @@ def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: A
     elif job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= dot(pull, u) + lam[row[0]] * power
     else:
-        values, slot, c_q = (
-            vec(b.values, b.n_values),
-            imat(b.slot_s + 8 * width * width * e, width, width),
-            vec(b.coef, 2)[0],
-        )
-        slot_j, slot_jt = imat(b.slot_j, b.count, 3 * width)[e], imat(b.slot_jt, b.count, 3 * width)[e]
+        values, c_q, line = vec(b.values, b.n_values), vec(b.coef, 2)[0], line_of(b, e)
+        slot = imat(b.slot_s + 8 * width * width * line, width, width)
+        slot_j = ivec(b.slot_j + 24 * width * line, 3 * width)
+        slot_jt = ivec(b.slot_jt + 24 * width * line, 3 * width)
         add_slip(kind, b, par, values, slot, coord, held, moves, work, beta_a, beta_b, size, pull, -c_q)
         if turns_hard:
             for j in range(width):
@@ -214,7 +212,8 @@ def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     work, held, moves = np.empty((FRAME_ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
     par = mat(b.par, b.count, b.npar)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.kernels import TANGENT
+from ..compiled.kernels import TANGENT, line_of
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along
 from .bristle2d import act_bristles
@@ -179,7 +179,8 @@ def _stretch(weights: Any, directions: Any, slopes: Any, side: float, offset: fl
 def _add_curl(b: Any, e: int, force: float, by_rate: float, gradient: Any, xi: Any, by_node: Any) -> None:
     """Tangent of a friction force along `gradient`, whose derivatives lack the skew part (xi a^T - a xi^T)/2."""
     n = b.ncoord
-    values, slot, c_q = vec(b.values, b.n_values), imat(b.slot_s + 8 * e * n * n, n, n), vec(b.coef, 2)[0]
+    values, c_q = vec(b.values, b.n_values), vec(b.coef, 2)[0]
+    slot = imat(b.slot_s + 8 * line_of(b, e) * n * n, n, n)
     _add_turn(b, e, gradient, by_rate, xi, by_node)
     for i in range(len(xi)):
         for j in range(len(xi)):
@@ -191,7 +192,8 @@ def _add_turn(b: Any, e: int, left: Any, factor: float, xi: Any, by_node: Any) -
     """What the skew part does to the sliding velocity: rows `left` of the tangent, (ncoord,) or fewer."""
     n = b.ncoord
     coord, v = imat(b.coord, b.count, n)[e], vec(b.v, b.n_extended)
-    values, slot, c_q = vec(b.values, b.n_values), imat(b.slot_s + 8 * e * n * n, n, n), vec(b.coef, 2)[0]
+    values, c_q = vec(b.values, b.n_values), vec(b.coef, 2)[0]
+    slot = imat(b.slot_s + 8 * line_of(b, e) * n * n, n, n)
     moved, stretched = 0.5 * along(xi, v, coord), 0.5 * along(by_node, v, coord)
     for j in range(len(xi)):
         turn = c_q * factor * (moved * by_node[j] - stretched * xi[j])

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
+from ..compiled.kernels import shown, shown_at
 from ..elements.measure3d import COLUMNS
 from .frame3d import FRAME_ROWS
 from .friction3d import regularised
@@ -21,7 +22,8 @@ from .tangent3d import ROWS
 def mesh3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     held, moves = np.empty(COLUMNS), np.empty((MOVES, SIZE))
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         kind = hold_on_mesh(b, e, held, moves)
@@ -33,7 +35,8 @@ def mesh3d_kernel(job: int, t: float, b: Any) -> None:
 def rubbing_mesh3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         kind = hold_on_mesh(b, e, held, moves)
@@ -46,7 +49,8 @@ def rubbing_mesh3d_kernel(job: int, t: float, b: Any) -> None:
 def gripping_mesh3d_kernel(job: int, t: float, b: Any) -> None:
     gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
     work, held, moves = np.empty((FRAME_ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         kind = hold_on_mesh(b, e, held, moves)

@@ -7,7 +7,7 @@ contact makes them part of the constraints. A contact that acts as a force adds 
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
+from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, line_of, shown, shown_at
 from ..compiled.views import imat, ivec, mat, vec
 from ..elements.geometry2d import (
     add_hessian,
@@ -68,7 +68,7 @@ def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessia
     elif active and job == TANGENT:
         values = vec(b.values, b.n_values)
         coef = vec(b.coef, 2)
-        slot = imat(b.slot_s + 8 * e * n * n, n, n)
+        slot = imat(b.slot_s + 8 * line_of(b, e) * n * n, n, n)
         add_hessian(values, slot, gradient, hessian, -coef[0] * f)
         by_value, by_rate = coef[0] * f_d + coef[1] * f_dd, coef[0] * f_dd
         add_product(values, slot, gradient, gradient, hessian, v, coord, by_value, by_rate)
@@ -105,7 +105,8 @@ def act(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any) -> None
 def disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, b.npar)
     coord = imat(b.coord, b.count, 6)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         g, gradient, hessian = height_over_line(
@@ -118,7 +119,8 @@ def disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
 def disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, b.npar)
     coord = imat(b.coord, b.count, 6)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         d, gradient, hessian = distance(vec(b.q, b.n_extended), coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])

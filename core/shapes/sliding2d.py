@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.kernels import POWER, RESIDUAL, TANGENT
-from ..compiled.views import imat, mat, to_fixed_tuple, vec
+from ..compiled.kernels import POWER, RESIDUAL, TANGENT, line_of, shown, shown_at
+from ..compiled.views import imat, ivec, mat, to_fixed_tuple, vec
 from ..elements.geometry2d import (
     add_hessian,
     add_product,
@@ -63,10 +63,12 @@ def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -
     elif job == TANGENT:
         values = vec(b.values, b.n_values)
         n = b.ncoord
-        slot = imat(b.slot_jt, b.count, 2 * n)[e]
+        line = line_of(b, e)
+        slot = ivec(b.slot_jt + 16 * n * line, 2 * n)
         for i in range(len(gradient)):
             values[slot[i]] -= slope * gradient[i]
-        add_hessian(values, imat(b.slot_s + 8 * e * n * n, n, n), gradient, hessian, -vec(b.coef, 2)[0] * slope * lam)
+        block = imat(b.slot_s + 8 * line * n * n, n, n)
+        add_hessian(values, block, gradient, hessian, -vec(b.coef, 2)[0] * slope * lam)
     elif job == POWER:
         rate = along(gradient, vec(b.v, b.n_extended), coord)
         vec(b.a, b.n_extended)[imat(b.extra, b.count, b.nextra)[e, 3]] -= slope * lam * rate
@@ -88,7 +90,7 @@ def add_friction(
         vec(b.monitor, b.n_monitor)[b.n_memory + imat(b.extra, b.count, b.nextra)[e, 0]] = force
     elif job == TANGENT:
         values = vec(b.values, b.n_values)
-        slot = imat(b.slot_s + 8 * e * n * n, n, n)
+        slot = imat(b.slot_s + 8 * line_of(b, e) * n * n, n, n)
         c_q, c_v = vec(b.coef, 2)[0], vec(b.coef, 2)[1]
         add_hessian(values, slot, gradient, hessian, -c_q * force)
         add_product(values, slot, gradient, gradient, hessian, v, coord, -c_v * by_rate, -c_q * by_rate)
@@ -180,7 +182,8 @@ def slide_on_disk(q: Any, coord: Any, par: Any) -> Any:
 @internal
 def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_half_plane(q, coord[e], par[e])
@@ -190,7 +193,8 @@ def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
 @internal
 def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
-    for e in range(b.count):
+    for i in range(shown(b)):
+        e = shown_at(b, i)
         if asleep(b, e):
             continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_disk(q, coord[e], par[e])

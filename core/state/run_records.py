@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..compiled import types
-from ..compiled.jit import caller
+from ..compiled.jit import caller, record_view
 from .method_records import METHOD_TYPE
 from .workspace_records import WORKSPACE_TYPE
 
@@ -20,10 +20,16 @@ LOOP = np.dtype(
             "watch",                            # (n_contacts, WATCH) float64: what `remember` says of the newest row
             "near", "probes",                   # (n_contacts, NEAR_SIZE) int64, and a BATCH for each contact
             *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor", "asleep")),
+            "probe_values", "probe_places", "probe_nowhere",  # and where the entries of a contact's tangent go
             "may_sleep",                        # 1: contacts may fall asleep (`asleep.py`)
             "margin",                           # (n_contacts,) float64: of those that do
             "travel",                           # (2, n_ext) float64: bounds of the coordinates' ways within a step
             "brackets",                         # (n_contacts, BRACKET) float64: where in a step events are
+            # the broad phase (`broad_phase.py`): balls around shapes, where they were at the last sweep, and in which
+            # order; by ball the others, the contacts between both, and whether it is their second; the last sweep that
+            # has found each contact (-1: it is always looked at)
+            "n_balls", "balls", "ball_coords", "ball_moves", "ball_reach", "ball_order",
+            "pair_start", "pair_other", "pair_contact", "pair_turned", "pair_found", "broad",
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
             "stride",                           # steps from one recorded sample to the next
             "cursor",                           # (1,) int64: samples in the buffer
@@ -34,6 +40,8 @@ LOOP = np.dtype(
 )  # fmt: skip
 
 LOOP_TYPE = types.from_dtype(LOOP)
+loop_at = record_view(LOOP_TYPE)
+"""loop_at(address): the loop record there."""
 FIND_EVENTS_SIGNATURE = types.boolean(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64, types.boolean)
 call_find_events = caller(FIND_EVENTS_SIGNATURE)
 """call_find_events(address, ws, ms, lc, h, all of them)."""

@@ -39,6 +39,8 @@ WORKSPACE = np.dtype(
             "basis", "n_basis",
             # 1: the constraints are so much cheaper to evaluate than the residuals that it is done without these
             "part_first",
+            # (n_contacts + 1,) int64: how many contacts do not sleep deeply, and which (`location/broad_phase.py`)
+            "looked",
             # force that the stages of comparison methods subtract from r: (n_ext,)
             "offset",
         )
@@ -56,7 +58,7 @@ STRUCTURE = np.dtype(
             "kkt", "kkt_query",
             "codes",                                  # (contacts,) int64: which it is for (`switch.py`)
             "dropped",                                # and for which set of rows that are left out (a number)
-            "slots",                                  # (3 n_kernels,) int64: addresses of the batches' slot tables
+            "slots",                                  # (4 n_kernels,) int64: addresses of the batches' slot tables
             "nnz",                                    # entries of the matrix
             # Phi_q by rows, of the active ones
             "n_jacobian", "jacobian_start", "jacobian_row", "jacobian_col", "jacobian_slot",
@@ -87,11 +89,10 @@ BUILDING = np.dtype(
         (name, np.int64)
         for name in (
             "n", "m", "m_joints", "m_ext", "n_contacts", "n_kernels",
-            # entries of S and of Phi_q as the batches list them: coordinates or rows, the contact that they belong to
-            # (-1: none), and their places in the block of slot tables (those of Phi_q^T too)
-            "n_s", "s_row", "s_col", "s_contact", "s_place",
-            "n_j", "j_row", "j_col", "j_place", "j_place_t",
-            "table_size", "table_start",                # of the block, and where each of the 3 n_kernels tables begins
+            # by batch: the contact of each element (-1: none), the local places (i, j) of its entries in S and in
+            # Phi_q, each with where those of a batch begin, and whether it is one of contacts (`patterns.py`)
+            "element_contact", "element_start", "s_pattern", "s_start", "j_pattern", "j_start", "of_contacts",
+            "listed",                                   # (contacts,) int64: 1: its rows' gradients are always listed
             "n_replaced", "replaced_row", "replaced_contact",  # rows that closed contacts take the place of
             "left_out", "dropped",                      # (m_ext,) int64: 1 for redundant rows; number of this set
             "contact_rows", "contact_slide_rows", "contact_second_rows",  # (contacts,) int64; -1: none

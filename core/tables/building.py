@@ -1,8 +1,8 @@
 """Structures, built by compiled code into memory that Python has given.
 
 A structure is the pattern of the matrix [S, Phi_q^T; Phi_q, 0] for one set of closed, acting and sticking contacts:
-slots of all entries, row by row and ascending in each, and behind them those of the gradients of contacts that are no
-constraints now. All of it follows from the codes of the contacts and the rows that are left out.
+slots of all entries, row by row and ascending in each, and behind them those of the gradients that are only `listed`
+(`entries.py`). All of it follows from the codes of the contacts and the rows that are left out.
 """
 
 from typing import Any
@@ -23,9 +23,10 @@ from ..state.workspace_records import (
     partition_at,
     structure_at,
 )
+from .entries import list_entries, size_of_entries
 from .serials import next_serial, same_numbers
 from .structure_tables import write_structure
-from .switch import ENGAGED, HELD, STUCK, STUCK_TWICE, take_structure
+from .switch import HELD, STUCK, STUCK_TWICE, take_structure
 
 
 @compiled
@@ -58,7 +59,7 @@ def engage_wanted(ws: Any) -> int:
 @internal
 def _build(ws: Any, b: Any, st: Any) -> int:
     n, m, scratch, needs = b.n, b.m, ivec(b.scratch, 2), ivec(b.needs, 8)
-    raw = n + b.n_s + 2 * b.n_j
+    raw, table = size_of_entries(ws, b)
     wide = n + 2 * m + 2
     size = 2 * (m + 1) + 5 * raw + wide
     if size > scratch[1]:
@@ -72,7 +73,7 @@ def _build(ws: Any, b: Any, st: Any) -> int:
     count = ivec(at + 40 * raw, wide)
     m_act, m_held, left_out = _find_rows(ws, b, active, matrix_row)
     full = n + m_act
-    _list_entries(ws, b, full, matrix_row, row, col)
+    list_entries(ws, b, full, matrix_row, row, col)
     kept = _sort(raw, n + m_act, full + m, row, col, by_col, order, count)
     # equal places share a slot
     total, nnz, n_mass, n_jacobian, last_row, last_col = 0, 0, 0, 0, -1, -1
@@ -88,7 +89,7 @@ def _build(ws: Any, b: Any, st: Any) -> int:
         slot[e] = total - 1
     words = (
         b.n_contacts + m_act + left_out + 3 * nnz + b.m_ext + 2 * (total - nnz) + n_mass + m_act + 1 + 3 * n_jacobian
-        + b.table_size + 2 * words_of(full, nnz)
+        + table + 2 * words_of(full, nnz)
         + m_act + 9 * n_jacobian + words_of(m_act, n_jacobian) + words_of(m_held, n_jacobian) + 8
     )  # fmt: skip
     reals = total + 1 + m_act + 6 * full + 3 * m_act + 3 * m_held + 8
@@ -105,7 +106,24 @@ def _build(ws: Any, b: Any, st: Any) -> int:
     if not enough:
         return WANT_ROOM
     write_structure(
-        ws, b, st, pt, m_act, m_held, left_out, nnz, total, n_mass, n_jacobian, kept, active, row, col, order, slot
+        ws,
+        b,
+        st,
+        pt,
+        m_act,
+        m_held,
+        left_out,
+        nnz,
+        total,
+        n_mass,
+        n_jacobian,
+        kept,
+        active,
+        row,
+        col,
+        order,
+        slot,
+        table,
     )
     st.built, st.serial = 1, next_serial(b)
     return OK
@@ -121,11 +139,11 @@ def _need(needs: Any, k: int, size: int, room: int) -> bool:
 @internal
 def _find_rows(ws: Any, b: Any, active: Any, matrix_row: Any) -> tuple[int, int, int]:
     """Active rows, those with a position form first and each part ascending, and the row of the matrix of each row of
-    Phi: below it stand those that are only watched, -1 is none. Returns how many are active, how many of these have a
+    Phi: below it stand those that are only listed, -1 is none. Returns how many are active, how many of these have a
     position form, and how many rows are redundant."""
     codes, out, rate = ivec(ws.wanted, b.n_contacts), ivec(b.left_out, b.m_ext), ivec(b.rate_rows, b.m_ext)
     rows, slides = ivec(b.contact_rows, b.n_contacts), ivec(b.contact_slide_rows, b.n_contacts)
-    seconds = ivec(b.contact_second_rows, b.n_contacts)
+    seconds, listed = ivec(b.contact_second_rows, b.n_contacts), ivec(b.listed, b.n_contacts)
     replaced, by = ivec(b.replaced_row, b.n_replaced), ivec(b.replaced_contact, b.n_replaced)
     left_out, count, held = 0, 0, 0
     for i in range(b.m):
@@ -136,11 +154,12 @@ def _find_rows(ws: Any, b: Any, active: Any, matrix_row: Any) -> tuple[int, int,
         if codes[by[e]] >= HELD:
             matrix_row[replaced[e]] = 0
     for k in range(b.n_contacts):
-        matrix_row[rows[k]] = 1 if codes[k] >= HELD else 2
+        otherwise = 2 if listed[k] != 0 else 0
+        matrix_row[rows[k]] = 1 if codes[k] >= HELD else otherwise
         if slides[k] >= 0:
-            matrix_row[slides[k]] = 1 if codes[k] >= STUCK else 2
+            matrix_row[slides[k]] = 1 if codes[k] >= STUCK else otherwise
         if seconds[k] >= 0:
-            matrix_row[seconds[k]] = 1 if codes[k] == STUCK_TWICE else 2
+            matrix_row[seconds[k]] = 1 if codes[k] == STUCK_TWICE else otherwise
     for of_rates in range(2):
         for i in range(b.m):
             if matrix_row[i] == 1 and rate[i] == of_rates:
@@ -156,25 +175,6 @@ def _find_rows(ws: Any, b: Any, active: Any, matrix_row: Any) -> tuple[int, int,
     for place in range(count):
         matrix_row[active[place]] = b.n + place
     return count, held, left_out
-
-
-@internal
-def _list_entries(ws: Any, b: Any, full: int, matrix_row: Any, row: Any, col: Any) -> None:
-    """Places of all entries, -1 for those that belong nowhere: the diagonal, S, Phi_q, and Phi_q^T."""
-    n, codes = b.n, ivec(ws.wanted, b.n_contacts)
-    for i in range(n):
-        row[i] = col[i] = i
-    s_row, s_col, s_contact = ivec(b.s_row, b.n_s), ivec(b.s_col, b.n_s), ivec(b.s_contact, b.n_s)
-    for e in range(b.n_s):
-        k = s_contact[e]
-        there = k < 0 or codes[k] >= ENGAGED
-        row[n + e], col[n + e] = s_row[e] if there else -1, s_col[e]
-    j_row, j_col, first, other = ivec(b.j_row, b.n_j), ivec(b.j_col, b.n_j), n + b.n_s, n + b.n_s + b.n_j
-    for e in range(b.n_j):
-        i = matrix_row[j_row[e]]
-        row[first + e], col[first + e] = i, j_col[e]
-        # of rows below the matrix there is no transpose
-        row[other + e], col[other + e] = j_col[e] if 0 <= i < full else -1, i
 
 
 @internal

@@ -20,7 +20,9 @@ def _hold_gaps(ws: Any) -> None:
         ivec(ws.contact_rows, ws.n_contacts),
         vec(ws.phi, ws.m_ext),
     )
-    for k in range(ws.n_contacts):
+    looked = ivec(ws.looked, ws.n_contacts + 1)
+    for p in range(looked[0]):
+        k = looked[p + 1]
         if memory[k, MODE] == CLOSED:
             phi[rows[k]] -= memory[k, GAP_START]
 

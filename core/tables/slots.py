@@ -35,12 +35,12 @@ class Slots:
     Parameters
     ----------
     count : of places. functions : what `functions` of LU points to. program_limit : see LU.
-    batches : number of tables of slots that each structure has.
+    batches : number of batches, each with three tables of slots and one of its elements' lines in them.
 
     Attributes
     ----------
     words : the records of all places by name, as numbers, (count, fields).
-    tables : (count, batches), the addresses of the slot tables.
+    tables : (count, 4 batches), the addresses of these tables.
     pool : all their other memory; as numbers of 4 bytes, so that nobody takes its content for addresses.
     rooms : (NEEDS,) sizes that each place has room for, by kind as in `needs`.
     """
@@ -54,7 +54,7 @@ class Slots:
             for name, (kind, each) in _RECORDS.items()
         }
         self._records: dict[str, Array] = {}
-        self.tables, self.addresses = np.zeros((count, batches), dtype=np.int64), np.zeros(count, dtype=np.int64)
+        self.tables, self.addresses = np.zeros((count, 4 * batches), dtype=np.int64), np.zeros(count, dtype=np.int64)
         self._use(np.zeros(0, dtype=np.uint32))
         self.lus["program_limit"] = program_limit
         self._connect()

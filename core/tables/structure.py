@@ -72,9 +72,13 @@ class Structure:
     active : rows of Phi that are constraints now, (m_act,): those with a position form first, `m_held` of them.
     two_partitions : whether dependent positions may be others than dependent velocities.
     redundant : rows of joints that repeat active ones: not solved for, but checked.
+
+    Parameters
+    ----------
+    shapes : number of elements, of their coordinates and of their rows, of each batch.
     """
 
-    def __init__(self, slots: Slots, address: int, shapes: list[tuple[int, int]], two: bool, give_room: Any) -> None:
+    def __init__(self, slots: Slots, address: int, shapes: list[tuple[int, ...]], two: bool, give_room: Any) -> None:
         self.slots, self.two_partitions, self.address = slots, two, address
         self._shapes, self._give_room, self._number = shapes, give_room, slots.index(address)
         self.record = slots.record("structures", self._number)
@@ -125,7 +129,7 @@ class Structure:
     @property
     def gradient_start(self) -> NDArray[np.int64]:
         """(m_ext,): where each row of Phi begins among the gradients: entries of Phi_q in rows of contacts that are no
-        constraints now."""
+        constraints now, and cannot be evaluated alone."""
         return self._whole("gradient_start", (self._word("gradient_col") - self._word("gradient_start")) // 8)
 
     @property
@@ -208,22 +212,26 @@ class Structure:
         return None if self.present is None or self.m_held == self.m_act else self.present.lu_p
 
     def table_of(self, k: int) -> NDArray[np.int64]:
-        """Table k of slots: three of each batch, for S, Phi_q and its transpose; `n_values - 1` is the slot of what
-        belongs nowhere."""
-        count, width = self._shapes[k]
-        return self.view(int(self.slots.tables[self._number, k]), count * width, np.int64).reshape(count, width)
+        """Table k of slots with a line for each element: three of each batch, for S, Phi_q and its transpose;
+        `n_values - 1` is the slot of what belongs nowhere."""
+        count, width, rows = self._shapes[k // 3]
+        wide = width * (width if k % 3 == 0 else max(rows, 1))
+        addresses = self.slots.tables[self._number, 4 * (k // 3) : 4 * (k // 3) + 4]
+        own = self.view(int(addresses[3]), count, np.int64) if addresses[3] else np.arange(count)
+        lines = int(own.max()) + 1
+        return self.view(int(addresses[k % 3]), lines * wide, np.int64).reshape(lines, wide)[own]
 
     @property
     def slot_s(self) -> list[NDArray[np.int64]]:
         """Slot tables of the batches for S."""
-        return [self.table_of(k) for k in range(0, len(self._shapes), 3)]
+        return [self.table_of(k) for k in range(0, 3 * len(self._shapes), 3)]
 
     @property
     def slot_j(self) -> list[NDArray[np.int64]]:
         """Those for Phi_q."""
-        return [self.table_of(k) for k in range(1, len(self._shapes), 3)]
+        return [self.table_of(k) for k in range(1, 3 * len(self._shapes), 3)]
 
     @property
     def slot_jt(self) -> list[NDArray[np.int64]]:
         """Those for its transpose."""
-        return [self.table_of(k) for k in range(2, len(self._shapes), 3)]
+        return [self.table_of(k) for k in range(2, 3 * len(self._shapes), 3)]

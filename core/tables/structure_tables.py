@@ -6,15 +6,18 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at
 from ..linalg.analyze import lay_out, words_of
+from .entries import write_tables
 
 
 @internal
 def write_structure(
     ws: Any, b: Any, st: Any, pt: Any, m_act: int, m_held: int, left_out: int, nnz: int, total: int, n_mass: int,
     n_jacobian: int, kept: int, active: Any, row: Any, col: Any, order: Any, slot: Any,
+    table: int,
 ) -> None:  # fmt: skip
     """Write the structure of the codes that are wanted: `active` are its rows, of the `kept` entries (`row`, `col`)
-    each has a number in `order`, ascending, and a `slot`."""
+    each has a number in `order`, ascending, and a `slot`; its slot
+    tables have `table` numbers."""
     full, at = b.n + m_act, st.words
     st.n_values, st.m_act, st.n_redundant, st.nnz = total + 1, m_act, left_out, nnz
     st.m_held, st.n_mass, st.n_jacobian, st.dropped = m_held, n_mass, n_jacobian, b.dropped
@@ -29,7 +32,7 @@ def write_structure(
     at += 8 * (n_mass + m_act + 1)
     st.jacobian_row, st.jacobian_col = at, at + 8 * n_jacobian
     st.jacobian_slot, tables = at + 16 * n_jacobian, at + 24 * n_jacobian
-    at = tables + 8 * b.table_size
+    at = tables + 8 * table
     codes, wanted = ivec(st.codes, b.n_contacts), ivec(ws.wanted, b.n_contacts)
     for k in range(b.n_contacts):
         codes[k] = wanted[k]
@@ -44,7 +47,7 @@ def write_structure(
     identity = ivec(everything, nnz)
     for e in range(nnz):
         identity[e] = e
-    _write_tables(b, st, tables, total, row, slot)
+    write_tables(ws, b, st, tables, total, row, slot)
     reals, many = st.reals, words_of(full, nnz)
     st.values, st.probe = reals, reals + 8 * (total + 1)
     reals += 8 * (total + 1 + m_act)
@@ -100,32 +103,6 @@ def _write_entries(b: Any, st: Any, full: int, kept: int, row: Any, col: Any, or
         g_start[i + 1] += g_start[i]
     for i in range(m_act):
         start[i + 1] += start[i]
-
-
-@internal
-def _write_tables(b: Any, st: Any, tables: int, nowhere: int, row: Any, slot: Any) -> None:
-    """Where each entry of each element goes."""
-    block, starts, addresses = (
-        ivec(tables, b.table_size),
-        ivec(b.table_start, 3 * b.n_kernels),
-        ivec(st.slots, 3 * b.n_kernels),
-    )
-    for i in range(3 * b.n_kernels):
-        addresses[i] = tables + 8 * starts[i]
-    for i in range(b.table_size):
-        block[i] = nowhere
-    first = b.n
-    place = ivec(b.s_place, b.n_s)
-    for e in range(b.n_s):
-        if row[first + e] >= 0:
-            block[place[e]] = slot[first + e]
-    first += b.n_s
-    place, other = ivec(b.j_place, b.n_j), ivec(b.j_place_t, b.n_j)
-    for e in range(b.n_j):
-        if row[first + e] >= 0:
-            block[place[e]] = slot[first + e]
-        if row[first + b.n_j + e] >= 0:
-            block[other[e]] = slot[first + b.n_j + e]
 
 
 @internal

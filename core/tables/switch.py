@@ -67,10 +67,11 @@ def take_structure(ws: Any, address: int) -> None:
     ws.probe, ws.entry_row, ws.entry_col = st.probe, st.entry_row, st.entry_col
     ws.gradient_start, ws.gradient_col, ws.gradient_slot = st.gradient_start, st.gradient_col, st.gradient_slot
     ws.n_mass, ws.mass_slot, ws.kkt, ws.kkt_query = st.n_mass, st.mass_slot, st.kkt, st.kkt_query
-    batches, slots = ivec(ws.batches, ws.n_kernels), ivec(st.slots, 3 * ws.n_kernels)
+    batches, slots = ivec(ws.batches, ws.n_kernels), ivec(st.slots, 4 * ws.n_kernels)
     for k in range(ws.n_kernels):
         batch = batch_at(batches[k])
-        batch.slot_s, batch.slot_j, batch.slot_jt = slots[3 * k], slots[3 * k + 1], slots[3 * k + 2]
+        batch.slot_s, batch.slot_j, batch.slot_jt = slots[4 * k], slots[4 * k + 1], slots[4 * k + 2]
+        batch.line = slots[4 * k + 3]
         batch.values, batch.n_values = st.values, st.n_values
     values = vec(st.values, st.n_values)
     for i in range(st.n_values):

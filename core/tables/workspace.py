@@ -31,7 +31,7 @@ from .building import engage_wanted
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
 from .partition_building import partition_wanted
-from .raw_entries import raw_entries
+from .patterns import FEW, entries_of_few, patterns, shows
 from .slots import MOST_STRUCTURES, Slots
 from .state_fields import STATE, Field, row_length, state_fields
 from .structure import OF_PARTITION, OF_STRUCTURE, Structure
@@ -48,7 +48,7 @@ _NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows")
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
 _STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["serial"]
-FEW_CONTACTS = 8
+FEW_CONTACTS = FEW
 """Contacts up to which there is room from the start for the structure of all of them."""
 MOST_WORDS = 200_000
 """About so many numbers all places together have."""
@@ -56,9 +56,9 @@ MOST_STAGES = 13
 """Stages of a Runge-Kutta formula that there is room for."""
 
 
-def most_places(assembly: Assembly, tables: dict[str, NDArray[np.int64]]) -> int:
+def most_places(assembly: Assembly) -> int:
     """How many structures there are places for."""
-    states, size = 1, sum(len(x) for x in tables.values())
+    states, size = 1, 4 * sum(entries_of_few(assembly, FEW_CONTACTS))
     for contact in assembly.contacts:
         states = min(states * (2 + contact.tangents), MOST_STRUCTURES)
     # the present one, the one to come back to, and one to build
@@ -113,6 +113,7 @@ class Workspace:
             "contact_sticking": sticking(a),
             "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
             "asleep": np.zeros(max(contacts, 1), dtype=np.int64),
+            "looked": np.array([contacts, *range(contacts)], dtype=np.int64),
             "probe": np.zeros(0),
             **{
                 name: np.zeros(0, dtype=np.int64)
@@ -138,12 +139,12 @@ class Workspace:
         }
         arrays["rate"][FACTOR_AGE] = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
-        tables, self._shapes = raw_entries(a)
+        self._shapes = [(*b.coord.shape, b.row.shape[1] if b.row.size else 0) for b in a.batches]
         sparse = addresses(a.n + a.m > DENSE_LIMIT)
-        self.slots = Slots(most_places(a, tables), sparse, PROGRAM_LIMIT, len(self._shapes))
+        self.slots = Slots(most_places(a), sparse, PROGRAM_LIMIT, len(self._shapes))
         arrays["units"] = np.ones(a.n + m_ext)  # of coordinates (with forces) and rows of Phi (with multipliers)
         arrays["left_out"] = np.zeros(m_ext, dtype=np.int64)
-        self._building = self._make_building(arrays, tables)
+        self._building = self._make_building(arrays)
         self._dropped_before: dict[frozenset[int], int] = {frozenset(): 0}
         self._views: dict[int, Structure] = {}
         self.dropped: frozenset[int] = frozenset()
@@ -185,7 +186,7 @@ class Workspace:
             *(x for name, x in self.arrays.items() if name not in (*_NEVER_CHANGES, "batches")),
         ]
         for batch in self._batches:
-            own.append(batch.arrays["par"])
+            own += [batch.arrays[name] for name in ("par", "shown") if name in batch.arrays]
         arrays, tables, _ = self.slots.memory()
         records = [
             self._record.words, self._building.words, *(batch.words for batch in self._batches), self.arrays["batches"],
@@ -251,14 +252,14 @@ class Workspace:
         """Room for `count` vectors of an accelerated or Krylov outer loop."""
         self._set("basis", np.zeros((count, self.assembly.n_extended)), n_basis=count)
 
-    def _make_building(self, arrays: dict[str, NDArray[Any]], tables: dict[str, NDArray[np.int64]]) -> ArrayRecord:
+    def _make_building(self, arrays: dict[str, NDArray[Any]]) -> ArrayRecord:
         a, slots = self.assembly, self.slots
         replaced = [(row, k) for row, contacts in a.replaced_rows.items() for k in sorted(contacts)]
         rows, contacts = (np.array([pair[x] for pair in replaced], dtype=np.int64) for x in (0, 1))
         return ArrayRecord(
             BUILDING,
             {
-                **tables, "replaced_row": rows, "replaced_contact": contacts,
+                **patterns(a), "replaced_row": rows, "replaced_contact": contacts,
                 **{name: arrays[name] for name in ("left_out", "units", "contact_rows", "contact_slide_rows")},
                 "contact_second_rows": np.array(
                     [c.slide_row + 1 if c.tangents > 1 else -1 for c in a.contacts], dtype=np.int64
@@ -268,8 +269,7 @@ class Workspace:
             },
             {
                 "n": a.n, "m": a.m, "m_joints": a.m_joints, "m_ext": a.m + 1, "n_contacts": len(a.contacts),
-                "n_kernels": len(a.batches), "n_s": len(tables["s_row"]), "n_j": len(tables["j_row"]),
-                "table_size": sum(count * width for count, width in self._shapes), "n_replaced": len(rows),
+                "n_kernels": len(a.batches), "n_replaced": len(rows),
                 "two_partitions": int(bool(a.rate_rows)),
                 "dropped": 0, "dense_limit": DENSE_LIMIT, "scratch": slots.scratch.cell.ctypes.data,
                 "n_slots": len(slots.structures), "serial": 0,
@@ -280,17 +280,19 @@ class Workspace:
         batch, a = self.assembly.batches[k], self.arrays
         count, width = batch.coord.shape
         rows = batch.row.shape[1] if batch.row.size else 0
+        list_of_shown = {"shown": np.array([count, *range(count)], dtype=np.int64)} if shows(self.assembly, k) else {}
         return ArrayRecord(
             BATCH,
             {
                 "par": batch.par, "coord": batch.coord, "row": batch.row, "extra": batch.extra,
-                "slot_s": np.zeros((count, width * width), dtype=np.int64),
-                "slot_j": np.zeros((count, max(rows, 1) * width), dtype=np.int64),
-                "slot_jt": np.zeros((count, max(rows, 1) * width), dtype=np.int64),
+                # those of the present structure
+                **{name: np.zeros(0, dtype=np.int64) for name in ("slot_s", "slot_j", "slot_jt", "line")},
+                **list_of_shown,
                 "signals": a["signals"],
                 **{name: a[name] for name in _SHARED},
             },
             {
+                **({} if list_of_shown else {"shown": 0}),
                 "count": count, "npar": batch.par.shape[1], "ncoord": width, "nrow": rows,
                 "nextra": batch.extra.shape[1],
                 "n_extended": len(a["q"]), "m_extended": len(a["lam"]), "n_values": len(a["values"]),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from test_heap import heap
 from tlismni.core import Simulation
+from tlismni.core.tables.patterns import contacts_alone
 from tlismni.models import load
 
 MODELS = {
@@ -29,9 +30,9 @@ def definition(assembly, closed, engaged, sticking, dropped):
     out = dropped | {row for row, by in assembly.replaced_rows.items() if by & closed}
     active = [r for r in range(assembly.m) if (r < assembly.m_joints and r not in out) or r in constraints]
     active.sort(key=lambda row: row in assembly.rate_rows)  # those with a position form come first
-    watched = {c.row for c in contacts} | {
-        c.slide_row + k for c in contacts if c.slide_row >= 0 for k in range(c.tangents)
-    }
+    # of contacts that can be evaluated alone, these are asked for gradients instead
+    listed = [c for c, (batch, _, _) in zip(contacts, contacts_alone(assembly), strict=True) if batch is None]
+    watched = {c.row for c in listed} | {c.slide_row + k for c in listed if c.slide_row >= 0 for k in range(c.tangents)}
     watched -= set(active)
     n, matrix, gradients = assembly.n, {(i, i): [] for i in range(assembly.n)}, {}
     for b, batch in enumerate(assembly.batches):
