@@ -38,6 +38,8 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
+from tlismni.core.compiled.library import LIBRARY
+from tlismni.core.native import image_of
 from tlismni.models import load
 
 G = 9.81
@@ -227,6 +229,20 @@ def test_state_and_json():
     for run in runs:
         run.advance(1.0)
     assert runs[0].state() == runs[1].state() == runs[2].state()
+
+
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+def test_without_python():
+    """The bits of Python's run."""
+    from tlismni.core.native.in_process import NativeModel, NativeRun
+
+    model = both(block(), ball(0.5, 0.05))
+    run, simulation = NativeRun(NativeModel(image_of(model, 1.0), LIBRARY)), Simulation(model)
+    for t in np.sort(np.random.default_rng(3).uniform(0.0, 1.0, 20)):
+        found = run.step(float(t), [])
+        simulation.advance(float(t))
+        assert found.tobytes() == simulation.values().tobytes(), t
+    assert (run.events, run.steps) == (len(simulation.events), simulation.stats["steps"])
 
 
 def coupled(flat):
