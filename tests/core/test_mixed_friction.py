@@ -6,6 +6,7 @@ part too, without its friction.
 
 import numpy as np
 import pytest
+from test_impulse_steps import in_steps, values
 from test_space_lift_friction import in_space, same_events, touching
 from test_space_lift_woodpecker import flat_woodpecker
 from tlismni.core import (
@@ -46,13 +47,6 @@ G = 9.81
 DOWN = (0.0, -G, 0.0)
 FLOOR = HalfSpace3D(marker=Marker3D(attitude=Axes(z=(0.0, 1.0, 0.0))))
 TIGHT = {"rtol": 1e-13, "atol": 1e-15}
-
-
-def foot(name, body, point, law, friction):
-    """A point of a spatial body on the floor."""
-    return SphereOnHalfSpace3D(
-        name=name, plane=FLOOR, sphere=Sphere3D(marker=Marker3D(body=body, point=point)), law=law, friction=friction
-    )
 
 
 def ball(restitution=0.0, height=0.0):
@@ -199,7 +193,10 @@ def thrown(seed, law):
             friction = CoulombFriction(coefficient=rng.uniform(0.05, 0.5))
             point = (rng.uniform(-0.3, 0.3), -0.2, rng.uniform(-0.3, 0.3))
             own = law(restitution=rng.uniform(0.0, 0.8))
-            of_spatial.append(foot(f"solid{k}_{j}", f"solid{k}", point, own, friction))
+            sphere = Sphere3D(marker=Marker3D(body=f"solid{k}", point=point))
+            of_spatial.append(
+                SphereOnHalfSpace3D(name=f"solid{k}_{j}", plane=FLOOR, sphere=sphere, law=own, friction=friction)
+            )
     return Model(gravity=DOWN, bodies=flat, contacts=of_flat), Model(gravity=DOWN, bodies=spatial, contacts=of_spatial)
 
 
@@ -229,6 +226,26 @@ def test_state_and_json():
     for run in runs:
         run.advance(1.0)
     assert runs[0].state() == runs[1].state() == runs[2].state()
+
+
+def test_steps_of_impulses():
+    """The rows of both kinds in one sweep: as in steps of their own, to what sweeps leave in a step, 1e-7 m/s, and what
+    that is as a force over a step."""
+    flat, spatial, step = stick_slip(), ball(), 1e-3
+    runs = [in_steps(model, step) for model in (flat, spatial, both(flat, spatial))]
+    for t in (0.1, 0.3, 0.6):
+        for run in runs:
+            run.advance(t)
+        of_flat, of_spatial, mixed = (values(run) for run in runs)
+        for own, names in (
+            (of_flat, ("block.x", "block.vx", "rubbing.normal_force", "rubbing.friction_force")),
+            (of_spatial, ("ball.x", "ball.z", "ball.vz", "rolls.normal_force", "rolls.friction_force", "rolls.gap")),
+        ):
+            for name in names:
+                places = 1e-2 if name.endswith("force") else 2e-5
+                assert mixed[name] == pytest.approx(own[name], abs=places), (t, name)
+    assert all(run.stats["impulse_steps"] > 500 for run in runs)
+    assert mixed["rubbing.friction_force"] != 0.0
 
 
 @pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
