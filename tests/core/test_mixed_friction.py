@@ -148,8 +148,7 @@ def same_parts(own, mixed, places, with_events=True):
     ],
 )
 def test_side_by_side(flat, spatial, t_end, kinds):
-    """Stick and slip, impacts with friction, jams, rest: 1e-9, at 1e-13 of error control. Which corners of the box
-    carry when it lies on a face rounding says."""
+    """Stick and slip, impacts with friction, jams, rest: 1e-9. (Which corners of a box carry it rounding says.)"""
     flat, spatial = flat(), spatial()
     times = np.linspace(0.0, t_end, 101)
     models = both(flat, spatial, [spatial]), both(flat, spatial, [flat]), both(flat, spatial)
@@ -229,8 +228,7 @@ def test_state_and_json():
 
 
 def test_steps_of_impulses():
-    """The rows of both kinds in one sweep: as in steps of their own, to what sweeps leave in a step, 1e-7 m/s, and what
-    that is as a force over a step."""
+    """The rows of both kinds in one sweep: as in steps of their own, to what sweeps leave in a step."""
     flat, spatial, step = stick_slip(), ball(), 1e-3
     runs = [in_steps(model, step) for model in (flat, spatial, both(flat, spatial))]
     for t in (0.1, 0.3, 0.6):
