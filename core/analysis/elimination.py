@@ -46,17 +46,6 @@ def add_product(out: Any, a: Any, b: Any, factor: float) -> None:
 
 
 @internal
-def add_transposed(out: Any, a: Any, b: Any, factor: float) -> None:
-    """out += factor a^T b."""
-    for l in range(a.shape[0]):
-        for i in range(a.shape[1]):
-            x = factor * a[l, i]
-            if x != 0.0:
-                for j in range(b.shape[1]):
-                    out[i, j] += x * b[l, j]
-
-
-@internal
 def choose(phi_q: Any, scale: Any, a: Any, dependent: Any, independent: Any) -> None:
     """Dependent (m,) and independent coordinates (n - m,) at Phi_q (m, n), by elimination with complete pivoting; a
     (m, n) is scratch.

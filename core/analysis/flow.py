@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import compiled_unlocked, internal
 from ..methods.tableaus import TABLEAUS
-from .elimination import add_product, add_transposed, choose, eliminate
+from .elimination import add_product, choose, eliminate
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -93,7 +93,7 @@ def metric(mass: Any, work: Any) -> None:
     """work.moved = M N and work.inverse = (N^T M N)^-1."""
     work.moved[:, :], work.gram[:, :], work.inverse[:, :] = 0.0, 0.0, 0.0
     add_product(work.moved, mass, work.basis, 1.0)
-    add_transposed(work.gram, work.basis, work.moved, 1.0)
+    add_product(work.gram, work.basis.T, work.moved, 1.0)
     for i in range(len(work.gram)):
         work.inverse[i, i] = 1.0
     eliminate(work.gram, work.inverse)
@@ -119,7 +119,7 @@ def generator(mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, 
     work.y_y[:, :], work.p_y[:, :], work.p_p[:, :] = 0.0, 0.0, 0.0
     # dv = by_y y + by_p p
     work.gram[:, :], work.by_p[:, :] = 0.0, 0.0
-    add_transposed(work.gram, work.moved, work.turning, 1.0)
+    add_product(work.gram, work.moved.T, work.turning, 1.0)
     add_product(work.y_y, work.inverse, work.gram, -1.0)
     for i in range(len(work.by_y)):
         for j in range(f):
@@ -130,17 +130,17 @@ def generator(mass: Any, k: Any, d: Any, mass_rate: Any, phi_q: Any, rate: Any, 
     add_product(work.pushed, mass_rate, work.by_y, 1.0)
     add_product(work.pushed, d, work.by_y, -1.0)
     add_product(work.pushed, k, work.basis, -1.0)
-    add_transposed(work.p_y, work.basis, work.pushed, 1.0)
+    add_product(work.p_y, work.basis.T, work.pushed, 1.0)
     work.pushed[:, :] = 0.0
     add_product(work.pushed, mass, work.by_y, 1.0)
-    add_transposed(work.p_y, work.turning, work.pushed, 1.0)
+    add_product(work.p_y, work.turning.T, work.pushed, 1.0)
     work.pushed[:, :] = 0.0
     add_product(work.pushed, mass_rate, work.by_p, 1.0)
     add_product(work.pushed, d, work.by_p, -1.0)
-    add_transposed(work.p_p, work.basis, work.pushed, 1.0)
+    add_product(work.p_p, work.basis.T, work.pushed, 1.0)
     work.pushed[:, :] = 0.0
     add_product(work.pushed, mass, work.by_p, 1.0)
-    add_transposed(work.p_p, work.turning, work.pushed, 1.0)
+    add_product(work.p_p, work.turning.T, work.pushed, 1.0)
     work.gram[:, :] = 0.0
     add_product(work.gram, work.inverse, work.p_y, 1.0)
     stiff, damped = 0.0, 0.0
@@ -230,7 +230,7 @@ def carry(
     for i in range(f):
         for c in range(columns):
             z[i, c] = dq[independent[i], c]
-    add_transposed(z[f:], work.moved, dv, 1.0)
+    add_product(z[f:], work.moved.T, dv, 1.0)
     frequency, divergence = 0.0, 0.0
     for s in range(steps):
         for i in range(STAGES):

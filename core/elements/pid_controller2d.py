@@ -12,17 +12,16 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any, Literal
 
-from pydantic import model_validator
-
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import Positive
 from ..model.markers import Marker2D
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
-from .base import ForceElement, Form, Numbering, PairElement2D, Row
+from .base import Form, Numbering, PairElement2D, Row
 from .formula2d import MARKER_COLUMNS, Arguments, caller_of, form_ahead
 from .geometry2d import add_hessian, add_product, along
 from .measures2d import MEASURES, Measure
+from .pid_law import PIDLaw
 from .saturation import saturated, slope_rate
 
 KIND = "pid_controller2d"
@@ -92,7 +91,7 @@ def _kernel(driven: str, sensed: str) -> Any:
     return formula_internal(pid_controller2d_kernel, formulas)
 
 
-class PIDController2D(ForceElement, PairElement2D):
+class PIDController2D(PIDLaw, PairElement2D):
     """A force or torque between markers `a` and `b` that brings what it senses to `target`(t): gains on the error, on
     its integral and on its rate.
 
@@ -120,19 +119,6 @@ class PIDController2D(ForceElement, PairElement2D):
     """For a unit of the error's rate: unit of `gain`, s."""
     largest: Positive | None = None
     """Largest force or torque that it gives, N or N m, and then it integrates no further; left out: it gives any."""
-
-    @model_validator(mode="after")
-    def _check(self) -> "PIDController2D":
-        if self.gain == 0.0 and self.integral_gain == 0.0 and self.rate_gain == 0.0:
-            raise ValueError(f"controller '{self.name}' has no gain, so it does nothing: give it one")
-        if self.integral_gain * self.gain < 0.0 or (self.integral_gain != 0.0 and self.gain == 0.0):
-            raise ValueError(
-                f"controller '{self.name}' has integral_gain = {self.integral_gain:g} and gain = {self.gain:g}: these "
-                "must have one sign, and an integral gain needs a gain beside it (their quotient is the integral time)"
-            )
-        if (self.sensor_a is None) != (self.sensor_b is None):
-            raise ValueError(f"controller '{self.name}' has one sensor marker: give it both, or none to sense a and b")
-        return self
 
     @property
     def sensing_a(self) -> Marker2D:
@@ -169,18 +155,9 @@ class PIDController2D(ForceElement, PairElement2D):
         pattern = {(i, j) for i in rows for j in range(WIDTH, SIZE)} | {(i, j) for i in rows[:-1] for j in range(WIDTH)}
         return Form(_kernel(self.measure, self.senses), 0, tuple(sorted(pattern)), ())
 
-    def internal_coordinates(self) -> Sequence[str]:
-        return ("integral",)
-
     def row(self, numbering: Numbering) -> Row:
-        # z in radians is a length as large as the mechanism for a radian
-        unit = numbering.length if self.senses == "angle" else 1.0
-        pace = unit * self.integral_gain / self.gain if self.integral_gain else 0.0
-        numbers = (self.gain, 1.0 / unit, self.rate_gain, self.largest or 0.0, pace)
+        numbers = self.numbers(numbering, self.senses == "angle")
         columns = (*ENDS.columns(self), *SENSORS.columns(self), *numbers)
         places = (*ENDS.coordinates(self, numbering), *SENSORS.coordinates(self, numbering))
         extra = (numbering.signal(self.target), numbering.work("input"))
         return Row(columns, (*places, *numbering.internal(self.name)), extra)
-
-    def signals(self) -> Sequence[Signal]:
-        return (self.target,)

@@ -21,6 +21,7 @@ from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .base import BodyElement, Numbering, Part, Row
 from .measure3d import ANGLE, COLUMNS, columns_of, coordinates_of, measure, product
 from .measured_force3d import KINDS, Measure3D, Pair3D
+from .pid_law import PIDLaw
 from .saturation import saturated, slope_rate
 from .start_angle3d import check_start_angle
 from .turn3d import LOOSE, account_of, turn_part
@@ -85,7 +86,7 @@ def pid_controller3d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 1]] -= force * product(along[0], v, ours)
 
 
-class PIDController3D(Pair3D):
+class PIDController3D(PIDLaw, Pair3D):
     """A force or torque between markers `a` and `b` that brings what it senses to `target`(t): gains on the error, on
     its integral and on its rate.
 
@@ -124,15 +125,6 @@ class PIDController3D(Pair3D):
 
     @model_validator(mode="after")
     def _check(self) -> "PIDController3D":
-        if self.gain == 0.0 and self.integral_gain == 0.0 and self.rate_gain == 0.0:
-            raise ValueError(f"controller '{self.name}' has no gain, so it does nothing: give it one")
-        if self.integral_gain * self.gain < 0.0 or (self.integral_gain != 0.0 and self.gain == 0.0):
-            raise ValueError(
-                f"controller '{self.name}' has integral_gain = {self.integral_gain:g} and gain = {self.gain:g}: these "
-                "must have one sign, and an integral gain needs a gain beside it (their quotient is the integral time)"
-            )
-        if (self.sensor_a is None) != (self.sensor_b is None):
-            raise ValueError(f"controller '{self.name}' has one sensor marker: give it both, or none to sense a and b")
         if self.start_angle is not None and self.senses != "angle":
             raise ValueError(f"controller '{self.name}' senses no angle: leave `start_angle` out")
         return self
@@ -175,21 +167,12 @@ class PIDController3D(Pair3D):
             return ()
         return (SaidAngle(self.sensing_a, self.sensing_b, self.start_angle, f"'{self.name}'"),)
 
-    def internal_coordinates(self) -> Sequence[str]:
-        return ("integral",)
-
     def row(self, numbering: Numbering) -> Row:
         a, b, kind = self.sensing_a, self.sensing_b, KINDS[self.senses]
         start, account = 0.0, numbering.frame(Marker3D())[0]
         if kind == ANGLE:
             start, account = numbering.start_angle(a, b, self.name), numbering.work(account_of(self.name), LOOSE)
-        # z in radians is a length as large as the mechanism for a radian
-        unit = numbering.length if kind == ANGLE else 1.0
-        pace = unit * self.integral_gain / self.gain if self.integral_gain else 0.0
-        numbers = (
-            float(KINDS[self.measure]), float(kind), start, self.gain, 1.0 / unit, self.rate_gain, self.largest or 0.0,
-            pace,
-        )  # fmt: skip
+        numbers = (float(KINDS[self.measure]), float(kind), start, *self.numbers(numbering, kind == ANGLE))
         columns = (*columns_of(self.a, self.b, numbering), *columns_of(a, b, numbering), *numbers)
         places = (*coordinates_of(self.a, self.b, numbering), *coordinates_of(a, b, numbering))
         extra = (numbering.signal(self.target), numbering.work("input"), account)
@@ -198,6 +181,3 @@ class PIDController3D(Pair3D):
     def parts(self, numbering: Numbering) -> Sequence[Part]:
         counted = [turn_part(self.name, self.sensing_a, self.sensing_b, numbering)] if self.senses == "angle" else []
         return [*super().parts(numbering), *counted]
-
-    def signals(self) -> Sequence[Signal]:
-        return (self.target,)

@@ -7,22 +7,20 @@ A servo that saturates gives F (1 + (F/L)^8)^(-1/8) instead, L its largest force
 5e-4), and no more than L. It is smooth, so that nothing has to be located.
 """
 
-from collections.abc import Sequence
 from functools import cache
 from typing import Any, Literal
-
-from pydantic import model_validator
 
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import NonNegative, Positive
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
-from .base import ForceElement, Form, Numbering, Row
+from .base import Form, Numbering, Row
 from .formula2d import MARKER_COLUMNS, Arguments, caller_of
 from .geometry2d import add_hessian, add_product, along
 from .measured2d import MeasuredElement2D
 from .measures2d import MEASURES
 from .saturation import saturated
+from .servo_law import ServoLaw
 
 KIND = "servo2d"
 
@@ -70,7 +68,7 @@ def _kernel(measure: str, arguments: Arguments) -> Any:
     return formula_internal(servo2d_kernel, (formula, evaluate_signal, saturated), arguments)
 
 
-class Servo2D(ForceElement, MeasuredElement2D):
+class Servo2D(ServoLaw, MeasuredElement2D):
     """Drives the angle, way or distance from marker `a` to `b` (`measure`, as in `RelativeMotor2D`) to `target`(t).
 
     A position servo has a `gain` and a `rate_gain`; a velocity servo has `of_rate` and a `rate_gain` alone.
@@ -89,24 +87,10 @@ class Servo2D(ForceElement, MeasuredElement2D):
     largest: Positive | None = None
     """Largest force or torque that it gives, N or N m; left out: it gives any."""
 
-    @model_validator(mode="after")
-    def _check(self) -> "Servo2D":
-        if self.of_rate and self.gain > 0.0:
-            raise ValueError(
-                f"servo '{self.name}' follows a rate and has a gain on the position: leave one of them out"
-            )
-        if self.gain == 0.0 and self.rate_gain == 0.0:
-            raise ValueError(f"servo '{self.name}' has neither gain nor rate_gain, so it does nothing: give one")
-        return self
-
     def form(self) -> Form:
         return self.form_of(KIND, _kernel, by_rates=True)
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()
-        columns = (*arguments.columns(self), self.gain, self.rate_gain, float(self.of_rate), self.largest or 0.0)
         extra = (numbering.signal(self.target), numbering.work("input"))
-        return Row(columns, arguments.coordinates(self, numbering), extra)
-
-    def signals(self) -> Sequence[Signal]:
-        return (self.target,)
+        return Row((*arguments.columns(self), *self.numbers()), arguments.coordinates(self, numbering), extra)

@@ -1,17 +1,15 @@
 """Servo between two bodies in space: a spring and damper whose end a time function or an input moves; see `servo2d`."""
 
-from collections.abc import Sequence
 from typing import ClassVar, Literal
-
-from pydantic import model_validator
 
 from ..model.base import NonNegative, Positive
 from ..model.signals import Signal
 from .base import Numbering
 from .measured_force3d import KINDS, SERVO, CountingForce3D, Measure3D
+from .servo_law import ServoLaw
 
 
-class Servo3D(CountingForce3D):
+class Servo3D(ServoLaw, CountingForce3D):
     """Drives the angle of marker `b` about the z axis of marker `a`, its place along it or their distance (`measure`)
     to `target`(t).
 
@@ -34,24 +32,8 @@ class Servo3D(CountingForce3D):
     largest: Positive | None = None
     """Largest force or torque that it gives, N or N m; left out: it gives any."""
 
-    @model_validator(mode="after")
-    def _check(self) -> "Servo3D":
-        if self.of_rate and self.gain > 0.0:
-            raise ValueError(
-                f"servo '{self.name}' follows a rate and has a gain on the position: leave one of them out"
-            )
-        if self.gain == 0.0 and self.rate_gain == 0.0:
-            raise ValueError(f"servo '{self.name}' has no gain, so it does nothing: give it one")
-        return self
-
     def kind(self) -> int:
         return KINDS[self.measure]
-
-    def numbers(self) -> tuple[float, float, float, float]:
-        return (self.gain, self.rate_gain, float(self.of_rate), self.largest or 0.0)
-
-    def signals(self) -> Sequence[Signal]:
-        return (self.target,)
 
     def signal_in(self, numbering: Numbering) -> int:
         return numbering.signal(self.target)

@@ -3,16 +3,17 @@
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.base import NonNegative
-from ..model.signals import INPUT_SIZE, Table, evaluate_signal
-from .base import ForceElement, Numbering, PairElement2D, Row
+from ..model.signals import INPUT_SIZE, evaluate_signal
+from .base import Numbering, PairElement2D, Row
 from .geometry2d import FULL_PATTERN, add_hessian, add_product, along, distance
 from .table_energy import energy_of_table
+from .table_law import TableLaw
 
 
 @internal
@@ -42,7 +43,7 @@ def table_spring2d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 1]] += c * rate * rate
 
 
-class TableSpring2D(ForceElement, PairElement2D):
+class TableSpring2D(TableLaw, PairElement2D):
     """Spring between markers `a` and `b` with a measured characteristic: `forces` over `lengths`, a cubic spline.
 
     Pulling is positive. Beyond the table the first or last cubic goes on. The markers must not meet.
@@ -59,20 +60,10 @@ class TableSpring2D(ForceElement, PairElement2D):
     damping: NonNegative = 0.0
     """N s/m."""
 
-    @model_validator(mode="after")
-    def _check(self) -> "TableSpring2D":
-        if len(self.lengths_table) != len(self.forces):
-            raise ValueError(
-                f"spring '{self.name}' has {len(self.lengths_table)} lengths, {len(self.forces)} forces: give as many"
-            )
-        if any(y <= x for x, y in zip(self.lengths_table, self.lengths_table[1:], strict=False)):
-            raise ValueError(f"the lengths of spring '{self.name}' must grow strictly")
-        return self
-
     def lengths(self) -> Sequence[float]:
-        return (max(abs(self.lengths_table[0]), abs(self.lengths_table[-1])),)
+        return (self.farthest,)
 
     def row(self, numbering: Numbering) -> Row:
-        table = numbering.signal(Table(times=self.lengths_table, values=self.forces))
+        table = numbering.signal(self.table)
         parameters = (*self.a.point, *self.b.point, self.damping)
         return Row(parameters, self.coordinates(numbering), (table, numbering.work("dampers")))

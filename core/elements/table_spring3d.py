@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ..model.base import NonNegative
-from ..model.signals import Table
 from .base import Numbering
 from .measured_force3d import KINDS, TABLE, CountingForce3D, Measure3D
+from .table_law import TableLaw
 
 
-class TableSpring3D(CountingForce3D):
+class TableSpring3D(TableLaw, CountingForce3D):
     """Spring between markers `a` and `b` with a measured characteristic: `forces` over `lengths`, a cubic spline.
 
     measure "distance": of the points, which must not meet, pulling is positive; "slide": place of b along the z axis of
@@ -31,24 +31,14 @@ class TableSpring3D(CountingForce3D):
     damping: NonNegative = 0.0
     """N s/m or N m s/rad."""
 
-    @model_validator(mode="after")
-    def _check(self) -> "TableSpring3D":
-        if len(self.lengths_table) != len(self.forces):
-            raise ValueError(
-                f"spring '{self.name}' has {len(self.lengths_table)} lengths, {len(self.forces)} forces: give as many"
-            )
-        if any(y <= x for x, y in zip(self.lengths_table, self.lengths_table[1:], strict=False)):
-            raise ValueError(f"the lengths of spring '{self.name}' must grow strictly")
-        return self
-
     def kind(self) -> int:
         return KINDS[self.measure]
 
     def lengths(self) -> Sequence[float]:
-        return () if self.measure == "angle" else (max(abs(self.lengths_table[0]), abs(self.lengths_table[-1])),)
+        return () if self.measure == "angle" else (self.farthest,)
 
     def numbers(self) -> tuple[float, float, float, float]:
         return (0.0, self.damping, 0.0, 0.0)
 
     def signal_in(self, numbering: Numbering) -> int:
-        return numbering.signal(Table(times=self.lengths_table, values=self.forces))
+        return numbering.signal(self.table)

@@ -1,5 +1,6 @@
 """Which of the touching contacts stay closed: those that press, and some that carry nothing."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -13,17 +14,20 @@ from .reading import comes_back
 from .records import (
     AT_REST,
     CLOSES,
+    COS_WAY,
     COUNT,
     DIRECTION,
     F_N,
     LEAVES,
     NONE,
     SETTLED,
+    SIN_WAY,
     SIZE,
     SPARE,
     STATIC,
     STRUCK,
     W_N,
+    W_S,
     W_T,
     WAS,
     call_part,
@@ -63,18 +67,21 @@ def choose(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         idle = idle or (col(ev, AT_REST)[i] != 0.0 and closes[i] == 0.0 and not leaves)
     if idle:
         _close_idle(ev, dr, ws, closes)
-    _slide_unloaded(ev, closes)
+    _slide_unloaded(ev, ws, closes)
     return SETTLED
 
 
 @internal
-def _slide_unloaded(ev: Any, closes: Any) -> None:
+def _slide_unloaded(ev: Any, ws: Any, closes: Any) -> None:
     """Contacts that stay closed without force begin to slide where nothing holds them: no friction does."""
-    least, direction = PRESSING * fastest_free(ev), col(ev, DIRECTION)
+    least, direction, spatial = PRESSING * fastest_free(ev), col(ev, DIRECTION), ws.tangents == 2
     for i in range(whole(ev)[COUNT]):
         free = col(ev, STATIC)[i] > 0.0 and direction[i] == 0.0 and col(ev, F_N)[i] == 0.0
-        if free and closes[i] != 0.0 and abs(col(ev, W_T)[i]) > least:
-            direction[i] = np.sign(col(ev, W_T)[i])
+        x, y = col(ev, W_T)[i], col(ev, W_S)[i] if spatial else 0.0
+        speed = math.sqrt(x * x + y * y)
+        if free and closes[i] != 0.0 and speed > least:
+            direction[i] = 1.0 if spatial else np.sign(x)
+            col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = x / speed, y / speed
 
 
 @internal

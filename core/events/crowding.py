@@ -58,8 +58,9 @@ SOON = 64
 
 
 @internal
-def count_instant(ws: Any, lc: Any, t: float, touching: int) -> bool:
-    """One more instant, at time t, with so many touching contacts; True if the run is to go on in steps of impulses."""
+def count_instant(ws: Any, lc: Any, t: float, touching: int, spatial: bool) -> bool:
+    """One more instant, at time t, with so many touching contacts, many of them in space or not; True if the run is to
+    go on in steps of impulses."""
     clock = vec(lc.clock, CLOCK_SIZE)
     many = touching >= MANY_TOUCH and clock[PUSH_STEP] == 0.0
     clock[WINDOW_COUNT] += 1.0
@@ -68,7 +69,7 @@ def count_instant(ws: Any, lc: Any, t: float, touching: int) -> bool:
         span = abs(t - clock[WINDOW_START]) * vec(ws.control, CONTROL_SIZE)[RATE_SCALE]
         clock[CROWDED] = 1.0 if span < NEXT_TO_NO_TIME else 0.0
         clock[WINDOW_START], clock[WINDOW_COUNT] = t, 0.0
-        again = again or span < (IN_SPACE if ws.tangents == 2 else NEXT_TO_NO_TIME_OF_MANY)
+        again = again or span < (IN_SPACE if spatial else NEXT_TO_NO_TIME_OF_MANY)
     return bool(many and again)
 
 
@@ -96,11 +97,11 @@ def near_level(ws: Any, h: float) -> float:
 def may_push(dr: Any, ws: Any, ms: Any) -> bool:
     """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, among
     redundant rows, and where contacts act as forces, are at massless ends, or cannot be looked at alone in space."""
-    law, lc = ivec(dr.law, ws.n_contacts), loop_at(dr.loop)
+    law, lc, kinds = ivec(dr.law, ws.n_contacts), loop_at(dr.loop), ivec(ws.contact_tangents, ws.n_contacts)
     if ms.exact == 0 or ws.n_redundant > 0:
         return False
     for k in range(ws.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS or (ws.tangents == 2 and not can_look(lc, k)):
+        if law[k] == FORCE or law[k] == MASSLESS or (kinds[k] == 2 and not can_look(lc, k)):
             return False
     return True
 

@@ -55,7 +55,7 @@ from .wedging import MOST_WEDGES, wedge
 @internal
 def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     """Impacts, forces, and what they mean."""
-    if not find_touching(ev, dr, ws):
+    if not find_touching(ev, dr, ws, False):
         return WANT_ROOM
     read_before(ev, dr, ws)
     read_values(ev, ws)

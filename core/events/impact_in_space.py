@@ -8,6 +8,7 @@ from ..compiled.views import ivec, vec
 from ..cones.one_cone import one_cone
 from ..rounding import UNSOLVED
 from ..tables.evaluate import evaluate_residuals
+from ..tables.held import in_space
 from .impact import MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, restitution
 from .laws import POISSON, SEQUENTIAL
 from .rates_in_space import masses, push_in_space, read_rates_in_space, solve_cones_in_space
@@ -84,7 +85,8 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             work = p_n[i] * (before_n[i] + rate[i]) + p_t[i] * (before_t[i] + slide[i])
             loss[i] -= 0.5 * (work + p_s[i] * (before_s[i] + sway[i]))
             col(ev, IMPULSE)[i] += p_n[i]
-            col(ev, FRICTION)[i] += math.sqrt(p_t[i] * p_t[i] + p_s[i] * p_s[i])
+            rubs = math.sqrt(p_t[i] * p_t[i] + p_s[i] * p_s[i])
+            col(ev, FRICTION)[i] += rubs if in_space(ws, ivec(ev.contacts, ev.most)[i]) else p_t[i]
     evaluate_residuals(ws)
     read_rates_in_space(ev, ws)
     for i in range(ws.m_act):

@@ -71,7 +71,7 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     lc = loop_at(dr.loop)
     clock, t, energy = vec(lc.clock, CLOCK_SIZE), history_time(ms, 0), vec(ws.energy, 3)
     h = t - clock[PUSHED_FROM]
-    if not find_touching(ev, dr, ws):
+    if not find_touching(ev, dr, ws, True):
         return WANT_ROOM
     held = _look(ev, ws)
     status = open_rows(ev, dr, ws, ms)

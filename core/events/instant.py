@@ -23,6 +23,7 @@ from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
 from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
 from ..tables.assembly import Assembly
+from ..tables.connection import contact_tangents
 from ..tables.patterns import entries_of_few
 from .balance import find_forces
 from .balance_in_space import find_forces_in_space
@@ -35,7 +36,7 @@ from .impact_in_space import strike_in_space
 from .impulse_rows import ROW_ROOM, TURNING_ROWS
 from .impulse_step import push_apart
 from .prepare import use_modes
-from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
+from .records import COLUMNS, COUNT, INSTANT, OF_A_KIND, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
 from .resting import begin_rest
 from .resting_in_space import begin_rest_in_space
 from .touching import open_touching
@@ -56,17 +57,26 @@ IN_SPACE = {
     "find_forces": find_forces_in_space, "keep": keep_in_space,
 }  # fmt: skip
 """What takes the place of parts where contacts have two tangents."""
+_IN_PLANE = {part.py_func.__name__: part for part in PARTS}
 
 
 def _functions(assembly: Assembly) -> dict[str, int]:
     """Addresses of what the record calls; zeros, and nothing to compile, where it never will."""
-    parts = [(part.py_func.__name__, part, PART_SIGNATURE) for part in PARTS]
+    parts = [(name, part, PART_SIGNATURE) for name, part in _IN_PLANE.items()]
     if assembly.tangents == 2:
         parts = [(name, IN_SPACE.get(name, part), signature) for name, part, signature in parts]
     needed = {name: bool(assembly.contacts) for name, _, _ in (*parts, *_OTHERS)}
     needed["settle_forces"] = any(isinstance(contact.law, ForceLaw) for contact in assembly.contacts)
     needed["use_modes"] = True  # runs start with it
-    return {name: address_of(f, signature) if needed[name] else 0 for name, f, signature in (*parts, *_OTHERS)}
+    both = set(contact_tangents(assembly).tolist()) == {1, 2}
+    of_kinds = {
+        f"{short}_{where}": address_of(parts[name], PART_SIGNATURE) if both else 0
+        for where, parts in (("in_plane", _IN_PLANE), ("in_space", IN_SPACE))
+        for short, name in zip(OF_A_KIND, IN_SPACE, strict=True)
+    }
+    return of_kinds | {
+        name: address_of(f, signature) if needed[name] else 0 for name, f, signature in (*parts, *_OTHERS)
+    }
 
 
 class Instant:
@@ -131,15 +141,15 @@ class Instant:
 
     @property
     def inverse_masses(self) -> NDArray[np.float64]:
-        """Of the contacts that have been opened last, (2 contacts, 2 contacts), 1/kg: normals first; in space the
-        tangent of a contact is that along which it slides, the first one where it does not."""
+        """Of the contacts that have been opened last, (2 contacts, 2 contacts), 1/kg: normals first; the tangent of a
+        contact in space is that along which it slides, the first one where it does not."""
         count = len(self.touching)
         if self._assembly.tangents < 2:
             return self._record.part("a")[: 4 * count * count].reshape(2 * count, 2 * count).copy()
         table = self._record.part("table").reshape(COLUMNS, self.most)[:, :count]
         along = np.stack([table[SLIDE_RATE], table[SWAY_RATE]])
-        speed = np.hypot(*along)
-        along = np.where(speed > 0.0, along / np.where(speed > 0.0, speed, 1.0), [[1.0], [0.0]])
+        slides = np.hypot(*along) * [self._assembly.contacts[k].tangents == 2 for k in self.touching]
+        along = np.where(slides > 0.0, along / np.where(slides > 0.0, slides, 1.0), [[1.0], [0.0]])
         turn = np.zeros((2 * count, 3 * count))
         turn[:count, :count] = np.eye(count)
         turn[count:, count : 2 * count], turn[count:, 2 * count :] = np.diag(along[0]), np.diag(along[1])

@@ -10,12 +10,13 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
-from ..state.modes import AXIS, CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, WAY
+from ..state.modes import ALONG, AXIS, CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, WAY
 from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import CLOSE, GRAZE, OPENS, REST, SLIP, STICK, call_accelerations
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_energy
+from ..tables.held import in_space
 from ..tables.levels import position_level
 from .balance_in_space import BEGINS
 from .meeting import meet_constraints
@@ -63,6 +64,8 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         memory[MODE] = CLOSED if taken else OPEN
         memory[SLIDE] = col(ev, NEW_SLIDE)[i] if taken else STUCK
         memory[RATIO] = col(ev, NEW_RATIO)[i] if taken else 0.0
+        if taken and ws.tangents == 2 and not in_space(ws, k):
+            _take_in_plane(memory, col(ev, COS_WAY)[i])
         if not taken:
             memory[GAP_START] = 0.0
             continue
@@ -71,7 +74,7 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             memory[GAP_START] = gap if abs(gap) <= level * scale[rows[k]] else 0.0
         kept = was == CLOSED and col(ev, SLID)[i] == memory[SLIDE]
         changed = changed or not kept
-        if ws.tangents == 2:
+        if in_space(ws, k):
             memory[WAY], memory[AXIS] = np.arctan2(col(ev, SIN_WAY)[i], col(ev, COS_WAY)[i]), col(ev, AXIS_NOW)[i]
             memory[SLOW_SLIDING] = slow_sliding(ws, k)
         elif memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
@@ -91,6 +94,17 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
+def _take_in_plane(memory: Any, way: float) -> None:
+    """What has been decided in space, for the memory of a contact of the plane (`each_kind.py`); `way`: cosine of its
+    direction."""
+    if memory[SLIDE] == ALONG:
+        memory[SLIDE], memory[RATIO] = STUCK, 0.0
+    elif memory[SLIDE] == 1.0:
+        memory[SLIDE] = np.sign(way)
+    memory[RATIO] *= way
+
+
+@internal
 def report_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
     """Events of contacts that have closed, opened, begun to slide or to stick."""
     contacts, pending = ivec(ev.contacts, ev.most), ivec(dr.pending, ws.n_contacts)
@@ -107,7 +121,11 @@ def report_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
             kind = OPENS
         elif not closed and whole(ev)[STRUCK] == 0 and pending[k] != 0 and started:
             kind = GRAZE
-        elif closed and slides[k] >= 0 and (memory[SLIDE] != slid or col(ev, DIRECTION)[i] == BEGINS):
+        elif (
+            closed
+            and slides[k] >= 0
+            and (memory[SLIDE] != slid or (col(ev, DIRECTION)[i] == BEGINS and in_space(ws, k)))
+        ):
             kind = SLIP if abs(memory[SLIDE]) == 1.0 else (STICK if abs(slid) == 1.0 else -1)
         if kind >= 0:
             report(dr, t, kind, k, 0.0, 0.0, 0.0, max(phid[rows[k]], 0.0) if kind == OPENS else 0.0, 0.0, 0.0)

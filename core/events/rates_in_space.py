@@ -7,6 +7,7 @@ from ..compiled.views import ivec, mat, vec
 from ..cones.friction_cones import FOUND, solve_friction_cones
 from ..linalg.small import call_least_norm
 from ..rounding import DIRECTION_RANK, FRICTION_NEAR, STICKS_STILL
+from ..tables.held import in_space
 from .forces import cones_at
 from .records import COS_WAY, COUNT, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, col, whole
 
@@ -34,7 +35,7 @@ def read_in_space(ev: Any, ws: Any, level: Any, of_gap: Any, of_slide: Any, of_s
         rubs = slides[k] >= 0 and static[k] > 0.0
         of_gap[i] = level[rows[k]]
         of_slide[i] = level[slides[k]] if rubs else 0.0
-        of_sway[i] = level[slides[k] + 1] if rubs else 0.0
+        of_sway[i] = level[slides[k] + 1] if rubs and in_space(ws, k) else 0.0
 
 
 @internal

@@ -9,7 +9,7 @@ from ..compiled.views import ivec, mat, vec
 from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.workspace_records import CONTROL_SIZE, RTOL
-from ..tables.held import held_friction, is_held
+from ..tables.held import held_friction, in_space, is_held
 from ..tables.levels import force_level, position_level, rate_size
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
 
@@ -79,7 +79,7 @@ def read_before(ev: Any, dr: Any, ws: Any) -> None:
         # a force is found less finely than a velocity: the event is of what is nearer to zero
         part = force / strongest
         if is_held(ws, k):
-            friction = -lam[slide] if ws.tangents == 1 else held_friction(ws, k, lam)
+            friction = held_friction(ws, k, lam) if in_space(ws, k) else -lam[slide]
             if abs(friction) >= static[k] * force * (1.0 - REACHES_LIMIT):
                 slips[i] = -np.sign(friction)
             else:

@@ -14,6 +14,9 @@ from ..state.method_records import METHOD_TYPE
 from ..state.run_records import DRIVE_TYPE
 from ..state.workspace_records import WORKSPACE_TYPE
 
+OF_A_KIND = ("open", "strike", "begin_rest", "find_forces", "keep")
+"""Parts that contacts of the plane have of their own, and those of space."""
+
 INSTANT = np.dtype(
     [
         (name, np.int64)
@@ -22,6 +25,8 @@ INSTANT = np.dtype(
             # addresses of these functions
             "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces", "push_apart",
             "step_through",
+            # those of the first five for contacts of the plane and of space, where a model has both
+            *(f"{part}_{where}" for where in ("in_plane", "in_space") for part in OF_A_KIND),
             "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
@@ -106,7 +111,8 @@ WITHOUT = 6  # 1: impacts are without restitution where `LOW` says so
 TURNS = 7  # 1: forces of contacts have torques against turning with them
 TOUCHED = 8  # contacts that touch, once the instant has been decided
 ALONE = 9  # 1: of the inverse masses of what is opened the diagonal alone is wanted
-WHOLES = 10
+TOUCHED_IN_SPACE = 10  # of TOUCHED, those that are decided as in space
+WHOLES = 11
 
 # what settling an instant returns
 SETTLED = 0

@@ -30,12 +30,25 @@ from ..tables.evaluate import evaluate_power, evaluate_residuals
 from ..tables.switch import take_structure
 from .breakpoint import pass_breakpoint
 from .crowding import MANY_TOUCH, count_instant, may_push
-from .decide import decide
+from .each_kind import decide_each_kind
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
 from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
 from .progress import COUNT as GUARDED
-from .records import DECLINED, MET_LOSS, NO_IMPACT, NOT_MET, SETTLED, TOUCHED, call_part, clear, copy, real, whole
+from .records import (
+    DECLINED,
+    MET_LOSS,
+    NO_IMPACT,
+    NOT_MET,
+    SETTLED,
+    TOUCHED,
+    TOUCHED_IN_SPACE,
+    call_part,
+    clear,
+    copy,
+    real,
+    whole,
+)
 from .report import MOST_EVENTS, room_for
 from .unsettled import find_pending, find_unsettled
 
@@ -95,12 +108,13 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     if status == SETTLED:
         status = settle_massless(ev, dr, ws, ms)
     whole(ev)[TOUCHED], pushing = 0, vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
+    whole(ev)[TOUCHED_IN_SPACE] = 0
     begun = vec(lc.clock, CLOCK_SIZE)[PUSHED_FROM] == t
     if status == SETTLED and pushing:
         clear(ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
         status = call_part(ev.push_apart, ev, dr, ws, ms)
     elif status == SETTLED and _any_constraint(dr, ws):
-        status = decide(ev, dr, ws, ms, lc)
+        status = decide_each_kind(ev, dr, ws, ms, lc)
     if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms):
         status = NOT_MET
     if status == SETTLED and not pushing:
@@ -122,7 +136,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     _count(dr, t)
     crowds = False
     if not pushing:
-        crowds = count_instant(ws, lc, t, touched)
+        crowds = count_instant(ws, lc, t, touched, whole(ev)[TOUCHED_IN_SPACE] >= MANY_TOUCH)
     copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
     if crowds:
         call_part(ev.step_through, ev, dr, ws, ms)
@@ -135,7 +149,7 @@ def _loses_unseen(ev: Any, ws: Any) -> bool:
     """True if many touch in space, and bringing them onto their new constraints has changed the energy by more than
     rounding. (In the plane what is lost so is next to nothing, and events get on.)"""
     most = UNSEEN * vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
-    return bool(ws.tangents == 2 and whole(ev)[TOUCHED] >= MANY_TOUCH and abs(real(ev)[MET_LOSS]) > most)
+    return bool(whole(ev)[TOUCHED_IN_SPACE] >= MANY_TOUCH and abs(real(ev)[MET_LOSS]) > most)
 
 
 @internal

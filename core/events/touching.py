@@ -44,15 +44,17 @@ from .records import (
 
 
 @internal
-def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
-    """Constraint contacts without a gap at the current point: closed ones, pending ones, and others that touch. Those
-    at massless ends are left out: they take no impulse. False if there is no room for them."""
+def find_touching(ev: Any, dr: Any, ws: Any, every: bool) -> bool:
+    """Constraint contacts without a gap at the current point: closed ones, pending ones, and others that touch; `every`
+    one, or those that are decided now. Those at massless ends are left out: they take no impulse. False if there is no
+    room for them."""
     memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
     pending, rows = ivec(dr.pending, ws.n_contacts), ivec(ws.contact_rows, ws.n_contacts)
     phi, scale, contacts = vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
+    kinds = ivec(ws.contact_tangents, ws.n_contacts)
     level, count, asleep = GAP_ROUNDING * position_level(ws), 0, ivec(ws.asleep, ws.n_contacts)
     for k in range(ws.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS or asleep[k] != 0:
+        if law[k] == FORCE or law[k] == MASSLESS or asleep[k] != 0 or not (every or kinds[k] == ws.tangents):
             continue
         if pending[k] != 0 or memory[k, MODE] == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == ev.most:

@@ -2,7 +2,8 @@
 
 As `touching.py`, in its place. The room for directions and responses holds a third block, the second tangents' behind
 the first ones'; inverse masses of all three are in `masses`. The tangents of a contact are those of
-`shapes/frame3d.py`.
+`shapes/frame3d.py`. A contact of the plane has a second tangent without a gradient: as joints may hold one, it takes no
+friction.
 """
 
 from typing import Any
@@ -19,6 +20,7 @@ from ..state.modes import STICKS as STUCK
 from ..state.run_records import loop_at
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
+from ..tables.held import in_space
 from ..tables.switch import engage_modes
 from .rates_in_space import masses, read_rates_in_space
 from .records import ALONE, COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
@@ -34,8 +36,9 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     for i in range(count):
         k = contacts[i]
         memory[k, MODE], memory[k, SLIDE], memory[k, RATIO] = OPEN, STUCK, 0.0
-        # directions and rates are to speak of the same tangents
-        memory[k, AXIS] = 0.0
+        if in_space(ws, k):
+            # directions and rates are to speak of the same tangents
+            memory[k, AXIS] = 0.0
     if engage_modes(ws) != OK:
         return WANT_MEMORY
     # the rows of those that slid or stuck now tell both velocities
@@ -54,7 +57,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         find_gradient(ws, lc, k, rows[k], directions[i])
         for block in range(2):
             to = directions[(block + 1) * count + i]
-            if slides[k] >= 0 and static[k] > 0.0:
+            if slides[k] >= 0 and static[k] > 0.0 and (block == 0 or in_space(ws, k)):
                 find_gradient(ws, lc, k, slides[k] + block, to)
             else:
                 clear(to, n)

@@ -14,6 +14,7 @@ from ..compiled.views import imat, ivec, mat, vec
 from ..methods.history import history_row, history_time
 from ..state.modes import MEMORY_SIZE, MODE, OPEN
 from ..state.run_records import WATCH
+from ..tables.held import in_space
 from .balls import MARKS, VALID
 from .certain import way_of_gap
 from .probe import KERNEL, NEAR_SIZE, SLEEPS, probe_of
@@ -48,7 +49,7 @@ def look_now(ws: Any, lc: Any, k: int) -> None:
         values[row] = looked[row]
         if slide >= 0:
             values[slide] = looked[slide]
-            if ws.tangents == 2:
+            if in_space(ws, k):
                 values[slide + 1] = looked[slide + 1]
 
 

@@ -13,6 +13,7 @@ from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, OPEN, PUSHED, SLIDE
 from ..tables.evaluate import evaluate_energy, recorded_norm
+from ..tables.held import in_space
 
 
 def sample_length(n: int, m: int, contacts: int, work: int) -> int:
@@ -61,9 +62,9 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
             out[at + 5 * contacts + k] = memory[k, LOSS_JUMP]
             with_friction = slide_rows[k] >= 0
             acts = with_friction and (mode == ACTIVE or mode == CLOSED)
-            out[at + 6 * contacts + k] = monitor[contacts + k] if acts else _pushed_along(ws, memory[k])
+            out[at + 6 * contacts + k] = monitor[contacts + k] if acts else _pushed_along(ws, k)
             out[at + 7 * contacts + k] = phid[slide_rows[k]] if with_friction else 0.0
-            if ws.tangents == 2 and vec(ws.contact_sticking, contacts)[k] > 0.0:
+            if vec(ws.contact_sticking, contacts)[k] > 0.0 and in_space(ws, k):
                 # in space: how fast it slides
                 x, y = phid[slide_rows[k]], phid[slide_rows[k] + 1]
                 slides = mode == CLOSED and abs(memory[k, SLIDE]) == 1.0
@@ -84,10 +85,11 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
 
 
 @internal
-def _pushed_along(ws: Any, memory: Any) -> float:
-    """Mean force along the tangents in the last step of impulses, N."""
+def _pushed_along(ws: Any, k: int) -> float:
+    """Mean force along the tangents of contact k in the last step of impulses, N."""
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
     first, second = memory[PUSHED + 1], memory[PUSHED + 2]
-    return float(first if ws.tangents < 2 else np.sqrt(first * first + second * second))
+    return float(np.sqrt(first * first + second * second) if in_space(ws, k) else first)
 
 
 def empty_buffer(capacity: int, length: int) -> np.ndarray:

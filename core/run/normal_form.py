@@ -71,6 +71,7 @@ from ..state.run_records import (
     WINDOW_START,
 )
 from ..state.workspace_records import CORRECTION, FAILED_NORM, RATE_SIZE, WORST_CONDITION
+from ..tables.held import in_space
 from .exchange_record import EXCHANGE, FIRST_STEP, NOW, TIMES_SIZE
 from .exchange_record import GOAL as GOAL_TIME
 
@@ -204,5 +205,5 @@ def _forget_in_memories(dr: Any, ws: Any, lc: Any, shift: int) -> None:
                 memory[APPROACH_SPEED] = memory[BEGUN_IMPULSE] = memory[BEGUN_LOSS] = 0.0
         elif law[k] != MASSLESS:
             memory[APPROACH_SPEED] = 0.0
-            if ws.tangents == 1 and not (memory[MODE] == CLOSED and memory[SLIDE] == STICKS):
+            if not in_space(ws, k) and not (memory[MODE] == CLOSED and memory[SLIDE] == STICKS):
                 memory[SLIDE_START] = 0.0

@@ -5,7 +5,7 @@ the points.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -114,7 +114,24 @@ class Stop3D(ContactElement):
         return [*counted, Part(FORM, (row,))]
 
 
-class AngleStop3D(Stop3D):
+class LimitStop3D(Stop3D):
+    """Base of the stops that hold a measure below or above a limit. Each declares the fields itself: their order is
+    that of its JSON."""
+
+    if TYPE_CHECKING:
+        limit: float
+        side: Literal["upper", "lower"]
+
+    @property
+    def sign(self) -> float:
+        return 1.0 if self.side == "upper" else -1.0
+
+    @property
+    def bound(self) -> float:
+        return self.limit
+
+
+class AngleStop3D(LimitStop3D):
     """The angle of marker `b` about the z axis of marker `a` (x axis to x axis, turns counted) stays below or above
     `limit`, as the `angle` of a hinge with the same markers.
 
@@ -145,19 +162,11 @@ class AngleStop3D(Stop3D):
         """What it says of the angle at the start."""
         return () if self.start_angle is None else (SaidAngle(self.a, self.b, self.start_angle, f"'{self.name}'"),)
 
-    @property
-    def sign(self) -> float:
-        return 1.0 if self.side == "upper" else -1.0
-
-    @property
-    def bound(self) -> float:
-        return self.limit
-
     def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
         return "rad", "rad"
 
 
-class SlideStop3D(Stop3D):
+class SlideStop3D(LimitStop3D):
     """The place of marker `b` along the z axis of marker `a`, as the `position` of a slider with the same markers,
     stays below or above `limit`."""
 
@@ -168,14 +177,6 @@ class SlideStop3D(Stop3D):
     """m."""
     side: Literal["upper", "lower"] = "upper"
     """Whether the place stays below the limit or above it."""
-
-    @property
-    def sign(self) -> float:
-        return 1.0 if self.side == "upper" else -1.0
-
-    @property
-    def bound(self) -> float:
-        return self.limit
 
 
 class Rope3D(Stop3D):
@@ -195,7 +196,7 @@ class Rope3D(Stop3D):
         _refuse_meeting(f"the ends of rope '{self.name}'", self, bodies)
 
 
-class DistanceStop3D(Stop3D):
+class DistanceStop3D(LimitStop3D):
     """The distance of the points of markers `a` and `b` stays below or above `limit`; see `Rope3D`."""
 
     type: Literal["DistanceStop3D"] = "DistanceStop3D"
@@ -205,14 +206,6 @@ class DistanceStop3D(Stop3D):
     """m."""
     side: Literal["upper", "lower"] = "upper"
     """Whether the distance stays below the limit or above it."""
-
-    @property
-    def sign(self) -> float:
-        return 1.0 if self.side == "upper" else -1.0
-
-    @property
-    def bound(self) -> float:
-        return self.limit
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         _refuse_meeting(f"the markers of '{self.name}'", self, bodies)

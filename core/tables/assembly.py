@@ -68,6 +68,11 @@ class ContactInfo:
         """Its friction if the contact is a constraint."""
         return self.friction if isinstance(self.friction, CoulombFriction) else None
 
+    @property
+    def second_row(self) -> int:
+        """Row of the second tangent; -1: it has none."""
+        return self.slide_row + 1 if self.tangents > 1 else -1
+
 
 @dataclass
 class Assembly:
@@ -126,7 +131,7 @@ class Assembly:
 
     @property
     def tangents(self) -> int:
-        """How many tangents contacts with Coulomb friction have, all of them."""
+        """The most tangents that a contact with Coulomb friction has."""
         return max((contact.tangents for contact in self.contacts if contact.coulomb), default=1)
 
     @property
@@ -249,7 +254,6 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 np.array([numbering.contact_numbers.get(e.name, -1) for e, _, _ in members], dtype=np.int64),
             )
         )
-    _refuse_mixed_friction(model, contact_rows)
     internal = np.arange(numbering.n - len(numbering.internal_names), numbering.n)
     if len(internal):
         batches.append(_internal_batch(internal))
@@ -310,16 +314,6 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
         n_internal=len(internal),
         longest_step=min((s.longest_step() for e in model.elements() for s in e.signals()), default=np.inf),
     )
-
-
-def _refuse_mixed_friction(model: Parts, rows: Mapping[str, Sequence[int]]) -> None:
-    """Raise ModelError where contacts of the plane and of space both have Coulomb friction."""
-    found = {len(rows[c.name]) - 1: c.name for c in model.contacts if isinstance(c.friction, CoulombFriction)}
-    if len(found) > 1:
-        raise ModelError(
-            f"contacts '{found[1]}' of the plane and '{found[2]}' of space have Coulomb friction both: leave it out in "
-            "one kind, or give one kind a force law (CCFM) and regularised friction"
-        )
 
 
 def _of_outputs(outputs: Sequence[MarkerOutput], numbering: ModelNumbering) -> list[Derived]:

@@ -9,6 +9,12 @@ from ..state.modes import ALONG, MEMORY_SIZE, RATIO, SLIDE, STICKS
 
 
 @internal
+def in_space(ws: Any, k: int) -> bool:
+    """True if contact k has two tangents."""
+    return bool(ivec(ws.contact_second_rows, ws.n_contacts)[k] >= 0)
+
+
+@internal
 def is_held(ws: Any, k: int) -> bool:
     """True if closed contact k sticks along a tangent at least."""
     slide = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE]
@@ -19,7 +25,7 @@ def is_held(ws: Any, k: int) -> bool:
 def held_friction(ws: Any, k: int, lam: Any) -> float:
     """Size of the friction of contact k, which sticks, N, from multipliers `lam` (m_ext,)."""
     row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    if ws.tangents == 2:
+    if in_space(ws, k):
         memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
         share = memory[RATIO] * lam[ivec(ws.contact_rows, ws.n_contacts)[k]]
         across = lam[row + 1] if memory[SLIDE] == STICKS else share

@@ -44,14 +44,14 @@ def key_of(codes: NDArray[np.int64]) -> tuple[frozenset[int], frozenset[int], fr
 def want(ws: Any) -> None:
     """Ask for the structure of the contacts' present modes."""
     wanted, memory = ivec(ws.wanted, ws.n_contacts), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
-    slides = ivec(ws.contact_slide_rows, ws.n_contacts)
+    slides, seconds = ivec(ws.contact_slide_rows, ws.n_contacts), ivec(ws.contact_second_rows, ws.n_contacts)
     for k in range(ws.n_contacts):
         mode = memory[k, MODE]
         wanted[k] = ENGAGED if mode == ACTIVE else APART
         if mode == CLOSED:
             wanted[k] = HELD
             if slides[k] >= 0 and memory[k, SLIDE] == STICKS:
-                wanted[k] = STUCK if ws.tangents == 1 else STUCK_TWICE
+                wanted[k] = STUCK if seconds[k] < 0 else STUCK_TWICE
             elif memory[k, SLIDE] == ALONG:
                 wanted[k] = STUCK
 

@@ -28,6 +28,7 @@ from ..state.workspace_records import (
 )
 from .assembly import Assembly
 from .building import engage_wanted
+from .connection import contact_tangents
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
 from .partition_building import partition_wanted
@@ -44,7 +45,7 @@ _SHARED = (
 
 _OF_NOW = (*OF_STRUCTURE, *OF_PARTITION)
 """Arrays of the present structure and partition."""
-_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows")
+_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows", "contact_second_rows", "contact_tangents")
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
 _STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["serial"]
@@ -110,6 +111,8 @@ class Workspace:
             "batches": np.zeros(len(a.batches), dtype=np.int64),
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
+            "contact_second_rows": np.array([c.second_row for c in a.contacts], dtype=np.int64),
+            "contact_tangents": contact_tangents(a),
             "contact_sticking": sticking(a),
             "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
             "asleep": np.zeros(max(contacts, 1), dtype=np.int64),
@@ -260,10 +263,9 @@ class Workspace:
             BUILDING,
             {
                 **patterns(a), "replaced_row": rows, "replaced_contact": contacts,
-                **{name: arrays[name] for name in ("left_out", "units", "contact_rows", "contact_slide_rows")},
-                "contact_second_rows": np.array(
-                    [c.slide_row + 1 if c.tangents > 1 else -1 for c in a.contacts], dtype=np.int64
-                ),
+                **{name: arrays[name] for name in (
+                    "left_out", "units", "contact_rows", "contact_slide_rows", "contact_second_rows",
+                )},
                 "rate_rows": np.array([int(row in a.rate_rows) for row in range(a.m + 1)], dtype=np.int64),
                 "needs": slots.needs, "structures": slots.addresses,
             },

@@ -206,7 +206,7 @@ def _strain(stiffness, angle):
 @pytest.mark.parametrize(
     "make, words",
     [
-        (lambda ends: Servo3D(name="s", **ends, target=SINE), "no gain"),
+        (lambda ends: Servo3D(name="s", **ends, target=SINE), "neither gain nor rate_gain"),
         (lambda ends: Servo3D(name="s", **ends, target=SINE, gain=1.0, of_rate=True), "leave one of them out"),
         (lambda ends: PIDController3D(name="s", **ends, target=SINE), "no gain"),
         (lambda ends: PIDController3D(name="s", **ends, target=SINE, gain=1.0, integral_gain=-1.0), "one sign"),
