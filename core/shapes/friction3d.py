@@ -19,7 +19,7 @@ from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
 from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
-from .normal2d import act, asleep, evaluate_law
+from .normal2d import act, evaluate_law, idle
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
 from .sliding2d import FRICTION, FRICTION_ADDRESS
 from .slip3d import add_slip, slip_of_batch
@@ -142,7 +142,7 @@ def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, b.npar)
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
             rub_spheres(b, e)

@@ -10,7 +10,7 @@ from ..compiled.views import mat
 from ..elements.measure3d import COLUMNS
 from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
-from .normal2d import act, asleep
+from .normal2d import act, idle
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold
 from .spheres3d import press_spheres
 
@@ -22,7 +22,7 @@ def sphere3d_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, b.npar)
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
             press_spheres(b, e)

@@ -26,7 +26,7 @@ from ..state.modes import ALONG, AXIS, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, S
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
 from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
-from .normal2d import act, asleep
+from .normal2d import act, idle
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
 from .slip3d import add_slip, slip_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres, tangents_in_motion
@@ -214,7 +214,7 @@ def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
     par = mat(b.par, b.count, b.npar)
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
             grip_spheres(b, e)

@@ -13,7 +13,7 @@ from .geometry_kinds import SPHERE, are
 from .gripping3d import grip
 from .held3d import MOVES
 from .mesh_nearest3d import hold_on_mesh
-from .normal2d import act, asleep
+from .normal2d import act, idle
 from .normal3d import PACKED, SIZE, gap_of
 from .tangent3d import ROWS
 
@@ -24,7 +24,7 @@ def mesh3d_kernel(job: int, t: float, b: Any) -> None:
     held, moves = np.empty(COLUMNS), np.empty((MOVES, SIZE))
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         kind = hold_on_mesh(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
@@ -37,7 +37,7 @@ def rubbing_mesh3d_kernel(job: int, t: float, b: Any) -> None:
     work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         kind = hold_on_mesh(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
@@ -51,7 +51,7 @@ def gripping_mesh3d_kernel(job: int, t: float, b: Any) -> None:
     work, held, moves = np.empty((FRAME_ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         kind = hold_on_mesh(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)

@@ -34,6 +34,16 @@ def asleep(b: Any, e: int) -> bool:
 
 
 @internal
+def idle(b: Any, e: int, job: int) -> bool:
+    """True if element e of a batch of contacts has nothing to do: it is asleep, or its shapes do not press and only
+    its gap is asked for. Not so for friction with states of its own."""
+    if asleep(b, e):
+        return True
+    mode = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0], MODE]
+    return bool(job != RESIDUAL and mode != CLOSED and mode != ACTIVE)
+
+
+@internal
 def evaluate_law(b: Any, e: int, k: int, g: float, rate: float) -> Any:
     """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) of element e, contact k."""
     par = mat(b.par, b.count, b.npar)
@@ -107,7 +117,7 @@ def disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     coord = imat(b.coord, b.count, 6)
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         g, gradient, hessian = height_over_line(
             vec(b.q, b.n_extended), coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4]
@@ -121,7 +131,7 @@ def disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     coord = imat(b.coord, b.count, 6)
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         d, gradient, hessian = distance(vec(b.q, b.n_extended), coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])
         act(b, job, e, d - par[e, 5], gradient, hessian)

@@ -26,7 +26,7 @@ from ..elements.geometry2d import (
 from ..laws.friction import call_friction
 from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
 from .geometry_kinds import DISKS, PLANE, are
-from .normal2d import LAW_ADDRESS, act, asleep, evaluate_law
+from .normal2d import LAW_ADDRESS, act, evaluate_law, idle
 
 FRICTION = 11
 """First friction parameter in the table of parameters."""
@@ -184,7 +184,7 @@ def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_half_plane(q, coord[e], par[e])
         act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 0.0)
@@ -195,7 +195,7 @@ def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for i in range(shown(b)):
         e = shown_at(b, i)
-        if asleep(b, e):
+        if idle(b, e, job):
             continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_disk(q, coord[e], par[e])
         act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * par[e, 5])
