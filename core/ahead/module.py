@@ -151,6 +151,8 @@ def _mangled(module: str) -> str:
 
 _SELDOM = tuple(_mangled(module) for module in ("analysis", "cones", "events", "linalg.analyze", "repair"))
 """Where few bytes are worth more than speed: nothing is repeated there to save a jump."""
+_BUSY, _ALONE = _mangled("cones.contact_blocks"), _mangled("cones.contact_blocks.sweep_contacts")
+"""Of these, where time goes all the same, and what of it stays no part of its caller, which is one of the others."""
 
 
 def optimised(
@@ -167,7 +169,10 @@ def optimised(
     module = whole.clone()
     module.triple, module.data_layout = target.triple, str(machine.target_data)
     for function in module.functions:
-        if not function.is_declaration and any(part in function.name for part in _SELDOM):
+        if not function.is_declaration and _BUSY in function.name:
+            if _ALONE in function.name:
+                function.add_function_attribute("noinline")
+        elif not function.is_declaration and any(part in function.name for part in _SELDOM):
             function.add_function_attribute("optsize")
         if function.name in symbols:
             function.linkage = "external"

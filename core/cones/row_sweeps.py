@@ -12,6 +12,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat
+from .contact_blocks import WIDE, sweep_contacts
 
 
 @internal
@@ -51,66 +52,27 @@ def _move(r: int, impulse: float, responses: Any, where: Any, x: Any) -> None:
 
 
 @internal
-def _sweep(
-    count: int, tangents: int, stages: int, directions: Any, responses: Any, to_read: Any, to_move: Any,
-    masses: Any, off: Any, arms: Any, p: Any, x: Any,
-) -> float:  # fmt: skip
-    """One sweep over all rows; by how much a rate has changed most."""
-    change = 0.0
-    for i in range(count):
-        for stage in range(stages):
-            # the normal, the tangents, rolling, spinning: each with the motion that those before have left
-            first = (0 if stage == 0 else 1 if stage == 1 else tangents + 2 * stage - 3) * count + i
-            wide = tangents if stage == 1 else 2 if stage == 2 else 1
-            mass, new, other = 0.0, 0.0, 0.0
-            for k in range(wide):
-                mass = max(mass, masses[first + k * count])
-            if mass == 0.0 or (stage > 0 and arms[first] == 0.0):
-                continue
-            for k in range(wide):
-                r = first + k * count
-                rate = off[r] + _along(r, directions, to_read, x)
-                value = p[r] - rate / mass if masses[r] > 0.0 else 0.0
-                new, other = (value, other) if k == 0 else (new, value)
-            if stage == 0:
-                new = max(new, 0.0)
-            else:
-                size, limit = np.sqrt(new * new + other * other), arms[first] * p[i]
-                part = limit / size if size > limit else 1.0
-                new, other = part * new, part * other
-            for k in range(wide):
-                r = first + k * count
-                step = (new if k == 0 else other) - p[r]
-                if step != 0.0:
-                    p[r] += step
-                    _move(r, step, responses, to_move, x)
-                    change = max(change, abs(step) * mass)
-    return change
-
-
-@internal
 def sweep_rows(
-    count: int, tangents: int, turns: bool, rows: int, n: int, directions_at: int, responses_at: int, columns: int,
-    masses: Any, off: Any, arms: Any, p: Any, x: Any, work: Any, tolerance: float, most: int,
+    count: int, tangents: int, turns: bool, rows: int, n: int, wholes: Any, reals: Any, masses: Any, off: Any,
+    arms: Any, p: Any, x: Any, work: Any, tolerance: float, most: int,
 ) -> int:  # fmt: skip
     """Impulses p (rows,) of `count` contacts, and the change x (n,) of the motion that they cause; both go on from what
     they are. Until no rate changes by more than `tolerance` in a sweep, but at most so many: how many there were.
 
     Rows are normals, first and second tangents, two across the normal and one along it against turning, as many of them
     as `tangents` and `turns` say. off, masses, arms (rows,): rates without the impulses, the rows' inverse masses, 0
-    where a row takes none, and how far they may go, in parts of the normal impulse. work (2 rows + 2 n,).
+    where a row takes none, and how far they may go, in parts of the normal impulse. wholes, reals: the blocks of
+    `contact_blocks.pack_contacts`. work (2 rows + 2 n,).
 
     What a sweep changes is taken for the negative gradient of a function, and the way on is that of nonlinear
     conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010, with Fletcher's and Reeves's factor); where changes
     do not become smaller it begins anew. The last sweep goes nowhere else: its impulses lie within their limits.
     """
-    directions, responses = mat(directions_at, rows, n), mat(responses_at, rows, n)
-    to_read, to_move = imat(columns, rows, n + 1), imat(columns + 8 * rows * (n + 1), rows, n + 1)
-    stages, before = 4 if turns else 2, 0.0
+    stages, before, local = 4 if turns else 2, 0.0, np.zeros(2 * WIDE)
     for e in range(rows + n):
         work[e], work[rows + n + e] = p[e] if e < rows else x[e - rows], 0.0
     for turn in range(most):
-        change = _sweep(count, tangents, stages, directions, responses, to_read, to_move, masses, off, arms, p, x)
+        change = sweep_contacts(count, tangents, stages, rows, wholes, reals, masses, off, arms, p, x, local)
         if change <= tolerance:
             return turn + 1
         size = 0.0

@@ -4,7 +4,8 @@ about."""
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import imat, ivec, mat, vec
+from ..cones.contact_blocks import blocks_at, pack_contacts
 from ..cones.row_sweeps import along, list_columns
 from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
 from ..state.run_records import loop_at
@@ -76,7 +77,13 @@ def open_rows(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         arms[r] = vec(dr.friction, ws.n_contacts)[contacts[r % count]]
     if rows > (1 + ws.tangents) * count:
         find_turning_rows(ev, ws, loop_at(dr.loop), (1 + ws.tangents) * count, arms)
-    list_columns(rows, ws.n, mat(ev.directions, rows, ws.n), mat(ev.responses, rows, ws.n), ev.columns)
+    n, directions, responses = ws.n, mat(ev.directions, rows, ws.n), mat(ev.responses, rows, ws.n)
+    list_columns(rows, n, directions, responses, ev.columns)
+    wholes, reals = blocks_at(ev.block_wholes, ev.block_reals, ev.most, n)
+    pack_contacts(
+        count, n, rows, directions, responses, imat(ev.columns, rows, n + 1),
+        imat(ev.columns + 8 * rows * (n + 1), rows, n + 1), wholes, reals,
+    )  # fmt: skip
     return SETTLED
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
+from ..cones.contact_blocks import blocks_at
 from ..cones.row_sweeps import along, press_apart, sweep_rows
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
@@ -163,8 +164,9 @@ def _push(ev: Any, ws: Any, h: float) -> None:
     """Impulses of all rows; the velocities change by them, and the positions by half of h (s) of that."""
     count, rows, n, x = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ev.bounced, ws.n)
     v, q, changes = vec(ws.v, ws.n_ext), vec(ws.q, ws.n_ext), vec(ev.velocities, n)
+    wholes, reals = blocks_at(ev.block_wholes, ev.block_reals, ev.most, n)
     real(ev)[SWEPT] = sweep_rows(
-        count, ws.tangents, rows > (1 + ws.tangents) * count, rows, n, ev.directions, ev.responses, ev.columns,
+        count, ws.tangents, rows > (1 + ws.tangents) * count, rows, n, wholes, reals,
         part(ev, rows, TAKES), part(ev, rows, OFF), part(ev, rows, ARM), part(ev, rows, P), x, room(ev, rows, n),
         TOLERANCE * real(ev)[LARGEST], SWEEPS,
     )  # fmt: skip

@@ -9,6 +9,7 @@ from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.records import BlockRecord
 from ..cones.cones import CALLED, CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
+from ..cones.contact_blocks import block_reals, block_wholes
 from ..cones.directions import (
     FARTHEST_SIGNATURE,
     INDEPENDENT_SIGNATURE,
@@ -110,6 +111,7 @@ class Instant:
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
                 "directions": rows * n, "responses": rows * n, "sweeps": ROW_ROOM * rows + 2 * n,
                 "columns": 2 * rows * (n + 1),
+                "block_wholes": block_wholes(most, n), "block_reals": block_reals(most, n),
                 "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
                 "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,

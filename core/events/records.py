@@ -51,6 +51,7 @@ INSTANT = np.dtype(
             # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
             "space_a", "space_b", "space_p", "space_room", "pressing_a", "torques",
             "sweeps", "columns",         # room for `impulse_step.py`: float64 and int64
+            "block_wholes", "block_reals",  # and for `cones/contact_blocks.py`
         )
     ]
 )  # fmt: skip

@@ -28,6 +28,7 @@ from tlismni.core import (
     TurningFriction,
     simulate,
 )
+from tlismni.core.cones.contact_blocks import pack_contacts
 from tlismni.core.cones.row_sweeps import list_columns, press_apart, sweep_rows
 from tlismni.core.events.crowding import SIZE
 from tlismni.core.state.modes import CLOSED, MODE, PUSHED
@@ -233,9 +234,12 @@ def test_units_do_not_matter():
 @njit
 def _swept(count, tangents, turns, rows, n, directions, responses, columns, masses, off, arms, p, x, tolerance):
     list_columns(rows, n, directions, responses, columns.ctypes.data)
+    lists = columns.reshape(2, rows, n + 1)
+    wholes, reals = np.empty(count * (4 + 2 * n) + n, np.int64), np.empty(count * (36 + 12 * n))
+    pack_contacts(count, n, rows, directions, responses, lists[0], lists[1], wholes, reals)
     return sweep_rows(
-        count, tangents, turns, rows, n, directions.ctypes.data, responses.ctypes.data, columns.ctypes.data, masses,
-        off, arms, p, x, np.empty(2 * (rows + n)), tolerance, 100_000,
+        count, tangents, turns, rows, n, wholes, reals, masses, off, arms, p, x, np.empty(2 * (rows + n)), tolerance,
+        100_000,
     )  # fmt: skip
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from tlismni.core import (
-    SpringDamper3D,
     CoulombFriction,
     Marker3D,
     Model,
@@ -13,6 +12,7 @@ from tlismni.core import (
     Sphere3D,
     SphereInSphere3D,
     SphereOnSphere3D,
+    SpringDamper3D,
 )
 
 RADIUS, LARGE, SPEED = 0.1, 1.0, 8.0
