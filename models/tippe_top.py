@@ -26,22 +26,18 @@ PARAMETERS = (
     ScenarioParameter("tilt", 0.1, "rad", "of the axis against the vertical at the start", 0.0),
     ScenarioParameter("spin", 180.0, "rad/s", "angular velocity at the start"),
     ScenarioParameter(
-        "spin_tilt", 0.1, "rad", "angle of the angular velocity against the axis of symmetry, to the side of the tilt"
+        "spin_tilt", 0.0, "rad", "angle of the angular velocity against the axis of symmetry, to the side of the tilt"
     ),
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, against z", 0.0, exclusive=True),
     *law_parameters(restitution=0.0, stiffness=1e5),
     *friction_parameters(0.3, None, 1e-2),
     ScenarioParameter(
-        "patch_radius", 0.0, "m", "of the patch of contact, under constant pressure; 0: spins freely", 0.0
-    ),
-    ScenarioParameter(
-        "spin_transition", 0.1, "rad/s", "spin about the normal at which that torque has 71 % of its full size", 0.0,
-        exclusive=True,
+        "patch_radius", 5e-4, "m", "of the patch of contact, under constant pressure; 0: a point", 0.0
     ),
 )  # fmt: skip
-OF_SPINNING = Parameter(
-    name="spinning_friction", unit="m", minimum=0.0, description="arm of the normal force against spinning",
-    targets=("floor.turning.spinning", "stem.turning.spinning"),
+OF_PATCH = Parameter(
+    name="friction_radius", unit="m", minimum=0.0, description="of the patch: torque against spinning over friction",
+    targets=("floor.turning.friction_radius", "stem.turning.friction_radius"),
 )  # fmt: skip
 
 
@@ -50,7 +46,7 @@ def tippe_top(
     *, mass: float, inertia_across: float, inertia_along: float, radius: float, centre: float, stem_radius: float,
     stem_centre: float, tilt: float, spin: float, spin_tilt: float, gravity: float, law: str, restitution: float,
     stiffness: float, exponent: float, damping: float | None, relaxation_time: float | None, friction: float,
-    static_friction: float | None, transition_speed: float, patch_radius: float, spin_transition: float,
+    static_friction: float | None, transition_speed: float, patch_radius: float,
 ) -> Scenario:  # fmt: skip
     """Body `top`, contacts `floor` (the large sphere) and `stem` at z = 0; figures of Leine and Glocker (2003) but for
     their patch of contact of 0.5 mm, whose law of Coulomb and Contensou couples friction against sliding and spinning.
@@ -81,8 +77,7 @@ def tippe_top(
     rubs = contact_friction(
         touch, friction=friction, static_friction=static_friction, transition_speed=transition_speed
     )
-    arm = 2.0 / 3.0 * friction * patch_radius
-    drills = TurningFriction(spinning=arm, transition_speed=spin_transition) if arm > 0.0 else None
+    drills = TurningFriction(friction_radius=2.0 / 3.0 * patch_radius) if patch_radius > 0.0 else None
     top = RigidBody3D(
         name="top", mass=mass, inertia=(inertia_across, inertia_across, inertia_along),
         position=(0.0, 0.0, radius - centre * up), attitude=RotationVector(vector=(tilt, 0.0, 0.0)),
@@ -103,7 +98,7 @@ def tippe_top(
         parameters=(
             *law_model_parameters("floor", touch, "stem"),
             friction_model_parameter("floor", "stem"),
-            *(() if drills is None else (OF_SPINNING,)),
+            *(() if drills is None else (OF_PATCH,)),
         ),
     )
     return Scenario(

@@ -2,8 +2,9 @@
 
 Nonlinear Gauss-Seidel with projections (Jourdan, Alart and Jean 1998; Jean 1999): each row takes the impulse that
 brings its rate to zero, the normal one not below zero, the tangential ones and the torques against rolling within
-circles of the present normal one, that against spinning within its limit. No matrix of all contacts is formed: each row
-knows its gradient, and the motion that a unit impulse along it causes.
+circles of the present normal one, that against spinning within its limit, or with the tangential ones within a ball,
+where friction on a patch is one. No matrix of all contacts is formed: each row knows its gradient, and the motion that
+a unit impulse along it causes.
 """
 
 from typing import Any
@@ -65,19 +66,33 @@ def _sweep(
             mass, new, other = 0.0, 0.0, 0.0
             for k in range(wide):
                 mass = max(mass, masses[first + k * count])
-            if mass == 0.0 or (stage > 0 and arms[first] == 0.0):
+            # of a patch the torque against spinning is in the tangents' ball
+            spin, radius, third = (tangents + 3) * count + i, 0.0, 0.0
+            if stages > 2 and (stage == 1 or stage == 3) and arms[spin] < 0.0:
+                radius = -arms[spin]
+                mass = max(mass, radius * radius * masses[spin])
+            if mass == 0.0 or (stage > 0 and arms[first] == 0.0) or (stage == 3 and radius > 0.0):
                 continue
             for k in range(wide):
                 r = first + k * count
                 rate = off[r] + _along(r, directions, to_read, x)
                 value = p[r] - rate / mass if masses[r] > 0.0 else 0.0
                 new, other = (value, other) if k == 0 else (new, value)
+            if radius > 0.0:
+                rate = off[spin] + _along(spin, directions, to_read, x)
+                third = p[spin] / radius - radius * rate / mass if masses[spin] > 0.0 else 0.0
             if stage == 0:
                 new = max(new, 0.0)
             else:
-                size, limit = np.sqrt(new * new + other * other), arms[first] * p[i]
+                size, limit = np.sqrt(new * new + other * other + third * third), arms[first] * p[i]
                 part = limit / size if size > limit else 1.0
-                new, other = part * new, part * other
+                new, other, third = part * new, part * other, part * third
+            if radius > 0.0:
+                step = radius * third - p[spin]
+                if step != 0.0:
+                    p[spin] += step
+                    _move(spin, step, responses, to_move, x)
+                    change = max(change, abs(step) / radius * mass)
             for k in range(wide):
                 r = first + k * count
                 step = (new if k == 0 else other) - p[r]
@@ -98,7 +113,8 @@ def sweep_rows(
 
     Rows are normals, first and second tangents, two across the normal and one along it against turning, as many of them
     as `tangents` and `turns` say. off, masses, arms (rows,): rates without the impulses, the rows' inverse masses, 0
-    where a row takes none, and how far they may go, in parts of the normal impulse. work (2 rows + 2 n,).
+    where a row takes none, and how far they may go, in parts of the normal impulse; an arm of -r against spinning: that
+    of a patch of friction radius r, with the tangents. work (2 rows + 2 n,).
 
     What a sweep changes is taken for the negative gradient of a function, and the way on is that of nonlinear
     conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010, with Fletcher's and Reeves's factor); where changes

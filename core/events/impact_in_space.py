@@ -5,12 +5,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..cones.one_cone import one_cone
 from ..rounding import UNSOLVED
 from ..tables.evaluate import evaluate_residuals
 from .impact import MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, restitution
 from .laws import POISSON, SEQUENTIAL
-from .rates_in_space import masses, push_in_space, read_rates_in_space, solve_cones_in_space
+from .rates_in_space import masses, push_in_space, read_rates_in_space
 from .records import (
     APPROACH,
     BASE,
@@ -19,7 +18,6 @@ from .records import (
     ENDLESS_ROUNDS,
     FRICTION,
     IMPULSE,
-    KINETIC,
     KNOWN,
     LEFT,
     LOSS,
@@ -36,6 +34,7 @@ from .records import (
     SETTLED,
     SLIDE_BEFORE,
     SLIDE_RATE,
+    SPIN,
     SWAY_BEFORE,
     SWAY_RATE,
     WITHOUT,
@@ -44,6 +43,7 @@ from .records import (
     real,
     whole,
 )
+from .spins_in_space import one_blow, solve_blow
 
 
 @internal
@@ -77,7 +77,7 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             approach = col(ev, APPROACH)[i]
             col(ev, APPROACH)[i] = approach if approach > rounding[i] else -rate[i]
             before_n[i], before_t[i], before_s[i] = rate[i], slide[i], sway[i]
-        status = _sequence(ev, ws) if sequential else _blow(ev, dr, ws, turn >= MOST_BOUNCES)
+        status = _sequence(ev, dr, ws) if sequential else _blow(ev, dr, ws, turn >= MOST_BOUNCES)
         if status != SETTLED:
             return status
         for i in range(count):
@@ -120,7 +120,7 @@ def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
             if abs(b[count + i]) <= rounding[i] and abs(b[2 * count + i]) <= rounding[i]:
                 b[count + i] = b[2 * count + i] = 0.0
             col(ev, KNOWN)[i] = 0.0
-        if not solve_cones_in_space(ev, masses(ev, count), count, part, b, col(ev, KINETIC), base, col(ev, KNOWN), p):
+        if not solve_blow(ev, dr, ws, part, b, p):
             return NO_IMPACT
         push_in_space(ev, ws, p)
         for i in range(count):
@@ -133,10 +133,11 @@ def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
 
 
 @internal
-def _sequence(ev: Any, ws: Any) -> int:
+def _sequence(ev: Any, dr: Any, ws: Any) -> int:
     """One blow after another, the fastest approach first, until none approaches."""
     count, low = whole(ev)[COUNT], whole(ev)[WITHOUT] != 0
     a, v, p, rounding = masses(ev, count), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count), col(ev, ROUNDING)
+    friction, contacts = vec(dr.friction, ws.n_contacts), ivec(ev.contacts, ev.most)
     for i in range(count):
         v[i], v[count + i], v[2 * count + i] = col(ev, RATE)[i], col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i]
         p[i] = p[count + i] = p[2 * count + i] = 0.0
@@ -151,7 +152,7 @@ def _sequence(ev: Any, ws: Any) -> int:
             return SETTLED
         j, k = count + i, 2 * count + i
         own, wanted = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k]), v[i] * (1.0 + restitution(ev, low, i))
-        found, one, first, second = one_cone(own, (wanted, v[j], v[k]), col(ev, KINETIC)[i], 0.0)
+        found, one, first, second = one_blow(own, (wanted, v[j], v[k]), friction[contacts[i]], col(ev, SPIN)[i])
         if not found:
             return NO_IMPACT
         p[i] += one

@@ -85,8 +85,9 @@ instant_at = record_view(INSTANT_TYPE)
     AXIS_NOW,                          # that angles are counted from (`shapes/frame3d.py`)
     LOST_BEFORE,                       # J: of STOP_LOSS, before the last that stopped
     EARLY,                             # of contacts that stick, the larger, the earlier in their order
-) = range(81)  # fmt: skip
-COLUMNS = 81
+    SPIN, HELD_SPIN,                   # r w_n on a patch, m/s; part of the torque against it at rest
+) = range(83)  # fmt: skip
+COLUMNS = 83
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

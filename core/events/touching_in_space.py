@@ -21,6 +21,7 @@ from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.switch import engage_modes
 from .rates_in_space import masses, read_rates_in_space
 from .records import ALONE, COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
+from .spins_in_space import read_spins
 from .torques_in_space import find_torques, press_with_torques
 from .touching import entries_of, find_gradient, refuse_immovable
 
@@ -42,6 +43,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     # the rows of those that slid or stuck now tell both velocities
     evaluate_residuals(ws)
     find_torques(ev, ws, loop_at(dr.loop), count)
+    read_spins(ev, dr, ws)
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
     evaluate_tangent(ws, 0.0, 0.0)
