@@ -48,17 +48,18 @@ def tippe_top(
     stiffness: float, exponent: float, damping: float | None, relaxation_time: float | None, friction: float,
     static_friction: float | None, transition_speed: float, patch_radius: float,
 ) -> Scenario:  # fmt: skip
-    """Body `top`, contacts `floor` (the large sphere) and `stem` at z = 0; figures of Leine and Glocker (2003) but for
-    their patch of contact of 0.5 mm, whose law of Coulomb and Contensou couples friction against sliding and spinning.
-    Without it a top that spins just about its axis (`spin_tilt` 0) rolls after 0.04 s and stays upright, so here it
-    starts a little beside. (Their law, integrated apart, brings it onto its stem at 1.5 s from this start, and at 1.6
-    to 1.7 s if it spins about its axis.) With `patch_radius` there is a torque (2/3) mu N patch_radius about the normal
-    that does not fall with sliding, as theirs does by a factor of ten at 0.3 m/s: at 0.5 mm it stays below its stem.
+    """Body `top`, contacts `floor` (the large sphere) and `stem` at z = 0; figures of Leine and Glocker (2003), and
+    their friction, of Coulomb and Contensou: on a patch of contact the spin makes friction against sliding nearly
+    viscous, so that a top that spins about its axis slides on, turns over, and rises on its stem. Here friction on the
+    patch has an ellipsoid as its limit surface (`friction_radius` of two thirds of the patch's); the stem touches at
+    1.373 s, with the integral over the patch in its place at 1.372 s (tests/models/test_tippe_top.py).
 
-    A force at a sphere's lowest point has no moment along the line from the centre of mass to this point, so that,
-    while only one sphere touches and without that torque, L.(centre e - radius n) is constant (Jellett): L is the
-    angular momentum, e the axis, n upwards. Friction takes energy, and the top lifts its centre of mass. `stem`
-    touches first where cos(tilt) = (stem_radius - radius)/(stem_centre - centre).
+    With `patch_radius` 0 it spins on a point. Then a top that spins about its axis rolls after 0.04 s and stays
+    upright; one that starts a little beside it (`spin_tilt` 0.1) turns over. A force at a sphere's lowest point has no
+    moment along the line from the centre of mass to this point, so that, while only one sphere touches, on a point,
+    L.(centre e - radius n) is constant (Jellett): L is the angular momentum, e the axis, n upwards. Friction takes
+    energy, and the top lifts its centre of mass. `stem` touches first where
+    cos(tilt) = (stem_radius - radius)/(stem_centre - centre).
 
     Raises ScenarioError if the stem's sphere is in the floor at the start.
     """

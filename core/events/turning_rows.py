@@ -22,7 +22,7 @@ TURNING_ROWS = 3
 
 
 @internal
-def _axes(coord: Any, gradient: Any, n: int) -> Any:
+def axes_of_contact(coord: Any, gradient: Any, n: int) -> Any:
     """Two axes across the normal, and it: what the gap's gradient is by the place of a body."""
     first = 7 if coord[7] < n else 0
     x, y, z = gradient[coord[first]], gradient[coord[first + 1]], gradient[coord[first + 2]]
@@ -53,7 +53,7 @@ def find_turning_rows(ev: Any, ws: Any, lc: Any, first: int, arms: Any) -> None:
             clear(responses[row], n)
             if arms[row] == 0.0:
                 continue
-            a, b, c = _axes(coord, directions[i], n)
+            a, b, c = axes_of_contact(coord, directions[i], n)
             axis = a if block == 0 else b if block == 1 else c
             turning_gradient(vec(ws.q, ws.n_ext), coord, pair_of(batch, 0), axis, n, directions[row])
             for j in range(n):

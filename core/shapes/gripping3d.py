@@ -215,7 +215,10 @@ def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: A
             spin_changes(b, par, coord, held, work, n, spin)
         for j in range(width):
             of_v, by_t1, by_t2 = column(work, W, j), column(work, T1, j), column(work, T2, j)
-            along_1, along_2, g_3 = dot(of_v, t1), dot(of_v, t2), 0.0
+            along_1, along_2, of_q, c_v = dot(of_v, t1), dot(of_v, t2), column(work, U, j), vec(b.coef, 2)[1]
+            of_x = c_q * (dot(of_q, t1) + dot(u, by_t1)) + c_v * along_1
+            of_y = c_q * (dot(of_q, t2) + dot(u, by_t2)) + c_v * along_2
+            g_3 = (spin[j] - creeps / creeping * (x * of_x + y * of_y + z * spin[j])) / creeping
             if both or one:
                 values[slot_j[width + j]] += along_1
                 values[slot_jt[width + j]] += along_1
@@ -229,17 +232,13 @@ def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: A
                     change = plus(change, times(c_q * load, by_t2))
             else:
                 values[slot_jt[j]] -= dot(of_v, share)
-                of_q, c_v = column(work, U, j), vec(b.coef, 2)[1]
-                of_x = c_q * (dot(of_q, t1) + dot(u, by_t1)) + c_v * along_1
-                of_y = c_q * (dot(of_q, t2) + dot(u, by_t2)) + c_v * along_2
                 g_1, g_2 = 0.0, 0.0
                 if slides:
                     g_1, g_2, g_3 = turn_of_direction(way, of_x, of_y, spin[j])
                 change = plus(times(g_1, t1), plus(times(g_2, t2), times(c_q, plus(times(c, by_t1), times(s, by_t2)))))
                 change = times(load, change)
             # that of z becomes that of the torque
-            of_drills = par[FRICTION] * (g_3 if slides else spin[j] * (1.0 - creeps * creeps) / creeping)
-            spin[j] = lam[row[0]] * radius * of_drills
+            spin[j] = lam[row[0]] * radius * par[FRICTION] * g_3
             for i in range(width):
                 values[slot[i, j]] -= dot(column(work, W, i), change)
         if radius > 0.0:
