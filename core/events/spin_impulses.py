@@ -1,10 +1,9 @@
-"""Impacts on a patch: what the spin leaves of the friction along the tangents, and the impulse against the spin.
+"""Impacts on a patch: impulses along the tangents, and against the spin, as one friction.
 
 With the impulse zeta = M/r beside both of the tangents, and z = r w_n beside the sliding velocity, friction on a patch
-(`laws/friction/turning.py`) is (P_T, zeta) = -mu P_N (v_T, z)/s at the end of the blow. So each contact that spins has
-Coulomb's friction with the coefficient m that is the root of m - mu |v_T|/s, which grows with m; and z the one root of
-z + S mu P_N z/s = z without zeta, S being the inverse mass of the spin. Both in turn, until nothing changes: what spins
-changes little by what slides.
+(`laws/friction/turning.py`) is P = (P_T, zeta) = -mu P_N w/|w| at the end of the blow, w = (v_T, z). So w falls as if
+it were braked in proportion, P = -L w, with the L at which |P| is mu P_N: one root for each contact, and as large as
+can be where it sticks. Several contacts: sweeps of that over all of them, those that do not spin too.
 """
 
 import math
@@ -38,8 +37,11 @@ from .records import (
 )
 from .turning_rows import axes_of_contact
 
-MOST_TURNS, MOST_TRIALS, ENOUGH = 60, 100, 1e-13
-"""Rounds, trials for one coefficient, and how far it may be off, in parts of the full one."""
+MOST_TURNS, MOST_TRIALS, ENOUGH, ROUGH = 5000, 100, 1e-14, 1e-8
+"""Sweeps, trials for one contact; and in parts of the largest impulse how far these may be off, or at the end."""
+SMALLER_AFTER, LEAST_STEP = 300, 0.125
+STICKS = 1e-15
+"""In parts of the inverse masses: what brakes a contact that sticks."""
 
 
 @internal
@@ -112,68 +114,123 @@ def push_spins(ev: Any, ws: Any) -> None:
 
 
 @internal
-def _left(full: float, x: float, y: float, z: float) -> float:
-    """mu |v_T|/s; where nothing moves all of mu."""
-    speed = math.hypot(x, y)
-    size = math.hypot(speed, z)
-    return full * speed / size if size > 0.0 else full
+def _braked(a: Any, b: Any, base: float, brake: float, p: Any) -> Any:
+    """|P| of one contact with P = -brake w, and P_N; the impulses go to p (4,). (I + brake A_TT) w = b_T + a_TN P_N."""
+    d_1, l_21, l_31 = 1.0 + brake * a[1, 1], brake * a[2, 1], brake * a[3, 1]
+    l_21, l_31 = l_21 / d_1, l_31 / d_1
+    d_2 = 1.0 + brake * a[2, 2] - l_21 * l_21 * d_1
+    l_32 = (brake * a[3, 2] - l_31 * l_21 * d_1) / d_2
+    d_3 = 1.0 + brake * a[3, 3] - l_31 * l_31 * d_1 - l_32 * l_32 * d_2
+    free, pressed = (b[1], b[2], b[3]), (a[1, 0], a[2, 0], a[3, 0])
+    w, more = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for turn in range(2):
+        x, y, z = free if turn == 0 else pressed
+        y -= l_21 * x
+        z = (z - l_31 * x - l_32 * y) / d_3
+        y = y / d_2 - l_32 * z
+        x = x / d_1 - l_21 * y - l_31 * z
+        w, more = ((x, y, z), more) if turn == 0 else (w, (x, y, z))
+    grows = a[0, 0] - brake * (a[1, 0] * more[0] + a[2, 0] * more[1] + a[3, 0] * more[2])
+    wanted = b[0] - brake * (a[1, 0] * w[0] + a[2, 0] * w[1] + a[3, 0] * w[2])
+    p[0] = max(base, -wanted / grows) if grows > 0.0 else base
+    total = 0.0
+    for k in range(3):
+        p[1 + k] = -brake * (w[k] + p[0] * more[k])
+        total += p[1 + k] * p[1 + k]
+    return math.sqrt(total), p[0]
 
 
 @internal
-def _braked(z: float, speed: float, most: float) -> float:
-    """The root of x + most x/|(speed, x)| = z."""
-    low, high, x = 0.0, abs(z), abs(z)
+def one_patch(a: Any, b: Any, mu: float, base: float, p: Any) -> None:
+    """Impulses p (4,) of one contact: normal, both tangents, zeta; a (4, 4), b (4,): inverse masses, 1/kg, and the
+    motion without them, m/s. None along what cannot move: a driven spin goes on, and is counted in w."""
+    _solve_patch(a, b, mu, base, p)
+    for k in range(1, 4):
+        p[k] = p[k] if a[k, k] > 0.0 else 0.0
+
+
+@internal
+def _solve_patch(a: Any, b: Any, mu: float, base: float, p: Any) -> None:
+    p[0], p[1], p[2], p[3] = max(base, -b[0] / a[0, 0]), 0.0, 0.0, 0.0
+    size = a[1, 1] + a[2, 2] + a[3, 3]
+    if mu == 0.0 or size == 0.0 or (base == 0.0 and b[0] >= 0.0):
+        return
+    friction, normal = _braked(a, b, base, 1.0 / (STICKS * size), p)
+    if friction <= mu * normal:
+        return
+    # in parts of what is braked: 0 free, 1 sticks
+    low, high, of_low, of_high, side = 0.0, 1.0, -mu * max(base, -b[0] / a[0, 0]), friction - mu * normal, 0
     for _ in range(MOST_TRIALS):
-        over = x + most * x / max(math.hypot(speed, x), 1e-300) - abs(z)
-        if over > 0.0:
-            high = x
-        else:
-            low = x
-        x = 0.5 * (low + high)
-        if high - low <= 1e-16 * abs(z):
-            break
-    return math.copysign(x, z)
-
-
-@internal
-def _solve(ev: Any, part: Any, b: Any, p: Any, i: int, full: float, z: float) -> Any:
-    """(found, m - mu |v_T|/s of contact i, |v_T|) with the coefficients in MU and the spin z at the end."""
-    count, a = whole(ev)[COUNT], masses(ev, whole(ev)[COUNT])
-    x, y = b[count + i], b[2 * count + i]
-    if not solve_cones_in_space(ev, a, count, part, b, col(ev, MU), col(ev, BASE), col(ev, KNOWN), p):
-        return False, 0.0, 0.0
-    for j in range(3 * count):
-        x += a[count + i, j] * p[j]
-        y += a[2 * count + i, j] * p[j]
-    return True, col(ev, MU)[i] - _left(full, x, y, z), math.hypot(x, y)
-
-
-@internal
-def _find_coefficient(ev: Any, part: Any, b: Any, p: Any, i: int, full: float, z: float) -> Any:
-    """(found, |v_T|): the coefficient of contact i to MU, with the impulses p."""
-    mu, side = col(ev, MU), 0
-    low, high, mu[i] = 0.0, full, full
-    found, of_high, speed = _solve(ev, part, b, p, i, full, z)
-    if not found or of_high <= 0.0:
-        return found, speed
-    mu[i] = 0.0
-    found, of_low, speed = _solve(ev, part, b, p, i, full, z)
-    for _ in range(MOST_TRIALS):
-        if not found or of_low >= 0.0 or high - low <= ENOUGH * full:
-            break
         x = low - of_low * (high - low) / (of_high - of_low)
-        mu[i] = x if low < x < high else 0.5 * (low + high)
-        found, off, speed = _solve(ev, part, b, p, i, full, z)
-        if abs(off) <= ENOUGH * full:
+        x = x if low < x < high else 0.5 * (low + high)
+        friction, normal = _braked(a, b, base, x / ((1.0 - x) * size), p)
+        off = friction - mu * normal
+        if abs(off) <= ENOUGH * mu * normal or high - low <= ENOUGH * high:
             break
         # (Illinois: an end that stays counts for half)
         if off < 0.0:
-            low, of_low, of_high = mu[i], off, 0.5 * of_high if side < 0 else of_high
+            low, of_low, of_high = x, off, 0.5 * of_high if side < 0 else of_high
             side = -1
         else:
-            high, of_high, of_low = mu[i], off, 0.5 * of_low if side > 0 else of_low
+            high, of_high, of_low = x, off, 0.5 * of_low if side > 0 else of_low
             side = 1
-    return found, speed
+
+
+@internal
+def _inverse_masses(ev: Any, ws: Any) -> Any:
+    """Of normals, tangents and spins (4 count, 4 count)."""
+    count, a = whole(ev)[COUNT], masses(ev, whole(ev)[COUNT])
+    found = np.empty((4 * count, 4 * count))
+    for i in range(3 * count):
+        for j in range(3 * count):
+            found[i, j] = a[i, j]
+    for i in range(count):
+        for row in range(4 * count):
+            found[row, 3 * count + i] = found[3 * count + i, row] = _by_zeta(ev, ws, row, i)
+        for block in range(1, 3):
+            row = block * count + i
+            if a[row, row] == 0.0:  # a tangent without friction, or that joints hold
+                for other in range(count):
+                    found[row, 3 * count + other] = found[3 * count + other, row] = 0.0
+    return found
+
+
+@internal
+def _visit(
+    count: int, i: int, whole_a: Any, b: Any, p: Any, mu: float, base: float, a: Any, own: Any, one: Any
+) -> None:
+    """Impulses of contact i beside those of the others in p (4 count,), to one (4,)."""
+    for k in range(4):
+        row = k * count + i
+        own[k] = b[row]
+        for column in range(4 * count):
+            own[k] += whole_a[row, column] * p[column]
+        for l in range(4):
+            a[k, l] = whole_a[row, l * count + i]
+            own[k] -= a[k, l] * p[l * count + i]
+    one_patch(a, own, mu, base, one)
+
+
+@internal
+def _sweep(count: int, whole_a: Any, b: Any, part: Any, friction: Any, contacts: Any, base: Any, p: Any) -> bool:
+    """Impulses p (4 count,) of the contacts `part`; False if sweeps do not find them."""
+    a, own, one, step, largest, change = np.empty((4, 4)), np.empty(4), np.empty(4), 1.0, 0.0, 0.0
+    for turn in range(MOST_TURNS):
+        change, largest = 0.0, 0.0
+        # sweeps that go round in circles come to rest with smaller steps
+        step = max(0.5 * step, LEAST_STEP) if turn > 0 and turn % SMALLER_AFTER == 0 else step
+        for i in range(count):
+            if part[i] == 0.0:
+                continue
+            _visit(count, i, whole_a, b, p, friction[contacts[i]], base[i], a, own, one)
+            for k in range(4):
+                more = one[k] - p[k * count + i]
+                change = max(change, abs(more))
+                p[k * count + i] += step * more
+            largest = max(largest, p[i])
+        if change <= 10.0 * ENOUGH * largest:
+            return True
+    return change <= ROUGH * largest
 
 
 @internal
@@ -186,41 +243,17 @@ def solve_blow(ev: Any, dr: Any, ws: Any, part: Any, b: Any, p: Any) -> bool:
         mu[i], zeta[i] = friction[contacts[i]], 0.0
     if not any_spins(ev):
         return solve_cones_in_space(ev, masses(ev, count), count, part, b, mu, col(ev, BASE), col(ev, KNOWN), p)
-    motion, now = np.empty(3 * count), np.empty(count)
+    motion, found = np.empty(4 * count), np.zeros(4 * count)
     for i in range(count):
-        now[i] = col(ev, SPIN)[i]
-    directions, responses = mat(ev.directions, 4 * count, ws.n), mat(ev.responses, 4 * count, ws.n)
-    for _ in range(MOST_TURNS):
-        changed = 0.0
-        for i in range(count):
-            full = friction[contacts[i]]
-            if part[i] == 0.0 or col(ev, SPIN)[i] == 0.0 or full == 0.0:
-                continue
-            for row in range(3 * count):
-                motion[row] = b[row]
-                for k in range(count):
-                    if zeta[k] != 0.0:
-                        motion[row] += zeta[k] * _by_zeta(ev, ws, row, k)
-            before, spun = mu[i], now[i]
-            found, speed = _find_coefficient(ev, part, motion, p, i, full, now[i])
-            if not found:
-                return False
-            # z without zeta, and with it
-            z = col(ev, SPIN)[i]
-            for row in range(3 * count):
-                if p[row] != 0.0:
-                    for j in range(ws.n):
-                        z += p[row] * directions[3 * count + i, j] * responses[row, j]
-            for k in range(count):
-                if k != i and zeta[k] != 0.0:
-                    z += zeta[k] * _by_zeta(ev, ws, 3 * count + i, k)
-            own, most = _by_zeta(ev, ws, 3 * count + i, i), full * max(p[i], 0.0)
-            now[i] = _braked(z, speed, own * most)
-            zeta[i] = (now[i] - z) / own if own > 0.0 else 0.0
-            moved = abs(now[i] - spun) / max(abs(z), 1e-300)
-            changed = max(changed, abs(mu[i] - before) / full, moved)
-        if changed <= 10.0 * ENOUGH:
-            break
+        motion[3 * count + i], found[i] = col(ev, SPIN)[i], col(ev, BASE)[i] * part[i]
+        for block in range(3):
+            motion[block * count + i] = b[block * count + i]
+    if not _sweep(count, _inverse_masses(ev, ws), motion, part, friction, contacts, col(ev, BASE), found):
+        return False
+    for i in range(count):
+        zeta[i] = found[3 * count + i]
+        for block in range(3):
+            p[block * count + i] = found[block * count + i]
     return True
 
 
@@ -228,40 +261,23 @@ def solve_blow(ev: Any, dr: Any, ws: Any, part: Any, b: Any, p: Any) -> bool:
 def strike_spinning(ev: Any, dr: Any, ws: Any, i: int, v: Any, wanted: float) -> Any:
     """(found, P_N, P_1, P_2) of one blow on contact i, the rates being v (3 count,) and that of the gap `wanted`; ZETA
     of it is added to, v and SPIN follow it."""
-    count, j, k, full = whole(ev)[COUNT], whole(ev)[COUNT] + i, 2 * whole(ev)[COUNT] + i, 0.0
-    a, zeta = masses(ev, count), 0.0
-    full = vec(dr.friction, ws.n_contacts)[ivec(ev.contacts, ev.most)[i]]
-    own = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k])
-    z = col(ev, SPIN)[i]
-    if z == 0.0 or full == 0.0:
+    count, j, k = whole(ev)[COUNT], whole(ev)[COUNT] + i, 2 * whole(ev)[COUNT] + i
+    a, full = masses(ev, count), vec(dr.friction, ws.n_contacts)[ivec(ev.contacts, ev.most)[i]]
+    if col(ev, SPIN)[i] == 0.0 or full == 0.0:
+        own = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k])
         return one_cone(own, (wanted, v[j], v[k]), full, 0.0)
-    by_n, by_1, by_2 = _by_zeta(ev, ws, i, i), _by_zeta(ev, ws, j, i), _by_zeta(ev, ws, k, i)
-    inverse, now = _by_zeta(ev, ws, 3 * count + i, i), z
-    found, p, first, second = False, 0.0, 0.0, 0.0
-    for _ in range(MOST_TURNS):
-        b, low, high, x, y = (wanted + zeta * by_n, v[j] + zeta * by_1, v[k] + zeta * by_2), 0.0, full, 0.0, 0.0
-        for trial in range(MOST_TRIALS):
-            m = full if trial == 0 else 0.5 * (low + high)
-            found, p, first, second = one_cone(own, b, m, 0.0)
-            x = b[1] + own[1] * p + own[3] * first + own[4] * second
-            y = b[2] + own[2] * p + own[4] * first + own[5] * second
-            off = m - _left(full, x, y, now)
-            low, high = (m, high) if off < 0.0 else (low, m)
-            if not found or (trial == 0 and off <= 0.0) or high - low <= ENOUGH * full:
-                break
-        if not found:
-            break
-        without = z + by_n * p + by_1 * first + by_2 * second
-        spun, now = now, _braked(without, math.hypot(x, y), inverse * full * p)
-        zeta = (now - without) / inverse
-        if abs(now - spun) <= ENOUGH * abs(z):
-            break
-    col(ev, ZETA)[i] += zeta
+    every, rates, p = _inverse_masses(ev, ws), np.empty(4), np.empty(4)
+    square = np.empty((4, 4))
+    rows = (i, j, k, 3 * count + i)
+    rates[0], rates[1], rates[2], rates[3] = wanted, v[j], v[k], col(ev, SPIN)[i]
+    for m in range(4):
+        for l in range(4):
+            square[m, l] = every[rows[m], rows[l]]
+    one_patch(square, rates, full, 0.0, p)
+    col(ev, ZETA)[i] += p[3]
     for row in range(3 * count):
-        v[row] += zeta * _by_zeta(ev, ws, row, i)
+        v[row] += p[3] * every[row, 3 * count + i]
     for other in range(count):
-        if col(ev, SPIN)[other] != 0.0:
-            of_p = p * _by_zeta(ev, ws, i, other) + first * _by_zeta(ev, ws, j, other)
-            of_p += second * _by_zeta(ev, ws, k, other)
-            col(ev, SPIN)[other] += of_p + zeta * _by_zeta(ev, ws, 3 * count + other, i)
-    return found, p, first, second
+        for m in range(4):
+            col(ev, SPIN)[other] += p[m] * every[3 * count + other, rows[m]]
+    return True, p[0], p[1], p[2]

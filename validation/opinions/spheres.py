@@ -113,7 +113,8 @@ class _Body:
         self.weight = body.mass * np.array(scenario.model.gravity)
         q, v = body.initial_state()
         self.start = np.concatenate([q, v[:3], body.angular_velocity])
-        self.patch = 2.0 / 3.0 * float(scenario.parameters["patch_radius"])
+        # of the top
+        self.patch = 2.0 / 3.0 * float(scenario.parameters.get("patch_radius", 0.0))
 
     def rubs(self, y: Array, slip: Array) -> tuple[float, Array, Array]:
         """Speed that friction is a law of, and for each of its newtons the force and the torque about the vertical."""
