@@ -27,7 +27,7 @@ class TurningFriction(Record):
     load turns a shape that would stay at rest it creeps: with w_s L/sqrt(1 - L^2) under the part L < 1 of the full
     torque. Collisions, which are over at once, take nothing by it.
 
-    With `friction_radius` in place of `spinning`, friction against sliding and against spinning are one friction.
+    With `friction_radius` in place of `spinning`, friction against sliding and spinning is one, in collisions too.
     """
 
     type: Literal["Turning"] = "Turning"
@@ -39,7 +39,7 @@ class TurningFriction(Record):
     """r, m: the torque against spinning alone is mu F_n r, and friction against sliding and spinning lies on an
     ellipsoid: a spin takes from the one, sliding from the other; 0: a point, which spins freely but for `spinning`."""
     transition_speed: Positive = 1e-4
-    """w_s, rad/s: 71 % of the full torque is reached there."""
+    """w_s, rad/s: 71 % of the full torques against rolling, and by `spinning`, is reached there."""
 
     @model_validator(mode="after")
     def _some(self) -> "TurningFriction":
