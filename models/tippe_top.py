@@ -26,22 +26,18 @@ PARAMETERS = (
     ScenarioParameter("tilt", 0.1, "rad", "of the axis against the vertical at the start", 0.0),
     ScenarioParameter("spin", 180.0, "rad/s", "angular velocity at the start"),
     ScenarioParameter(
-        "spin_tilt", 0.1, "rad", "angle of the angular velocity against the axis of symmetry, to the side of the tilt"
+        "spin_tilt", 0.0, "rad", "angle of the angular velocity against the axis of symmetry, to the side of the tilt"
     ),
     ScenarioParameter("gravity", 9.81, "m/s^2", "gravity, against z", 0.0, exclusive=True),
     *law_parameters(restitution=0.0, stiffness=1e5),
     *friction_parameters(0.3, None, 1e-2),
     ScenarioParameter(
-        "patch_radius", 0.0, "m", "of the patch of contact, under constant pressure; 0: spins freely", 0.0
-    ),
-    ScenarioParameter(
-        "spin_transition", 0.1, "rad/s", "spin about the normal at which that torque has 71 % of its full size", 0.0,
-        exclusive=True,
+        "patch_radius", 5e-4, "m", "of the patch of contact, under constant pressure; 0: a point", 0.0
     ),
 )  # fmt: skip
-OF_SPINNING = Parameter(
-    name="spinning_friction", unit="m", minimum=0.0, description="arm of the normal force against spinning",
-    targets=("floor.turning.spinning", "stem.turning.spinning"),
+OF_PATCH = Parameter(
+    name="friction_radius", unit="m", minimum=0.0, description="of the patch: torque against spinning over friction",
+    targets=("floor.turning.friction_radius", "stem.turning.friction_radius"),
 )  # fmt: skip
 
 
@@ -50,19 +46,20 @@ def tippe_top(
     *, mass: float, inertia_across: float, inertia_along: float, radius: float, centre: float, stem_radius: float,
     stem_centre: float, tilt: float, spin: float, spin_tilt: float, gravity: float, law: str, restitution: float,
     stiffness: float, exponent: float, damping: float | None, relaxation_time: float | None, friction: float,
-    static_friction: float | None, transition_speed: float, patch_radius: float, spin_transition: float,
+    static_friction: float | None, transition_speed: float, patch_radius: float,
 ) -> Scenario:  # fmt: skip
-    """Body `top`, contacts `floor` (the large sphere) and `stem` at z = 0; figures of Leine and Glocker (2003) but for
-    their patch of contact of 0.5 mm, whose law of Coulomb and Contensou couples friction against sliding and spinning.
-    Without it a top that spins just about its axis (`spin_tilt` 0) rolls after 0.04 s and stays upright, so here it
-    starts a little beside. (Their law, integrated apart, brings it onto its stem at 1.5 s from this start, and at 1.6
-    to 1.7 s if it spins about its axis.) With `patch_radius` there is a torque (2/3) mu N patch_radius about the normal
-    that does not fall with sliding, as theirs does by a factor of ten at 0.3 m/s: at 0.5 mm it stays below its stem.
+    """Body `top`, contacts `floor` (the large sphere) and `stem` at z = 0; figures of Leine and Glocker (2003), and
+    their friction, of Coulomb and Contensou: on a patch of contact the spin makes friction against sliding nearly
+    viscous, so that a top that spins about its axis slides on, turns over, and rises on its stem. Here friction on the
+    patch has an ellipsoid as its limit surface (`friction_radius` of two thirds of the patch's); the stem touches at
+    1.373 s, with the integral over the patch in its place at 1.372 s (tests/models/test_tippe_top.py).
 
-    A force at a sphere's lowest point has no moment along the line from the centre of mass to this point, so that,
-    while only one sphere touches and without that torque, L.(centre e - radius n) is constant (Jellett): L is the
-    angular momentum, e the axis, n upwards. Friction takes energy, and the top lifts its centre of mass. `stem`
-    touches first where cos(tilt) = (stem_radius - radius)/(stem_centre - centre).
+    With `patch_radius` 0 it spins on a point. Then a top that spins about its axis rolls after 0.04 s and stays
+    upright; one that starts a little beside it (`spin_tilt` 0.1) turns over. A force at a sphere's lowest point has no
+    moment along the line from the centre of mass to this point, so that, while only one sphere touches, on a point,
+    L.(centre e - radius n) is constant (Jellett): L is the angular momentum, e the axis, n upwards. Friction takes
+    energy, and the top lifts its centre of mass. `stem` touches first where
+    cos(tilt) = (stem_radius - radius)/(stem_centre - centre).
 
     Raises ScenarioError if the stem's sphere is in the floor at the start.
     """
@@ -81,8 +78,7 @@ def tippe_top(
     rubs = contact_friction(
         touch, friction=friction, static_friction=static_friction, transition_speed=transition_speed
     )
-    arm = 2.0 / 3.0 * friction * patch_radius
-    drills = TurningFriction(spinning=arm, transition_speed=spin_transition) if arm > 0.0 else None
+    drills = TurningFriction(friction_radius=2.0 / 3.0 * patch_radius) if patch_radius > 0.0 else None
     top = RigidBody3D(
         name="top", mass=mass, inertia=(inertia_across, inertia_across, inertia_along),
         position=(0.0, 0.0, radius - centre * up), attitude=RotationVector(vector=(tilt, 0.0, 0.0)),
@@ -103,7 +99,7 @@ def tippe_top(
         parameters=(
             *law_model_parameters("floor", touch, "stem"),
             friction_model_parameter("floor", "stem"),
-            *(() if drills is None else (OF_SPINNING,)),
+            *(() if drills is None else (OF_PATCH,)),
         ),
     )
     return Scenario(

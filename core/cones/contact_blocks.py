@@ -122,26 +122,36 @@ def sweep_contacts(
             first, two = k * count + i, (stage == 1 and tangents == 2) or stage == 2
             second = first + count
             mass = max(masses[first], masses[second]) if two else masses[first]
-            if mass == 0.0 or (stage > 0 and arms[first] == 0.0):
+            # of a patch the torque against spinning is in the tangents' ball
+            spin, radius, third = (tangents + 3) * count + i, 0.0, 0.0
+            if stages > 2 and (stage == 1 or stage == 3) and arms[spin] < 0.0:
+                radius = -arms[spin]
+                mass = max(mass, radius * radius * masses[spin])
+            if mass == 0.0 or (stage > 0 and arms[first] == 0.0) or (stage == 3 and radius > 0.0):
                 continue
             new = p[first] - rates[k] / mass if masses[first] > 0.0 else 0.0
             other = p[second] - rates[k + 1] / mass if two and masses[second] > 0.0 else 0.0
+            if radius > 0.0 and masses[spin] > 0.0:
+                third = p[spin] / radius - radius * rates[tangents + 3] / mass
             if stage == 0:
                 new = max(new, 0.0)
             else:
-                size, limit = np.sqrt(new * new + other * other), arms[first] * p[i]
+                size, limit = np.sqrt(new * new + other * other + third * third), arms[first] * p[i]
                 part = limit / size if size > limit else 1.0
-                new, other = part * new, part * other
-            for s in range(2 if two else 1):
-                r = first + s * count
-                step = (new if s == 0 else other) - p[r]
+                new, other, third = part * new, part * other, part * third
+            for s in range(3):
+                if (s == 1 and not two) or (s == 2 and radius == 0.0):
+                    continue
+                row = k + s if s < 2 else tangents + 3
+                r = row * count + i
+                step = (new if s == 0 else other if s == 1 else radius * third) - p[r]
                 if step != 0.0:
                     moved = True
                     p[r] += step
-                    steps[k + s] = step
+                    steps[row] = step
                     for j in range(WIDE):
-                        rates[j] += reals[place + WIDE * j + k + s] * step
-                    change = max(change, abs(step) * mass)
+                        rates[j] += reals[place + WIDE * j + row] * step
+                    change = max(change, abs(step) * mass if s < 2 else abs(step) / radius * mass)
         if moved:
             _move(others, at + HEAD + width, place + COUPLING + WIDE * width, wholes, reals, steps, x)
     return change

@@ -2,8 +2,9 @@
 
 Nonlinear Gauss-Seidel with projections (Jourdan, Alart and Jean 1998; Jean 1999): each row takes the impulse that
 brings its rate to zero, the normal one not below zero, the tangential ones and the torques against rolling within
-circles of the present normal one, that against spinning within its limit. No matrix of all contacts is formed: each row
-knows its gradient, and the motion that a unit impulse along it causes.
+circles of the present normal one, that against spinning within its limit, or with the tangential ones within a ball,
+where friction on a patch is one. No matrix of all contacts is formed: each row knows its gradient, and the motion that
+a unit impulse along it causes.
 """
 
 from typing import Any
@@ -61,8 +62,9 @@ def sweep_rows(
 
     Rows are normals, first and second tangents, two across the normal and one along it against turning, as many of them
     as `tangents` and `turns` say. off, masses, arms (rows,): rates without the impulses, the rows' inverse masses, 0
-    where a row takes none, and how far they may go, in parts of the normal impulse. wholes, reals: the blocks of
-    `contact_blocks.pack_contacts`. work (2 rows + 2 n,).
+    where a row takes none, and how far they may go, in parts of the normal impulse; an arm of -r against spinning: that
+    of a patch of friction radius r, with the tangents. wholes, reals: the blocks of `contact_blocks.pack_contacts`.
+    work (2 rows + 2 n,).
 
     What a sweep changes is taken for the negative gradient of a function, and the way on is that of nonlinear
     conjugate gradients (Silcowitz-Hansen, Niebe and Erleben 2010, with Fletcher's and Reeves's factor); where changes

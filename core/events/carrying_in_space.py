@@ -30,7 +30,6 @@ from .records import (
     KEPT_DIRECTION,
     KEPT_FULL,
     KEPT_TAKES,
-    KINETIC,
     KNOWN,
     MOMENT,
     NEW_RATIO,
@@ -142,7 +141,7 @@ def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     its friction it leaves all that it carries there to them, for it can only slide across that."""
     count, some, flag = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), col(ev, FLAG)
     f_n, f_t, f_s, order = col(ev, F_N), col(ev, F_T), col(ev, F_S), ivec(ev.order, 2 * ev.most)
-    rank, normals, fastest = real(ev)[RANK], 0, 0.0
+    rank, normals, fastest, friction = real(ev)[RANK], 0, 0.0, vec(dr.friction, ws.n_contacts)
     for i in range(count):
         fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]), abs(col(ev, B_S)[i]))
     clear(flag, count)
@@ -170,7 +169,8 @@ def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         if _gives_way(ev, i, fastest):
             col(ev, DIRECTION)[i] = 0.0
         if col(ev, DIRECTION)[i] != 0.0 and rubs:
-            col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = 1.0, -col(ev, KINETIC)[i]
+            # (what a spin leaves of it the contact itself says)
+            col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = 1.0, -friction[ivec(ev.contacts, ev.most)[i]]
             continue
         # until it is known whether its tangents are told from others: a share
         col(ev, NEW_SLIDE)[i] = IDLE

@@ -3,15 +3,15 @@
 import math
 from typing import Any
 
-from ..compiled.jit import internal
+from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, vec
-from ..cones.one_cone import one_cone
 from ..rounding import UNSOLVED
+from ..state.run_records import LOOP_TYPE
 from ..tables.evaluate import evaluate_residuals
 from ..tables.held import in_space
 from .impact import MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, restitution
 from .laws import POISSON, SEQUENTIAL
-from .rates_in_space import masses, push_in_space, read_rates_in_space, solve_cones_in_space
+from .rates_in_space import masses, push_in_space, read_rates_in_space
 from .records import (
     APPROACH,
     BASE,
@@ -20,13 +20,13 @@ from .records import (
     ENDLESS_ROUNDS,
     FRICTION,
     IMPULSE,
-    KINETIC,
     KNOWN,
     LEFT,
     LOSS,
     NO_IMPACT,
     P_N,
     P_S,
+    P_SPIN,
     P_T,
     PART,
     RATE,
@@ -37,14 +37,20 @@ from .records import (
     SETTLED,
     SLIDE_BEFORE,
     SLIDE_RATE,
+    SPIN,
+    SPIN_BEFORE,
     SWAY_BEFORE,
     SWAY_RATE,
     WITHOUT,
+    ZETA,
     col,
     copy,
     real,
     whole,
 )
+from .spin_impulses import any_spins, find_spins, push_spins, solve_blow, strike_spinning
+
+loop_at = record_view(LOOP_TYPE)
 
 
 @internal
@@ -56,6 +62,8 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     before_n, before_t, before_s = col(ev, RATE_BEFORE), col(ev, SLIDE_BEFORE), col(ev, SWAY_BEFORE)
     loss, p_n, p_t, p_s = col(ev, LOSS), col(ev, P_N), col(ev, P_T), col(ev, P_S)
     read_rates_in_space(ev, ws)
+    if any_spins(ev):
+        find_spins(ev, ws, loop_at(dr.loop))
     for i in range(ws.m_act):
         joint_rates[i] = phid[active[i]]
     largest, left, sequential = 0.0, math.inf, False
@@ -78,11 +86,13 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             approach = col(ev, APPROACH)[i]
             col(ev, APPROACH)[i] = approach if approach > rounding[i] else -rate[i]
             before_n[i], before_t[i], before_s[i] = rate[i], slide[i], sway[i]
-        status = _sequence(ev, ws) if sequential else _blow(ev, dr, ws, turn >= MOST_BOUNCES)
+            col(ev, SPIN_BEFORE)[i], col(ev, P_SPIN)[i] = col(ev, SPIN)[i], 0.0
+        status = _sequence(ev, dr, ws) if sequential else _blow(ev, dr, ws, turn >= MOST_BOUNCES)
         if status != SETTLED:
             return status
         for i in range(count):
             work = p_n[i] * (before_n[i] + rate[i]) + p_t[i] * (before_t[i] + slide[i])
+            work += col(ev, P_SPIN)[i] * (col(ev, SPIN_BEFORE)[i] + col(ev, SPIN)[i])
             loss[i] -= 0.5 * (work + p_s[i] * (before_s[i] + sway[i]))
             col(ev, IMPULSE)[i] += p_n[i]
             rubs = math.sqrt(p_t[i] * p_t[i] + p_s[i] * p_s[i])
@@ -122,9 +132,10 @@ def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
             if abs(b[count + i]) <= rounding[i] and abs(b[2 * count + i]) <= rounding[i]:
                 b[count + i] = b[2 * count + i] = 0.0
             col(ev, KNOWN)[i] = 0.0
-        if not solve_cones_in_space(ev, masses(ev, count), count, part, b, col(ev, KINETIC), base, col(ev, KNOWN), p):
+        if not solve_blow(ev, dr, ws, part, b, p):
             return NO_IMPACT
         push_in_space(ev, ws, p)
+        push_spins(ev, ws)
         for i in range(count):
             p_n[i] += p[i]
             p_t[i] += p[count + i]
@@ -135,25 +146,26 @@ def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
 
 
 @internal
-def _sequence(ev: Any, ws: Any) -> int:
+def _sequence(ev: Any, dr: Any, ws: Any) -> int:
     """One blow after another, the fastest approach first, until none approaches."""
     count, low = whole(ev)[COUNT], whole(ev)[WITHOUT] != 0
     a, v, p, rounding = masses(ev, count), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count), col(ev, ROUNDING)
     for i in range(count):
         v[i], v[count + i], v[2 * count + i] = col(ev, RATE)[i], col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i]
-        p[i] = p[count + i] = p[2 * count + i] = 0.0
+        p[i] = p[count + i] = p[2 * count + i] = col(ev, ZETA)[i] = 0.0
     for _ in range(MOST_BLOWS):
         i = 0
         for k in range(count):
             i = k if v[k] < v[i] else i
         if v[i] >= -rounding[i]:
             push_in_space(ev, ws, p)
+            push_spins(ev, ws)
             for r in range(count):
                 col(ev, P_N)[r], col(ev, P_T)[r], col(ev, P_S)[r] = p[r], p[count + r], p[2 * count + r]
             return SETTLED
         j, k = count + i, 2 * count + i
-        own, wanted = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k]), v[i] * (1.0 + restitution(ev, low, i))
-        found, one, first, second = one_cone(own, (wanted, v[j], v[k]), col(ev, KINETIC)[i], 0.0)
+        wanted = v[i] * (1.0 + restitution(ev, low, i))
+        found, one, first, second = strike_spinning(ev, dr, ws, i, v, wanted)
         if not found:
             return NO_IMPACT
         p[i] += one

@@ -33,6 +33,7 @@ from .records import (
     F_N,
     F_S,
     F_T,
+    HELD_SPIN,
     KINETIC,
     KNOWN,
     LEAVES,
@@ -79,6 +80,8 @@ WEDGED = 1e-6
 of sliding."""
 SLIDES = 1e-6
 """Of what the free accelerations make in the moment: what moves less along its tangents at its end sticks."""
+SPINS = 0.9
+"""Part of the torque against spinning from which on a contact does not creep, but spins."""
 FAST = 1e3
 """Of the same: what moves more goes on as it did. Where a speed changes by more, the contact has been struck."""
 
@@ -174,11 +177,13 @@ def _say_what_slides(ev: Any, least: float) -> None:
         before = (col(ev, SLIDE_RATE)[i] ** 2 + col(ev, SWAY_RATE)[i] ** 2) ** 0.5
         direction[i] = col(ev, KNOWN)[i] = 0.0
         col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = 1.0, 0.0
-        if col(ev, STATIC)[i] > 0.0 and not inside and speed > SLIDES * least:
-            # what has slid goes on, the other begins
-            direction[i] = 1.0 if before > col(ev, ROUNDING)[i] else 2.0
+        spins = abs(col(ev, HELD_SPIN)[i]) > SPINS
+        if col(ev, STATIC)[i] > 0.0 and ((not inside and speed > SLIDES * least) or spins):
+            # what has slid or spun goes on, the other begins
+            direction[i] = 1.0 if before > col(ev, ROUNDING)[i] or spins else 2.0
             col(ev, KNOWN)[i] = 1.0
-            col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = x / speed, y / speed
+            if speed > 0.0:
+                col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = x / speed, y / speed
         elif col(ev, SLIPS)[i] != 0.0 and friction > (1.0 - REACHES_LIMIT_NOW) * col(ev, MU)[i] * max(p_n, 0.0):
             # its event is that it reaches its limit: others' directions are not those of the moment's end to the last
             # digit, and with them it may be just within

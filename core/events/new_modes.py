@@ -10,7 +10,20 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
-from ..state.modes import ALONG, AXIS, CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, WAY
+from ..state.modes import (
+    ALONG,
+    AXIS,
+    CLOSED,
+    GAP_START,
+    LEAN,
+    MEMORY_SIZE,
+    MODE,
+    OPEN,
+    RATIO,
+    SLIDE,
+    SLIDE_START,
+    WAY,
+)
 from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import CLOSE, GRAZE, OPENS, REST, SLIP, STICK, call_accelerations
@@ -29,6 +42,7 @@ from .records import (
     DIRECTION,
     FLAG,
     GAP,
+    HELD_SPIN,
     MET_LOSS,
     NEW_RATIO,
     NEW_SLIDE,
@@ -38,8 +52,11 @@ from .records import (
     SETTLED,
     SIN_WAY,
     SLID,
+    SLIDE_RATE,
     SLIDE_VALUE,
+    SPIN,
     STRUCK,
+    SWAY_RATE,
     WAS,
     call_part,
     col,
@@ -47,6 +64,9 @@ from .records import (
     whole,
 )
 from .report import report
+
+BEGINS_AT_REST = 0.9
+"""Part of the torque against spinning up to which a contact that begins to slide creeps."""
 
 
 @internal
@@ -77,6 +97,7 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         if in_space(ws, k):
             memory[WAY], memory[AXIS] = np.arctan2(col(ev, SIN_WAY)[i], col(ev, COS_WAY)[i]), col(ev, AXIS_NOW)[i]
             memory[SLOW_SLIDING] = slow_sliding(ws, k)
+            memory[LEAN] = _lean(ev, i) if abs(memory[SLIDE]) == 1.0 else 0.0
         elif memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
             memory[SLIDE_START] = col(ev, SLIDE_VALUE)[i]
     if some:
@@ -102,6 +123,15 @@ def _take_in_plane(memory: Any, way: float) -> None:
     elif memory[SLIDE] == 1.0:
         memory[SLIDE] = np.sign(way)
     memory[RATIO] *= way
+
+
+@internal
+def _lean(ev: Any, i: int) -> float:
+    """Angle out of the tangent plane at which contact i slides and spins; where it begins to, that of its friction."""
+    part = col(ev, HELD_SPIN)[i]
+    if col(ev, DIRECTION)[i] == BEGINS and abs(part) < BEGINS_AT_REST:
+        return float(np.arctan2(part, np.sqrt((1.0 - part) * (1.0 + part))))
+    return float(np.arctan2(col(ev, SPIN)[i], np.hypot(col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i])))
 
 
 @internal

@@ -32,7 +32,7 @@ INSTANT = np.dtype(
             "table",                     # (COLUMNS, most) float64: of each of them
             "reals", "wholes",           # (REALS,) float64, (WHOLES,) int64
             "a",                         # (2 most, 2 most) float64: inverse effective masses, normals first
-            # (2 most, n) float64, in space (3 most, n): gradients, and the motions that unit impulses cause
+            # (2 most, n) float64, in space (6 most, n): gradients, and the motions that unit impulses cause
             "directions", "responses",
             "some", "chosen", "order",   # (2 most,) int64, in space (3 most,)
             "kept_memory",               # (n_contacts, MEMORY_SIZE) float64
@@ -91,8 +91,10 @@ instant_at = record_view(INSTANT_TYPE)
     AXIS_NOW,                          # that angles are counted from (`shapes/frame3d.py`)
     LOST_BEFORE,                       # J: of STOP_LOSS, before the last that stopped
     EARLY,                             # of contacts that stick, the larger, the earlier in their order
-) = range(81)  # fmt: skip
-COLUMNS = 81
+    SPIN, HELD_SPIN,                   # r w_n on a patch, m/s; part of the torque against it at rest
+    ZETA, P_SPIN, SPIN_BEFORE,         # impulse M/r against it, N s: of one problem, of a blow; the spin before, m/s
+) = range(86)  # fmt: skip
+COLUMNS = 86
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

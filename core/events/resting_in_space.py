@@ -33,8 +33,10 @@ from .records import (
     SETTLED,
     SIN_WAY,
     SIZE,
+    SLID,
     SLIDE_RATE,
     SLOW,
+    SPIN,
     STATIC,
     STOPS,
     STRUCK,
@@ -44,6 +46,7 @@ from .records import (
     real,
     whole,
 )
+from .spins_in_space import brake_by_spins, read_spins
 from .touching import force_noise
 
 ENDS_WITH = 2.0
@@ -51,18 +54,21 @@ ENDS_WITH = 2.0
 
 
 @internal
-def _look(ev: Any, ws: Any) -> None:
-    """Which contacts slide, and where to: 1 in KNOWN, with COS_WAY and SIN_WAY; 0 where friction decides."""
+def _look(ev: Any, dr: Any, ws: Any) -> None:
+    """Which contacts slide or spin, and where to: 1 in KNOWN, with COS_WAY and SIN_WAY; 0 where friction decides."""
+    read_spins(ev, dr, ws)
     contacts = ivec(ev.contacts, ev.most)
     for i in range(whole(ev)[COUNT]):
         x, y, none = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i], max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
-        speed, stands = math.sqrt(x * x + y * y), col(ev, STOPS)[i] != 0.0 and whole(ev)[STRUCK] == 0
-        if stands:
-            # it has gone on in its direction to where error control does not resolve another
+        speed, z = math.sqrt(x * x + y * y), col(ev, SPIN)[i]
+        stood = z != 0.0 and col(ev, WAS)[i] == CLOSED and abs(col(ev, SLID)[i]) != 1.0
+        if (stood or col(ev, STOPS)[i] != 0.0) and whole(ev)[STRUCK] == 0:
+            # it has gone on in its direction to where error control does not resolve another; or it creeps
             none = max(none, ENDS_WITH * mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], SLOW_SLIDING])
-        slides = speed > none and col(ev, STATIC)[i] > 0.0
+        slides = math.sqrt(speed * speed + z * z) > none and col(ev, STATIC)[i] > 0.0
         col(ev, KNOWN)[i] = 1.0 if slides else 0.0
-        col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (x / speed, y / speed) if slides else (1.0, 0.0)
+        col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (x / speed, y / speed) if slides and speed > 0.0 else (1.0, 0.0)
+    brake_by_spins(ev, dr, ws)
 
 
 @internal
@@ -70,7 +76,7 @@ def begin_rest_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """As `begin_rest`."""
     count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
     read_rates_in_space(ev, ws)
-    _look(ev, ws)
+    _look(ev, dr, ws)
     slow = whole(ev)[STRUCK] == 0
     for i in range(count):
         held = whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED

@@ -42,6 +42,9 @@ def find_torques(ev: Any, ws: Any, lc: Any, count: int) -> None:
             continue
         row = rows[contacts[i]]
         if can_look(lc, contacts[i]):
+            # (of its normal force alone)
+            own, slide = vec(lc.probe_lam, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[contacts[i]]
+            own[slide] = own[slide + 1] = 0.0
             pull_alone(ws, lc, contacts[i], row, torques[i])
             continue
         before = lam[row]

@@ -24,6 +24,7 @@ from ..tables.held import in_space
 from ..tables.switch import engage_modes
 from .rates_in_space import masses, read_rates_in_space
 from .records import ALONE, COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
+from .spins_in_space import read_spins
 from .torques_in_space import find_torques, press_with_torques
 from .touching import entries_of, find_gradient, refuse_immovable, tell_touching
 
@@ -45,6 +46,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     evaluate_residuals(ws)
     lc = loop_at(dr.loop)
     find_torques(ev, ws, lc, count)
+    read_spins(ev, dr, ws)
     for i in range(count):
         memory[contacts[i], MODE] = CLOSED
     tell_touching(ev, ws, lc)

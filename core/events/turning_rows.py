@@ -1,7 +1,8 @@
 """Rows of a step of impulses against rolling and spinning: the angular velocity of one shape on the other.
 
 Two across the normal, whose torques share a circle with the radius rho P_N, and one along it, within sigma P_N
-(`laws/friction/turning.py`, without its transition). The torque of a row is its own unknown: what rests on another
+(`laws/friction/turning.py`, without its transition); on a patch of friction radius r it shares a ball of radius mu P_N
+with the tangents, which its arm of -r says. The torque of a row is its own unknown: what rests on another
 shape is held against turning within the step, whichever way its load would turn it.
 """
 
@@ -14,14 +15,14 @@ from ..linalg import lu_at, solve
 from ..location.probe import probe_of
 from ..model.rotation3d import cross, times
 from ..shapes.normal3d import SIZE, pair_of
-from ..shapes.turning3d import ROLLING, SPINNING, turning_gradient
+from ..shapes.turning3d import FRICTION_RADIUS, ROLLING, SPINNING, turning_gradient
 from .records import COUNT, FLAG, clear, col, whole
 
 TURNING_ROWS = 3
 
 
 @internal
-def _axes(coord: Any, gradient: Any, n: int) -> Any:
+def axes_of_contact(coord: Any, gradient: Any, n: int) -> Any:
     """Two axes across the normal, and it: what the gap's gradient is by the place of a body."""
     first = 7 if coord[7] < n else 0
     x, y, z = gradient[coord[first]], gradient[coord[first + 1]], gradient[coord[first + 2]]
@@ -36,22 +37,23 @@ def _axes(coord: Any, gradient: Any, n: int) -> Any:
 @internal
 def find_turning_rows(ev: Any, ws: Any, lc: Any, first: int, arms: Any) -> None:
     """Gradients of the angular velocities of the touching contacts, to `directions` from row `first` on, the motions
-    that unit torques cause, to `responses`, and rho and sigma, m, to arms (rows,). Zeros where nothing resists."""
+    that unit torques cause, to `responses`, and rho and sigma or -r, m, to arms (rows,). Zeros where nothing
+    resists."""
     count, n, rhs = whole(ev)[COUNT], ws.n, vec(ws.rhs, ws.n + ws.m_act)
     rows = first + TURNING_ROWS * count
     directions, responses = mat(ev.directions, rows, n), mat(ev.responses, rows, n)
     for i in range(count):
         k, turns = ivec(ev.contacts, ev.most)[i], col(ev, FLAG)[i] != 0.0
         batch = probe_of(lc, k)
-        coord, par = ivec(batch.coord, SIZE), vec(batch.par, SPINNING + 1)
+        coord, par = ivec(batch.coord, SIZE), vec(batch.par, FRICTION_RADIUS + 1)
         for block in range(TURNING_ROWS):
             row = first + block * count + i
-            arms[row] = (par[ROLLING] if block < 2 else par[SPINNING]) if turns else 0.0
+            arms[row] = (par[ROLLING] if block < 2 else par[SPINNING] - par[FRICTION_RADIUS]) if turns else 0.0
             clear(directions[row], n)
             clear(responses[row], n)
             if arms[row] == 0.0:
                 continue
-            a, b, c = _axes(coord, directions[i], n)
+            a, b, c = axes_of_contact(coord, directions[i], n)
             axis = a if block == 0 else b if block == 1 else c
             turning_gradient(vec(ws.q, ws.n_ext), coord, pair_of(batch, 0), axis, n, directions[row])
             for j in range(n):

@@ -70,7 +70,7 @@ def _solve_at(ws: Any, ms: Any, lc: Any, h: float, s: float, margins: Any) -> bo
     n, m = ws.n_ext, ws.m_ext
     q, v, a, r = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.r, n)
     lam, phi, phid, phidd = vec(ws.lam, m), vec(ws.phi, m), vec(ws.phid, m), vec(ws.phidd, m)
-    monitor, t = vec(ws.monitor, 2 * ws.n_contacts), vec(ws.t, 1)
+    monitor, t = vec(ws.monitor, 3 * ws.n_contacts), vec(ws.t, 1)
     states, levels, forces, now = np.empty((4, n)), np.empty((4, m)), monitor.copy(), t[0]
     states[0], states[1], states[2], states[3] = q, v, a, r
     levels[0], levels[1], levels[2], levels[3] = lam, phi, phid, phidd

@@ -100,7 +100,7 @@ def _look_at_system(ws: Any, ms: Any, lc: Any, row: int, h: float, s: float, vie
     """`look` for a contact that can be evaluated with the whole system only; the workspace is put back."""
     n, m = ws.n_ext, ws.m_ext
     kept, levels, t = np.empty((4, n)), np.empty((3, m)), vec(ws.t, 1)
-    monitor = vec(ws.monitor, 2 * max(ws.n_contacts, 1)).copy()
+    monitor = vec(ws.monitor, 3 * max(ws.n_contacts, 1)).copy()
     start, now = history_row(ws, ms, 0), t[0]
     q, v, a, r = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.r, n)
     phi, phid, phidd = vec(ws.phi, m), vec(ws.phid, m), vec(ws.phidd, m)

@@ -204,6 +204,7 @@ def _forget_in_memories(dr: Any, ws: Any, lc: Any, shift: int) -> None:
             if memory[MODE] == OPEN:
                 memory[APPROACH_SPEED] = memory[BEGUN_IMPULSE] = memory[BEGUN_LOSS] = 0.0
         elif law[k] != MASSLESS:
-            memory[APPROACH_SPEED] = 0.0
+            if not in_space(ws, k) or not (memory[MODE] == CLOSED and abs(memory[SLIDE]) == 1.0):
+                memory[APPROACH_SPEED] = 0.0  # (of what slides in space it is LEAN)
             if not in_space(ws, k) and not (memory[MODE] == CLOSED and memory[SLIDE] == STICKS):
                 memory[SLIDE_START] = 0.0

@@ -90,6 +90,12 @@ class Contact3D(ContactElement):
                 "carried: in space they are for all shapes on half-spaces, and for spheres and capsules on each other, "
                 "in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
             )
+        if isinstance(self.friction, LuGreFriction) and self.turning is not None and self.turning.friction_radius > 0.0:
+            raise ValueError(
+                f"contact '{self.name}' has LuGre friction, whose bristles bend along the tangents and do not twist, "
+                "and a friction_radius, which makes friction against sliding and spinning one: give `spinning` in its "
+                "place, or one of the other laws, such as BrownMcPhee"
+            )
         return self
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
@@ -140,7 +146,7 @@ class Contact3D(ContactElement):
         # small against all speeds that weight causes
         still = STILL * math.sqrt(numbering.length * (math.hypot(*numbering.gravity) or numbering.length))
         geometry = (float(self.kind), radius_a, radius_b, still, *extents, tilt)
-        turning = (0.0, 0.0, 1.0) if self.turning is None else self.turning.parameters()
+        turning = (0.0, 0.0, 1.0, 0.0) if self.turning is None else self.turning.parameters()
         return Row(
             (*geometry, *law.parameters, *columns_of(a, b, numbering), *numbers, *turning),
             coordinates_of(a, b, numbering), (*law.extra, address),

@@ -1,7 +1,8 @@
 """Regularised friction of contacts in space: a law of the sliding speed, against the direction of sliding.
 
 F_T = F(|u_T|, F_N) u_T/|u_T|, u_T = u - n (n.u) the sliding velocity (`tangent3d.py`); F < 0. The contact's second row
-says the sliding speed.
+says the sliding speed. On a patch the law speaks of s = |(u_T, z)|, z = r w_n (`turning3d.py`), in place of |u_T|:
+F_T = F(s, F_N) u_T/s, and the torque along n is F(s, F_N) r z/s.
 """
 
 import math
@@ -25,7 +26,16 @@ from .sliding2d import FRICTION, FRICTION_ADDRESS
 from .slip3d import add_slip, slip_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres
 from .tangent3d import NORMAL, ROWS, U, W, column
-from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_arms
+from .turning3d import (
+    FRICTION_RADIUS,
+    add_spin_tangent,
+    add_torque,
+    add_torque_tangent,
+    resists_turning,
+    spin_changes,
+    spin_on_patch,
+    turning_arms,
+)
 
 SLOW = 1e-150
 """m/s: below it the direction of sliding is lost to rounding, and the law's slope at rest says the force."""
@@ -57,13 +67,15 @@ def rub_spheres(b: Any, e: int) -> None:
     vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0], MODE] != ACTIVE:
         return
-    normal = max(found, 0.0)
-    force, by_rate, _ = _law(b, e, speed, normal)
-    pull_spheres(b, coord, motion, slip, times(force / speed if speed > SLOW else by_rate, slide))
-    vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = -force
+    normal, z = max(found, 0.0), spin_on_patch(b, par, coord, pair, n)
+    whole = math.sqrt(speed * speed + z * z)
+    force, by_rate, _ = _law(b, e, whole, normal)
+    over = force / whole if whole > SLOW else by_rate
+    pull_spheres(b, coord, motion, slip, times(over, slide))
+    vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = -over * speed
     if resists_turning(par):
         m, _ = turning_arms(b, par, coord, pair, n)
-        add_torque(b, coord, pair, times(-normal, m))
+        add_torque(b, coord, pair, less(times(over * par[FRICTION_RADIUS] * z, n), times(normal, m)))
 
 
 @internal
@@ -87,22 +99,27 @@ def regularised(
         return
     found, normal_d, normal_dd, _, _ = evaluate_law(b, e, k, g, rate_along(gradient, v, coord))
     normal = max(found, 0.0)
-    force, by_rate, by_normal = _law(b, e, speed, normal)
-    along = times(1.0 / speed, slide) if speed > SLOW else (0.0, 0.0, 0.0)
-    over_speed = force / speed if speed > SLOW else by_rate
-    pull = times(over_speed, slide)
-    m, power, turns_hard = (0.0, 0.0, 0.0), 0.0, resists_turning(par)
+    z, turns_hard = 0.0, resists_turning(par)
+    if turns_hard:
+        z = spin_on_patch(b, par, coord, held, n)
+    whole = math.sqrt(speed * speed + z * z)
+    force, by_rate, by_normal = _law(b, e, whole, normal)
+    one = 1.0 / whole if whole > SLOW else 0.0
+    along, along_z = times(one, slide), one * z
+    over_speed = force * one if whole > SLOW else by_rate
+    pull, torque = times(over_speed, slide), par[FRICTION_RADIUS] * over_speed * z
+    m, power = (0.0, 0.0, 0.0), 0.0
     if turns_hard:
         m, power = turning_arms(b, par, coord, held, n)
     if job == RESIDUAL:
         r = vec(b.r, b.n_extended)
         for i in range(width):
             r[coord[i]] -= dot(column(work, W, i), pull)
-        vec(b.monitor, b.n_monitor)[b.n_memory + k] = -force
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = -over_speed * speed
         if turns_hard:
-            add_torque(b, coord, held, times(-normal, m))
+            add_torque(b, coord, held, less(times(torque, n), times(normal, m)))
     elif job == POWER:
-        vec(b.a, b.n_extended)[extra[3]] -= force * speed - normal * power
+        vec(b.a, b.n_extended)[extra[3]] -= force * whole - normal * power
     elif job == TANGENT:
         values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
         slot = imat(b.slot_s + 8 * width * width * line_of(b, e), width, width)
@@ -111,7 +128,9 @@ def regularised(
         add_slip(
             kind, b, par, values, slot, coord, held, moves, work, beta_a, beta_b, size, pull, -coef[0],
         )  # fmt: skip
-        changes = np.empty(width)
+        changes, spins = np.empty(width), np.zeros(width)
+        if par[FRICTION_RADIUS] > 0.0:
+            spin_changes(b, par, coord, held, work, n, spins)
         for j in range(width):
             by_n, of_v = column(work, NORMAL, j), column(work, W, j)
             of_q = less(column(work, U, j), times(across, by_n))
@@ -124,15 +143,16 @@ def regularised(
             of_normal = -coef[0] * (normal_d * gradient[j] + normal_dd * turn) - coef[1] * normal_dd * gradient[j]
             changes[j] = -of_normal if found > 0.0 else 0.0
             slides = plus(times(coef[0], of_q), times(coef[1], of_v))
-            forward = dot(along, slides)
-            change = plus(
-                times(over_speed, less(slides, times(forward, along))),
-                times(by_rate * forward + by_normal * of_normal, along),
-            )
+            forward = dot(along, slides) + along_z * spins[j]
+            more = by_rate * forward + by_normal * of_normal
+            change = plus(times(over_speed, less(slides, times(forward, along))), times(more, along))
+            spins[j] = par[FRICTION_RADIUS] * (over_speed * (spins[j] - forward * along_z) + more * along_z)
             for i in range(width):
                 values[slot[i, j]] -= dot(column(work, W, i), change)
         if turns_hard:
             add_torque_tangent(b, par, coord, held, slot, work, n, m, -normal, changes)
+        if par[FRICTION_RADIUS] > 0.0:
+            add_spin_tangent(b, coord, held, slot, work, n, torque, spins)
 
 
 @internal

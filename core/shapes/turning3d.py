@@ -3,7 +3,9 @@
 w = w_b - w_a is the angular velocity of the second shape on the first, w_n = n.w its part along the normal, with which
 it spins, w_T the rest, with which it rolls. The torque on the second shape is M = -F_N m, on the first -M,
     m = rho w_T/sqrt(|w_T|^2 + w_s^2) + sigma n w_n/sqrt(w_n^2 + w_s^2),
-rho and sigma the arms in m, and w_s in rad/s.
+rho and sigma the arms in m, and w_s in rad/s. On a patch of friction radius r the part along the normal is no such
+torque: it goes with friction against sliding, `friction3d.py` and `patch3d.py` say how, and z = r w_n, m/s, stands
+for the spin beside the sliding velocity.
 """
 
 import math
@@ -17,15 +19,15 @@ from .support3d import SUPPORT_NUMBERS
 from .tangent3d import NORMAL, add_lever, column, space_axes
 
 ROLLING = NUMBERS + SUPPORT_NUMBERS
-SPINNING, SLOW_TURNS = ROLLING + 1, ROLLING + 2
-"""Columns of the parameters: rho, sigma, w_s."""
-TURNING_NUMBERS = 3
+SPINNING, SLOW_TURNS, FRICTION_RADIUS = ROLLING + 1, ROLLING + 2, ROLLING + 3
+"""Columns of the parameters: rho, sigma, w_s, r."""
+TURNING_NUMBERS = 4
 
 
 @internal
 def resists_turning(par: Any) -> bool:
     """True if the contact with these parameters has a torque."""
-    return par[ROLLING] > 0.0 or par[SPINNING] > 0.0
+    return par[ROLLING] > 0.0 or par[SPINNING] > 0.0 or par[FRICTION_RADIUS] > 0.0
 
 
 @internal
@@ -50,6 +52,61 @@ def turning_arms(b: Any, par: Any, coord: Any, pair: Any, n: Any) -> Any:
     w_n, w_t, of_n, of_t = _parts(par, w, n)
     m = plus(times(par[ROLLING] / of_t, w_t), times(par[SPINNING] * w_n / of_n, n))
     return m, dot(m, w)
+
+
+@internal
+def spin_on_patch(b: Any, par: Any, coord: Any, pair: Any, n: Any) -> float:
+    """z at the current point of a batch."""
+    if par[FRICTION_RADIUS] == 0.0:
+        return 0.0
+    return float(par[FRICTION_RADIUS] * dot(n, _spin(vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, pair)))
+
+
+@internal
+def spin_rate(b: Any, par: Any, coord: Any, pair: Any, n: Any, n_rate: Any) -> float:
+    """z' at the current point of a batch; E(p') p' = 0."""
+    q, v, a = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended)
+    return float(par[FRICTION_RADIUS] * (dot(n, _spin(q, a, coord, pair)) + dot(n_rate, _spin(q, v, coord, pair))))
+
+
+@internal
+def spin_changes(b: Any, par: Any, coord: Any, pair: Any, work: Any, n: Any, out: Any) -> None:
+    """Derivatives of z by the coordinates and velocities, each with its coefficient, to out (14,)."""
+    q, v = vec(b.q, b.n_extended), vec(b.v, b.n_extended)
+    c_q, c_v, r = vec(b.coef, 2)[0], vec(b.coef, 2)[1], par[FRICTION_RADIUS]
+    axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
+    spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
+    w = _spin(q, v, coord, pair)
+    for j in range(SIZE):
+        turn = _turns(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
+        out[j] = r * (dot(w, times(c_q, column(work, NORMAL, j))) + dot(n, turn))
+
+
+@internal
+def _turns(j: int, c_q: float, c_v: float, axes_a: Any, axes_b: Any, spin_a: Any, spin_b: Any) -> Any:
+    """Derivative of w by coordinate j and its velocity: E(p) b = -E(b) p."""
+    local = j % 7 - 3
+    if local < 0:
+        return (0.0, 0.0, 0.0)
+    if j < 7:
+        return less(times(2.0 * c_q, spin_a[local]), times(2.0 * c_v, axes_a[local]))
+    return less(times(2.0 * c_v, axes_b[local]), times(2.0 * c_q, spin_b[local]))
+
+
+@internal
+def add_spin_tangent(b: Any, coord: Any, pair: Any, slot: Any, work: Any, n: Any, torque: float, changes: Any) -> None:
+    """values += derivative of the residual with the torque `torque` n on the second body by the coordinates; changes
+    (14,): of its size."""
+    q, values, c_q = vec(b.q, b.n_extended), vec(b.values, b.n_values), vec(b.coef, 2)[0]
+    axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
+    for j in range(SIZE):
+        by = plus(times(changes[j], n), times(c_q * torque, column(work, NORMAL, j)))
+        on_a, on_b = onto(axes_a, by), onto(axes_b, by)
+        for i in range(4):
+            values[slot[3 + i, j]] += 2.0 * on_a[i]
+            values[slot[10 + i, j]] -= 2.0 * on_b[i]
+    add_lever(values, slot, 3, 2.0 * c_q, times(torque, n))
+    add_lever(values, slot, 10, -2.0 * c_q, times(torque, n))
 
 
 @internal
@@ -102,14 +159,8 @@ def add_torque_tangent(
     w = _spin(q, v, coord, pair)
     w_n, w_t, of_n, of_t = _parts(par, w, n)
     for j in range(SIZE):
-        local, by_n = j % 7 - 3, times(c_q, column(work, NORMAL, j))
-        change = (0.0, 0.0, 0.0)
-        if local >= 0:
-            # E(p) b = -E(b) p
-            if j < 7:
-                change = less(times(2.0 * c_q, spin_a[local]), times(2.0 * c_v, axes_a[local]))
-            else:
-                change = less(times(2.0 * c_v, axes_b[local]), times(2.0 * c_q, spin_b[local]))
+        by_n = times(c_q, column(work, NORMAL, j))
+        change = _turns(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
         along_n = dot(change, n) + dot(w, by_n)
         across = less(change, plus(times(along_n, n), times(w_n, by_n)))
         turn = less(times(1.0 / of_t, across), times(dot(w_t, across) / of_t**3, w_t))

@@ -30,4 +30,5 @@ MEMORY_SIZE = PUSHED + PUSHES
 # of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):
 WAY = SLIDE_START  # angle of the first tangent, rad
 AXIS = BEGUN_IMPULSE  # which axis of the first marker angles are counted from: 1, 2, 3; 0: not chosen
+LEAN = APPROACH_SPEED  # angle of the direction of sliding and spinning out of the tangent plane, rad
 SLOW = BEGUN_LOSS  # sliding speed whose direction error control does not resolve, m/s

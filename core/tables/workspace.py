@@ -105,7 +105,7 @@ class Workspace:
             "values": np.zeros(1),
             "coef": np.zeros(2),
             "energy": np.zeros(3),
-            "monitor": np.zeros(2 * max(contacts, 1)),
+            "monitor": np.zeros(3 * max(contacts, 1)),
             "signals": a.signals.copy(),
             "kernels": np.array([b.address for b in a.batches], dtype=np.int64),
             "batches": np.zeros(len(a.batches), dtype=np.int64),

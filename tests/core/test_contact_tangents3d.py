@@ -22,7 +22,7 @@ from tlismni.core import (
     TurningFriction,
 )
 from tlismni.core.shapes.gripping3d import TURNED
-from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, IDLE, MODE, RATIO, SLIDE, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, IDLE, LEAN, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 
 HARD = NewtonImpact(restitution=0.5)
 TANH = TanhFriction(coefficient=0.6, transition_speed=2.0)
@@ -61,6 +61,15 @@ CASES |= {
     for where, ends in TURNABLE.items()
     for law in (KELVIN, HUNT)
 }
+PATCH = TurningFriction(rolling=0.3, friction_radius=0.8, transition_speed=0.7)
+CASES |= {
+    f"{shape.__name__}, {where}, {law.type}, {friction.type} on a patch": (
+        shape(law, *ends, friction=friction, turning=PATCH), ACTIVE,
+    )
+    for shape in (on_plane, on_sphere)
+    for where, ends in TURNABLE.items()
+    for law, friction in ((KELVIN, TANH), (HUNT, PEAK))
+}  # fmt: skip
 
 
 def system(case):
@@ -133,8 +142,11 @@ def gripping(shape, where, slide, turning=None):
         twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
         point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
         axis = 1 if shape is on_plane else (3 if where == "a point mass" else 2)
-        columns = [MODE, SLIDE, RATIO, WAY, AXIS]
-        point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis
+        columns = [MODE, SLIDE, RATIO, WAY, AXIS, LEAN]
+        lean = 0.5 if slide == 1.0 and turning is PATCH else 0.0
+        point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis, lean
+        if turning is PATCH:  # sticking creeps with a speed that differences see
+            point.workspace.arrays["memory"][0, SLOW] = 0.4
     return point
 
 
@@ -149,7 +161,8 @@ def forward(point, state):
 
 @pytest.mark.parametrize("shape", [on_plane, on_sphere])
 @pytest.mark.parametrize(
-    ("where", "turning"), [*((where, None) for where in PLACES), *((where, TURNS) for where in TURNABLE)]
+    ("where", "turning"),
+    [*((where, None) for where in PLACES), *((where, turns) for where in TURNABLE for turns in (TURNS, PATCH))],
 )
 @pytest.mark.parametrize("slides", SLIDES)
 def test_tangent_of_coulomb_friction(shape, where, slides, turning):
@@ -176,9 +189,10 @@ def test_tangent_of_coulomb_friction(shape, where, slides, turning):
 
 
 @pytest.mark.parametrize("shape", [on_plane, on_sphere])
+@pytest.mark.parametrize("turning", [None, PATCH], ids=["point", "patch"])
 @pytest.mark.parametrize("slides", SLIDES)
-def test_rates_of_the_tangents_rows_fit_their_velocities(shape, slides):
-    point = gripping(shape, "two bodies", SLIDES[slides])
+def test_rates_of_the_tangents_rows_fit_their_velocities(shape, slides, turning):
+    point = gripping(shape, "two bodies", SLIDES[slides], turning)
     rows = point.workspace.assembly.contacts[0].slide_row + np.arange(2)
 
     @quick

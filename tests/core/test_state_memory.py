@@ -69,6 +69,7 @@ def run(name, end, method, between):
     [
         ("bouncing_ball", 2.5), ("pendulum_stop", 2.0), ("woodpecker", 0.4), ("stick_slip", 2.0),
         ("slider_crank_stop", 0.3), ("impact_oscillator", 1.0), ("newtons_cradle", 0.5), ("rocking_block", 1.0),
+        ("tippe_top", 1.5),
     ],
 )  # fmt: skip
 def test_nan_in_all_working_memory_changes_no_bit(name, end, method):

@@ -48,6 +48,7 @@ RUNS: list[tuple[str, dict[str, Any], float | None]] = [
     ("spinning_sphere", {"inertia": 0.005, "velocity_z": 0.5, "restitution": 0.8}, 1.5),
     ("spinning_sphere", {**LAW, "transition_speed": 1e-2}, 0.6),
     ("tippe_top", {}, 1.0),
+    ("tippe_top", {"patch_radius": 0.0, "spin_tilt": 0.1}, 1.0),
     ("tippe_top", {"law": "hertz"}, 0.05),
     ("spatial_cradle", {}, 0.4),
     ("arm_stop", {}, 0.29),

@@ -95,11 +95,9 @@ def _bounces(scenario: Scenario) -> Opinion:
 
 @opinion("tippe_top")
 def tippe_top(scenario: Scenario) -> Opinion | None:
-    """Newton's and Euler's equations: on the large sphere as a constraint, while it slides; by force on both. None with
-    friction against spinning."""
+    """Newton's and Euler's equations: on the large sphere as a constraint, while it slides; by force on both. On a
+    patch friction against sliding and spinning lies on an ellipsoid."""
     p = scenario.parameters
-    if float(p["patch_radius"]) > 0.0 and float(p["friction"]) > 0.0:
-        return None
     spheres = tuple((float(p[c]), float(p[r])) for c, r in (("centre", "radius"), ("stem_centre", "stem_radius")))
     if isinstance(scenario.model.contacts[0].law, NewtonImpact):
         return _slides(scenario, spheres)
@@ -115,6 +113,15 @@ class _Body:
         self.weight = body.mass * np.array(scenario.model.gravity)
         q, v = body.initial_state()
         self.start = np.concatenate([q, v[:3], body.angular_velocity])
+        # of the top
+        self.patch = 2.0 / 3.0 * float(scenario.parameters.get("patch_radius", 0.0))
+
+    def rubs(self, y: Array, slip: Array) -> tuple[float, Array, Array]:
+        """Speed that friction is a law of, and for each of its newtons the force and the torque about the vertical."""
+        spin = float((matrix(y[3:7]) @ y[10:13])[2])
+        speed = math.hypot(float(np.linalg.norm(slip)), self.patch * spin)
+        one = 1.0 / max(speed, 1e-300)
+        return speed, -one * slip, -one * self.patch**2 * spin * UP
 
     def contact(self, y: Array, centre: float, radius: float) -> tuple[float, float, Array, Array]:
         """Gap, its rate, the arm of the lowest point (3,), the slip there (3,)."""
@@ -149,14 +156,16 @@ class _Body:
 
 
 def _slides(scenario: Scenario, spheres: tuple[tuple[float, float], ...]) -> Opinion:
-    """The floor's force N (n - mu s/|s|) keeps the gap's second rate at zero; to the end of sliding, or the stem."""
+    """The floor's force N (n - mu s/|s|) keeps the gap's second rate at zero, s with the spin on a patch; to the end of
+    sliding, or the stem."""
     body, mu = _Body(scenario), float(scenario.parameters["friction"])
     floor, stem = spheres
 
     def along(y: Array) -> tuple[Array, Array]:
         _, _, arm, slip = body.contact(y, *floor)
-        pull = UP - mu * slip / max(float(np.linalg.norm(slip)), 1e-300)
-        return pull, np.cross(arm, pull)
+        _, friction, drill = body.rubs(y, slip)
+        pull = UP + mu * friction
+        return pull, np.cross(arm, pull) + mu * drill
 
     def rises(y: Array, rate: Array) -> float:
         """The gap's second rate for y' = rate."""
@@ -172,7 +181,7 @@ def _slides(scenario: Scenario, spheres: tuple[tuple[float, float], ...]) -> Opi
         return found
 
     def sticks(t: float, y: Array) -> float:
-        return float(np.linalg.norm(body.contact(y, *floor)[3])) - SLOW
+        return body.rubs(y, body.contact(y, *floor)[3])[0] - SLOW
 
     def strikes(t: float, y: Array) -> float:
         return body.contact(y, *stem)[0]
@@ -203,10 +212,11 @@ def _by_force(scenario: Scenario, spheres: tuple[tuple[float, float], ...]) -> O
         for k, speed in since.items():
             gap, rate, arm, slip = body.contact(y, *spheres[k])
             pushes[k] = push = _pushes(laws[k], gap, rate, speed)
-            slides, rubs = float(np.linalg.norm(slip)), laws[k].friction
+            (slides, friction, drill), rubs = body.rubs(y, slip), laws[k].friction
             pull = push * UP
             if rubs is not None and push > 0.0 and slides > 0.0:
-                pull = pull + rubs(slides, push) * slip / slides
+                size = -rubs(slides, push)
+                pull, torque = pull + size * friction, torque + size * drill
             force, torque = force + pull, torque + np.cross(arm, pull)
         return np.concatenate([body.rates(y, force, torque), pushes])
 
