@@ -121,6 +121,11 @@ def motion_of(result, body):
     return np.array([result[name] for name in names if name in result.channels])
 
 
+def is_felt(event, places):
+    """Not a touch without a blow: whether the last of a row of bounces is one, rounding says."""
+    return event.kind in ("stick", "slip") or event.impulse > 1e3 * places
+
+
 def same_parts(own, mixed, places, with_events=True):
     """Motion of each of the `own` (part, run) in the mixed run, and its events."""
     for part, run in own:
@@ -130,8 +135,8 @@ def same_parts(own, mixed, places, with_events=True):
         if not with_events:
             continue
         names = {contact.name for contact in part.contacts}
-        events = [event for event in mixed.events if event.contact in names]
-        alone = [event for event in run.events if event.contact in names]
+        events = [event for event in mixed.events if event.contact in names and is_felt(event, places)]
+        alone = [event for event in run.events if event.contact in names and is_felt(event, places)]
         assert [(e.kind, e.contact) for e in events] == [(e.kind, e.contact) for e in alone]
         for one, other in zip(alone, events, strict=True):
             assert one.t == pytest.approx(other.t, abs=places)
