@@ -1,4 +1,4 @@
-"""How the contact of the axes of two capsules makes way for contacts of their ends where they lie side by side.
+"""How the contact of two axes makes way for contacts of their ends where they lie side by side: of capsules, of edges.
 
 Nearly parallel the nearest points of two axes run from end to end as the capsules turn a little; parallel, these touch
 along a line, whose ends are ends of capsules. So below a small angle, of the sine `tilt`, the gap of the axes grows by
@@ -8,7 +8,7 @@ BACK (R_a + R_b) (1 - u)^3, u the squared sine over the squared tilt, and contac
 import math
 from typing import Any
 
-from ..compiled.jit import internal
+from ..compiled.jit import inlined, internal
 from ..elements.measure3d import AXES_A, AXES_B, add_bent
 from ..model.rotation3d import constant, dot, four, onto, turned, turning
 
@@ -16,6 +16,13 @@ BACK = 2e-3
 """Of the sum of the radii."""
 STEEPEST = 6.0 * math.sqrt(0.2) * 0.8**2
 """Of BACK (R_a + R_b)/tilt: the largest change by an angle, where u = 1/5."""
+
+
+@inlined
+def back_by(c: float, tilt: float, radii: float) -> float:
+    """By how much the gap is larger, m, where c is the cosine of the angle."""
+    rest = 1.0 - (1.0 - c * c) / (tilt * tilt)
+    return BACK * radii * rest**3 if rest > 0.0 else 0.0
 
 
 @internal
