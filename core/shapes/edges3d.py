@@ -33,9 +33,9 @@ from .overlap3d import apart
 
 ROUND = 1e-3
 """Of its smallest edge: radius of the edges of a box that is given none, where two sharp shapes touch."""
-SHORTER = 0.01
+SHORTER = 5e-4
 """Of the sum of the radii: by so much edges are shorter at both ends, where corners touch: no two contacts say the
-same. The gap is less than the distance by the square of it over twice the radii there at most, 5e-5 of their sum."""
+same. There the gap is less than the distance by the square of it over twice the radii at most, 1.3e-7 of their sum."""
 TILT = 0.01
 """Of the sum of the radii over the longest edge: sine of the angle below which corners carry in place of edges."""
 
