@@ -195,7 +195,7 @@ def test_what_is_thrown_at_each_other_keeps_momentum_and_energy(seed):
         assert total[after] == pytest.approx(total[before], abs=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(20, 30))
+@pytest.mark.parametrize("seed", [*range(20, 30), 48])
 def test_what_sticks_to_each_other_and_slides_off_keeps_momentum(seed):
     """Without bounce, with friction: they turn about edges and corners, slide over them and part."""
     bodies, shapes = thrown(seed)
@@ -203,8 +203,8 @@ def test_what_sticks_to_each_other_and_slides_off_keeps_momentum(seed):
     model = Model(gravity=(0.0, 0.0, 0.0), bodies=bodies, groups=[group_of(shapes, law=law, friction=friction)])
     result = simulate(model, 1.5, rtol=1e-7)
     assert overlap(result, shapes) < 1e-7
-    assert np.ptp(momenta(result, bodies), axis=0).max() < 1e-5
-    assert np.abs(result["energy.balance"]).max() < 1e-5
+    assert np.ptp(momenta(result, bodies), axis=0).max() < 2e-6
+    assert np.abs(result["energy.balance"]).max() < 2e-6
     assert all(event.energy_loss > -1e-12 for event in result.events)
 
 

@@ -10,6 +10,7 @@ from test_tangents import Point, check_levels, check_matrix
 from tlismni.core import (
     Box3D,
     Capsule3D,
+    ConsistencyError,
     ContactGroup3D,
     ConvexPolyhedron3D,
     EdgesOnEdges3D,
@@ -19,6 +20,7 @@ from tlismni.core import (
     ModelError,
     RigidBody3D,
     RotationVector,
+    compile_model,
     contacts_between,
 )
 from tlismni.core.shapes.edge_parts import edge_sorts, edges_of
@@ -174,7 +176,11 @@ def test_planks_that_go_through_each_other_at_the_start_are_refused():
     across = {"position": (0.0, 0.0, 0.19), "attitude": RotationVector(vector=(0.0, 0.0, 1.5))}
     with pytest.raises(ModelError, match="the Box3D on 'a' and the Box3D on 'b' overlap at the start"):
         Model(bodies=bodies(**across), groups=[group]).assemble()
-    Model(bodies=bodies(**across | {"position": (0.0, 0.0, 0.2)}), groups=[group]).assemble()
+    compiled = compile_model(Model(bodies=bodies(**across | {"position": (0.0, 0.0, 0.2)}), groups=[group]))
+    compiled.simulation()
+    for height in (0.19, 0.1, 0.02):
+        with pytest.raises(ConsistencyError, match="starts with the shapes overlapping"):
+            compiled.simulation(start={"b.z": height})
 
 
 def test_groups_and_files_hold_them(tmp_path):
