@@ -164,6 +164,7 @@ if TYPE_CHECKING:
     from .shapes.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
     from .shapes.disk_on_cable import DiskOnCable2D
     from .shapes.disk_on_line import DiskOnLine2D, Line2D
+    from .shapes.edges3d import EdgesOnEdges3D
     from .shapes.group2d import ContactGroup2D, contacts_between
     from .shapes.group3d import ContactGroup3D
     from .shapes.mesh3d import TriangleMesh3D, read_mesh
@@ -242,6 +243,7 @@ __all__ = [
     "Distance2D",
     "Distance3D",
     "DistanceStop3D",
+    "EdgesOnEdges3D",
     "Ellipsoid3D",
     "EquationError",
     "EquationSystem",
@@ -459,6 +461,7 @@ __getattr__, __dir__ = late_names(
         ".shapes.cornered3d": "Box3D Capsule3D ConvexPolyhedron3D Cylinder3D",
         ".shapes.disk_on_cable": "DiskOnCable2D",
         ".shapes.disk_on_line": "DiskOnLine2D Line2D",
+        ".shapes.edges3d": "EdgesOnEdges3D",
         ".shapes.group2d": "ContactGroup2D contacts_between",
         ".shapes.group3d": "ContactGroup3D",
         ".shapes.mesh3d": "TriangleMesh3D read_mesh",

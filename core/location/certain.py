@@ -9,7 +9,8 @@ the sixth power of their length. Parts are looked at in their order, so that the
 
 The bounds are those of the motion (`motion_bounds`). Of gaps that are linear in the coordinates nothing is left. Of
 deformable lines and of kernels and functions that a user has written the rest is taken from how far the polynomial of
-the whole was off at the middle; lines are divided at least until nothing moves by more than the shapes are thick.
+the whole was off at the middle; lines, and edges of bodies, are divided at least until nothing moves by more than the
+shapes are thick.
 """
 
 import math
@@ -23,9 +24,14 @@ from ..shapes.cable_line import BOTH as CABLE_BOTH
 from ..shapes.cable_line import LENGTH as CABLE_LENGTH
 from ..shapes.cable_line import POINT as CABLE_POINT
 from ..shapes.cable_line import VECTORS
+from ..shapes.edges_nearest3d import EDGES
 from ..shapes.geometry_kinds import CABLE, DISKS, EQUATIONS, LINE, LINEAR, OWN, PLANE, SEGMENT, SPHERE
+from ..shapes.held3d import ON_MESH
 from ..shapes.line2d import BOTH as LINE_BOTH
 from ..shapes.line2d import NODES, POINTS
+from ..shapes.mesh_nearest3d import OPEN
+from ..shapes.normal3d import KIND as SHAPES
+from ..shapes.normal3d import RADIUS_A, RADIUS_B
 from ..shapes.travel3d import way_of_sphere
 from .motion_bounds import control_points, gap_bounds
 from .probe import KIND, NEAR_SIZE, VIEW, look, probe_of, state_of_pair
@@ -95,6 +101,12 @@ def _thickness(lc: Any, k: int, kind: int) -> float:
         batch = probe_of(lc, k)
         both = mat(batch.par, batch.count, batch.npar)[0, LINE_BOTH if kind == LINE else CABLE_BOTH]
         return both if both > 0.0 else np.inf
+    if kind == SPHERE:
+        # edges that cross are apart again behind: the dip is as deep as they are round
+        batch = probe_of(lc, k)
+        par = mat(batch.par, batch.count, batch.npar)[0]
+        if int(par[SHAPES]) == ON_MESH and imat(batch.extra, batch.count, batch.nextra)[0, OPEN] == EDGES:
+            return par[RADIUS_A] + par[RADIUS_B]
     return np.inf
 
 
@@ -122,7 +134,7 @@ def _first_rest(left: Any, right: Any, tau: float) -> float:
 @internal
 def _excluded(
     lc: Any, k: int, kind: int, left: Any, right: Any, tau: float, sign: float, slack: float, speed: float,
-    rest: float,
+    thick: float, rest: float,
 ) -> Any:  # fmt: skip
     """(is there no root between two places, does the gap only fall there, is its polynomial somewhere negative)."""
     c = np.empty(7)
@@ -142,7 +154,7 @@ def _excluded(
         if g0 + g1 > way:
             return True, False, False
         lowered = sixth / 14400.0
-    elif way > _thickness(lc, k, kind):
+    elif way > thick:
         return False, False, lowest < -slack
     if lowest >= -slack and c[3] - lowered >= -slack:
         return True, False, False
@@ -194,9 +206,9 @@ def first_root(
     if _pair(kind):
         state_of_pair(ws, ms, lc, k, h, 0.0, left[4:])
         state_of_pair(ws, ms, lc, k, h, 1.0, right[4:])
-    # per second, for the whole step: of lines, whose nodes are many
-    speed = np.inf
-    if kind == LINE or kind == CABLE:
+    # per second, for the whole step: of lines, whose nodes are many, and of thin edges
+    speed, thick = np.inf, _thickness(lc, k, kind)
+    if kind == LINE or kind == CABLE or thick < np.inf:
         speed = way_of_gap(ws, lc, k, 1) / h
     rests[0] = _first_rest(left, right, h)
     depth, looks = 1, 0
@@ -204,7 +216,7 @@ def first_root(
         right, rest = stack[depth - 1], rests[depth - 1]
         long = right[0] - left[0]
         beyond = ended if right[0] == 1.0 else sign * right[1] < -slack
-        excluded, falls, dips = _excluded(lc, k, kind, left, right, long * h, sign, slack, speed, rest)
+        excluded, falls, dips = _excluded(lc, k, kind, left, right, long * h, sign, slack, speed, thick, rest)
         if not beyond and (excluded or (long <= SHORTEST and not dips) or looks > MOST_LOOKS):
             left[:] = right
             depth -= 1

@@ -16,11 +16,15 @@ from ..methods.history import history_time
 from ..rounding import NO_STEP, RESOLVED_TIME, SAME_INSTANT, SAME_TRIAL
 from ..state.workspace_records import OK
 from .probe import VIEW, look
-from .trials import GAP, OVERLAP, make_trial, trial_value
+from .trials import FORCE, GAP, OVERLAP, make_trial, trial_value
 
 MAX_TRIALS, MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON = 60, 40, 60, 6
 JUMP = 1e-6
 """A function that is this large, relative to its largest value, right beside its root jumps there."""
+SHORT = 1e-6
+"""Of a step: the last one before a jump of a force is this long."""
+CLEARLY = 1e4
+"""Of the least time: what is behind a jump by so much is not before it by rounding."""
 NEAREST = 3
 """Sizes of steps before and beyond the last event that was searched for, and the size that ends there."""
 
@@ -79,8 +83,17 @@ def find_root(
         last_x, last_f = x, f
         x = proposal
     # a gap below zero by rounding that nothing closes would pass the same limit again
-    if (f_low > JUMP * largest or what == OVERLAP) and not np.isnan(f_high):
-        x = x_high
+    jumps = f_low > JUMP * largest
+    if what == FORCE and x_low == 0.0 and np.isnan(f_low):
+        # right behind the newest row, whose force is none of those that have been tried
+        jumps = f_high < -JUMP * largest
+    if (jumps or what == OVERLAP) and not np.isnan(f_high):
+        if what == FORCE and x_low > 10.0 * SHORT * full:
+            # a step takes what is at its end for a part of all of it: let the one over the jump be short
+            x = x_low - SHORT * full
+            return make_trial(dr, ws, ms, lc, x, full), x, False
+        # clearly behind it: rounding must not take back what has been passed
+        x = min(x_high + max(0.1 * SHORT * full, CLEARLY * resolved), full) if what == FORCE else x_high
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low

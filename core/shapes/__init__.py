@@ -12,7 +12,7 @@ CONTACTS = LateClasses(
     "DiskOnPolygon2D Rope2D AngleStop2D CoordinateContact SphereOnHalfSpace3D SphereOnSphere3D "
     "SmoothOnHalfSpace3D SphereInSphere3D CapsuleOnCapsule3D SphereOnCable3D "
     "CableOnHalfSpace3D SphereOnMesh3D SphereOnSmooth3D SphereOnCylinder3D SphereOnRing3D "
-    "AngleStop3D SlideStop3D Rope3D DistanceStop3D",
+    "EdgesOnEdges3D AngleStop3D SlideStop3D Rope3D DistanceStop3D",
 )
 
 Contact = Annotated[ContactElement, OpenUnion(CONTACTS, ContactElement)]
@@ -29,6 +29,7 @@ __getattr__, __dir__ = late_names(
         ".coordinate_contact": "CoordinateContact",
         ".disk_on_cable": "DiskOnCable2D",
         ".disk_on_line": "DiskOnLine2D",
+        ".edges3d": "EdgesOnEdges3D",
         ".group2d": "ContactGroup2D",
         ".group3d": "ContactGroup3D",
         ".on_cable3d": "CableOnHalfSpace3D SphereOnCable3D",

@@ -87,8 +87,8 @@ class Contact3D(ContactElement):
         if isinstance(self.friction, LuGreFriction) and type(self).kind not in BRISTLES:
             raise ValueError(
                 f"contact '{self.name}' is a {type(self).__name__}, along which the bristles of LuGre friction are not "
-                "carried: in space they are for all shapes on half-spaces, and for spheres and capsules on each other, "
-                "in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
+                "carried: in space they are for all shapes on half-spaces, for spheres, capsules, boxes and polyhedra "
+                "on each other, in spheres and on meshes; give it one of the other laws, such as BrownMcPhee"
             )
         if isinstance(self.friction, LuGreFriction) and self.turning is not None and self.turning.friction_radius > 0.0:
             raise ValueError(

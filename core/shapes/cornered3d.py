@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import field_validator
+from pydantic import field_validator, model_validator
 
 from ..model.base import NonNegative, Positive, Record
 from ..model.markers import Marker3D
@@ -41,20 +41,35 @@ class Cornered3D(Record):
 
 
 class Box3D(Cornered3D):
-    """A box about the marker, its edges along the marker's axes. It touches spheres, and half-spaces by
-    its corners."""
+    """A box about the marker, its edges along the marker's axes. It touches spheres, boxes, polyhedra and capsules, and
+    half-spaces by its corners."""
 
     type: Literal["Box3D"] = "Box3D"
     size: tuple[Positive, Positive, Positive]
     """Lengths of the edges along the marker's x, y and z axes, m."""
+    edge_radius: NonNegative = 0.0
+    """Radius by which corners and edges are rounded, within the size, m; 0: sharp. Where two shapes without any radius
+    touch, boxes are rounded by a thousandth of their smallest edge."""
+
+    @model_validator(mode="after")
+    def _is_round_within(self) -> "Box3D":
+        if not 2.0 * self.edge_radius < min(self.size):
+            raise ValueError(
+                f"an edge_radius of {self.edge_radius:g} m leaves no face of a box whose smallest edge is "
+                f"{min(self.size):g} m: make it less than {0.5 * min(self.size):g} m, or take a Sphere3D or Capsule3D"
+            )
+        return self
 
     def places(self) -> NDArray[np.float64]:
-        return np.array(list(product((0.5, -0.5), repeat=3))) * np.array(self.size)
+        return np.array(list(product((0.5, -0.5), repeat=3))) * (np.array(self.size) - 2.0 * self.edge_radius)
+
+    def rounding(self) -> float:
+        return self.edge_radius
 
 
 class ConvexPolyhedron3D(Cornered3D):
-    """The convex hull of points. It touches spheres, and half-spaces by its corners; points within it
-    touch nothing."""
+    """The convex hull of points. It touches spheres, boxes, polyhedra and capsules, and half-spaces by its corners;
+    points within it touch nothing."""
 
     type: Literal["ConvexPolyhedron3D"] = "ConvexPolyhedron3D"
     vertices: tuple[tuple[float, float, float], ...]
@@ -87,7 +102,7 @@ class ConvexPolyhedron3D(Cornered3D):
 
 class Capsule3D(Cornered3D):
     """A cylinder with a hemisphere at each end, about the marker, its axis along the marker's z axis. It touches
-    half-spaces, by its ends."""
+    spheres, capsules, boxes and polyhedra, and half-spaces by its ends."""
 
     type: Literal["Capsule3D"] = "Capsule3D"
     length: Positive

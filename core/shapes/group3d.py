@@ -25,11 +25,11 @@ class ContactGroup3D(ContactGroup):
     spheres: tuple[Sphere3D, ...] = ()
     """They touch all shapes."""
     boxes: tuple[Box3D, ...] = ()
-    """They touch spheres, and half-spaces by their corners."""
+    """They touch spheres, boxes, polyhedra and capsules, and half-spaces by their corners."""
     polyhedra: tuple[ConvexPolyhedron3D, ...] = ()
-    """They touch spheres, and half-spaces by their corners."""
+    """They touch spheres, boxes, polyhedra and capsules, and half-spaces by their corners."""
     capsules: tuple[Capsule3D, ...] = ()
-    """They touch spheres, capsules and half-spaces."""
+    """They touch spheres, boxes, polyhedra, capsules and half-spaces."""
     cylinders: tuple[Cylinder3D, ...] = ()
     """They touch spheres, and half-spaces by their rims."""
     meshes: tuple[TriangleMesh3D, ...] = ()
@@ -49,11 +49,12 @@ class ContactGroup3D(ContactGroup):
     except_bodies: tuple[tuple[str, str], ...] = ()
     """Pairs of bodies that do not touch, such as those that a joint holds together."""
     pass_through: tuple[tuple[str, str], ...] = ()
-    """Pairs of kinds of shapes that pass through each other, such as "Box3D" and "Box3D", which have no contact."""
+    """Pairs of kinds of shapes that pass through each other, such as "Box3D" and "Cylinder3D", which have no
+    contact."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
-        """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as two
-        boxes, if `pass_through` does not name them."""
+        """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as a
+        box and a cylinder, if `pass_through` does not name them."""
         cornered: tuple[GroupShape, ...] = (
             *self.boxes, *self.polyhedra, *self.capsules, *self.cylinders, *self.meshes, *self.smooth,
             *self.cables,

@@ -16,13 +16,13 @@ from ..model.rotation3d import constant, dot, four, onto, plus, times, turned, t
 from .support3d import call_support
 
 SIZE = 14
-HOLLOW, SUPPORT, SEGMENTS, ON_CABLE, POINT_OF_CABLE, ON_MESH, ON_SMOOTH, ON_CYLINDER, ON_RING = range(
-    ANGLE + 1, ANGLE + 10
+HOLLOW, SUPPORT, SEGMENTS, ON_CABLE, POINT_OF_CABLE, ON_MESH, ON_SMOOTH, ON_CYLINDER, ON_RING, CROSSED = range(
+    ANGLE + 1, ANGLE + 11
 )
 """Kinds of gaps beside DISTANCE and PLACE of `measure3d`: a sphere within the first one, a smooth shape on a
 half-space, segments along the z axes of both markers, a cable against a sphere, a point of one against a half-space,
 and a sphere on a mesh (of the nearest triangle PLACE, of the nearest edge SEGMENTS), a smooth shape, a cylinder, a
-ring."""
+ring; and SEGMENTS that are edges of bodies within each other: less their distance."""
 MOVE_A, MOVE_B, CHOICE, MOVED = 0, 3, 6, 9
 """Rows of the matrix of moves: derivatives of both points as they move along their bodies, in space; c_k and m_k: the
 latter along the axes of the second marker, or along the z axes of the first and of the second one, or along the axes of
@@ -47,7 +47,7 @@ def on_cable(kind: int) -> bool:
 @inlined
 def moves_on(kind: int) -> bool:
     """True where points of contact move on their bodies."""
-    return kind == SUPPORT or kind == SEGMENTS or on_round(kind)
+    return kind == SUPPORT or kind == SEGMENTS or kind == CROSSED or on_round(kind)
 
 
 @inlined
@@ -106,7 +106,7 @@ def hold_support(q: Any, coord: Any, address: int, numbers: Any, held: Any, move
 
 
 @internal
-def _nearest(a: Any, b: Any, d: Any, half_a: float, half_b: float) -> Any:
+def nearest_of_segments(a: Any, b: Any, d: Any, half_a: float, half_b: float) -> Any:
     """(s, t, s is free, t is free): the nearest points d + t b and s a of two segments; a and b are unit vectors where
     the norms of the Euler parameters are met."""
     aa, bb, c, along_a, along_b = dot(a, a), dot(b, b), dot(a, b), dot(a, d), dot(b, d)
@@ -130,7 +130,7 @@ def hold_segments(q: Any, coord: Any, half_a: float, half_b: float, held: Any, m
     of_a, of_b = turning(p, constant(held, AXES_A + 6)), turning(s, constant(held, AXES_B + 6))
     a, b = turned(of_a, p), turned(of_b, s)
     d, _, _ = offset(q, coord, held, p, s)
-    at_a, at_b, free_a, free_b = _nearest(a, b, d, half_a, half_b)
+    at_a, at_b, free_a, free_b = nearest_of_segments(a, b, d, half_a, half_b)
     _shift(held, POINT_A, AXES_A + 6, at_a)
     _shift(held, POINT_B, AXES_B + 6, at_b)
     if not (free_a or free_b):

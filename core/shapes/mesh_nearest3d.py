@@ -15,6 +15,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, vec
 from ..elements.measure3d import AXES_A, PLACE, POINT_A, offset
 from ..model.rotation3d import dot, four, less, turned, turning
+from .edges_nearest3d import EDGES, hold_on_edges
 from .held3d import SEGMENTS, hold_segments
 from .mesh_parts import Faces, Points, flat_edges, normals_of
 from .normal3d import pair_of
@@ -22,9 +23,13 @@ from .normal3d import pair_of
 NORMAL_AT, FLAT_AT, MIDDLE_AT, REACH_AT, STRIDE = 9, 12, 15, 18, 19
 FIRST, COUNT, OPEN = 7, 8, 9
 """Columns of `extra`: where the part's triangles begin in the pool, how many they are, and whether they are not the
-whole surface: then what is behind one of them is not within the body."""
+whole surface: then what is behind one of them is not within the body. Or the table is of edges (EDGES)."""
 ON_FACE = 3
 """Beside the numbers 0, 1, 2 of the edges."""
+CORNER, EDGE, FACE = range(3)
+"""Where on a triangle a place is."""
+ALIKE = 1e-12
+"""Of a squared distance: rounding of it, where the shape is 10^4 times as large."""
 WITHIN = 1e-18
 """Of the squared size of a triangle: so little beyond a flat edge the foot is still on the triangle."""
 
@@ -45,20 +50,22 @@ def _corner(pool: Any, at: int, k: int) -> Any:
 
 
 @inlined
-def _from_edge(y: Any, a: Any, ab: Any) -> float:
-    """Squared distance of y from the edge a + t ab, t in [0, 1]."""
+def _from_edge(y: Any, a: Any, ab: Any) -> Any:
+    """(squared distance of y from the edge a + t ab, whether the nearest point is between its ends)."""
     away = less(y, a)
-    t = min(max(dot(ab, away) / dot(ab, ab), 0.0), 1.0)
+    t = dot(ab, away) / dot(ab, ab)
+    within = 0.0 < t < 1.0
+    t = min(max(t, 0.0), 1.0)
     e = (away[0] - t * ab[0], away[1] - t * ab[1], away[2] - t * ab[2])
-    return dot(e, e)
+    return dot(e, e), within
 
 
 @internal
 def _on_triangle(pool: Any, at: int, y: Any) -> Any:
-    """(edge or ON_FACE, squared distance) of the point of a triangle nearest to y."""
+    """(edge or ON_FACE, squared distance, how much of a face the place is) of the point of a triangle nearest to y."""
     n, a = _corner(pool, at + NORMAL_AT, 0), _corner(pool, at, 0)
     height = dot(n, less(y, a))
-    edge, least, outside = ON_FACE, np.inf, False
+    edge, least, outside, size = ON_FACE, np.inf, False, CORNER
     for k in range(3):
         p, q = _corner(pool, at, k), _corner(pool, at, (k + 1) % 3)
         side, away = less(q, p), less(y, p)
@@ -70,40 +77,44 @@ def _on_triangle(pool: Any, at: int, y: Any) -> Any:
         )
         if inward < 0.0:
             outside = True
-            square = _from_edge(y, p, side)
+            square, within = _from_edge(y, p, side)
             if square < least:
-                edge, least = k, square
+                edge, least, size = k, square, EDGE if within else CORNER
     if not outside:
-        return ON_FACE, height * height
+        return ON_FACE, height * height, FACE
     if pool[at + FLAT_AT + edge] > 0.0 and least - height * height <= WITHIN * pool[at + REACH_AT] ** 2:
-        return ON_FACE, height * height
-    return edge, least
+        return ON_FACE, height * height, FACE
+    return edge, least, size
 
 
 @internal
 def _nearest(pool: Any, first: int, count: int, y: Any) -> Any:
     """(where the nearest triangle stands, its edge or ON_FACE)."""
-    best, edge, least = first, ON_FACE, np.inf
+    best, edge, least, size = first, ON_FACE, np.inf, CORNER
     for i in range(count):
         at = first + STRIDE * i
         away = less(_corner(pool, at, MIDDLE_AT // 3), y)
-        if math.sqrt(dot(away, away)) - pool[at + REACH_AT] > math.sqrt(least):
+        if math.sqrt(dot(away, away)) - pool[at + REACH_AT] > (1.0 + ALIKE) * math.sqrt(least):
             continue
-        found, square = _on_triangle(pool, at, y)
-        # of a triangle and its own edge the triangle
-        if square < least or (square == least and found == ON_FACE):
-            best, edge, least = at, found, square
+        found, square, whole = _on_triangle(pool, at, y)
+        # of a triangle and an edge the triangle, of an edge and its end the edge: near where one goes over into the
+        # other, rounding does not tell them apart by their distance, but their curvature is not the same
+        if square < (1.0 - ALIKE) * least or (square <= (1.0 + ALIKE) * least and whole > size):
+            best, edge, least, size = at, found, square, whole
     return best, edge
 
 
 @internal
 def hold_on_mesh(b: Any, e: int, held: Any, moves: Any) -> int:
     """The pair of markers of element e of a batch, a mesh and a sphere, with the nearest triangle or edge in place of
-    the mesh, to held, and how the point of an edge moves, to moves. Returns the kind of their gap."""
+    the mesh, to held, and how the point of an edge moves, to moves; or the nearest edges of two bodies. Returns the
+    kind of their gap."""
     pair, extra = pair_of(b, e), imat(b.extra, b.count, b.nextra)[e]
     for i in range(len(pair)):
         held[i] = pair[i]
     moves[:, :] = 0.0
+    if extra[OPEN] == EDGES:
+        return hold_on_edges(b, e, extra[FIRST], held, moves)
     q, coord, pool = vec(b.q, b.n_extended), imat(b.coord, b.count, b.ncoord)[e], vec(b.signals, b.n_signals)
     for i in range(3):
         held[POINT_A + i] = 0.0

@@ -11,6 +11,7 @@ from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS, measure
 from .crossing3d import draw_back
 from .held3d import (
+    CROSSED,
     HOLLOW,
     SEGMENTS,
     SIZE,
@@ -78,6 +79,12 @@ def gap_of(kind: int, b: Any, e: int, held: Any, moves: Any, gradient: Any, hess
     g = measure(measured(kind), vec(b.q, b.n_extended), coord, held, 0.0, gradient, hessian)
     if moves_on(kind):
         bend_held(hessian, moves)
+        if kind == CROSSED:
+            g = -g
+            for i in range(SIZE):
+                gradient[i] = -gradient[i]
+                for j in range(SIZE):
+                    hessian[i, j] = -hessian[i, j]
     elif kind == HOLLOW:
         # the centres may be one: then no wall is nearer than another
         out = -1.0 if g > 0.0 else 0.0

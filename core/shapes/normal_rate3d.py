@@ -12,7 +12,7 @@ from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..elements.measure3d import AXES_A, AXES_B, POINT_A, POINT_B, offset
 from ..model.rotation3d import along, constant, dot, four, less, plus, times, turned, turning
-from .held3d import MOVED, SEGMENTS
+from .held3d import CROSSED, MOVED, SEGMENTS
 from .normal3d import SIZE
 from .tangent3d import NORMAL, OFFSET, column, product_with, put
 
@@ -40,7 +40,7 @@ def turn_normal(
     rate_of_a, rate_of_b = turning(pd, constant(pair, AXES_A + 6)), turning(sd, constant(pair, AXES_B + 6))
     a, to, a_rate, to_rate = turned(of_a, p), turned(of_b, s), along(of_a, pd), along(of_b, sd)
     held, s_rate, t_rate, free_a, free_b = product_with(work, OFFSET, v, coord), 0.0, 0.0, False, False
-    if kind == SEGMENTS:
+    if kind == SEGMENTS or kind == CROSSED:
         for j in range(SIZE):
             s_rate += moves[MOVED, j] * v[coord[j]]
             t_rate += moves[MOVED + 1, j] * v[coord[j]]

@@ -20,8 +20,8 @@ from .mesh_parts import Points, parts_of
 
 
 @dataclass(frozen=True)
-class _Numbers:
-    """A table of numbers, which goes where those of time functions go."""
+class Numbers:
+    """A table of numbers, which goes where those of time functions go: `cast(Signal, ...)` gives it to a numbering."""
 
     values: Sequence[float]
 
@@ -104,7 +104,7 @@ class SphereOnMesh3D(Contact3D):
         marker, parts = self.mesh.marker, mesh_parts(self.mesh)
         placed = np.array(marker.point) + np.array(self.mesh.vertices) @ marker.axes().T
         table = table_of(cast(Points, tuple(map(tuple, placed.tolist()))), self.mesh.faces, parts[self.part])
-        first = numbering.signal(cast(Signal, _Numbers(table)))
+        first = numbering.signal(cast(Signal, Numbers(table)))
         row = self._row_of(
             numbering, marker, self.sphere.marker, self.rounding, self.sphere.radius, extents=(self._reach(), 0.0)
         )

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..errors import ModelError
-from ..laws import ContactLaw
+from ..laws import ContactLaw, ForceLaw
 from ..laws.friction import Friction, TurningFriction
 from ..model.markers import GROUND
 from ..model.words import an
 from .ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cornered3D, Cylinder3D
+from .edges3d import EdgesOnEdges3D, EdgesPart, contacts_of_edged
 from .hull_faces import faces_of
 from .mesh3d import TriangleMesh3D
 from .on_cable3d import CableLine3D, CableOnHalfSpace3D, CableSpot, SphereOnCable3D
@@ -20,7 +21,7 @@ from .round3d import CapsuleOnCapsule3D, Crossing, SmoothOnHalfSpace3D, capsule_
 from .support3d import SmoothShape3D
 
 SpatialShape = Sphere3D | HalfSpace3D | Cornered3D | SmoothShape3D | CableLine3D
-SpatialPart = CableSpot | Crossing | MeshPart
+SpatialPart = CableSpot | Crossing | EdgesPart | MeshPart
 SpatialPair = tuple[SpatialShape, SpatialShape | SpatialPart]
 
 
@@ -52,12 +53,15 @@ def touching_in_space(a: SpatialShape, b: SpatialShape) -> Sequence[SpatialPair]
         return capsule_contacts(a, b)
     if body_of(a) == body_of(b) == GROUND:
         return ()
+    edged = (Box3D, ConvexPolyhedron3D, Capsule3D)
+    if isinstance(a, edged) and isinstance(b, edged):
+        return contacts_of_edged(a, b)
     if isinstance(a, HalfSpace3D) and isinstance(b, HalfSpace3D):
         raise no_contact(a, b, "both reach to infinity; take a box for the one that moves")
     kinds = type(a).__name__, type(b).__name__
     raise no_contact(
-        a, b, "in space all shapes touch spheres and half-spaces, and capsules capsules. Give one of them spheres or "
-        "capsules in its place; or, if they shall pass through each other, say so: "
+        a, b, "in space all shapes touch spheres and half-spaces, and boxes, convex polyhedra and capsules each other. "
+        "Give one of them such shapes in its place; or, if they shall pass through each other, say so: "
         f'pass_through=[("{kinds[0]}", "{kinds[1]}")]',
     )  # fmt: skip
 
@@ -91,6 +95,14 @@ def contact_in_space(
     more: Any = {"name": name, "law": law, "friction": friction, "turning": turning}
     if isinstance(other, MeshPart) and isinstance(a, Sphere3D):
         return SphereOnMesh3D(mesh=other.mesh, part=other.part, rounding=other.rounding, sphere=a, **more)
+    if isinstance(other, EdgesPart) and isinstance(a, Box3D | ConvexPolyhedron3D | Capsule3D):
+        if other.made_round and isinstance(law, ForceLaw):
+            raise ModelError(
+                f"contact '{name}' is of sharp shapes, which a {type(law).__name__} lets sink into each other: edges "
+                "pass through one another where they sink in by more than both are rounded. Give one of them a radius "
+                "that is larger (`edge_radius` of a box), or take a law such as NewtonImpact"
+            )
+        return EdgesOnEdges3D(a=a, b=other.shape, sort_a=other.sort_a, sort_b=other.sort_b, **more)
     if isinstance(other, CableSpot) and isinstance(a, HalfSpace3D):
         on = other.line
         return CableOnHalfSpace3D(plane=a, cable=on.cable, thickness=on.thickness, place=other.place, **more)

@@ -30,7 +30,7 @@ from ..model.rotation3d import (
     turned,
     turning,
 )
-from .held3d import HOLLOW, MOVE_A, MOVE_B, MOVED, SUPPORT, moves_on, on_plane, on_round
+from .held3d import CROSSED, HOLLOW, MOVE_A, MOVE_B, MOVED, SUPPORT, moves_on, on_plane, on_round
 from .normal3d import SIZE
 
 W, U, NORMAL, OFFSET, ARM_A, ARM_B, GROWTH = 0, 3, 6, 9, 12, 15, 18
@@ -78,7 +78,7 @@ def tangent_motion(
     spheres, move, same = not on_plane(kind), moves_on(kind), on_plane(kind) or on_round(kind)
     # between spheres in spheres with one centre no direction is the normal
     one = 1.0 / length if length > 0.0 else 0.0
-    if kind == HOLLOW:
+    if kind == HOLLOW or kind == CROSSED:
         one = -one
     n = times(one, d) if spheres else turned(of_n, p)
     size = 1.0 if same else (ra + rb) * one

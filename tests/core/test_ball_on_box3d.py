@@ -206,7 +206,7 @@ def test_pairs_without_contact_pass_through_each_other_where_that_is_said(tmp_pa
     assert len(flat.model_copy(update={"pass_through": (("Box2D", "Segment2D"),)}).contacts()) == 4
 
 
-def test_a_plate_without_thickness_and_boxes_on_boxes_are_refused():
+def test_a_plate_without_thickness_and_boxes_on_cylinders_are_refused():
     plate = ConvexPolyhedron3D(marker=Marker3D(), vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)])
     with pytest.raises(ModelError, match="lie in one plane"):
         contacts_between("g", [plate], [BALL], law=HARD)

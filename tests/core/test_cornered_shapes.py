@@ -11,6 +11,7 @@ from tlismni.core import (
     ContactGroup3D,
     ConvexPolyhedron3D,
     CoulombFriction,
+    Ellipsoid3D,
     HalfSpace3D,
     Marker3D,
     Model,
@@ -104,9 +105,8 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(ModelError, match=r"vertex \(1.0, 0.0, 0.0\) is given twice"):
         ConvexPolyhedron3D(marker=Marker3D(body="stone"), vertices=[(1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
     box = Box3D(marker=Marker3D(body="stone"), size=(0.3, 0.2, 0.1))
-    with pytest.raises(ModelError, match=r"Box3D on 'stone' and a Box3D on 'other' have no contact"):
-        contacts_between(
-            "g", [box], [Box3D(marker=Marker3D(body="other"), size=(1.0, 1.0, 1.0))], law=NewtonImpact(restitution=0.0)
-        )
+    egg = Ellipsoid3D(marker=Marker3D(body="other"), half_axes=(1.0, 1.0, 1.0))
+    with pytest.raises(ModelError, match=r"Box3D on 'stone' and an Ellipsoid3D on 'other' have no contact"):
+        contacts_between("g", [box], [egg], law=NewtonImpact(restitution=0.0))
     with pytest.raises(ModelError, match="radius"):
         Capsule3D(marker=Marker3D(body="stone"), length=0.3, radius=0.0)

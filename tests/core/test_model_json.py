@@ -21,6 +21,7 @@ from tlismni.core import (
     AxisAngles,
     Belt2D,
     Box2D,
+    Box3D,
     Bushing2D,
     Bushing3D,
     Cable2D,
@@ -52,6 +53,7 @@ from tlismni.core import (
     Distance2D,
     Distance3D,
     DistanceStop3D,
+    EdgesOnEdges3D,
     Ellipsoid3D,
     EulerParameters,
     Fixed3D,
@@ -466,6 +468,11 @@ ELEMENTS["contacts"] += [
         mesh=st.just(TETRAHEDRON),
     ),
     st.builds(
+        EdgesOnEdges3D, name=st.just("x"), law=law, sort_b=st.integers(0, 3),
+        a=st.builds(Capsule3D, marker=st.builds(Marker3D, point=vector3), length=positive, radius=positive),
+        b=st.builds(Box3D, marker=marker3d, size=st.tuples(*[st.floats(0.01, 100.0)] * 3)),
+    ),
+    st.builds(
         SphereOnSmooth3D, name=st.just("x"), law=law, sphere=st.builds(Sphere3D, marker=marker3d, radius=positive),
         shape=st.builds(
             Ellipsoid3D, marker=st.builds(Marker3D, point=vector3), half_axes=st.tuples(positive, positive, positive)
@@ -534,6 +541,7 @@ SPATIAL = {
     "AngleDriver3D", "PositionDriver3D", "MarkerOutput3D", "AppliedForce3D", "AppliedTorque3D", "SpringDamper3D",
     "AxialSpring3D", "TorsionSpring3D", "Bushing3D", "Gear3D", "RackAndPinion3D", "Screw3D", "SphereOnHalfSpace3D",
     "SphereOnSphere3D", "SmoothOnHalfSpace3D", "SphereInSphere3D", "CapsuleOnCapsule3D", "SphereOnCable3D",
+    "EdgesOnEdges3D",
     "SphereOnMesh3D", "SphereOnSmooth3D", "SphereOnCylinder3D", "SphereOnRing3D", "CableOnHalfSpace3D", "Cable3D",
     "MaterialPoint3D", "CableClamp3D",
     "AngleStop3D", "SlideStop3D", "Rope3D", "DistanceStop3D", "RollingDisk3D", "RollingSphere3D",

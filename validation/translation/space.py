@@ -29,6 +29,7 @@ from ...core.model.derived import Derived as Group
 from ...core.model.frame3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
 from ...core.shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
+from ...core.shapes.edges3d import EdgesOnEdges3D
 from ...core.shapes.on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
 from ...core.shapes.on_mesh3d import SphereOnMesh3D
 from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
@@ -64,6 +65,7 @@ no_equal(
     SmoothOnHalfSpace3D,
     SphereInSphere3D,
     CapsuleOnCapsule3D,
+    EdgesOnEdges3D,
     SphereOnMesh3D,
     SphereOnSmooth3D,
     SphereOnCylinder3D,

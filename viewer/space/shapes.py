@@ -12,6 +12,7 @@ from ...core.model.markers import Marker3D
 from ...core.shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
 from ...core.shapes.contact3d import Contact3D, Sphere3D
 from ...core.shapes.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
+from ...core.shapes.edges3d import EdgesOnEdges3D
 from ...core.shapes.group3d import ContactGroup3D
 from ...core.shapes.mesh3d import TriangleMesh3D
 from ...core.shapes.on_mesh3d import SphereOnMesh3D
@@ -124,6 +125,8 @@ def _single_shapes(model: Model) -> list[Cornered3D | SmoothShape3D]:
             found.append(contact.ring)
         elif isinstance(contact, SphereOnMesh3D):
             found.append(contact.mesh)
+        elif isinstance(contact, EdgesOnEdges3D):
+            found += [contact.a, contact.b]
         elif isinstance(contact, CapsuleOnCapsule3D):
             found += [shape for shape in (contact.a, contact.b) if isinstance(shape, Capsule3D)]
     return [shape for k, shape in enumerate(found) if shape not in found[:k]]
