@@ -225,7 +225,7 @@ class AngleDriver3D(_Driven):
 
     def said_angles(self, inputs: Mapping[str, float], t: float) -> Sequence[SaidAngle]:
         """What it says of the angle at the start."""
-        return (SaidAngle(self.a, self.b, value_at_start(self.angle, inputs, t), f"'{self.name}'", False),)
+        return (SaidAngle(self.a, self.b, value_at_start(self.angle, inputs, t), f"'{self.name}'", self.angle),)
 
     def primitives(self) -> Sequence[Primitive]:
         return (Twist(("x", "x"), ("y", "x"), self.angle),)

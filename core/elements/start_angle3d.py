@@ -7,7 +7,8 @@ that axis add up to it; else there are none: the angle is between -pi and pi.
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,9 +101,34 @@ class Elsewhere(BodyElement):
         return self.q, ()
 
 
+@dataclass(frozen=True)
+class DriverTurn:
+    """An angle at the start whose whole turns a driver says: of those that differ from `angle` by whole turns the one
+    nearest to sign (signal + more - less)."""
+
+    angle: float
+    seen: "Seen"
+    signal: Signal
+
+    def numbers(self) -> list[float]:
+        """The same as numbers, the signal last."""
+        return [self.angle, *self.seen, *map(float, self.signal.pool({}))]
+
+
+def driver_turn(
+    a: Marker3D, b: Marker3D, bodies: Mapping[str, BodyElement], said: Sequence[SaidAngle]
+) -> DriverTurn | None:
+    """How the angle of marker b about the z axis of marker a follows from a driver; None if none decides it."""
+    heard = [(one, seen) for one in said if (seen := _seen(a, b, one, bodies)) is not None]
+    if not heard or any(one.firm for one, _ in heard):
+        return None
+    one, seen = heard[0]
+    return None if one.signal is None else DriverTurn(angle_between(a, b, bodies), seen, one.signal)
+
+
 def _said(a: Marker3D, b: Marker3D, bodies: Mapping[str, BodyElement], said: Sequence[SaidAngle]) -> float | None:
     found = angle_between(a, b, bodies)
-    heard = [(one, angle) for one in said for angle in _seen(a, b, one, bodies)]
+    heard = [(one, seen.of(one.angle)) for one in said if (seen := _seen(a, b, one, bodies)) is not None]
     meant = [(_nearest(found, angle), one.by) for one, angle in heard if one.firm]
     if not meant:
         return next((_nearest(found, angle) for _, angle in heard), None)
@@ -121,14 +147,26 @@ def _nearest(angle: float, to: float) -> float:
     return angle + WHOLE_TURN * round((to - angle) / WHOLE_TURN)
 
 
-def _seen(a: Marker3D, b: Marker3D, said: SaidAngle, bodies: Mapping[str, BodyElement]) -> list[float]:
-    """The angle of b about a that follows from a said one, if it is of the same bodies about the same axis."""
+class Seen(NamedTuple):
+    """How an angle follows from a said one."""
+
+    sign: float
+    more: float
+    less: float
+
+    def of(self, said: float) -> float:
+        """The angle, rad."""
+        return self.sign * (said + self.more - self.less)
+
+
+def _seen(a: Marker3D, b: Marker3D, said: SaidAngle, bodies: Mapping[str, BodyElement]) -> Seen | None:
+    """How the angle of b about a follows from a said one, if that is of the same bodies about the same axis."""
     if {a.body, b.body} != {said.a.body, said.b.body}:
-        return []
+        return None
     axes = {m: start_of_marker(m, bodies)[1] for m in (a, b, said.a, said.b)}
     axis, own = axes[said.a][:, 2], axes[a][:, 2]
     if float(np.linalg.norm(np.cross(axis, own))) > SAME:
-        return []
+        return None
 
     def offset(first: Marker3D, second: Marker3D) -> float:
         """Angle about the axis between the x axes of two markers of one body."""
@@ -137,8 +175,8 @@ def _seen(a: Marker3D, b: Marker3D, said: SaidAngle, bodies: Mapping[str, BodyEl
 
     sign = 1.0 if axis @ own > 0.0 else -1.0
     if a.body == said.a.body:
-        return [sign * (said.angle + offset(said.b, b) - offset(said.a, a))]
-    return [-sign * (said.angle + offset(said.b, a) - offset(said.a, b))]
+        return Seen(sign, offset(said.b, b), offset(said.a, a))
+    return Seen(-sign, offset(said.b, a), offset(said.a, b))
 
 
 def _turned(a: Marker3D, b: Marker3D, bodies: Mapping[str, BodyElement]) -> list[float]:

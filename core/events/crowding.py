@@ -31,6 +31,7 @@ from ..state.run_records import (
     PUSHED_UNTIL,
     PUSHES,
     PUSHES_LEFT,
+    STEP_SIZE,
     WINDOW_COUNT,
     WINDOW_START,
     loop_at,
@@ -95,15 +96,25 @@ def near_level(ws: Any, h: float) -> float:
 
 @internal
 def may_push(dr: Any, ws: Any, ms: Any) -> bool:
-    """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, among
-    redundant rows, and where contacts act as forces, are at massless ends, or cannot be looked at alone in space."""
+    """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, and
+    where contacts are at massless ends, or constraints in space that cannot be looked at alone."""
     law, lc, kinds = ivec(dr.law, ws.n_contacts), loop_at(dr.loop), ivec(ws.contact_tangents, ws.n_contacts)
-    if ms.exact == 0 or ws.n_redundant > 0:
+    if ms.exact == 0:
         return False
     for k in range(ws.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS or (kinds[k] == 2 and not can_look(lc, k)):
+        if law[k] == MASSLESS or (law[k] != FORCE and kinds[k] == 2 and not can_look(lc, k)):
             return False
     return True
+
+
+@internal
+def any_force_law(dr: Any, ws: Any) -> bool:
+    """True if some contacts act as forces."""
+    law = ivec(dr.law, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if law[k] == FORCE:
+            return True
+    return False
 
 
 @internal
@@ -115,6 +126,8 @@ def step_through(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return DECLINED
     clock[PUSHES] = min(2.0 * clock[PUSHES], MOST) if pushed_lately(ws, lc, t) else FEWEST
     clock[PUSH_STEP], clock[PUSHES_LEFT], clock[CALM], clock[PUSHED_FROM] = _size(ws), clock[PUSHES], 0.0, t
+    if any_force_law(dr, ws):
+        clock[STEP_SIZE] = clock[PUSH_STEP]
     # these steps get on
     ivec(dr.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[COUNT] = 0, t, 0.0
     return SETTLED
@@ -122,12 +135,14 @@ def step_through(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 @internal
 def _make_pending(dr: Any, ws: Any) -> int:
-    """Closed constraint contacts, and others that touch, become pending; how many are now."""
+    """Closed constraint contacts, and others of them that touch, become pending; how many are now."""
     memory, pending = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.pending, ws.n_contacts)
     rows, phi, scale = ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext)
     level, asleep = GAP_ROUNDING * position_level(ws), ivec(ws.asleep, ws.n_contacts)
-    count = 0
+    law, count = ivec(dr.law, ws.n_contacts), 0
     for k in range(ws.n_contacts):
+        if law[k] == FORCE:
+            continue
         touches = asleep[k] == 0 and phi[rows[k]] <= level * scale[rows[k]]
         if memory[k, MODE] == CLOSED or touches:
             pending[k] = 1

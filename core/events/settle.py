@@ -11,7 +11,7 @@ from ..compiled.views import ivec, mat, vec
 from ..location.asleep import look_at_all
 from ..location.watch import remember
 from ..methods.history import history_time, recall, replace, restart
-from ..state.modes import MEMORY_SIZE, MODE
+from ..state.modes import LOSS_JUMP, MEMORY_SIZE, MODE
 from ..state.run_records import (
     CLOCK_SIZE,
     COUNTS_SIZE,
@@ -26,7 +26,7 @@ from ..state.run_records import (
     call_sample,
 )
 from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE, FACTOR_AGE, RATE_SIZE
-from ..tables.evaluate import evaluate_power, evaluate_residuals
+from ..tables.evaluate import evaluate_energy, evaluate_power, evaluate_residuals
 from ..tables.switch import take_structure
 from .breakpoint import pass_breakpoint
 from .crowding import MANY_TOUCH, count_instant, may_push
@@ -104,15 +104,19 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
-    status = call_part(ev.settle_forces, ev, dr, ws, ms) if _any_force(dr, ws) else SETTLED
-    if status == SETTLED:
-        status = settle_massless(ev, dr, ws, ms)
     whole(ev)[TOUCHED], pushing = 0, vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
     whole(ev)[TOUCHED_IN_SPACE] = 0
-    begun = vec(lc.clock, CLOCK_SIZE)[PUSHED_FROM] == t
+    begun, status = vec(lc.clock, CLOCK_SIZE)[PUSHED_FROM] == t, SETTLED
+    if _any_force(dr, ws):
+        status = (
+            _settle_forces_where_they_are(ev, dr, ws, ms) if pushing else call_part(ev.settle_forces, ev, dr, ws, ms)
+        )
+    if status == SETTLED:
+        status = settle_massless(ev, dr, ws, ms)
     if status == SETTLED and pushing:
         clear(ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
-        status = call_part(ev.push_apart, ev, dr, ws, ms)
+        if _any_constraint(dr, ws):
+            status = call_part(ev.push_apart, ev, dr, ws, ms)
     elif status == SETTLED and _any_constraint(dr, ws):
         status = decide_each_kind(ev, dr, ws, ms, lc)
     if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms):
@@ -142,6 +146,32 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         call_part(ev.step_through, ev, dr, ws, ms)
     _sample(dr, ws, lc)
     return SETTLED
+
+
+@internal
+def _settle_forces_where_they_are(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Forces that begin and end among steps of impulses, which may have moved their gaps beyond zero: what springs hold
+    there all at once is in the contacts' accounts."""
+    law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
+    memory, energy, count = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.energy, 3), 0
+    evaluate_energy(ws)
+    more = energy[0] + energy[1] + energy[2]
+    for k in range(ws.n_contacts):
+        if law[k] == FORCE and pending[k] != 0:
+            count += 1
+            more += memory[k, LOSS_JUMP]
+    status = int(call_part(ev.settle_forces, ev, dr, ws, ms))
+    if status != SETTLED:
+        return status
+    evaluate_energy(ws)
+    more -= energy[0] + energy[1] + energy[2]
+    for k in range(ws.n_contacts):
+        if law[k] == FORCE and pending[k] != 0:
+            more -= memory[k, LOSS_JUMP]
+    for k in range(ws.n_contacts):
+        if law[k] == FORCE and pending[k] != 0:
+            memory[k, LOSS_JUMP] += more / count
+    return status
 
 
 @internal

@@ -105,9 +105,10 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
     while True:
         if is_due(dr, ws):
             side = 0.0
-            # which redundant rows are left out is for Python to look at, at every instant
+            # which redundant rows are left out is for Python to look at, at every instant; steps of impulses take those
+            # that a new partition leaves out
             beyond = history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]
-            if ws.n_redundant > 0 or ((hold or beyond) and vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0):
+            if (ws.n_redundant > 0 or hold or beyond) and vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
                 return SETTLE
             status = call_settle(dr.settle, dr)
             if status != SETTLED:

@@ -5,20 +5,26 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from .markers import Marker3D
+from .signals import Signal
 
 
 @dataclass(frozen=True)
 class SaidAngle:
     """That the x axis of marker b is at `angle` (rad) from that of marker a, about the z axis of a; `by` says it.
 
-    What is not `firm` is asked where nobody else says anything.
+    What is not `firm` is asked where nobody else says anything: `signal` says it, which is another one at another time.
     """
 
     a: Marker3D
     b: Marker3D
     angle: float
     by: str
-    firm: bool = True
+    signal: Signal | None = None
+
+    @property
+    def firm(self) -> bool:
+        """Whether it is the same whenever a run starts."""
+        return self.signal is None
 
 
 @runtime_checkable

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..run.blueprint import Unstarted
+from .turning import let_turn
 
 
 def let_begin(sim: Any, settings: dict[str, Any]) -> None:
@@ -16,3 +17,4 @@ def let_begin(sim: Any, settings: dict[str, Any]) -> None:
     record.set_size("state", sim.workspace.state.ctypes.data)
     record.set_size("exchange", sim.crossing._record.address)
     record.set_size("energies", sim.table.layout.kinetic)
+    let_turn(sim)

@@ -112,6 +112,7 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
     scratch = without_parts(scratch_of(sim))
     set_by_others = [begin_of(word.array) for p in parameters for word in p.words]
     is_own = (own.owner(found.begin) >= 0) | np.isin(found.begin, set_by_others)
+    is_own[found.owner(sim.beginning.record.arrays["turned"][:, 0])] = True
     values = np.array([p.value for p in parameters])
     symbols = called_symbols(library)
     addresses: dict[int, str] = {}

@@ -45,7 +45,8 @@ def own_of(sim: Any) -> list[NDArray[Any]]:
 
 def _of_beginning(sim: Any) -> list[NDArray[Any]]:
     """Of the start: `numbers` is set where runs begin at another time; all else are numbers of the model."""
-    return [sim.beginning.record.table, sim.beginning.numbers, *sim.beginning.scratch]
+    arrays = sim.beginning.record.arrays
+    return [sim.beginning.record.table, sim.beginning.numbers, arrays["turned"], *sim.beginning.scratch]
 
 
 _CONSTANT = (

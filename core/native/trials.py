@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from ..description import Model
 from ..run.blueprint import Blueprint, Unstarted, take_numbers, what_differs
-from ..tables.assembly import Assembly
+from ..tables.assembly import Assembly, assemble
+from ..tables.start_turns import Watched
 from .errors import NativeError
 from .reach import begin_of
 from .scratch import OF_EXCHANGE, scratch_of
@@ -25,6 +26,19 @@ def take(sim: Any, model: Model, assembly: Assembly) -> None:
     if sim.crossing is not None:
         sim.crossing._record.arrays["derived_numbers"][:] = sim.table.index_arrays()["derived_numbers"]
     sim.beginning.take_numbers(assembly)
+    _take_turns(sim, model)
+
+
+def _take_turns(sim: Any, model: Model) -> None:
+    """Numbers of the angles at the start whose whole turns drivers say (`turning.py`)."""
+    numbers = sim.beginning.record.arrays["turn_numbers"]
+    if len(numbers):
+        watched = Watched(model)
+        assemble(watched, t0=sim.settings.t0)
+        found = [x for turn in watched.turns if turn is not None for x in turn.numbers()]
+        if len(found) != len(numbers):
+            raise NativeError("another value changes which angles at the start a driver says")
+        numbers[:] = found
 
 
 class Trials:
@@ -38,6 +52,7 @@ class Trials:
     def __init__(self, model: Model, settings: dict[str, Any]) -> None:
         self.model, bare = model, Unstarted(model, **settings)
         self._blueprint, self._own = Blueprint(bare), bare.assembly
+        self._t0 = bare.settings.t0
         self._others: dict[int, tuple[Model, Assembly]] = {}
         # all of them have the room that one start takes, so that few have to ask for more
         self._blueprint = self._blueprint.with_room(self.begun(model))
@@ -48,7 +63,7 @@ class Trials:
         if model is self.model:
             return self._own
         if id(model) not in self._others:
-            self._others[id(model)] = model, model.assemble()
+            self._others[id(model)] = model, model.assemble(t0=self._t0)
         return self._others[id(model)][1]
 
     def forget(self) -> None:

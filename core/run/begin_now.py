@@ -10,12 +10,12 @@ import numpy as np
 
 from ..compiled.jit import compiled, internal, record_view
 from ..compiled.types import from_dtype
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import imat, ivec, mat, vec
 from ..events.progress import GUARD_SIZE
 from ..events.records import SETTLED, instant_at
 from ..location.dense_output import query
 from ..loop.drive import drive_at, is_due, loop_at, method_at, workspace_at
-from ..model.signals import INPUT_SIZE
+from ..model.signals import INPUT_SIZE, evaluate_signal
 from ..state.run_records import (
     CLOCK_SIZE,
     COUNTS_SIZE,
@@ -29,8 +29,10 @@ from ..state.run_records import (
 from ..state.workspace_records import OK
 from .begin import NO_START, new_history, start
 from .begin_measure import measure, place
-from .begin_record import BEGIN_SIZE, T0
+from .begin_record import ANGLE, BEGIN_SIZE, LESS, MORE, SIGN, SIGNAL, T0
 from .exchange_record import EXCHANGE, GOAL, INITIAL_ENERGY, INTERVAL, LAST_CHANGE, NOW, TIMES_SIZE
+
+WHOLE_TURN = 2.0 * np.pi
 
 exchange_at = record_view(from_dtype(EXCHANGE))
 
@@ -63,6 +65,7 @@ def begin_now(bg: Any) -> int:
     ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
     t0 = vec(bg.numbers, BEGIN_SIZE)[T0]
     _clear(bg, ex, dr, ws, vec(lc.clock, CLOCK_SIZE))
+    _turn(bg, ws, ex.n_inputs, t0)
     status = measure(bg, dr, ws)
     if status == SETTLED:
         status = start(bg, dr, instant_at(dr.instant), ws, ms, lc)
@@ -105,6 +108,19 @@ def _clear(bg: Any, ex: Any, dr: Any, ws: Any, clock: Any) -> None:
     times = vec(ex.times, TIMES_SIZE)
     times[NOW], times[GOAL], times[LAST_CHANGE], times[INTERVAL] = t0, t0, t0, np.inf
     _count_from_here(dr, t0)
+
+
+@internal
+def _turn(bg: Any, ws: Any, n_inputs: int, t0: float) -> None:
+    """Angles at the start with the whole turns that drivers say at this time; as `start_angle3d.py` has it, bit for
+    bit."""
+    turned, numbers = imat(bg.turned, bg.n_turned, 2), vec(bg.turn_numbers, bg.n_turn_numbers)
+    for k in range(bg.n_turned):
+        at = turned[k, 1]
+        said, _, _ = evaluate_signal(numbers, vec(ws.inputs, INPUT_SIZE * n_inputs), at + SIGNAL, t0)
+        seen = numbers[at + SIGN] * (said + numbers[at + MORE] - numbers[at + LESS])
+        angle = numbers[at + ANGLE]
+        vec(turned[k, 0], 1)[0] = angle + WHOLE_TURN * np.rint((seen - angle) / WHOLE_TURN)
 
 
 @internal

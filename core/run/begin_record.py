@@ -22,6 +22,9 @@ BEGIN = np.dtype(
             # for runs that begin anew without Python: address of the record of `exchange`; the state, and what it is
             # before a run begins, in words; column of a sample of the first of three energies
             "exchange", "state", "blank", "n_blank", "energies",
+            # words that are angles at the start whose whole turns a driver says (`native/turning.py`): (n, 2) int64,
+            # address, and number of the first of (ANGLE, SIGN, MORE, LESS, its signal) in `turn_numbers`, float64
+            "turned", "n_turned", "turn_numbers", "n_turn_numbers",
         )
     ]
 )  # fmt: skip
@@ -40,6 +43,10 @@ BEGIN_SIZE = 16
 # where that did not succeed; and which coordinate moved most, or which contact overlaps
 MOVED, MOVED_RATES, WHO = 0, 1, 2
 FOUND_SIZE = 3
+
+# of each angle in `turn_numbers`: of those that differ from ANGLE by whole turns the one nearest to
+# SIGN (signal + MORE - LESS)
+ANGLE, SIGN, MORE, LESS, SIGNAL = range(5)
 
 LATER = MOST_TIMES + 3
 """Now, later times of forces and drivers, and two more within the longest step."""

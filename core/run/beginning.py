@@ -40,11 +40,13 @@ class Beginning:
                 "placed": np.array(assembly.placed, dtype=np.int64).reshape(-1, 2),
                 "internal": assembly.is_internal.astype(np.int64), "angle": assembly.is_angle.astype(np.int64),
                 "row_sizes": np.zeros(assembly.m if given else 0), "work_sizes": np.zeros(assembly.n_extended),
-                "blank": np.zeros(0), **{name: np.zeros(size) for name, size in room.items()},
+                "blank": np.zeros(0), "turned": np.zeros((0, 2), dtype=np.int64), "turn_numbers": np.zeros(0),
+                **{name: np.zeros(size) for name, size in room.items()},
             },
             {
                 "drive": sim.drive.address, "n_placed": len(assembly.placed), "m_joints": assembly.m_joints,
                 "n_row_sizes": int(given), "exchange": 0, "state": 0, "n_blank": 0, "energies": 0,
+                "n_turned": 0, "n_turn_numbers": 0,
             },
         )  # fmt: skip
         self._set_settings(sim.settings)

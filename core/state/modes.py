@@ -4,6 +4,7 @@ OPEN = 0.0
 CLOSED = 1.0  # CCM: the gap is a constraint
 ACTIVE = 2.0  # CCFM: the force law acts
 RELEASED = 3.0  # CCFM: the force has reached zero while the shapes still overlap
+UNWATCHED = -1.0  # CCM, within a step of impulses: open, and nobody looks for its events
 
 MODE_NAMES: dict[float, str] = {OPEN: "open", CLOSED: "closed", ACTIVE: "active", RELEASED: "released"}
 

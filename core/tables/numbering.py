@@ -13,6 +13,7 @@ from ..model.said_angle import CountsTurns, SaidAngle, SaysAngle
 from ..model.signals import InputSignal, Signal
 from ..rounding import AT_ORIGIN
 from .parts import Parts
+from .start_turns import Watched
 
 NO_START: Mapping[str, float] = MappingProxyType({})
 AT_REST = 1
@@ -56,6 +57,7 @@ class ModelNumbering:
             at += count
         self._elements, self._start_values, self._asked = model.elements, start, False
         self._t0 = t0
+        self._watch = model if isinstance(model, Watched) else None
         self._said: list[SaidAngle] = []
         self._said_now: list[SaidAngle] = []
         self._moved: dict[str, BodyElement] = {}
@@ -103,11 +105,13 @@ class ModelNumbering:
 
     def start_angle(self, a: Marker3D, b: Marker3D, user: str | None = None) -> float:
         # models of the plane never ask
-        from ..elements.start_angle3d import start_angle, start_angle_elsewhere
+        from ..elements.start_angle3d import driver_turn, start_angle, start_angle_elsewhere
 
         if not self._asked:
             self._ask()
         usual = start_angle(a, b, self.bodies, self._said, user)
+        if self._watch is not None:
+            return self._watch.seen(usual, driver_turn(a, b, self.bodies, self._said))
         return start_angle_elsewhere(a, b, self._moved, self._said_now, usual) if self._start_values else usual
 
     def _ask(self) -> None:

@@ -6,10 +6,17 @@ from fmpy.fmi1 import FMICallException
 from native_pair import Pair, scenario_pair
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.core.description import Model
-from tlismni.core.elements import AppliedForce2D, PointMass2D
+from tlismni.core.elements import (
+    AngleDriver3D,
+    AppliedForce2D,
+    PointMass2D,
+    Revolute3D,
+    RigidBody3D,
+    TorsionSpring3D,
+)
 from tlismni.core.model.channels import Input
-from tlismni.core.model.markers import Marker2D
-from tlismni.core.model.signals import InputSignal, Step
+from tlismni.core.model.markers import Marker2D, Marker3D
+from tlismni.core.model.signals import InputSignal, Polynomial, Step
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
 
@@ -130,6 +137,41 @@ def test_another_start_time(version, start, tmp_path):
     t, by_name = sides[0].time, sides[0].by_name
     (speed,) = (sides[0].fmu.getFloat64 if sides[0].three else sides[0].fmu.getReal)([by_name["p.vy"].valueReference])
     assert speed == pytest.approx(1.5 * max(0.0, t - max(0.5, start)), abs=1e-9)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_turns_of_a_driven_hinge_at_another_start_time(version, tmp_path):
+    """The driver says how many whole turns there are at the start; the spring holds each of them."""
+    turn, start = 2.0 * np.pi, 2.0
+    ends = {"a": Marker3D(), "b": Marker3D(body="rotor")}
+    model = Model(
+        name="rotor",
+        gravity=(0.0, 0.0, 0.0),
+        bodies=[RigidBody3D(name="rotor", mass=1.0, inertia=(0.1, 0.1, 0.2), angular_velocity=(0.0, 0.0, turn))],
+        joints=[
+            Revolute3D(name="hinge", **ends),
+            AngleDriver3D(name="driver", **ends, angle=Polynomial(coefficients=(0.0, turn))),
+        ],
+        forces=[TorsionSpring3D(name="spring", **ends, stiffness=0.02)],
+    )
+    sides = Pair(model, tmp_path, version, t_end=1.0).instances()
+    for side in sides:
+        if side.three:
+            side.fmu.enterInitializationMode(startTime=start)
+        else:
+            side.fmu.setupExperiment(startTime=start)
+            side.fmu.enterInitializationMode()
+        side.fmu.exitInitializationMode()
+        side.time = start
+    for _ in range(4):
+        assert sides[0].step(0.1) == sides[1].step(0.1)
+        assert sides[0].read() == sides[1].read()
+    t, by_name = sides[0].time, sides[0].by_name
+    read = sides[0].fmu.getFloat64 if sides[0].three else sides[0].fmu.getReal
+    names = ("hinge.angle", "driver.torque_z")
+    angle, torque = read([by_name[name].valueReference for name in names])
+    assert angle == pytest.approx(turn * t, abs=1e-8)
+    assert abs(torque) == pytest.approx(0.02 * turn * t, abs=1e-6)
 
 
 def test_inputs_with_derivatives(tmp_path):
