@@ -83,8 +83,8 @@ def find_root(
         last_x, last_f = x, f
         x = proposal
     # a gap below zero by rounding that nothing closes would pass the same limit again
-    jumps = f_low > JUMP * largest
-    if what == FORCE and x_low == 0.0 and np.isnan(f_low):
+    jumps, at_row = f_low > JUMP * largest, what == FORCE and x_low == 0.0 and np.isnan(f_low)
+    if at_row:
         # right behind the newest row, whose force is none of those that have been tried
         jumps = f_high < -JUMP * largest
     if (jumps or what == OVERLAP) and not np.isnan(f_high):
@@ -92,8 +92,9 @@ def find_root(
             # a step takes what is at its end for a part of all of it: let the one over the jump be short
             x = x_low - SHORT * full
             return make_trial(dr, ws, ms, lc, x, full), x, False
-        # clearly behind it: rounding must not take back what has been passed
-        x = min(x_high + max(0.1 * SHORT * full, CLEARLY * resolved), full) if what == FORCE else x_high
+        # clearly behind it: rounding must not take back what has been passed (at the row nothing has been)
+        behind = CLEARLY * resolved if at_row else max(0.1 * SHORT * full, CLEARLY * resolved)
+        x = min(x_high + behind, full) if what == FORCE else x_high
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low
