@@ -7,7 +7,7 @@ from fmpy.fmi3 import FMU3Slave
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.models import load
 
-TAKE_PYTHON = ("split_wall", "four_bar", "tippe_top")
+TAKE_PYTHON = ("split_wall", "four_bar")
 """Scenarios that cannot be FMUs without Python."""
 
 
