@@ -120,7 +120,10 @@ def run_ours(start: Places, end: float, rest_ratio: float, most: float, rolling:
         f"{sim.stats['steps']} steps, {sim.stats['impulse_steps']} of impulses; at rest from {rests_at:.2f} s (now "
         f"{sim.t:.2f} s: fastest {speed:.1g} m/s)"
     )
-    print(f"  deepest overlap {deepest:.2g} m; energy balance {values['energy.balance']:.2g} J of {lost:.3g} J lost")
+    now = overlap(q[:, :3], radii)
+    print(
+        f"  deepest overlap {deepest:.2g} m, {now:.1g} m at the end; energy balance {values['energy.balance']:.2g} J of {lost:.3g} J lost"
+    )
     print(f"  highest centre {np.max(q[:, 2]):.4f} m")
 
 
