@@ -122,8 +122,8 @@ def run_ours(start: Places, end: float, rest_ratio: float, most: float, rolling:
     )
     now = overlap(q[:, :3], radii)
     print(
-        f"  deepest overlap {deepest:.2g} m, {now:.1g} m at the end; energy balance {values['energy.balance']:.2g} J of "
-        f"{lost:.3g} J lost"
+        f"  deepest overlap {deepest:.2g} m, {now:.1g} m at the end; energy balance {values['energy.balance']:.2g} J "
+        f"of {lost:.3g} J lost"
     )
     print(f"  highest centre {np.max(q[:, 2]):.4f} m")
 
