@@ -40,6 +40,9 @@ SKIN_WAYS = 16.0
 """A skin is as thick as so many ways that the ball goes in the present step,"""
 SKIN_SIZE = 0.05
 """and at least this share of its radius."""
+TOO_THICK = 8.0
+"""So many times as thick as it would be now: where that are the skins of half the balls, as behind a long step, it is
+time for a sweep."""
 CENTRE, SKIN, GONE = 0, 3, 4
 """Columns of `ball_moves`: where the centre was at the last sweep, the skin, and the way since then, m."""
 
@@ -54,6 +57,12 @@ def _way_of_ball(lc: Any, i: int, way: Any) -> float:
     moves = math.sqrt(way[c[0]] ** 2 + way[c[1]] ** 2 + way[c[2]] ** 2)
     turns = math.sqrt(way[c[3]] ** 2 + way[c[4]] ** 2 + way[c[5]] ** 2 + way[c[6]] ** 2)
     return float(moves + TURN * arm * turns)
+
+
+@internal
+def _skin(lc: Any, i: int, way: float) -> float:
+    """How thick the skin of ball i is, m, that goes this way in a step."""
+    return float(max(SKIN_WAYS * way, SKIN_SIZE * mat(lc.balls, lc.n_balls, BALL_NUMBERS)[i, RADIUS]))
 
 
 @internal
@@ -98,8 +107,13 @@ def go_on(ws: Any, lc: Any) -> None:
     if lc.n_balls == 0 or lc.may_sleep == 0 or ivec(lc.broad, MARKS)[VALID] == 0:
         return
     way, moves = mat(lc.travel, 2, ws.n_ext)[0], mat(lc.ball_moves, lc.n_balls, 5)
+    thick = 0
     for i in range(lc.n_balls):
-        moves[i, GONE] += _way_of_ball(lc, i, way)
+        goes = _way_of_ball(lc, i, way)
+        moves[i, GONE] += goes
+        thick += 1 if moves[i, SKIN] > TOO_THICK * _skin(lc, i, goes) else 0
+    if 2 * thick > lc.n_balls:
+        moves[0, GONE] = np.inf
 
 
 @internal
@@ -133,7 +147,7 @@ def _sweep(ws: Any, ms: Any, lc: Any) -> None:
     for i in range(n):
         _place(lc, i, start, moves[i])
         radius = balls[i, RADIUS]
-        moves[i, SKIN] = max(SKIN_WAYS * _way_of_ball(lc, i, way), SKIN_SIZE * radius)
+        moves[i, SKIN] = _skin(lc, i, _way_of_ball(lc, i, way))
         moves[i, GONE] = 0.0
         reach[i] = (1.0 + PLAINLY) * radius + moves[i, SKIN]
         x, y, z = moves[i, 0], moves[i, 1], moves[i, 2]

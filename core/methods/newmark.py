@@ -49,7 +49,7 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
         algorithmic = true + ratio * (row[3 * n + i] - true)
         q_star[i] = row[i] + h * row[n + i] + h * h * ((0.5 - beta) * algorithmic - beta * alpha * true)
         v_star[i] = row[n + i] + h * ((1.0 - gamma) * algorithmic - gamma * alpha * true)
-    guess = best_guess(ws, ms, c_q, gamma)
+    guess = best_guess(ws, ms, c_q, alpha, gamma)
     if guess == BY_POSITIONS:
         guess_by_positions(ws, ms, h, c_q)
     elif guess != BY_LINE:

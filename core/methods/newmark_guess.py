@@ -35,9 +35,10 @@ def _weights(ws: Any, ms: Any, first: int, t: float, count: int) -> Any:
 
 
 @internal
-def _rows_beat_formula(ws: Any, ms: Any, weights: Any, gamma: float) -> bool:
+def _rows_beat_formula(ws: Any, ms: Any, weights: Any, alpha: float, gamma: float) -> bool:
     """Whether `weights` of the many rows before the newest would have predicted its dependent velocities better than
-    the formula with its accelerations."""
+    the formula with its accelerations. (Those that it carried then are no part of a state; here they are made of the
+    true ones.)"""
     n, h = ws.n_ext, history_time(ms, 0) - history_time(ms, 1)
     newest, row1, row2 = history_row(ws, ms, 0), history_row(ws, ms, 1), history_row(ws, ms, 2)
     row3, row4, row5 = history_row(ws, ms, 3), history_row(ws, ms, 4), history_row(ws, ms, 5)
@@ -47,7 +48,8 @@ def _rows_beat_formula(ws: Any, ms: Any, weights: Any, gamma: float) -> bool:
     by_formula, by_many = 0.0, 0.0
     for k in range(ws.m_act):
         i, unit = n + dependent[k], 1.0 / weight_v[dependent[k]]
-        true, algorithmic = row1[n + i], row1[2 * n + i]
+        true = row1[n + i]
+        algorithmic = (1.0 + alpha) * true - alpha * row2[n + i]
         mean = (1.0 - gamma) * (true + ratio * (algorithmic - true)) + gamma * newest[2 * n + i]
         off = unit * (newest[i] - row1[i] - h * mean)
         by_formula += off * off
@@ -57,7 +59,7 @@ def _rows_beat_formula(ws: Any, ms: Any, weights: Any, gamma: float) -> bool:
 
 
 @internal
-def best_guess(ws: Any, ms: Any, c_q: float, gamma: float) -> int:
+def best_guess(ws: Any, ms: Any, c_q: float, alpha: float, gamma: float) -> int:
     """What would have predicted the newest row best. Accelerations of stiff components are large and change their sign
     from step to step: there it is positions."""
     rows = rows_available(ms)
@@ -90,7 +92,7 @@ def best_guess(ws: Any, ms: Any, c_q: float, gamma: float) -> int:
         by_many += da * da
     if not c_q * c_q * by_many < min(by_q, by_line):
         return guess
-    return ALL_BY_MANY_ROWS if _rows_beat_formula(ws, ms, weights, gamma) else BY_MANY_ROWS
+    return ALL_BY_MANY_ROWS if _rows_beat_formula(ws, ms, weights, alpha, gamma) else BY_MANY_ROWS
 
 
 @internal

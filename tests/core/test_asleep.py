@@ -157,6 +157,17 @@ def test_the_broad_phase_changes_no_bit(spatial):
     assert fewest < len(model.contacts) // 3
 
 
+def test_skins_become_thin_again_behind_long_steps():
+    """Disks that fly into a box in long steps, and then strike: in one call, so that nothing but sweeps ends skins."""
+    sim = Simulation(heap(12, 0.3, 0.4, 0), "ebdf")
+    sim.advance(0.3)
+    loop = sim._loop.arrays
+    found = loop["pair_found"][loop["pair_found"] >= 0]
+    assert len(found) == 66
+    assert np.sum(found == loop["broad"][1]) < 33
+    assert np.all(loop["ball_moves"][:, 3] < 2.0 * RADIUS)
+
+
 def test_balls_fit_the_shapes_however_their_numbers_change():
     """A compiled model gives its tables to runs with other numbers; the balls are those of their own radii."""
     small, large = grown(1.0), Simulation(grown(4.0), "ebdf")

@@ -10,8 +10,10 @@ from tlismni.core import (
     Input,
     InputSignal,
     KelvinVoigt,
+    Model,
     ModelError,
     NewtonImpact,
+    RigidBody3D,
     Simulation,
     State,
     TlismniError,
@@ -92,6 +94,29 @@ def test_every_method_repeats_itself_and_goes_on_from_a_stored_state_bit_for_bit
     other = Simulation(pendulum_stop(), method, rtol=1e-5, atol=1e-7, **options)
     other.restore(State.from_bytes(stored))
     assert trajectory(other, times) == runs[0]
+
+
+def free_spin():
+    inertia, spin = (0.01, 0.012, 0.014), (3.0, 10.0, -4.0)
+    return Model(
+        gravity=(0.0, 0.0, 0.0), bodies=[RigidBody3D(name="b", mass=1.0, inertia=inertia, angular_velocity=spin)]
+    )
+
+
+@pytest.mark.parametrize("build", [free_spin, lambda: load("spatial_slider_crank").model], ids=["body", "slider-crank"])
+@pytest.mark.parametrize("method, options", EVERY_METHOD)
+def test_smooth_motion_in_space_goes_on_bit_for_bit(method, options, build):
+    """Many rows behind one another, whose number and places a state must have as far back as any step looks."""
+    for rtol in (1e-3, 1e-6):
+        sim, other = (Simulation(build(), method, rtol=rtol, **options) for _ in range(2))
+        sim.advance(0.3)
+        state = sim.state()
+        other.restore(state)
+        for t in (0.35, 0.5):
+            for run in (sim, other):
+                run.advance(t)
+            assert sim.state() == other.state()
+            assert np.array_equal(sim.values(), other.values())
 
 
 @pytest.mark.parametrize("case", CASES)
