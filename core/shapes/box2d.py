@@ -27,16 +27,20 @@ class Box2D(Record):
     height: Positive
     """Along its second axis, m."""
 
-    def corners(self) -> tuple[Disk2D, ...]:
-        """Its corners as points."""
+    def corners(self, radius: float = 0.0) -> tuple[Disk2D, ...]:
+        """Its corners as points, or as disks of this radius (m) that reach both sides."""
         c, s = math.cos(self.marker.angle), math.sin(self.marker.angle)
         x0, y0 = self.marker.point
         found = []
         for x, y in ((0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)):
-            u, w = x * self.width, y * self.height
+            u, w = x * (self.width - 2.0 * radius), y * (self.height - 2.0 * radius)
             point = (x0 + c * u - s * w, y0 + s * u + c * w)
-            found.append(Disk2D(marker=Marker2D(body=self.marker.body, point=point)))
+            found.append(Disk2D(marker=Marker2D(body=self.marker.body, point=point), radius=radius))
         return tuple(found)
+
+    def shortest_side(self) -> float:
+        """m."""
+        return min(self.width, self.height)
 
 
 def box_gap(box: Frame2D, centre: Frame2D, half_width: float, half_height: float, radius: float) -> float:

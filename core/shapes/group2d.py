@@ -29,6 +29,9 @@ ANGULAR = (Box2D, Polygon2D)
 GroupShape = PlanarShape | SpatialShape
 
 MOST_PAIRS = 200_000
+ROUND = 1e-3
+"""Of the shortest side of both: radius of corners where shapes with corners touch each other. A point that comes along
+a side to a corner of the same height would touch neither of the sides that strike."""
 
 
 def contacts_between(
@@ -150,7 +153,8 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
     if isinstance(a, Disk2D):
         return ((b, a),)
     if isinstance(a, ANGULAR) and isinstance(b, ANGULAR):
-        return (*((a, corner) for corner in b.corners()), *((b, corner) for corner in a.corners()))
+        radius = ROUND * min(a.shortest_side(), b.shortest_side())
+        return (*((a, corner) for corner in b.corners(radius)), *((b, corner) for corner in a.corners(radius)))
     if isinstance(a, ANGULAR):
         a, b = b, a
     if isinstance(b, ANGULAR):

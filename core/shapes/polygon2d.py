@@ -56,12 +56,28 @@ class Polygon2D(Record):
                              "straight or inwards, or make it of several convex ones")  # fmt: skip
         return vertices if whole > 0.0 else vertices[::-1]
 
-    def corners(self) -> tuple[Disk2D, ...]:
-        """Its corners as points."""
+    def corners(self, radius: float = 0.0) -> tuple[Disk2D, ...]:
+        """Its corners as points, or as disks of this radius (m) that reach both sides."""
         c, s = math.cos(self.marker.angle), math.sin(self.marker.angle)
         x0, y0 = self.marker.point
-        places = [(x0 + c * x - s * y, y0 + s * x + c * y) for x, y in self.vertices]
-        return tuple(Disk2D(marker=Marker2D(body=self.marker.body, point=p)) for p in places)
+        places = [(x0 + c * x - s * y, y0 + s * x + c * y) for x, y in self._within(radius)]
+        return tuple(Disk2D(marker=Marker2D(body=self.marker.body, point=p), radius=radius) for p in places)
+
+    def _within(self, radius: float) -> list[tuple[float, float]]:
+        """Places as far from both sides at each corner, m."""
+        found, sides = [], len(self.vertices)
+        for k, (x, y) in enumerate(self.vertices):
+            (ux, uy), (wx, wy) = self.vertices[k - 1], self.vertices[(k + 1) % sides]
+            before, after = math.hypot(x - ux, y - uy), math.hypot(wx - x, wy - y)
+            # inwards from both sides, which go round counter-clockwise
+            a, b = ((uy - y) / before, (x - ux) / before), ((y - wy) / after, (wx - x) / after)
+            along = radius / (1.0 + a[0] * b[0] + a[1] * b[1])
+            found.append((x + along * (a[0] + b[0]), y + along * (a[1] + b[1])))
+        return found
+
+    def shortest_side(self) -> float:
+        """m."""
+        return min(math.dist(a, b) for a, b in zip(self.vertices, self.vertices[1:] + self.vertices[:1], strict=True))
 
     @property
     def perimeter(self) -> float:
