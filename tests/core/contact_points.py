@@ -1,8 +1,8 @@
 """A contact at given states: rows, residuals, tangents, for tests of gaps, sliding distances and their derivatives."""
 
 import numpy as np
-from test_tangents import Point
-from tlismni.core.state.modes import APPROACH_SPEED, CLOSED, MODE, SLIDE, SLIDE_START
+from test_tangents import Point, check_levels, check_matrix
+from tlismni.core.state.modes import ACTIVE, APPROACH_SPEED, AXIS, CLOSED, MODE, SLIDE, SLIDE_START, STICKS, WAY
 
 
 class ContactPoint(Point):
@@ -64,3 +64,18 @@ def check_derivatives(point, state, h=1e-3, tolerance=1e-7, distances=slice(None
     _, _, phid, phidd = point.at(*state)
     assert np.abs(phid - first)[distances].max() < tolerance
     assert np.abs(phidd - second).max() < tolerance
+
+
+def check_in_space(closed, rubbing, sticking, states):
+    """Matrix, levels and tangents of models of one contact in space: a constraint, a force with friction, and one that
+    sticks. `states` gives those of a point."""
+    point = Point(closed, CLOSED)
+    rubbing, sticking = Point(rubbing, ACTIVE), Point(sticking)
+    sticking.workspace.engage(frozenset({0}), frozenset(), frozenset({0, 1}))
+    sticking.workspace.arrays["memory"][0, [MODE, SLIDE, WAY, AXIS]] = CLOSED, STICKS, 0.7, 2
+    for state in states(point):
+        check_matrix(point, state, h=1e-3)
+        check_levels(point, state, 1e-3)
+    for each in (rubbing, sticking):
+        for state in states(each):
+            check_tangent(each, state)

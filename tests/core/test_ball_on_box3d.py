@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from contact_points import check_tangent
+from contact_points import check_in_space
 from test_contact_tangents3d import GRIP, HARD, HUNT, PEAK
 from test_mesh_contact3d import TILT, WHERE, states
-from test_tangents import Point, check_levels, check_matrix
+from test_tangents import Point
 from tlismni.core import (
     Box2D,
     Box3D,
@@ -31,7 +31,6 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
-from tlismni.core.state.modes import ACTIVE, AXIS, CLOSED, MODE, SLIDE, STICKS, WAY
 
 SIZE = (0.6, 0.5, 0.4)
 R = 0.1
@@ -120,16 +119,7 @@ def falling(where, law, friction=None):
 
 @pytest.mark.parametrize("where", WHERE)
 def test_tangents_and_levels_with_round_edges(where):
-    point = Point(falling(where, HARD), CLOSED)
-    rubbing, sticking = Point(falling(where, HUNT, PEAK), ACTIVE), Point(falling(where, HARD, GRIP))
-    sticking.workspace.engage(frozenset({0}), frozenset(), frozenset({0, 1}))
-    sticking.workspace.arrays["memory"][0, [MODE, SLIDE, WAY, AXIS]] = CLOSED, STICKS, 0.7, 2
-    for state in states(point):
-        check_matrix(point, state, h=1e-3)
-        check_levels(point, state, 1e-3)
-    for each in (rubbing, sticking):
-        for state in states(each):
-            check_tangent(each, state)
+    check_in_space(falling(where, HARD), falling(where, HUNT, PEAK), falling(where, HARD, GRIP), states)
 
 
 def test_a_free_box_is_hit_at_a_corner_without_loss():

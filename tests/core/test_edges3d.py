@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from contact_points import check_tangent
+from contact_points import check_in_space
 from solids import hull_distance, placed, random_shape
 from test_contact_tangents3d import GRIP, HARD, HUNT, PEAK
 from test_mesh_contact3d import states
-from test_tangents import Point, check_levels, check_matrix
+from test_tangents import Point
 from tlismni.core import (
     Box3D,
     Capsule3D,
@@ -25,7 +25,6 @@ from tlismni.core import (
 )
 from tlismni.core.shapes.edge_parts import edge_sorts, edges_of
 from tlismni.core.shapes.overlap3d import apart
-from tlismni.core.state.modes import ACTIVE, AXIS, CLOSED, MODE, SLIDE, STICKS, WAY
 
 TETRAHEDRON = ConvexPolyhedron3D(marker=Marker3D(body="b"), vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
 
@@ -116,16 +115,7 @@ def crossing(law, friction=None, sort=None):
 
 
 def test_tangents_and_levels():
-    point = Point(crossing(HARD), CLOSED)
-    rubbing, sticking = Point(crossing(HUNT, PEAK), ACTIVE), Point(crossing(HARD, GRIP))
-    sticking.workspace.engage(frozenset({0}), frozenset(), frozenset({0, 1}))
-    sticking.workspace.arrays["memory"][0, [MODE, SLIDE, WAY, AXIS]] = CLOSED, STICKS, 0.7, 2
-    for state in states(point):
-        check_matrix(point, state, h=1e-3)
-        check_levels(point, state, 1e-3)
-    for each in (rubbing, sticking):
-        for state in states(each):
-            check_tangent(each, state)
+    check_in_space(crossing(HARD), crossing(HUNT, PEAK), crossing(HARD, GRIP), states)
 
 
 def test_the_gap_goes_on_falling_where_edges_have_crossed():

@@ -4,7 +4,8 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
-from tlismni.fmu_wrapper import export_fmu
+from fmpy.validation import validate_fmu
+from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.models import load
 
 TAKE_PYTHON = ("split_wall", "four_bar")
@@ -91,3 +92,25 @@ class Side:
 def scenario_pair(name, folder, version, **parameters):
     scenario = load(name, **parameters)
     return Pair(scenario, folder, version, t_end=scenario.t_end)
+
+
+def steps_of_the_same_bits(model, folder, steps, step):
+    """An FMU of the model beside a slave in this process: that one after each step, when both have the same bits."""
+    settings = {"t_end": steps * step, "communication_step": step}
+    path = export_fmu(model, folder / "python.fmu", "3.0", **settings)
+    assert validate_fmu(str(path)) == []
+    unzipped = fmpy.extract(str(path), unzipdir=str(folder / "python"))
+    side, slave = Side("3.0", unzipped, fmpy.read_model_description(unzipped)), Slave(model, **settings)
+    slave.setup()
+    slave.enter_initialization()
+    slave.exit_initialization()
+    side.begin()
+    names = [v.name for v in side.by_name.values() if v.valueReference in side.reals]
+    references, time = [side.by_name[name].valueReference for name in names], 0.0
+    for _ in range(steps):
+        slave.do_step(time, step)
+        time += step
+        side.step(step)
+        found = side.fmu.getFloat64(references)
+        assert np.array([slave[name] for name in names]).tobytes() == np.array(found).tobytes()
+        yield slave

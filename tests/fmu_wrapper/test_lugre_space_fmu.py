@@ -1,10 +1,8 @@
 """LuGre's friction in space in FMUs: the bits of a run in this process, with Python and without."""
 
-import fmpy
 import numpy as np
 import pytest
-from fmpy.validation import validate_fmu
-from native_pair import Pair, Side
+from native_pair import Pair, steps_of_the_same_bits
 from tlismni.core import (
     HalfSpace3D,
     KelvinVoigt,
@@ -17,7 +15,6 @@ from tlismni.core import (
     SphereOnSphere3D,
 )
 from tlismni.core.compiled.library import LIBRARY
-from tlismni.fmu_wrapper import Slave, export_fmu
 
 PARTS = {
     "law": KelvinVoigt(stiffness=1e5, damping=100.0),
@@ -42,26 +39,10 @@ def model():
 
 
 def test_the_bits_of_a_run_in_this_process(tmp_path):
-    settings = {"t_end": STEPS * STEP, "communication_step": STEP}
-    path = export_fmu(model(), tmp_path / "bristles.fmu", "3.0", **settings)
-    assert validate_fmu(str(path)) == []
-    unzipped = fmpy.extract(str(path), unzipdir=str(tmp_path / "bristles"))
-    side = Side("3.0", unzipped, fmpy.read_model_description(unzipped))
-    slave = Slave(model(), **settings)
-    slave.setup()
-    slave.enter_initialization()
-    slave.exit_initialization()
-    side.begin()
-    names = [v.name for v in side.by_name.values() if v.valueReference in side.reals]
-    assert {"floor.bristle_x", "floor.bristle_y", "post.bristle_z"} < set(names)
-    references, bent, time = [side.by_name[name].valueReference for name in names], 0.0, 0.0
-    for _ in range(STEPS):
-        slave.do_step(time, STEP)
-        time += STEP
-        side.step(STEP)
-        found = side.fmu.getFloat64(references)
-        assert np.array([slave[name] for name in names]).tobytes() == np.array(found).tobytes()
+    bent = 0.0
+    for slave in steps_of_the_same_bits(model(), tmp_path, STEPS, STEP):
         bent = max(bent, abs(slave["floor.bristle_x"]))
+        assert all(np.isfinite(slave[name]) for name in ("floor.bristle_y", "post.bristle_z"))
     assert bent > 1e-5
 
 
