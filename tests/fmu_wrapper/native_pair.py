@@ -46,12 +46,16 @@ class Side:
         self.choices = [v.valueReference for v in outputs if v.type == "Enumeration"]
         self.time = 0.0
 
-    def begin(self, **inputs):
+    def begin(self, start=0.0, /, **inputs):
         if not self.three:
-            self.fmu.setupExperiment(startTime=0.0)
+            self.fmu.setupExperiment(startTime=start)
         self.set(**inputs)
-        self.fmu.enterInitializationMode()
+        if self.three:
+            self.fmu.enterInitializationMode(startTime=start)
+        else:
+            self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
+        self.time = start
         if self.event_mode:
             self.leave_event_mode()
 
@@ -92,6 +96,13 @@ class Side:
 def scenario_pair(name, folder, version, **parameters):
     scenario = load(name, **parameters)
     return Pair(scenario, folder, version, t_end=scenario.t_end)
+
+
+def step_alike(sides, steps, h):
+    """So many steps of both sides, which end alike and leave the same bits."""
+    for _ in range(steps):
+        assert sides[0].step(h) == sides[1].step(h)
+        assert sides[0].read() == sides[1].read()
 
 
 def steps_of_the_same_bits(model, folder, steps, step):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from native_pair import Pair, steps_of_the_same_bits
+from native_pair import Pair, step_alike, steps_of_the_same_bits
 from tlismni.core import (
     HalfSpace3D,
     KelvinVoigt,
@@ -52,6 +52,4 @@ def test_without_python_the_same_bits(version, tmp_path):
     sides = Pair(model(), tmp_path, version, t_end=STEPS * STEP).instances()
     for side in sides:
         side.begin()
-    for _ in range(STEPS):
-        assert sides[0].step(STEP) == sides[1].step(STEP)
-        assert sides[0].read() == sides[1].read()
+    step_alike(sides, STEPS, STEP)

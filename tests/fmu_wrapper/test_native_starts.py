@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from native_pair import Pair, scenario_pair
+from native_pair import Pair, scenario_pair, step_alike
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.core.description import Model
 from tlismni.core.elements import (
@@ -36,9 +36,7 @@ def test_one_parameter_gives_the_bits_of_the_fmu_with_python(stop, parameter, va
     for side in sides:
         side.begin(**{parameter: value})
     assert sides[0].read() == sides[1].read()
-    for _ in range(8):
-        assert sides[0].step(0.21) == sides[1].step(0.21)
-        assert sides[0].read() == sides[1].read()
+    step_alike(sides, 8, 0.21)
 
 
 def test_several_parameters_are_the_same_to_rounding(stop):
@@ -130,9 +128,7 @@ def test_another_start_time(version, start, tmp_path):
         side.set(push=1.0)
         side.fmu.exitInitializationMode()
         side.time = start
-    for _ in range(9):
-        assert sides[0].step(0.1) == sides[1].step(0.1)
-        assert sides[0].read() == sides[1].read()
+    step_alike(sides, 9, 0.1)
     # v_y = F / m (t - 0.5 s) once the force has begun
     t, by_name = sides[0].time, sides[0].by_name
     (speed,) = (sides[0].fmu.getFloat64 if sides[0].three else sides[0].fmu.getReal)([by_name["p.vy"].valueReference])
@@ -156,16 +152,8 @@ def test_turns_of_a_driven_hinge_at_another_start_time(version, tmp_path):
     )
     sides = Pair(model, tmp_path, version, t_end=1.0).instances()
     for side in sides:
-        if side.three:
-            side.fmu.enterInitializationMode(startTime=start)
-        else:
-            side.fmu.setupExperiment(startTime=start)
-            side.fmu.enterInitializationMode()
-        side.fmu.exitInitializationMode()
-        side.time = start
-    for _ in range(4):
-        assert sides[0].step(0.1) == sides[1].step(0.1)
-        assert sides[0].read() == sides[1].read()
+        side.begin(start)
+    step_alike(sides, 4, 0.1)
     t, by_name = sides[0].time, sides[0].by_name
     read = sides[0].fmu.getFloat64 if sides[0].three else sides[0].fmu.getReal
     names = ("hinge.angle", "driver.torque_z")
