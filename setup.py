@@ -1,6 +1,9 @@
 """Builds the FMU shim (fmu_wrapper/shim/*.c) with a C compiler, and the library of machine code of the core where it is
 asked for; everything else stands in pyproject.toml.
 
+An installation from the sources unpacks the library that the repository has for this machine, if it is of these very
+sources (`core/ahead/packed.py`).
+
 The shim is a plain shared library, no extension module: it is not tied to a Python version. It is compiled with
 $CC, or cc, gcc, clang, or where there is none with `python -m ziglang cc`, which is then a build requirement.
 
@@ -23,6 +26,7 @@ from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
 
 SHIM = Path("fmu_wrapper", "shim")
+COMPILED = "core/compiled"
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 FLAGS = ["-std=c11", "-O2", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra"]
 SYSTEM_FLAGS = {"win32": [], "darwin": ["-fPIC"]}.get(sys.platform, ["-fPIC", "-ldl", "-lpthread"])
@@ -77,18 +81,34 @@ class BuildShim(build_ext):
     def run(self) -> None:
         """The shim, and the machine code of the sources that are in the wheel."""
         super().run()
-        if AHEAD and not self.inplace:
-            root = Path(self.build_lib).resolve()
+        root = Path(self.build_lib).resolve()
+        if not AHEAD and not TARGET:
+            self.unpack_machine_code(Path(COMPILED) if self.inplace else root / "tlismni" / COMPILED)
+        elif AHEAD and not self.inplace:
             self.leave_none_of_other_platforms(root)
             if AHEAD == "1":
                 self.make_machine_code(root)
             else:
                 self.take_machine_code(Path(AHEAD), root)
 
+    def unpack_machine_code(self, folder: Path) -> None:
+        """Put the library of the repository, if it is of these sources, beside them."""
+        sys.path.insert(0, str(Path(__file__).parent))
+        try:
+            from core.ahead.packed import take
+        finally:
+            del sys.path[0]
+        folder.mkdir(parents=True, exist_ok=True)
+        place = folder / f"tlismni_core{SUFFIX}"
+        taken = take(Path("machine_code"), place)
+        if not taken and not self.inplace:
+            place.unlink(missing_ok=True)  # of an earlier wheel from the same folder
+        self.announce(f"machine code of these sources {'is' if taken else 'is not'} in machine_code", level=2)
+
     @staticmethod
     def leave_none_of_other_platforms(root: Path) -> None:
         """What an earlier wheel has left in the same folder would be in this one too."""
-        for name in ("core/compiled/tlismni_core", "fmu_wrapper/tlismni_shim"):
+        for name in (f"{COMPILED}/tlismni_core", "fmu_wrapper/tlismni_shim"):
             for suffix in {".so", ".dll", ".dylib"} - {SUFFIX}:
                 (root / "tlismni" / f"{name}{suffix}").unlink(missing_ok=True)
 

@@ -10,12 +10,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..core.compiled.library import LIBRARY, core_digest
+from ..core.compiled.library import LIBRARY
 from ..core.description import Model
 from ..core.native import NativeError
-from ..core.native.c_sources import c_digest
 from ..core.native.export import image_and_parameters
 from ..core.native.parameters import Parameter, Setting
+from ..core.source_digests import c_digest, core_digest
 from .arrays import ArrayVariable
 from .effective import effective
 from .errors import ExportError, FmuValueError

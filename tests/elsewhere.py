@@ -13,8 +13,8 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-from tlismni.core.compiled.library import LIBRARY, core_digest
-from tlismni.core.native.c_sources import c_digest
+from tlismni.core.compiled.library import LIBRARY
+from tlismni.core.source_digests import c_digest, core_digest
 
 LIBRARIES = Path(os.environ.get("TLISMNI_LIBRARIES", "build")).resolve()
 QEMU = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")

@@ -45,7 +45,7 @@ def main() -> int:
     from .packed import put, take
 
     try:
-        if given.take and take(given.take):
+        if given.take and take(given.take, USUAL_PLACE):
             return 0
         if given.no_make:
             return 1

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..compiled.library import USUAL_PLACE, core_digest
+from ..compiled.library import USUAL_PLACE
 from ..errors import TlismniError
-from ..native.c_sources import c_sources
+from ..source_digests import c_sources, core_digest
 from .libm import BESIDE, FUNCTIONS, PREFIX, SEEN, libm_texts
 from .module import DIGEST, MANIFEST, QUICK, link, manifest_text, optimised, undefined
 from .parts import recorded

@@ -1,4 +1,7 @@
-"""Libraries in the repository, packed: whoever has these very sources need not make one."""
+"""Libraries in the repository, packed: whoever has these very sources need not make one.
+
+It needs the standard library alone: `setup.py` takes a library before anything else is installed.
+"""
 
 import logging
 import lzma
@@ -6,28 +9,23 @@ import platform
 import sys
 from pathlib import Path
 
-from ..compiled.library import USUAL_PLACE, core_digest
-from ..native.c_sources import c_digest
-from .targets import own_target
+from ..source_digests import c_digest, core_digest
+from .targets import own_name, own_target
 
 logger = logging.getLogger(__name__)
-
-
-def _packed(folder: Path) -> Path:
-    return folder / f"{own_target().name}.xz"
 
 
 def put(library: Path, folder: Path) -> Path:
     """Pack a library of this machine into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    path = _packed(folder)
+    path = folder / f"{own_target().name}.xz"
     path.write_bytes(lzma.compress(library.read_bytes(), preset=9 | lzma.PRESET_EXTREME))
     return path
 
 
-def take(folder: Path, place: Path = USUAL_PLACE) -> bool:
-    """Unpack the library for this machine to its usual place; False if there is none of these sources."""
-    path = _packed(folder)
+def take(folder: Path, place: Path) -> bool:
+    """Unpack the library for this machine to `place`; False if there is none of these sources."""
+    path = folder / f"{own_name()}.xz"
     if not path.is_file() or (sys.platform == "linux" and platform.libc_ver()[0] != "glibc"):
         logger.info("'%s' has no library for this machine", folder)
         return False

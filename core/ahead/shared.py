@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import TlismniError
-from ..native.c_sources import c_digest
+from ..source_digests import c_digest
 from .targets import Target
 
 LINKERS = ("cc", "gcc", "clang")

@@ -36,11 +36,16 @@ TARGETS = {
 }
 
 
-def own_target() -> Target:
-    """That of this machine. Raises TlismniError for one that is unknown."""
+def own_name() -> str:
+    """Name of the target that this machine is, known or not."""
     machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
     system = {"win32": "windows", "darwin": "macos"}.get(sys.platform, "linux")
-    name = f"{system}-{machine}"
+    return f"{system}-{machine}"
+
+
+def own_target() -> Target:
+    """That of this machine. Raises TlismniError for one that is unknown."""
+    name = own_name()
     if name not in TARGETS:
         raise TlismniError(f"there is no target '{name}': known are {sorted(TARGETS)}")
     return TARGETS[name]

@@ -6,16 +6,15 @@ alone, and functions are compiled when they are first used, as where there is no
 
 import binascii
 import ctypes
-import hashlib
 import json
 import logging
 import os
 import sys
 import zlib
-from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ..source_digests import core_digest
 from .needed import numba_module, use_libm
 
 logger = logging.getLogger(__name__)
@@ -28,7 +27,6 @@ compiled in this process calls, so that it has that library's bits; without it t
 system's."""
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 USUAL_PLACE = Path(__file__).with_name(f"tlismni_core{SUFFIX}")
-_CORE = Path(__file__).resolve().parents[1]
 _PACKAGE = __name__.partition(".core.")[0]
 
 
@@ -47,21 +45,6 @@ def known_as(module: str | None) -> str:
     carries the package gives it another name. None: of a function that is made of a text."""
     name = str(module)
     return "tlismni" + name[len(_PACKAGE) :] if name.startswith(f"{_PACKAGE}.") else name
-
-
-@cache
-def core_digest() -> str:
-    """Digest of every source of the core but those that make the library, and what is laid before it: constants of any
-    may be in the code."""
-    digest, root = hashlib.sha256(), str(_CORE)
-    for folder, folders, files in os.walk(root):
-        folders[:] = sorted(set(folders) - {"__pycache__", "ahead", "native"})
-        for file in sorted(files):
-            if file.endswith(".py"):
-                with open(os.path.join(folder, file), "rb", buffering=0) as source:
-                    name = os.path.join(folder[len(root) :], file).replace(os.sep, "/")
-                    digest.update(name.encode() + b"\0" + source.read() + b"\0")
-    return digest.hexdigest()[:32]
 
 
 class Library:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..compiled.library import LIBRARY, Library
 from ..run.exchange import possible
+from ..source_digests import c_digest
 from ..tables.slots import Slots
-from .c_sources import c_digest
 from .errors import NativeError
 from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
 from .parameters import Parameter

@@ -14,9 +14,9 @@ from tlismni.core.ahead.make import MEMORY
 from tlismni.core.ahead.module import QUICK, undefined
 from tlismni.core.ahead.packed import put, take
 from tlismni.core.ahead.targets import TARGETS
-from tlismni.core.compiled.library import LIBRARY, PLACE, core_digest, packed, unpacked
+from tlismni.core.compiled.library import LIBRARY, PLACE, packed, unpacked
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
-from tlismni.core.native.c_sources import c_digest
+from tlismni.core.source_digests import c_digest, core_digest
 
 PART = ("tsuji_formula", "position_level", "eliminate", "directions", "violates_redundant")
 """Functions that take seconds to make a library of: numbers, a record, arrays; of both parts that are recorded."""
@@ -228,7 +228,7 @@ except ValueError as error:
 def test_a_library_of_other_sources_is_left_alone(part: Path, tmp_path: Path) -> None:
     content = part.read_bytes()
     digest = answer(
-        run("import json; from tlismni.core.compiled.library import core_digest as d; print(json.dumps(d()))", "none")
+        run("import json; from tlismni.core.source_digests import core_digest as d; print(json.dumps(d()))", "none")
     )
     assert content.count(digest.encode()) == 1
     stale = tmp_path / part.name

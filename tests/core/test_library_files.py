@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from elsewhere import LIBRARIES, is_of_these_sources, library_for
 from tlismni.core.ahead.targets import TARGETS
-from tlismni.core.native.c_sources import c_sources
+from tlismni.core.source_digests import c_sources
 
 lief = pytest.importorskip("lief")
 NATIVE = Path(__file__).parents[2] / "core" / "native"

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from tlismni.core.ahead.make import c_sources
 from tlismni.core.ahead.shared import symbol_table
 from tlismni.core.compiled.library import LIBRARY
+from tlismni.core.source_digests import c_sources
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.models import load
 
