@@ -130,8 +130,9 @@ def native_image(sim: Any, most_steps: int, parameters: Sequence[Parameter] = ()
             return BUILT
         return TABLES if _points(x, found, addresses) else NUMBERS
 
-    shared = _Segment([x for x, own in zip(found.arrays, is_own, strict=True) if not own], lambda x: TABLES)
-    of_run = [x for x, own in zip(found.arrays, is_own, strict=True) if own]
+    own_arrays = {id(x) for x, own in zip(found.arrays, is_own, strict=True) if own}
+    shared = _Segment([x for x in found.in_order() if id(x) not in own_arrays], lambda x: TABLES)
+    of_run = [x for x in found.in_order() if id(x) in own_arrays]
     mine = _Segment([*of_run, values] if len(values) else of_run, kind_of, _first_place(sim.workspace.slots))
     lists: dict[tuple[int, int], list[NDArray[np.int64]]] = {}
     for of, segment in ((0, shared), (1, mine)):

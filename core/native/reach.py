@@ -26,6 +26,12 @@ class Found(NamedTuple):
     arrays: list[Array]
     begin: Whole
     end: Whole
+    rank: Whole
+    """Of each array its number in an order that does not depend on addresses: two processes have the same."""
+
+    def in_order(self) -> list[Array]:
+        """The arrays by rank."""
+        return [self.arrays[k] for k in np.argsort(self.rank).tolist()]
 
     def owner(self, words: Whole) -> Whole:
         """Number of the array that each word points into; -1: into none."""
@@ -63,24 +69,29 @@ def held_by(*roots: Any) -> Iterator[Array]:
 
 
 def without_parts(arrays: Iterable[Array]) -> Found:
-    """The arrays that are no parts of others, empty ones left out.
+    """The arrays that are no parts of others, empty ones left out; ranked as they are given.
 
     Raises
     ------
     NativeError : for two that share a part of each other only.
     """
     found: list[Array] = []
+    ranks: list[int] = []
     end = 0
+    given = [x for x in arrays if x.nbytes]
     # of views of the same memory the one of 8-byte numbers says most
-    for x in sorted((x for x in arrays if x.nbytes), key=lambda x: (begin_of(x), -x.nbytes, x.dtype.itemsize % 8)):
+    for k in sorted(range(len(given)), key=lambda k: (begin_of(x := given[k]), -x.nbytes, x.dtype.itemsize % 8)):
+        x = given[k]
         begin = begin_of(x)
         if begin >= end and x.flags.c_contiguous:
             found.append(x)
+            ranks.append(k)
             end = begin + x.nbytes
         elif x.flags.c_contiguous and begin + x.nbytes > end:
             raise NativeError("two arrays of the run overlap in a part: it cannot be written as an image")
     begins = np.array([begin_of(x) for x in found], dtype=np.int64)
-    return Found(found, begins, begins + np.array([x.nbytes for x in found], dtype=np.int64))
+    ends = begins + np.array([x.nbytes for x in found], dtype=np.int64)
+    return Found(found, begins, ends, np.array(ranks, dtype=np.int64))
 
 
 def words_of(array: Array) -> Whole:
@@ -91,13 +102,14 @@ def words_of(array: Array) -> Whole:
 
 
 def reached(first: Sequence[Array], held: Found) -> Found:
-    """What the arrays `first` point to, and all that this points to, and so on."""
-    left = held.owner(np.array([begin_of(x) for x in first])).tolist()
-    seen = set(left)
+    """What the arrays `first` point to, and all that this points to, and so on: ranked in the order in which words
+    point to them."""
+    seen = dict.fromkeys(held.owner(np.array([begin_of(x) for x in first])).tolist())
+    left = list(seen)
     while left:
         owners = held.owner(words_of(held.arrays[left.pop()]))
-        new = {int(k) for k in np.unique(owners[owners >= 0])} - seen
-        seen |= new
+        new = [k for k in dict.fromkeys(owners[owners >= 0].tolist()) if k not in seen]
+        seen.update(dict.fromkeys(new))
         left += new
     return without_parts(held.arrays[k] for k in seen)
 
