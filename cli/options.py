@@ -204,6 +204,9 @@ InputValues = Annotated[
     ),
 ]
 Hold = Annotated[bool, typer.Option("--hold", help="Inputs of a file keep their values until the next, without slope.")]
+Spline = Annotated[
+    bool, typer.Option("--spline", help="Positions of a file that lead motions go along a cubic spline, not lines.")
+]
 ChannelNames = Annotated[
     list[str] | None,
     typer.Option(

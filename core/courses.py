@@ -2,23 +2,23 @@
 
 from collections.abc import Mapping, Sequence
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ModelError
 
-if TYPE_CHECKING:
-    from .run.simulation import Simulation
-
 Floats = NDArray[np.float64]
-Between = Literal["linear", "hold"]
+Between = Literal["linear", "hold", "spline"]
 Given = Mapping[str, Any]
 
 
 class Courses:
-    """Values of inputs at times, straight lines between them or held; constant before the first and after the last.
+    """Values of inputs at times; constant before the first and after the last.
+
+    between : "linear", straight lines; "hold", each value until the next; "spline", straight lines, but a cubic spline
+        for positions that lead motions. `course_run.py` has what motions do.
 
     Attributes
     ----------
@@ -28,8 +28,8 @@ class Courses:
     def __init__(self, times: ArrayLike, values: Mapping[str, ArrayLike], between: Between = "linear") -> None:
         self.times = _numbers("time", times)
         self.values = {name: _numbers(name, x) for name, x in values.items()}
-        if between not in ("linear", "hold"):
-            raise ModelError(f"inputs go on between their times by 'linear' or 'hold', not {between!r}")
+        if between not in ("linear", "hold", "spline"):
+            raise ModelError(f"inputs go on between their times by 'linear', 'hold' or 'spline', not {between!r}")
         if len(self.times) == 0 or np.any(np.diff(self.times) <= 0.0):
             raise ModelError("the times of inputs must be at least one, and grow strictly")
         for name, x in self.values.items():
@@ -50,28 +50,12 @@ class Courses:
         values, rates = {}, {}
         for name, x in self.values.items():
             slope = 0.0
-            if inside and self.between == "linear":
+            if inside and self.between != "hold":
                 slope = float((x[k + 1] - x[k]) / (self.times[k + 1] - self.times[k]))
             low = min(max(k, 0), last)
             values[name] = float(x[low] + (slope * (t - self.times[low]) if slope else 0.0))
             rates[name] = (slope,)
         return values, rates
-
-    def begin(self, sim: "Simulation") -> None:
-        """Set the inputs at the start. Raises ModelError for unknown ones."""
-        self.check(sim.assembly.input_names)
-        sim.set_inputs(*self.at(sim.t))
-
-    def run_to(self, sim: "Simulation", t_end: float, until: float) -> None:
-        """Integrate to `until` (s), with the inputs changing on the way; no step goes beyond t_end or a change."""
-        while True:
-            ahead = self.times[self.times > sim.t]
-            stop = float(ahead[0]) if len(ahead) else np.inf
-            if stop > until:
-                sim.run_to(min(stop, t_end), until=until)
-                return
-            sim.run_to(stop)
-            sim.set_inputs(*self.at(stop))
 
 
 def courses(given: "Given | Courses") -> Courses:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from .compiled.watch import RunWatch
 from .compiled_model import compile_model
+from .course_run import CourseRun
 from .courses import Courses, Given, courses
 from .errors import ModelError, SimulationError, TlismniError
 from .results.result import Result
@@ -55,7 +56,7 @@ def simulate(
     start_values : coordinates and rates at the start by the names of their channels ("ball.y", "ball.vy"), in place of
         those of the model; `Result.start_at` gives those of another run, to go on from there.
     inputs : for names of inputs the number that they keep, or (times, values) with straight lines between, or
-        `Courses`; left out: their start values.
+        `Courses`; left out: their start values. Motions that they lead follow them exactly (docs/inputs.md).
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
         only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
         `outer`, `acceleration`, `depth`, `fallback`, `controller`, `newton_tolerance`, `start_tolerance`,
@@ -87,16 +88,16 @@ def simulate(
     course = None if inputs is None else courses(inputs)
     watch = RunWatch()
     rows = []
+    led: CourseRun | None = None
 
     def run_to(until: float) -> None:
-        if course is None:
+        if led is None:
             sim.run_to(t_end, until=until)
         else:
-            course.run_to(sim, t_end, until)
+            led.run_to(t_end, until)
 
     try:
-        if course is not None:
-            course.begin(sim)
+        led = None if course is None else CourseRun(course, sim)
         if times is None:
             if not record:
                 rows.append(sim.sample())

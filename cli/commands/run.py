@@ -22,6 +22,7 @@ from ..options import (
     Rtol,
     Set,
     Source,
+    Spline,
     Step,
     StepsFile,
     check_suffix,
@@ -54,6 +55,7 @@ def run(
     every: Every = None,
     inputs: InputValues = None,
     hold: Hold = False,
+    spline: Spline = False,
     channels: ChannelNames = None,
     output: ResultFile = None,
     plot: PlotFile = None,
@@ -67,6 +69,8 @@ def run(
     check_suffix(animate, ANIMATION_KINDS, "--animate")
     check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
     check_suffix(steps, (".csv",), "--steps")
+    if hold and spline:
+        raise typer.BadParameter("inputs are held or on a spline, not both", param_hint="--hold")
     for path in (output, plot, steps, animate):
         check_file(path)
     if channels and output is not None and output.suffix.lower() == ".npz":
@@ -88,7 +92,8 @@ def run(
             "(--every chooses times instead)"
         )
     wanted = [name.strip() for text in channels or () for name in text.split(",")]
-    course = read_inputs(inputs or (), scenario.model, "hold" if hold else "linear", tuple(scenario.parameters))
+    between = "hold" if hold else "spline" if spline else "linear"
+    course = read_inputs(inputs or (), scenario.model, between, tuple(scenario.parameters))
     stopped = False
     with compile_notice(), progress_bar(scenario.name, scenario.t_end) as progress:
         try:

@@ -64,7 +64,7 @@ class RelativeMotor2D(JointElement, MeasuredElement2D):
     type: Literal["RelativeMotor2D"] = "RelativeMotor2D"
 
     motion: Signal
-    """What it follows, rad or m over s. The bodies must start where it says."""
+    """What it follows, rad or m over s. The bodies must start where it says; an input leads them there."""
 
     @model_validator(mode="after")
     def _check(self) -> "RelativeMotor2D":

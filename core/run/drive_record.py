@@ -137,6 +137,9 @@ class Drive:
     goals, counts : see `records`.
     """
 
+    says_jumps = True
+    """Whether jumps of drivers' rates are said in the log."""
+
     def __init__(self, sim: "Engine", guard: Progress) -> None:
         assembly = sim.assembly
         contacts, self._names = assembly.contacts, [c.name for c in assembly.contacts]
@@ -285,6 +288,6 @@ class Drive:
                 found.append(Event(t, EVENT_KINDS[int(kind)], name, *numbers))
         for t in dict.fromkeys(t for t, _, _ in gains):
             _warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t], self._laws)
-        for t in dict.fromkeys(t for t, _, _ in jumps):
+        for t in dict.fromkeys(t for t, _, _ in jumps if self.says_jumps):
             _warn_of_jump(t, [(name, jump) for at, name, jump in jumps if at == t])
         return found

@@ -62,6 +62,8 @@ class Simulation(Engine):
     ModelError, ConsistencyError : before anything is computed.
     """
 
+    reported_jumps: frozenset[int] = frozenset()
+    """Rows of the motions whose large jumps have been said: once is enough."""
     stored_events: tuple[Event, ...] = ()
     """The events as the last state had them: states share them until one is added."""
 
@@ -177,8 +179,10 @@ class Simulation(Engine):
         return self.event_due
 
     def run_to(self, t_end: float, until: float | None = None) -> None:
-        """Integrate to `until` (or `t_end`); no step goes beyond `t_end`."""
+        """Integrate to `until` (or `t_end`); no step goes beyond `t_end`. Motions whose inputs have jumped join these
+        there."""
         target = float(t_end if until is None else until)
+        self._close_jumps(target)
         self._advance_to(target, float(t_end))
         self.t = target
 

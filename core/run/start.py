@@ -3,6 +3,7 @@
 Memory, rows that repeat others, and sentences for what is no start are Python's."""
 
 import logging
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,7 @@ from ..tables.scales import Scales
 from . import motions
 from .begin import NO_POSITIONS, NO_START, NO_VELOCITIES, OVERLAPS, SINGULAR_START
 from .begin_now import measure_now, place_now, start_now
-from .begin_record import LOOK_AT_RANK, MOVED, MOVED_RATES, WHO
+from .begin_record import LOOK_AT_RANK, MOVED, MOVED_RATES, START_TOLERANCE, WHO
 from .failures import failure_of
 
 if TYPE_CHECKING:
@@ -29,6 +30,13 @@ if TYPE_CHECKING:
     from .simulation import Simulation
 
 logger = logging.getLogger(__name__)
+
+Kept = tuple[NDArray[np.uint8], NDArray[np.int64]]
+"""State and statistics."""
+
+_FAR = (NO_POSITIONS, NO_VELOCITIES)
+WAY_AT_ONCE = 0.1
+"""Of the size of the mechanism (a turn: of 1 rad): how far inputs lead the bodies at once on the way to their start."""
 
 _MAY_REPEAT = (NO_POSITIONS, NO_VELOCITIES, SINGULAR_START)
 """What rows that repeat others may be the reason of."""
@@ -54,20 +62,13 @@ def begin(sim: "Engine") -> None:
 def start(sim: "Engine") -> None:
     """A consistent start, with the model's scales as they have been measured. Raises as `begin`."""
     motions.begin(sim.workspace, sim.settings.t0)
-    numbers, before = sim.beginning.numbers, _now(sim.workspace)
-    sim.redundant = ()
-    numbers[LOOK_AT_RANK] = float(sim.settings.redundant != "refuse")
+    before = _now(sim.workspace)
     try:
-        status = _act(sim, start_now)
-        if status in _MAY_REPEAT and numbers[LOOK_AT_RANK]:
-            _go_back(sim.workspace, before)
-            place_now(sim.beginning.record.record)
-            sim.redundant = find_redundant(sim.workspace)
-            numbers[LOOK_AT_RANK] = 0.0
-            _go_back(sim.workspace, before)
-            status = _act(sim, start_now)
+        status = _attempt(sim)
         if status != SETTLED:
-            raise _failure(sim, status)
+            failure = _failure(sim, status)
+            if not (status in _FAR and sim.assembly.motions and _follow_inputs(sim, before)):
+                raise failure
     except BaseException:
         sim.drive.take_pending()  # who goes on from an earlier state does not want them
         raise
@@ -82,6 +83,51 @@ def start(sim: "Engine") -> None:
     sim.pending = sim.drive.take_pending()
     sim._handle_pending()
     sim.guard.begin(sim.t)  # what happens at the start does not count
+
+
+def _attempt(sim: "Engine") -> int:
+    """A start from the state as it is: its status."""
+    numbers, before = sim.beginning.numbers, _now(sim.workspace)
+    sim.redundant = ()
+    numbers[LOOK_AT_RANK] = float(sim.settings.redundant != "refuse")
+    status = _act(sim, start_now)
+    if status in _MAY_REPEAT and numbers[LOOK_AT_RANK]:
+        _go_back(sim.workspace, before)
+        place_now(sim.beginning.record.record)
+        sim.redundant = find_redundant(sim.workspace)
+        numbers[LOOK_AT_RANK] = 0.0
+        _go_back(sim.workspace, before)
+        status = _act(sim, start_now)
+    return status
+
+
+def _follow_inputs(sim: "Engine", before: Kept) -> bool:
+    """A start where the inputs say, however far the bodies are moved to it; False if the model's own start meets the
+    constraints for no values of the inputs that lead motions.
+
+    A model says where its bodies are for some values of its inputs, not for those that a master or a course sets."""
+    arrays, numbers, tolerance = sim.beginning.record.arrays, sim.beginning.numbers, sim.settings.start_tolerance
+    q0 = arrays["q0"].copy()
+    _go_back(sim.workspace, before)
+    offsets = motions.fitting_offsets(sim.workspace, lambda: place_now(sim.beginning.record.record))
+    motions.begin(sim.workspace, sim.settings.t0, offsets)
+    if _attempt(sim) != SETTLED:
+        return False
+    far = float(np.max(np.abs(offsets[:, 0]))) / motions.size_of(sim.assembly)
+    ways = range(math.ceil(far / WAY_AT_ONCE) - 1, -1, -1) if far > WAY_AT_ONCE else (0,)
+    try:
+        numbers[START_TOLERANCE] = np.inf
+        for k in ways:
+            # bodies go with the inputs in small ways: of several ways to put them together theirs is kept
+            arrays["q0"][:] = sim.workspace.arrays["q"][: sim.assembly.n]
+            _go_back(sim.workspace, before)
+            motions.begin(sim.workspace, sim.settings.t0, offsets * (k / len(ways)))
+            sim.drive.take_pending()
+            if _attempt(sim) != SETTLED:
+                return False
+    finally:
+        numbers[START_TOLERANCE], arrays["q0"][:] = tolerance, q0
+    return True
 
 
 def start_again(sim: "Simulation") -> None:
@@ -102,12 +148,12 @@ def start_again(sim: "Simulation") -> None:
     start(sim)
 
 
-def _now(workspace: "Workspace") -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
+def _now(workspace: "Workspace") -> Kept:
     """State and statistics, to go back to."""
     return workspace.state_bytes.copy(), workspace.arrays["counters"].copy()
 
 
-def _go_back(workspace: "Workspace", before: tuple[NDArray[np.uint8], NDArray[np.int64]]) -> None:
+def _go_back(workspace: "Workspace", before: Kept) -> None:
     """State and statistics as they were: what is tried again is counted once."""
     workspace.state_bytes[:], workspace.arrays["counters"][:] = before
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from tlismni.cli.completion import methods, sources
-from tlismni.core import AppliedForce2D, Input, InputSignal, Marker2D, Model, PointMass2D
+from tlismni.core import AppliedForce2D, CoordinateDriver, Input, InputSignal, Marker2D, Model, PointMass2D
 
 Command = Callable[..., Any]
 
@@ -38,6 +38,22 @@ def test_a_file_of_inputs_and_chosen_channels(tlismni: Command, pushed: Path, tm
     assert set(last(out)) == {"time", "p.x", "p.vx"} and last(out)["p.vx"] == pytest.approx(1.0, abs=1e-7)
     assert tlismni(*asked, "--hold").code == 0
     assert last(out)["p.vx"] == pytest.approx(1.0, abs=1e-7)
+
+
+def test_a_file_of_positions_leads_a_motion(tlismni: Command, tmp_path: Path) -> None:
+    """Straight lines, a spline (three points: the parabola 4 t (1 - t)), steps that are joined a time later."""
+    hand = CoordinateDriver(name="hand", body="p", coordinate="x", motion=InputSignal(channel="x"))
+    body = PointMass2D(name="p", mass=2.0)
+    Model(gravity=(0.0, 0.0), bodies=[body], joints=[hand], inputs=[Input(name="x", unit="m")]).save(
+        tmp_path / "m.json"
+    )
+    table, out = tmp_path / "x.csv", tmp_path / "out.csv"
+    table.write_text("time,x\n0,0\n0.5,1\n1,0\n")
+    asked = ("run", tmp_path / "m.json", "--t-end", 0.75, "--input", table, "--output", out, "--every", 0.25)
+    for more, x, vx in (((), 0.5, -2.0), (("--spline",), 0.75, -2.0), (("--hold",), 0.6875, 3.0)):
+        assert tlismni(*asked, *more).code == 0
+        assert last(out)["p.x"] == pytest.approx(x, abs=1e-9) and last(out)["p.vx"] == pytest.approx(vx, abs=1e-7)
+    assert tlismni(*asked, "--hold", "--spline").code == 2
 
 
 def test_a_number(tlismni: Command, pushed: Path, tmp_path: Path) -> None:
