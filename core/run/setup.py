@@ -1,7 +1,6 @@
 """The records of one run: what its formula remembers, and what its time loop works with."""
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray

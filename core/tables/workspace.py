@@ -251,8 +251,8 @@ class Workspace:
         return self._record.address
 
     def use_stage(self, address: int, corotating: int = 0) -> None:
-        """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE). That at `corotating`, if not 0,
-        calls it for models with bodies that turn in space, whose attitudes are in turning frames then."""
+        """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE). That at `corotating`, if not
+        0, calls it for models with bodies that turn in space, whose attitudes are in turning frames then."""
         spins = len(self.assembly.spinning) if corotating else 0
         self._record.set_size("plain_stage", address)
         self._record.set_size("n_spins", spins)
