@@ -83,7 +83,17 @@ def start(sim: "Engine") -> None:
     sim._sample_now()
     sim.pending = sim.drive.take_pending()
     sim._handle_pending()
+    _forget_before(sim)
     sim.guard.begin(sim.t)  # what happens at the start does not count
+
+
+def _forget_before(sim: "Engine") -> None:
+    """Contacts that touch at the start are closed from there on: the sample before they are settled, in which nothing
+    carries, is none of the motion. Where velocities jump by impacts both samples count."""
+    sim.flush()
+    sim.take_events()
+    if sum(map(len, sim.samples)) > 1 and not any(event.kind == "impact" for event in sim.events):
+        del sim.samples[0]
 
 
 def _warn_of_laid_contacts(sim: "Engine") -> None:
