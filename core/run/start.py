@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError, SimulationError
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
 from ..rounding import START_MOVED
+from ..state.modes import ACTIVE, LAID_MASS, MODE
 from ..state.workspace_records import ENERGY_SCALE, RATE_SCALE
 from ..tables.evaluate import evaluate_residuals
 from ..tables.partition import prepare
@@ -77,11 +78,13 @@ def start(sim: "Engine") -> None:
             logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, moved)
     if sim.redundant:
         check_rates(sim.workspace, sim.redundant)
+    _warn_of_laid_contacts(sim)
     sim.take_events()
     sim.table.initial_energy = sim.table.total_energy(sim.sample())
     sim._sample_now()
     sim.pending = sim.drive.take_pending()
     sim._handle_pending()
+    _forget_before(sim)
     sim.guard.begin(sim.t)  # what happens at the start does not count
 
 
@@ -128,6 +131,30 @@ def _follow_inputs(sim: "Engine", before: Kept) -> bool:
     finally:
         numbers[START_TOLERANCE], arrays["q0"][:] = tolerance, q0
     return True
+
+
+def _forget_before(sim: "Engine") -> None:
+    """Contacts that touch at the start are closed from there on: the sample before they are settled, in which nothing
+    carries, is none of the motion. Where velocities jump by impacts both samples count."""
+    sim.flush()
+    sim.take_events()
+    if sum(map(len, sim.samples)) > 1 and not any(event.kind == "impact" for event in sim.events):
+        del sim.samples[0]
+
+
+def _warn_of_laid_contacts(sim: "Engine") -> None:
+    """Say which contacts press from the start with a law whose damping refers to a speed that they have not had."""
+    memory, contacts = sim.workspace.arrays["memory"], sim.assembly.contacts
+    laid = [c for c, row in zip(contacts, memory, strict=False) if row[MODE] == ACTIVE and row[LAID_MASS] > 0.0]
+    if laid:
+        logger.warning(
+            "%s begin%s without an approach, and the damping of %s refers to one: it is that of the blow which goes as "
+            "deep (docs/contact-laws.md). KelvinVoigt and Tsuji have a damping of their own; minimum_approach_speed "
+            "of the law sets a larger speed",
+            ", ".join(f"'{c.name}'" for c in laid),
+            "" if len(laid) > 1 else "s",
+            ", ".join(sorted({type(c.law).__name__ for c in laid})),
+        )
 
 
 def start_again(sim: "Simulation") -> None:
