@@ -58,7 +58,7 @@ def simulate(
     inputs : for names of inputs the number that they keep, or (times, values) with straight lines between, or
         `Courses`; left out: their start values. Motions that they lead follow them exactly (docs/inputs.md).
     options : method options (alpha, order, k ...) and those of `Simulation`: `max_step` (error control sees a load
-        only at the points of a step: a user function with short pulses needs a smaller max_step), `first_step`,
+        only at the points of a step: own equations say by `times` when they jump), `first_step`,
         `outer`, `acceleration`, `depth`, `fallback`, `controller`, `newton_tolerance`, `start_tolerance`,
         `step_records`, `redundant` ("drop": constraints that repeat others are left out of the equations and checked;
         "refuse": they are an error).

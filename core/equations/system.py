@@ -12,12 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 from ..compiled.kernels import kernel_address
 from ..laws import ContactLaw
 from ..model.channels import Channel
+from ..model.signals import Step
 from ..tables.assembly import AT_REST, Assembly, Batch, ContactInfo
 from .binding import EquationBinding
 from .constraints import ConstraintFunctions
 from .errors import EquationError, NotDifferentiableError
 from .functions import EquationFunctions
 from .kernel import equations_kernel
+from .signals_used import signals_used
 from .user_function import UserFunction
 
 SMALL = 1e-3
@@ -55,6 +57,9 @@ class EquationSystem:
         is (default 1; of systems that start nearer to zero than 1e-3 in all coordinates and gaps, the largest of
         these).
     t0 : time at which the functions are checked.
+    times : times, s, at which a function jumps in time, such as the ends of a pulse: steps end there, and go on from
+        there. Those of time functions (`Step`, `Ramp`, ...) that the functions refer to are known: `push =
+        Step(time=0.5)` and `force=lambda t, q, v: [push(t)]`.
 
     Raises
     ------
@@ -91,6 +96,7 @@ class EquationSystem:
         coordinates: Sequence[str] | None = None,
         scale: ArrayLike | None = None,
         t0: float = 0.0,
+        times: ArrayLike = (),
     ) -> None:
         self.q0 = _vector("q0", q0, None)
         n = len(self.q0)
@@ -118,6 +124,15 @@ class EquationSystem:
         if potential is not None:
             self._check_potential(t0)
         self._given = (mass, force, constraint, constraint_jacobian, gamma, constraint_rate)
+        gaps = [c.gap for c in self.contacts]
+        if any(isinstance(signal, Step) for signal in signals_used([constraint, *gaps])):
+            raise EquationError(
+                "a constraint or a gap follows a Step: a jump in position is no motion; use a Ramp, a Polynomial or a "
+                "Table"
+            )
+        self.signals = tuple(signals_used([*self._given, potential, *gaps]))
+        given = [] if np.size(times) == 0 else _vector("times", times, None).tolist()
+        self.times = tuple(sorted({*given, *(t for signal in self.signals for t in signal.breakpoints())}))
 
     def _size(self) -> float:
         """Typical magnitude of coordinates that nobody told: 1, but for small systems how far they and their gaps are
@@ -169,6 +184,7 @@ class EquationSystem:
             code = getattr(function, "__code__", None)
             parts.append(repr(given) if code is None else code.co_code.hex() + repr(code.co_consts))
         parts += [c.name + repr(c.law) for c in self.contacts]
+        parts += [repr(self.times), *map(repr, self.signals)] if self.times or self.signals else []
         return hashlib.sha256("|".join(parts).encode()).hexdigest()
 
     def _row_scale(self) -> NDArray[np.float64]:
@@ -223,7 +239,8 @@ class EquationSystem:
             signals=np.zeros(1),
             input_names=[],
             input_start=np.zeros(0),
-            breakpoints=[],
+            breakpoints=list(self.times),
+            longest_step=min((signal.longest_step() for signal in self.signals), default=np.inf),
             multiplier_channels={k: Channel(f"lambda{k}", "1", f"multiplier of constraint {k}") for k in range(m)},
             body_columns=[],
             coordinate_scale=self.scale,

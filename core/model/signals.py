@@ -5,12 +5,15 @@ f, f' and f'' (a driven constraint needs all three).
 """
 
 import math
+from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from ..compiled.jit import internal
+from ..compiled.jit import internal, interpreted
+from ..errors import ModelError
 from .base import Name, Positive, Record
 
 CONSTANT, STEP, RAMP, SINE, POLYNOMIAL, TABLE, INPUT = range(7)
@@ -31,6 +34,33 @@ class TimeFunction(Record):
     def channels(self) -> tuple[str, ...]:
         """The input channels that it needs."""
         return ()
+
+    def pool(self, inputs: dict[str, int]) -> list[float]:
+        """Its kind and numbers, given the numbers of input channels."""
+        raise NotImplementedError
+
+    def breakpoints(self) -> list[float]:
+        """Times at which it or its rate jumps, s."""
+        raise NotImplementedError
+
+    def __call__(self, t: Any) -> Any:
+        """Its value at time `t`, s, for own equations; `t` may carry derivatives, as a complex number or a jet.
+
+        Raises
+        ------
+        ModelError : for an input, whose value a run has.
+        """
+        if self.channels():
+            raise ModelError(f"inputs {list(self.channels())} have values in the run of a Model alone, not here")
+        if isinstance(t, float | int | np.number):
+            now = float(t.real)
+        else:
+            now = t.real if isinstance(t, complex) else t.value
+        f, df, ddf = interpreted(evaluate_signal)(_pool_of(self), _NO_INPUTS, 0, now)
+        if isinstance(t, float):
+            return float(f)
+        ahead = t - now  # zero but for what t carries
+        return f + ahead * (df + 0.5 * ahead * ddf)
 
 
 class Constant(TimeFunction):
@@ -183,6 +213,13 @@ class InputSignal(TimeFunction):
 
 Signal = Annotated[Constant | Step | Ramp | Sine | Polynomial | Table | InputSignal, Field(discriminator="type")]
 """Any time function."""
+
+_NO_INPUTS = np.zeros(0)
+
+
+@lru_cache(maxsize=64)
+def _pool_of(signal: TimeFunction) -> NDArray[np.float64]:
+    return np.array(signal.pool({}), dtype=np.float64)
 
 
 @internal
