@@ -1,6 +1,6 @@
 """What an FMU that needs no Python is made of: the library of machine code, an image of the run, a list of variables.
 
-It holds numbers, not the model: no JSON, no drawing, no page about the model's parts.
+It holds numbers, not the model: no JSON, and no list of the model's parts on its page.
 """
 
 import math
