@@ -55,6 +55,7 @@ def export_fmu(
     protect: bool = False,
     sources: bool = False,
     progress: Callable[[float], None] | None = None,
+    on_note: Callable[[str], None] | None = None,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
@@ -87,6 +88,8 @@ def export_fmu(
     sources : put the model's text into an FMU without Python (`native`) too, and its parts on the page about it; the
         other kind has them in any case.
     progress : is called with the part of the work that is done, 0 to 1, while parameters are tried (`native`).
+    on_note : is called with lines that say which parameters are fixed and why, and which exclude each other (`native`);
+        their descriptions say so too.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -152,7 +155,10 @@ def export_fmu(
     description, folder = VERSIONS[fmi_version]
     described = description(slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables))
     if run is not None:
-        _say_what_is_fixed(run, slave.model.name)
+        for note in run.notes():
+            logging.getLogger(__name__).info("'%s', parameters %s", slave.model.name, note)
+            if on_note is not None:
+                on_note(note)
         files = {
             "modelDescription.xml": described,
             "resources/model.image": run.image,
@@ -194,14 +200,6 @@ def export_fmu(
     return write_archive(path, files)
 
 
-def _say_what_is_fixed(run: NativeRun, name: str) -> None:
-    reasons: dict[str, list[str]] = {}
-    for parameter, why in run.fixed.items():
-        reasons.setdefault(why, []).append(parameter)
-    for why, parameters in reasons.items():
-        logging.getLogger(__name__).info("'%s', parameters fixed in the FMU: %s: %s", name, ", ".join(parameters), why)
-
-
 def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> dict[str, bytes]:
     """The binary for this machine, and those for other platforms, which replace it if it is among them: they run on
     older systems too."""
@@ -215,11 +213,9 @@ def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> di
     return {f"binaries/{name}": data for name, data in files.items()}
 
 
-def _shown(
-    slave: Slave, about: About, fmi_version: str, drawn: bool = True, parts: bool = True
-) -> dict[str, bytes]:
-    """What people see of an FMU: a page about it, and the licence of what computes in it; if it is to be `drawn` the icon,
-    which is a drawing of the model, its terminals and its scene; on the page the model's `parts`."""
+def _shown(slave: Slave, about: About, fmi_version: str, drawn: bool = True, parts: bool = True) -> dict[str, bytes]:
+    """What people see of an FMU: a page about it, and the licence of what computes in it; if it is to be `drawn` the
+    icon, which is a drawing of the model, its terminals and its scene; on the page the model's `parts`."""
     page = documentation(slave.model, slave.variables, slave.settings, about, drawn, parts)
     licence = b"What computes in this FMU is tlismni, under this licence.\n\n" + b"\n\n".join(licences())
     return {

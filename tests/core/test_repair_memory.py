@@ -8,8 +8,8 @@ from tlismni.models import load
 
 
 def with_torque(body):
-    """The arm with a torque on one of its bodies as input, whose elbow has no limit: new pivots at 0.85 s, in a pool that
-    moves if there is no room."""
+    """The arm with a torque on one of its bodies as input, whose elbow has no limit: new pivots at 0.85 s, in a pool
+    that moves if there is no room."""
     model = load("arm_stop").model
     load_z = AppliedTorque3D(name="load", marker=Marker3D(body=body), torque_z=InputSignal(channel="u"))
     inputs = (*model.inputs, Input(name="u", unit="N.m"))
