@@ -150,7 +150,7 @@ Protect = Annotated[
     typer.Option("--protect", help="With --native: show no parameters, laws and settings of the model."),
 ]
 Sources = Annotated[
-    bool, typer.Option("--sources", help="With --native: put the model's text, page and pictures into it.")
+    bool, typer.Option("--sources", help="With --native: put the model's text into it, and its parts on the page.")
 ]
 Arrays = Annotated[
     bool, typer.Option("--arrays", help="FMI 3: describe vectors as arrays too; not every master reads such FMUs.")

@@ -36,13 +36,13 @@ def package_archive() -> tuple[bytes, str]:
         else:
             _add(archive, USUAL_PLACE.relative_to(_ROOT).as_posix(), LIBRARY.path.read_bytes())
         _add(archive, f"fmu_wrapper/{VERSION_FILE}", package_version().encode())
-        for text in _licences():
+        for text in licences():
             _add(archive, "LICENSE", text)
     data = stream.getvalue()
     return data, hashlib.sha256(data).hexdigest()[:16]
 
 
-def _licences() -> list[bytes]:
+def licences() -> list[bytes]:
     """The licence, which has to go wherever the package goes."""
     try:
         found = [f for f in files("tlismni") or () if f.name == "LICENSE"]

@@ -34,8 +34,11 @@ ABOUT_ROLES = {
 COLUMNS = ("name", "type", "unit", "start", "min", "max", "nominal", "meaning")
 
 
-def documentation(model: Model, table: VariableTable, settings: Settings, about: About) -> bytes:
-    """The page's bytes; a page of its own, without anything from elsewhere."""
+def documentation(
+    model: Model, table: VariableTable, settings: Settings, about: About, drawn: bool = True, parts: bool = True
+) -> bytes:
+    """The page's bytes; a page of its own, without anything from elsewhere. `drawn`: with the drawing, the solver's
+    settings and the flanges; `parts`: with the model's parts."""
     from lxml import etree
 
     root = etree.Element("html", lang="en")
@@ -46,27 +49,25 @@ def documentation(model: Model, table: VariableTable, settings: Settings, about:
     _add(head, "style", STYLE)
     _add(body, "h1", about.name)
     _add(body, "p", about.description)
-    figure = _add(body, "figure")
-    drawing = draw(model)
-    add_surroundings(drawing, model)
-    figure.append(to_svg(drawing, title=f"{about.name} at its start"))
-    _add(figure, "figcaption", "The model at its start. Joints, springs, loads and contacts are where the model has "
-         "them; outlines of bodies are made up of the points that these take hold of.")  # fmt: skip
+    if drawn:
+        _draw(body, model, about)
     _add(body, "p", f"Co-simulation FMU made by {about.generator}. It solves the equations of motion itself, impacts "
          "inside a communication step included.")  # fmt: skip
-    _add(body, "h2", "Model")
-    parts = [(part.name, type(part).__name__, kind, _attached(part))
-             for group, kind in PARTS.items() for part in getattr(model, group)]  # fmt: skip
-    _table(body, ("name", "type", "kind", "at"), parts)
-    _add(body, "p", f"Gravity: ({', '.join(f'{g:g}' for g in model.gravity)}) m/s².")
-    _add(body, "h2", "Solver")
-    given = {k: v for k, v in settings.as_arguments().items() if v is not None}
-    _table(body, ("setting", "value"), given.items())
-    flanges = terminals(model, table)
+    if parts:
+        _add(body, "h2", "Model")
+        rows = [(part.name, type(part).__name__, kind, _attached(part))
+                for group, kind in PARTS.items() for part in getattr(model, group)]  # fmt: skip
+        _table(body, ("name", "type", "kind", "at"), rows)
+        _add(body, "p", f"Gravity: ({', '.join(f'{g:g}' for g in model.gravity)}) m/s².")
+    if drawn:
+        _add(body, "h2", "Solver")
+        given = {k: v for k, v in settings.as_arguments().items() if v is not None}
+        _table(body, ("setting", "value"), given.items())
+    flanges = terminals(model, table) if drawn else []
     if flanges:
         _add(body, "h2", "Flanges")
-        rows = [(f.name, f.description, ", ".join(f"{m} = {v}" for m, v in f.members.items())) for f in flanges]
-        _table(body, ("terminal", "meaning", "members"), rows)
+        members = [(f.name, f.description, ", ".join(f"{m} = {v}" for m, v in f.members.items())) for f in flanges]
+        _table(body, ("terminal", "meaning", "members"), members)
     for role, title in ROLES.items():
         variables = [v for v in table.variables if v.role == role]
         if variables:
@@ -77,6 +78,15 @@ def documentation(model: Model, table: VariableTable, settings: Settings, about:
             _table(body, [COLUMNS[k] for k in used], ([_row(v)[k] for k in used] for v in variables))
     page: bytes = etree.tostring(root, method="html", encoding="utf-8", doctype="<!DOCTYPE html>", pretty_print=True)
     return page
+
+
+def _draw(body: Any, model: Model, about: About) -> None:
+    figure = _add(body, "figure")
+    drawing = draw(model)
+    add_surroundings(drawing, model)
+    figure.append(to_svg(drawing, title=f"{about.name} at its start"))
+    _add(figure, "figcaption", "The model at its start. Joints, springs, loads and contacts are where the model has "
+         "them; outlines of bodies are made up of the points that these take hold of.")  # fmt: skip
 
 
 def _attached(part: Element) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .archive import write_archive
-from .bundle import package_archive
+from .bundle import licences, package_archive
 from .chosen import with_outputs, without_secrets
 from .dependencies import Dependencies
 from .description_parts import About
@@ -55,6 +55,7 @@ def export_fmu(
     protect: bool = False,
     sources: bool = False,
     progress: Callable[[float], None] | None = None,
+    on_note: Callable[[str], None] | None = None,
     **solver: Any,
 ) -> Path:
     """Write `source` as a co-simulation FMU.
@@ -84,9 +85,11 @@ def export_fmu(
     outputs : names of the channels that become outputs; "*" and "?" stand for any characters ("stop.*"). All if none.
     protect : show nothing of what the model is made of: no parameters, laws, settings, descriptions (docs/fmu.md says
         what can be seen still). Only an FMU without Python (`native`) can do that: the other kind carries the model.
-    sources : put the model's text, a page about its parts and pictures into an FMU without Python (`native`) too; the
+    sources : put the model's text into an FMU without Python (`native`) too, and its parts on the page about it; the
         other kind has them in any case.
     progress : is called with the part of the work that is done, 0 to 1, while parameters are tried (`native`).
+    on_note : is called with lines that say which parameters are fixed and why, and which exclude each other (`native`);
+        their descriptions say so too.
     solver : `method`, `rtol`, `atol`, `step`, options of the method. Numbers, bools and strings among them
         become parameters of the FMU, `solver.<name>`.
 
@@ -152,7 +155,10 @@ def export_fmu(
     description, folder = VERSIONS[fmi_version]
     described = description(slave.variables, slave.settings, about, Dependencies(slave.model, slave.variables))
     if run is not None:
-        _say_what_is_fixed(run, slave.model.name)
+        for note in run.notes():
+            logging.getLogger(__name__).info("'%s', parameters %s", slave.model.name, note)
+            if on_note is not None:
+                on_note(note)
         files = {
             "modelDescription.xml": described,
             "resources/model.image": run.image,
@@ -160,8 +166,8 @@ def export_fmu(
                 slave.variables, token, slave.settings.rtol, channels, slave.variables.arrays if arrays else ()
             ),
             **native_binaries(folder(), identifier, fmi_version, platforms),
-            **({} if protect else scene(slave.model)),
-            **(_of_model(slave, about, fmi_version) if sources else {}),
+            **_shown(slave, about, fmi_version, drawn=not protect, parts=sources),
+            **({f"resources/{MODEL_FILE}": slave.model.to_json().encode()} if sources else {}),
         }
         return write_archive(path, files)
     settings = {
@@ -175,9 +181,7 @@ def export_fmu(
     archive, digest = package_archive() if bundle else (None, None)
     files = {
         "modelDescription.xml": described,
-        "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
-        **pictures(slave, fmi_version),
-        **scene(slave.model),
+        **_shown(slave, about, fmi_version),
         f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
         f"resources/{SETTINGS_FILE}": json_bytes(settings),
         f"resources/{PYTHON_FILE}": json_bytes(python_record(digest)),
@@ -196,14 +200,6 @@ def export_fmu(
     return write_archive(path, files)
 
 
-def _say_what_is_fixed(run: NativeRun, name: str) -> None:
-    reasons: dict[str, list[str]] = {}
-    for parameter, why in run.fixed.items():
-        reasons.setdefault(why, []).append(parameter)
-    for why, parameters in reasons.items():
-        logging.getLogger(__name__).info("'%s', parameters fixed in the FMU: %s: %s", name, ", ".join(parameters), why)
-
-
 def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> dict[str, bytes]:
     """The binary for this machine, and those for other platforms, which replace it if it is among them: they run on
     older systems too."""
@@ -217,13 +213,15 @@ def _binaries(identifier: str, fmi_version: str, platforms: Sequence[str]) -> di
     return {f"binaries/{name}": data for name, data in files.items()}
 
 
-def _of_model(slave: Slave, about: About, fmi_version: str) -> dict[str, bytes]:
-    """What shows the model: its text, a page about its parts, pictures."""
+def _shown(slave: Slave, about: About, fmi_version: str, drawn: bool = True, parts: bool = True) -> dict[str, bytes]:
+    """What people see of an FMU: a page about it, and the licence of what computes in it; if it is to be `drawn` the
+    icon, which is a drawing of the model, its terminals and its scene; on the page the model's `parts`."""
+    page = documentation(slave.model, slave.variables, slave.settings, about, drawn, parts)
+    licence = b"What computes in this FMU is tlismni, under this licence.\n\n" + b"\n\n".join(licences())
     return {
-        "documentation/index.html": documentation(slave.model, slave.variables, slave.settings, about),
-        **pictures(slave, fmi_version),
-        **scene(slave.model),
-        f"resources/{MODEL_FILE}": slave.model.to_json().encode(),
+        "documentation/index.html": page,
+        "documentation/licenses/license.txt": licence,
+        **({**pictures(slave, fmi_version), **scene(slave.model)} if drawn else {}),
     }
 
 

@@ -1,6 +1,6 @@
 """What an FMU that needs no Python is made of: the library of machine code, an image of the run, a list of variables.
 
-It holds numbers, not the model: no JSON, no drawing, no page about the model's parts.
+It holds numbers, not the model: no JSON, and no list of the model's parts on its page.
 """
 
 import math
@@ -82,6 +82,25 @@ class NativeRun:
             raise ExportError(f"'{model.name}' cannot be an FMU without Python: {error}") from error
         return cls(image, tuple(found), {**fixed, **others})
 
+    def note_of(self, name: str) -> str:
+        """What a user has to know of a parameter of the model: that it is fixed and why, or what it excludes; else
+        empty."""
+        if name in self.fixed:
+            return f"fixed in this FMU: {self.fixed[name]}"
+        others = sorted(x for p in self.parameters if p.name == name for x in p.excludes)
+        return f"excludes {', '.join(others)}: where one has another value, the other keeps its own" if others else ""
+
+    def notes(self) -> list[str]:
+        """Lines that say which parameters of the model are fixed and why, and which exclude each other."""
+        reasons: dict[str, list[str]] = {}
+        for name, why in self.fixed.items():
+            reasons.setdefault(why, []).append(name)
+        pairs = {tuple(sorted((p.name, x))) for p in self.parameters for x in p.excludes}
+        return [
+            *(f"fixed in the FMU: {', '.join(several)}: {why}" for why, several in reasons.items()),
+            *(f"that exclude each other: {one} and {other}: one keeps its value" for one, other in sorted(pairs)),
+        ]
+
     def table(self, table: VariableTable) -> VariableTable:
         """The variables of the FMU: parameters that the image has not are constants, and there are no strings."""
         ranges = {p.name: (p.least, p.largest) for p in self.parameters}
@@ -91,7 +110,8 @@ class NativeRun:
                 return v
             role = "parameter" if v.name in ranges else "constant"
             least, largest = ranges.get(v.name, (None, None))
-            return replace(v, role=role, minimum=least, maximum=largest)  # type: ignore[arg-type]
+            text = "; ".join(filter(None, (v.description, self.note_of(v.name))))
+            return replace(v, role=role, minimum=least, maximum=largest, description=text)  # type: ignore[arg-type]
 
         kept = [shown(v) for v in table.variables if v.kind != "string"]
         return VariableTable(replace(v, reference=k) for k, v in enumerate(kept, start=1))

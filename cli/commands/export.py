@@ -102,6 +102,7 @@ def export(
     fmi, platforms = known_version(fmi), choose(platform or ())
     scenario = read_source(source, sets, t_end=t_end, method=method, rtol=rtol, atol=atol, step=step, options=option)
     output.parent.mkdir(parents=True, exist_ok=True)
+    notes: list[str] = []
     bar = progress_bar(f"trying the parameters of {scenario.name}", 1.0) if native else nullcontext()
     with compile_notice(), bar as progress:
         path = export_fmu(
@@ -120,6 +121,7 @@ def export(
             version=model_version,
             needs_execution_tool=execution_tool,
             progress=progress,
+            on_note=notes.append,
         )
     size = path.stat().st_size
     with zipfile.ZipFile(path) as archive:
@@ -137,12 +139,15 @@ def export(
                 "bundle": bundle,
                 "native": native,
                 "platforms": held,
+                **({"notes": notes} if native else {}),
                 "inputs": [channel.name for channel in scenario.model.inputs],
             }
         )
     else:
         carried = ", with tlismni inside" if bundle else ", without Python" if native else ""
         say(f"wrote {path} (FMI {fmi}, {size / 1024:.0f} KiB, for {', '.join(held)}{carried})")
+        for note in notes:
+            say(f"parameters {note}")
 
 
 def outputs_of(given: list[str] | None) -> list[str]:

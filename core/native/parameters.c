@@ -117,6 +117,17 @@ tlismni_status tlismni_parameter_range(const tlismni_model *model, size_t number
     return TLISMNI_OK;
 }
 
+size_t tlismni_excluded_by(const tlismni_run *run, size_t number) {
+    const tlismni_model *m = run->model;
+    for (int64_t k = 0; k < m->head.exclusions; k++) {
+        const Exclusion *e = m->exclusions + k;
+        if (e->one == (int64_t)number && REALS(run, parameters)[e->other] != m->parameters[e->other].value) {
+            return (size_t)e->other;
+        }
+    }
+    return (size_t)m->head.parameters;
+}
+
 tlismni_status tlismni_set_parameter(tlismni_run *run, size_t number, double value) {
     const Parameter *p = find(run->model, number);
     if (!p) {
@@ -132,11 +143,8 @@ tlismni_status tlismni_set_parameter(tlismni_run *run, size_t number, double val
     if (value == values[number]) {
         return TLISMNI_OK;
     }
-    for (int64_t k = 0; value != p->value && k < run->model->head.exclusions; k++) {
-        const Exclusion *e = run->model->exclusions + k;
-        if (e->one == (int64_t)number && values[e->other] != run->model->parameters[e->other].value) {
-            return EXCLUDED;
-        }
+    if (value != p->value && tlismni_excluded_by(run, number) < (size_t)run->model->head.parameters) {
+        return EXCLUDED;
     }
     values[number] = value;
     const Word *word = run->model->words + p->first;

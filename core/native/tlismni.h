@@ -81,6 +81,10 @@ TLISMNI_API void tlismni_restart(tlismni_run *run);
  * the model cannot start. It keeps it until it is restarted; a state has it too. */
 TLISMNI_API double tlismni_parameter(const tlismni_run *run, size_t number);
 TLISMNI_API tlismni_status tlismni_set_parameter(tlismni_run *run, size_t number, double value);
+
+/* The parameter that keeps this one at its value in the image, as long as it has another value than that itself: numbers
+ * follow from both in a way that the image does not have. The number of parameters if there is none. */
+TLISMNI_API size_t tlismni_excluded_by(const tlismni_run *run, size_t number);
 TLISMNI_API tlismni_status tlismni_parameter_range(const tlismni_model *model, size_t number, double *least,
                                                    double *largest);
 

@@ -89,7 +89,7 @@ const char *tlismni_why(tlismni_status status) {
         return "the model has redundant constraints, of which only Python chooses those to leave out as yet" WITH_PYTHON;
     case EXCLUDED:
         return "a parameter excludes this one: numbers follow from both of them in a way that the image has only for one of them "
-               "with another value than its own; let the other one have the value of the image, or make an image with both" WITH_PYTHON;
+               "with another value than its own (tlismni_excluded_by); let the other one have the value of the image, or make an image with both" WITH_PYTHON;
     case NO_BEGINNING:
         return "a run of this image begins at the time of the image only: it has redundant constraints, of which only Python "
                "chooses those to leave out as yet" WITH_PYTHON;

@@ -22,7 +22,7 @@ def repair(sim: "Simulation") -> bool:
     ------
     SimulationError : if the constraints depend on one another there.
     """
-    structure, c_v = sim.workspace.structure, float(sim.workspace.arrays["rate"][FACTOR_CV])
+    c_v = float(sim.workspace.arrays["rate"][FACTOR_CV])
     recall(sim.workspace.record, sim._method.record, 0)
     rate = sim.workspace.arrays["rate"]
     condition = float(rate[CONDITION])
@@ -33,8 +33,8 @@ def repair(sim: "Simulation") -> bool:
             _move_multipliers(sim)
         else:
             rate[CHOICE_CONDITION] = condition
-            if structure is sim.workspace.structure:
-                _order_as_in_stages(sim, c_v)
+            # always, as `repair_now` does: whether memory was asked for on the way decides nothing
+            _order_as_in_stages(sim, c_v)
     except (ConsistencyError, SingularMatrixError) as error:
         raise SimulationError(
             f"at t = {sim.t_internal:.9g} s the constraints cannot be partitioned: {error}",

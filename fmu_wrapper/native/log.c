@@ -56,6 +56,18 @@ int slave_run_error(Slave *self, const char *function, int status) {
     return slave_error(self, function, "at t = %.9g s: %s", tlismni_time(self->run), tlismni_why(status));
 }
 
+int slave_not_set(Slave *self, const char *function, size_t number, int status) {
+    size_t other = tlismni_excluded_by(self->run, number);
+    const char *one = tlismni_name(self->model, TLISMNI_PARAMETER, number);
+    const char *kept = tlismni_name(self->model, TLISMNI_PARAMETER, other); /* none if there is no other */
+    if (!one || !kept) {
+        return slave_run_error(self, function, status);
+    }
+    return slave_error(self, function, "'%s' was set to %g, and '%s' is %g: one of these two must keep the value with which "
+                       "it was exported, since an FMU without Python has no numbers for other values of both; export it "
+                       "with these, or with Python", one, self->parameters[number], kept, self->parameters[other]);
+}
+
 bool slave_may(const Slave *self, const char *function, unsigned phases) {
     if (!slave_alive(self)) {
         return false;

@@ -168,6 +168,8 @@ int slave_error(const Slave *self, const char *function, const char *format, ...
 int slave_refuses(const Slave *self, const char *function);
 /* The same for a status of the run. */
 int slave_run_error(Slave *self, const char *function, int status);
+/* The same for a parameter that the run does not take: names the one that excludes it. */
+int slave_not_set(Slave *self, const char *function, size_t number, int status);
 /* Log an error unless `self` is in one of `phases` (bits); false then, or if it is no instance. */
 bool slave_may(const Slave *self, const char *function, unsigned phases);
 bool slave_has_room(const Slave *self, const char *function, const void *room, size_t n);

@@ -117,9 +117,9 @@ int slave_step(Slave *self, const char *function, double t, double h, StepEnd *e
         end->time = tlismni_time(self->run);
         return slave_run_error(self, function, status);
     }
+    self->fresh = plain && read; /* what an intermediate update has looked at is of a time before */
     if (plain) {
         slave_log_events(self);
-        self->fresh = read;
     } else if (end->event_due) {
         self->phase = EVENT_DUE;
     }

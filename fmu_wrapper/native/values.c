@@ -200,7 +200,7 @@ static int start_anew(Slave *self, const char *function) {
     for (size_t k = 0; k < count; k++) {
         int status = tlismni_set_parameter(self->run, k, self->parameters[k]);
         if (status) {
-            return slave_run_error(self, function, status);
+            return slave_not_set(self, function, k, status);
         }
     }
     for (size_t k = 0; k < inputs; k++) { /* which all count as of now: nothing has moved yet */
