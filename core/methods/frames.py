@@ -36,7 +36,7 @@ def _begin(ws: Any, ms: Any, t: float) -> None:
         for j in range(3):
             spins[k, OMEGA + j] = w[j] if within else 0.0
         spins[k, ANCHOR] = t
-    rows, carries = mat(ms.turned, ms.capacity, ws.row_length), vec(ms.parameters, 8)[CARRIES] != 0.0
+    rows, carries = mat(ws.turned, ms.capacity, ws.row_length), vec(ms.parameters, 8)[CARRIES] != 0.0
     for back in range(ivec(ms.ring, RING_SIZE)[1]):
         row, to = history_row(ws, ms, back), rows[row_index(ms, back)]
         for i in range(ws.row_length):
@@ -51,14 +51,14 @@ def _begin(ws: Any, ms: Any, t: float) -> None:
             if back == 0 and carries:
                 own = product(rotation_of(spins[k], t - at), carried)
                 put_four(aux, i, plus_times(four_of(a, i), own, 1.0))
-    ms.history, ms.turned = ms.turned, ms.history
+    ms.history, ws.turned = ws.turned, ms.history
 
 
 @internal
 def _end(ws: Any, ms: Any, done: bool) -> None:
     """The history in space again, and, where the step is `done`, the workspace's point."""
     n = ws.n_ext
-    ms.history, ms.turned = ms.turned, ms.history
+    ms.history, ws.turned = ws.turned, ms.history
     if not done:
         return
     q, v, a, aux = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.aux, n)

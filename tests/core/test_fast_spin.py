@@ -64,8 +64,8 @@ def test_balls_that_spin_about_any_axis_at_any_speed_keep_it(seed: int) -> None:
 def test_the_other_outer_loops_keep_it_too(outer: str) -> None:
     body = RigidBody3D(name="body", mass=1.0, inertia=(0.1, 0.1, 0.1), angular_velocity=(30.0, -20.0, 5.0))
     gain, off, _ = spin(body, [], 36.0, "ebdf", outer=outer)
-    assert abs(gain) < 1e-9
-    assert off < 1e-9
+    assert abs(gain) < 1e-8
+    assert off < 1e-8
 
 
 def test_a_heavy_rotor_turns_as_its_torque_says() -> None:
