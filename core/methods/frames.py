@@ -9,7 +9,7 @@ from ..compiled.views import ivec, mat, vec
 from ..model.rotation3d import space_rate
 from ..stage.corotating import ANCHOR, OMEGA, POINT, enter, four_of, plus_times, product, put_four, rotation_of
 from ..state.method_records import CARRIES, CHOICE_SIZE, NEXT_K, RING_SIZE, call_step
-from ..state.workspace_records import CONTROL_SIZE, EXACTNESS, NEWTON_TOLERANCE, OK, SPIN_SIZE
+from ..state.workspace_records import CONTROL_SIZE, EXACTNESS, NEWTON_TOLERANCE, OK, REANALYZE, SPIN_SIZE
 from .history import history_row, history_time, row_index
 
 LARGEST_TURN = 0.4
@@ -20,7 +20,7 @@ MOST_TURN = 1.0
 FAST, FINER = 0.5, 1e-4
 """Part of LARGEST_TURN beyond which it is the turn that limits the step, and not the error; by how much finer the two
 loops solve then. What they leave would be the largest error, and energy would drift with it. It costs nothing: the
-frames predict such steps so well that the iterations begin there."""
+frames predict such steps so well that the iterations begin there, or nearly."""
 
 
 @internal
@@ -36,7 +36,7 @@ def _begin(ws: Any, ms: Any, t: float) -> None:
         for j in range(3):
             spins[k, OMEGA + j] = w[j] if within else 0.0
         spins[k, ANCHOR] = t
-    rows, carries = mat(ms.turned, ms.capacity, ws.row_length), vec(ms.parameters, 8)[CARRIES] != 0.0
+    rows, carries = mat(ws.turned, ms.capacity, ws.row_length), vec(ms.parameters, 8)[CARRIES] != 0.0
     for back in range(ivec(ms.ring, RING_SIZE)[1]):
         row, to = history_row(ws, ms, back), rows[row_index(ms, back)]
         for i in range(ws.row_length):
@@ -51,14 +51,14 @@ def _begin(ws: Any, ms: Any, t: float) -> None:
             if back == 0 and carries:
                 own = product(rotation_of(spins[k], t - at), carried)
                 put_four(aux, i, plus_times(four_of(a, i), own, 1.0))
-    ms.history, ms.turned = ms.turned, ms.history
+    ms.history, ws.turned = ws.turned, ms.history
 
 
 @internal
 def _end(ws: Any, ms: Any, done: bool) -> None:
     """The history in space again, and, where the step is `done`, the workspace's point."""
     n = ws.n_ext
-    ms.history, ms.turned = ms.turned, ms.history
+    ms.history, ws.turned = ws.turned, ms.history
     if not done:
         return
     q, v, a, aux = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.aux, n)
@@ -90,11 +90,16 @@ def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
         return call_step(step, ws, ms, h)
     error, control = vec(ms.error, 2), vec(ws.control, CONTROL_SIZE)
     newton, exactness = control[NEWTON_TOLERANCE], control[EXACTNESS]
-    if turn_error(ws, ms, h, 0.0) > FAST:
-        control[NEWTON_TOLERANCE], control[EXACTNESS] = FINER * newton, FINER * exactness
-    _begin(ws, ms, history_time(ms, 0) + h)
-    status = call_step(step, ws, ms, h)
-    _end(ws, ms, status == OK)
+    finer = FINER if turn_error(ws, ms, h, 0.0) > FAST else 1.0
+    while True:
+        control[NEWTON_TOLERANCE], control[EXACTNESS] = finer * newton, finer * exactness
+        _begin(ws, ms, history_time(ms, 0) + h)
+        status = call_step(step, ws, ms, h)
+        _end(ws, ms, status == OK)
+        if status == OK or status == REANALYZE or finer == 1.0:
+            break
+        # rounding does not let the loops come so far: where a parameter passes zero its weight is small
+        finer = 1.0
     control[NEWTON_TOLERANCE], control[EXACTNESS] = newton, exactness
     error[0] = max(error[0], turn_error(ws, ms, h, error[1]))
     return status

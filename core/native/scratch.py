@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 _OF_WORKSPACE = (
     "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v", "offset", "phi", "phid", "phidd",
     "coef", "energy", "monitor", "stage_v", "stage_a", "stage_rows", "rhs", "scratch",
-    "query_kept", "basis", "counters", "spin",
+    "query_kept", "basis", "counters", "spin", "turned",
 )  # fmt: skip
 _OF_LOOP = (
     *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor")),
@@ -23,7 +23,6 @@ def scratch_of(sim: Any) -> list[NDArray[Any]]:
     found = []
     for arrays, names in (
         (sim.workspace.arrays, _OF_WORKSPACE),
-        (sim._method.arrays, ("turned",)),
         (sim._loop.arrays, _OF_LOOP),
         (sim.drive.record.arrays, _OF_DRIVE),
         (sim.crossing._record.arrays, OF_EXCHANGE),

@@ -15,7 +15,7 @@ from ..state.run_records import MAX_STEP
 from ..tables.assembly import Assembly
 from .simulation import Simulation
 
-_BLANK = ("samples", "log", "events", "turned")
+_BLANK = ("samples", "log", "events")
 """Buffers that are empty whenever a blueprint is made."""
 _LISTS = ("events", "fallbacks", "step_logs", "samples", "pending")
 _OF_ONE_RUN = ("crossing", "outside")

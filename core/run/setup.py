@@ -1,6 +1,7 @@
 """The records of one run: what its formula remembers, and what its time loop works with."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,11 +64,10 @@ def state_fields(assembly: Assembly) -> list[Field]:
     ]
 
 
-def build_method(formula: Formula, settings: Settings, workspace: Workspace) -> ArrayRecord:
-    """The METHOD record of a formula: its coefficients and an empty history, in the state's buffer."""
+def build_method(formula: Formula, settings: Settings, state: NDArray[Any]) -> ArrayRecord:
+    """The METHOD record of a formula: its coefficients and an empty history, in the state's buffer (1,)."""
     names = ("history", "times", "ring", "parameters", "weights", "error", "choice")
-    arrays = {name: workspace.state[f"method_{name}"][0] for name in names}
-    arrays["turned"] = np.zeros_like(arrays["history"]) if len(workspace.assembly.spinning) else np.zeros(1)
+    arrays = {name: state[f"method_{name}"][0] for name in names}
     parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
     parameters[CARRIES], parameters[ESTIMATE] = float(formula.carries), float(settings.step is None)

@@ -14,7 +14,6 @@ METHOD = np.dtype(
         for name in (
             "capacity",   # rows of history that are kept
             "history",    # (capacity, row_length) float64, a ring
-            "turned",     # the same in turning frames for the time of a step, where there are some
             "times",      # (capacity,) float64
             "ring",       # (RING_SIZE,) int64: position of the newest row, number of rows, points of a long step
             "parameters", # (8,) float64: alpha, beta, gamma ...; the last two are CARRIES, ESTIMATE

@@ -14,6 +14,7 @@ from ..linalg import DENSE_LIMIT
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
 from ..linalg.memory import addresses
 from ..linalg.record import PROGRAM_LIMIT
+from ..state.method_records import MAX_NODES
 from ..state.workspace_records import (
     BUILDING,
     CONTROL_SIZE,
@@ -139,6 +140,7 @@ class Workspace:
             "basis": np.zeros((1, n_ext)),
             "spinning": a.spinning,
             "spin": np.zeros((max(len(a.spinning), 1), SPIN_SIZE)),
+            "turned": np.zeros((MAX_NODES, row_length(a)) if len(a.spinning) else 1),
             "atol_q": np.zeros(n_ext),
             "atol_v": np.zeros(n_ext),
             "control": np.zeros(CONTROL_SIZE),
