@@ -104,6 +104,9 @@ def curvature(kind: int, batch: Any, g: float, sign: float) -> float:
             return math.inf
     if outwards or distance == math.inf:
         return 0.0
+    if sign > 0.0:
+        # from the middle of a ring, or from afar, only the way tells anything
+        return 1.0 / max(distance, 1e-30)
     return 1.0 / distance if distance > 0.0 else math.inf
 
 

@@ -454,7 +454,9 @@ def passage(d, a, b, rng, glance=1e-6, spinning=True):
     def course(t):
         return gap(*flight_a.at(t), *flight_b.at(t))
 
-    t = np.unique(np.concatenate([np.linspace(0.0, before, SAMPLES), before * (1 - np.geomspace(1e-9, 1, 2000))]))
+    count = SAMPLES // 5 if d == 3 and b == "box" and a != "half_space" else SAMPLES
+    ahead = before * (1.0 - np.geomspace(1e-9, 1.0, count // 3))
+    t = np.unique(np.concatenate([np.linspace(0.0, before, count), ahead]))
     g = course(t)
     if not g[0] > max(10.0 * rough, 1e-3 * min(size, other)):
         return None

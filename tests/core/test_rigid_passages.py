@@ -9,7 +9,7 @@ from tlismni.core import simulate
 ACCURATE = [("ebdf", {}), ("irk", {}), ("bdf", {}), ("adams", {})]
 ROUGH = [("hht", {}), ("newmark", {}), ("irk", {"step": 0.02}), ("ebdf", {"step": 0.01}), ("hht", {"step": 0.01})]
 """Methods of second order and fixed steps, in parts of the passage: none goes by next to nothing."""
-SAMPLE = 12
+SAMPLE = 6
 """Passages of each pair in the ordinary suite."""
 
 
