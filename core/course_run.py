@@ -109,9 +109,9 @@ class CourseRun:
         for motion in self.sim.assembly.motions:
             x = values.get(names[motion.position])
             v = None if motion.rate < 0 else values.get(names[motion.rate])
-            if x is None and v is None:
-                continue
             if x is None:
+                if v is None:
+                    continue
                 rate = straight(times, v) if between != "hold" else None
                 self._led.append(Led(motion, self._integral(motion, names[motion.rate], rate)))
             elif between == "hold" and len(times) > 1:
@@ -124,7 +124,9 @@ class CourseRun:
 
     def _refuse_shared(self) -> None:
         """Refuse channels whose rows two motions would need differently."""
-        names, kinds, rates = self.sim.assembly.input_names, {}, {}
+        names = self.sim.assembly.input_names
+        kinds: dict[int, int] = {}
+        rates: dict[int, int] = {}
         for motion in (*(led.motion for led in self._led), *self._held):
             if kinds.setdefault(motion.position, motion.rate) != motion.rate:
                 shared = names[motion.position]

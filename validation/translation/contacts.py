@@ -108,13 +108,13 @@ def _add(
     gap, rate = _at_start(build, shapes)
     # the gap at the start: exudyn's active set begins with it
     memory = build.add("NodeGenericData", numberOfDataCoordinates=4, initialCoordinates=[gap, 0.0, 0.0, 0.0])
-    releases = isinstance(record.law, KelvinVoigt) and record.law.release == "force"
-    acts = not releases or _pushes(record.law, gap, rate)
+    releasing = record.law if isinstance(record.law, KelvinVoigt) and record.law.release == "force" else None
+    acts = releasing is None or _pushes(releasing, gap, rate)
     item = build.add(item_name, nodeNumber=memory, activeConnector=acts, **fields, **law)
     if build.sensors:
         build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
-    if releases:
-        build.before_step.append(_release(build, item, memory, record.law, shapes, acts))
+    if releasing is not None:
+        build.before_step.append(_release(build, item, memory, releasing, shapes, acts))
         build.notes.append(f"{record.name}: switched off at the start of the step where its force would be tensile")
 
 
