@@ -245,7 +245,9 @@ def draw(point, seed):
 def system(case):
     parts = {key: value for key, value in CASES[case].items() if key not in ("mode", "bodies", "laid")}
     bodies = [A, *CASES[case].get("bodies", ()), B, P]  # what follows a body of other size keeps its place
-    return Point(Model(gravity=(0.3, -9.0), bodies=bodies, **parts), CASES[case].get("mode"), CASES[case].get("laid", 0.0))
+    return Point(
+        Model(gravity=(0.3, -9.0), bodies=bodies, **parts), CASES[case].get("mode"), CASES[case].get("laid", 0.0)
+    )
 
 
 def check_matrix(point, state, c_q=0.6, c_v=0.8, h=H):
