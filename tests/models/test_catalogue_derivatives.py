@@ -106,7 +106,7 @@ def test_along_inputs_and_in_time(name):
         found = np.array(sim.output_rates())
         if not happened:
             known = np.isfinite(found) & real
-            worst = off(sim, found, wanted, known, np.abs(sim.values()) / scenario.t_end + 1e-9)
+            worst = off(sim, found, wanted, known, np.abs(sim.values()) / scenario.t_end + 1e-6)
             assert worst[0] < (1e-3 if name in WAVES else 1e-5), (part, worst)
 
 
