@@ -4,21 +4,24 @@ What they are and why they are exact stands in `sensitivity.py` and `output_rate
 code of runs without Python, which has all channels read before.
 """
 
+import math
 from typing import Any
 
 import numpy as np
 
 from ..compiled import types
 from ..compiled.jit import compiled, internal
-from ..compiled.views import imat, ivec, vec
+from ..compiled.views import imat, ivec, mat, vec
 from ..linalg import factor, lu_at, solve
 from ..loop.drive import workspace_at
 from ..loop.sample import write_sample
 from ..model.derived import HEAD_SIZE, derive_row
 from ..model.signals import INPUT_SIZE
 from ..rounding import SENSITIVITY_SOLVED
+from ..state.modes import ALONG, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
+from ..tables.held import in_space
 from .exchange_record import EXCHANGE, OF_GROUPS
 from .read_channels import put_channels
 
@@ -42,11 +45,32 @@ def _largest(x: Any) -> float:
 
 
 @internal
-def _channels_at(ex: Any, ws: Any, out: Any) -> None:
-    """All channels of the workspace's point as it stands."""
+def _channels_at(ex: Any, ws: Any, held: Any, out: Any) -> None:
+    """All channels of the workspace's point as it stands: changes of what there is with the multipliers `held`."""
     evaluate_residuals(ws)
-    write_sample(ws, vec(ex.sample, ex.sample_length))
+    sample = vec(ex.sample, ex.sample_length)
+    write_sample(ws, sample)
+    for k in range(ws.n_contacts):
+        place = 1 + 3 * ws.n + ws.m_ext - 1 + 6 * ws.n_contacts + k
+        sample[place] = _change_of_friction(ws, k, held, sample[place])
     put_channels(ex, out, ivec(ex.wants, ex.n_wants)[OF_GROUPS:])
+
+
+@internal
+def _change_of_friction(ws: Any, k: int, held: Any, size: float) -> float:
+    """How the friction force of contact k changes, N, of a change of this size. Of a closed contact in space it is the
+    norm of a vector F, which changes by F.dF/|F|; where there is none, by |dF|."""
+    memory, row = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    if row < 0 or memory[MODE] != CLOSED or not in_space(ws, k):
+        return size
+    lam, normal, state = vec(ws.lam, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)[k], memory[SLIDE]
+    if state != STICKS and state != ALONG:
+        # a part of the normal force, which is -lam
+        return -size if lam[normal] > 0.0 else size
+    across = normal if state == ALONG else row + 1
+    part = memory[RATIO] * memory[RATIO] if state == ALONG else 1.0
+    force = math.sqrt(held[row] * held[row] + part * held[across] * held[across])
+    return (held[row] * lam[row] + part * held[across] * lam[across]) / force if force > 0.0 else size
 
 
 @internal
@@ -87,7 +111,7 @@ def along_inputs(ex: Any, seed: Any, found: Any) -> int:
     ws = workspace_at(ex.workspace)
     n, active = ws.n, ivec(ws.active, ws.m_act)
     a, lam, r = vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext), vec(ws.r, ws.n_ext)
-    inputs = vec(ws.inputs, len(seed) * INPUT_SIZE)
+    inputs, held = vec(ws.inputs, len(seed) * INPUT_SIZE), lam.copy()
     for k in range(len(seed)):
         if seed[k] != 0.0:
             for j in range(3):
@@ -101,7 +125,7 @@ def along_inputs(ex: Any, seed: Any, found: Any) -> int:
         size *= 2.0
     size *= LARGE
     resting = np.zeros(ex.n_channels)
-    _channels_at(ex, ws, resting)
+    _channels_at(ex, ws, held, resting)
     for k in range(len(seed)):
         if seed[k] != 0.0:
             inputs[INPUT_SIZE * k] = size * seed[k]
@@ -118,7 +142,7 @@ def along_inputs(ex: Any, seed: Any, found: Any) -> int:
         a[i] = size * change[i]
     for i in range(ws.m_act):
         lam[active[i]] = size * change[n + i]
-    _channels_at(ex, ws, found)
+    _channels_at(ex, ws, held, found)
     for k in range(ex.n_channels):
         found[k] = (found[k] - resting[k]) / size
     for k in ivec(ex.residual_channels, 3):
@@ -146,7 +170,7 @@ def in_time(ex: Any, found: Any) -> None:
         rates[at + 2 * contacts + k] = phidd[rows[k]]
         rates[at + 4 * contacts + k] = rates[at + 5 * contacts + k] = 0.0
         if slide_rows[k] >= 0:
-            rates[at + 7 * contacts + k] = phidd[slide_rows[k]]
+            rates[at + 7 * contacts + k] = _sliding_rate(ws, k, slide_rows[k])
     at += 8 * contacts + 3
     a = vec(ws.a, ws.n_ext)
     for i in range(work):
@@ -163,6 +187,20 @@ def in_time(ex: Any, found: Any) -> None:
     for i in range(ex.n_terms):
         found[summed[number[i]]] += signs[i] * rates[column[i]]
     _derived_rates(ex, sample, found)
+
+
+@internal
+def _sliding_rate(ws: Any, k: int, row: int) -> float:
+    """Rate of the sliding velocity that a sample has of contact k."""
+    phid, phidd = vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext)
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+    if not in_space(ws, k):
+        return float(phidd[row])
+    if memory[MODE] == CLOSED and abs(memory[SLIDE]) == 1.0:
+        return float(phidd[row + 1])
+    x, y, x_rate, y_rate = phid[row], phid[row + 1], phidd[row], phidd[row + 1]
+    speed = math.sqrt(x * x + y * y)
+    return (x * x_rate + y * y_rate) / speed if speed > 0.0 else math.sqrt(x_rate * x_rate + y_rate * y_rate)
 
 
 @internal

@@ -36,7 +36,7 @@ from .normal2d import act, asleep, evaluate_law
 from .normal3d import KIND, SIZE, gap_of, hold, pair_of
 from .normal_rate3d import turn_normal
 from .sliding2d import FRICTION
-from .slip3d import add_slip, slip_of_batch
+from .slip3d import add_slip, slip_of_batch, speed_rate_of_batch
 from .tangent3d import NORMAL, ROWS, U, W, column, product_with, put
 from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_arms
 
@@ -64,7 +64,7 @@ def _bend(
     if job == RESIDUAL:
         row = imat(b.row, b.count, 2)[e, 1]
         vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
-        vec(b.phidd, b.m_extended)[row] = 0.0
+        vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
         return

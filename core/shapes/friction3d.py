@@ -23,7 +23,7 @@ from .held3d import MOVES, moves_on
 from .normal2d import act, evaluate_law, idle
 from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
 from .sliding2d import FRICTION, FRICTION_ADDRESS
-from .slip3d import add_slip, slip_of_batch
+from .slip3d import add_slip, slip_of_batch, speed_rate, speed_rate_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres
 from .tangent3d import NORMAL, ROWS, U, W, column
 from .turning3d import (
@@ -63,7 +63,7 @@ def rub_spheres(b: Any, e: int) -> None:
     slide = less(slip[0], times(dot(n, slip[0]), n))
     speed = math.sqrt(dot(slide, slide))
     vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
-    vec(b.phidd, b.m_extended)[row] = 0.0
+    vec(b.phidd, b.m_extended)[row] = speed_rate(n, motion[2][1], slip[0], slip[1])
     vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0], MODE] != ACTIVE:
         return
@@ -93,7 +93,7 @@ def regularised(
     if job == RESIDUAL:
         row = imat(b.row, b.count, 2)[e, 1]
         vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
-        vec(b.phidd, b.m_extended)[row] = 0.0
+        vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
         return
