@@ -35,7 +35,7 @@ def test_a_free_body_that_spins_about_a_principal_axis_keeps_energy_and_momentum
     gain, off, steps = spin(body, [], 200.0, method)
     assert abs(gain) < 1e-10
     assert off < 1e-10
-    assert steps <= 20.0
+    assert steps <= 22.0  # the start included
 
 
 @pytest.mark.parametrize("method", ("ebdf", "bdf", "hht"))
@@ -44,7 +44,7 @@ def test_a_rotor_on_a_hinge_keeps_its_speed(method: str) -> None:
     gain, off, steps = spin(body, [Revolute3D(name="hinge", a=Marker3D(), b=Marker3D(body="rotor"))], 30.0, method)
     assert abs(gain) < 1e-10
     assert off < 1e-10
-    assert steps <= 20.0
+    assert steps <= 22.0  # the start included
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -60,7 +60,7 @@ def test_balls_that_spin_about_any_axis_at_any_speed_keep_it(seed: int) -> None:
     gain, off, steps = spin(body, [], speed, method)
     assert abs(off) < 1e-10
     assert abs(gain) < 1e-10
-    assert steps <= 20.0
+    assert steps <= 22.0  # the start included
 
 
 @pytest.mark.parametrize("outer", ("simple", "jfnk"))
