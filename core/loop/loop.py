@@ -7,7 +7,7 @@ from ..compiled.views import ivec, mat, vec
 from ..location.asleep import doze, look_at_all
 from ..location.broad_phase import go_on
 from ..location.watch import remember
-from ..methods.frames import select_in_frames, step_in_frames, turn_error
+from ..methods.frames import select_in_frames, step_at_rest, step_in_frames, turn_error
 from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
 from ..rounding import CONTRADICTION, COORDINATE_DIFFERENCES, LARGEST, NO_STEP
@@ -132,7 +132,10 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     set_weights(ws, ms)
     rate = vec(ws.rate, RATE_SIZE)
     rate[WORST_CONDITION] = rate[CONDITION]
-    status = step_in_frames(ws, ms, lc.starter if starting else lc.step, h)
+    if starting:
+        status = step_at_rest(ws, ms, lc.starter, h)
+    else:
+        status = step_in_frames(ws, ms, lc.step, h)
     if status == OK and not all_finite(ws):
         return NOT_FINITE
     return status

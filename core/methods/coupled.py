@@ -14,7 +14,6 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..stage.corotating import enter_frame, enter_increment, leave_frame
 from ..stage.inner import inner_loop
 from ..stage.matrices import refactor
 from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, solve_increment
@@ -75,7 +74,6 @@ def _refactor(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
     """New matrices at the stage in the middle."""
     table = weight_rows(ms)
     load_stage(ws, ms, stage_count(ms) // 2, t, h)
-    leave_frame(ws)
     c_v = 0.0 if simple else h * table[EMBEDDED, GAMMA]
     table[MEMORY, SWEEP_RATE] = 1.0
     return refactor(ws, c_v * c_v, c_v)
@@ -97,7 +95,6 @@ def _sweep(ws: Any, ms: Any, t: float, h: float, slack: float, simple: bool) -> 
             for l in range(ws.n):
                 q[l] += shift_q * rows[j, 3 * n + l]
                 v[l] += shift_v * rows[j, 3 * n + l]
-        leave_frame(ws)
         evaluate_residuals(ws)
         status = inner_loop(ws, ws.lu_d, slack, np.inf)
         if status == OK and simple:
@@ -106,8 +103,6 @@ def _sweep(ws: Any, ms: Any, t: float, h: float, slack: float, simple: bool) -> 
             return status
         solve_increment(ws, ws.kkt)
         counters[OUTER] += 1
-        enter_frame(ws)
-        enter_increment(ws)
         row = rows[i]
         for l in range(ws.n):
             # with what the inner loop has corrected: the next sweep need not find it again

@@ -8,7 +8,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..model.rotation3d import space_rate
 from ..stage.corotating import ANCHOR, OMEGA, POINT, enter, four_of, plus_times, product, put_four, rotation_of
-from ..state.method_records import CARRIES, CHOICE_SIZE, NEXT_K, RING_SIZE, call_step
+from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, NEXT_K, RING_SIZE, call_step
 from ..state.workspace_records import CONTROL_SIZE, EXACTNESS, NEWTON_TOLERANCE, OK, REANALYZE, SPIN_SIZE
 from .history import history_row, history_time, row_index
 
@@ -84,13 +84,24 @@ def turn_error(ws: Any, ms: Any, h: float, order: float) -> float:
 
 
 @internal
+def step_at_rest(ws: Any, ms: Any, step: int, h: float) -> int:
+    """The step of a Runge-Kutta formula at this address: in space. Its stages would have dependent coordinates of their
+    own in turning frames, and cost it its order."""
+    for k in range(ws.n_spins):
+        for j in range(3):
+            mat(ws.spin, ws.n_spins, SPIN_SIZE)[k, OMEGA + j] = 0.0
+    return call_step(step, ws, ms, h)
+
+
+@internal
 def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
     """The step at this address from the newest row by h, with attitudes in turning frames where there are some."""
     if ws.n_spins == 0:
         return call_step(step, ws, ms, h)
     error, control = vec(ms.error, 2), vec(ws.control, CONTROL_SIZE)
     newton, exactness = control[NEWTON_TOLERANCE], control[EXACTNESS]
-    finer = FINER if turn_error(ws, ms, h, 0.0) > FAST else 1.0
+    fast = vec(ms.parameters, 8)[ESTIMATE] != 0.0 and turn_error(ws, ms, h, 0.0) > FAST
+    finer = FINER if fast else 1.0
     while True:
         control[NEWTON_TOLERANCE], control[EXACTNESS] = finer * newton, finer * exactness
         _begin(ws, ms, history_time(ms, 0) + h)

@@ -15,7 +15,6 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.accelerations import solve_accelerations
-from ..stage.corotating import enter_frame, leave_frame
 from ..stage.inner import inner_loop
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
@@ -40,7 +39,6 @@ def _rates_of_work(ws: Any, ms: Any, t: float, h: float) -> None:
     a, rows = vec(ws.a, n), stage_rows(ws)
     for i in range(stage_count(ms)):
         load_stage(ws, ms, i, t, h)
-        leave_frame(ws)
         evaluate_power(ws)
         for l in range(n - ws.n_work, n):
             rows[i, 2 * n + l] = a[l]
@@ -102,7 +100,6 @@ def _end(ws: Any, ms: Any, t: float, h: float) -> int:
     q, v = vec(ws.q, n), vec(ws.v, n)
     if parameters[STIFFLY_ACCURATE] == 1.0:
         load_stage(ws, ms, stages - 1, t, h)
-        leave_frame(ws)
         evaluate_residuals(ws)
         status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
     else:
@@ -115,7 +112,6 @@ def _end(ws: Any, ms: Any, t: float, h: float) -> int:
             q[l] = old[l] + h * (old[n + l] + h * move_q)
             v[l] = old[n + l] + h * move_v
         _extrapolate_to_end(ws, ms)
-        leave_frame(ws)
         evaluate_residuals(ws)
         status = inner_loop(ws, ws.lu_d, 1.0, np.inf)
         if status == OK:
@@ -127,7 +123,6 @@ def _end(ws: Any, ms: Any, t: float, h: float) -> int:
             work += table[VECTORS, B + i] * rows[i, 2 * n + l]
         v[l] = old[n + l] + h * work
     evaluate_power(ws)
-    enter_frame(ws)
     return status
 
 

@@ -118,15 +118,6 @@ def leave_frame(ws: Any) -> None:
 
 
 @internal
-def enter_increment(ws: Any) -> None:
-    """Increments of accelerations in `rhs` at the workspace's time, in the turning frame but for D."""
-    t, increment = vec(ws.t, 1)[0], vec(ws.rhs, ws.n + ws.m_act)
-    for k in range(ws.n_spins):
-        i, spin = ivec(ws.spinning, ws.n_spins)[k], mat(ws.spin, ws.n_spins, SPIN_SIZE)[k]
-        put_four(increment, i, product(rotation_of(spin, spin[ANCHOR] - t), four_of(increment, i)))
-
-
-@internal
 def _begin_stage(ws: Any, spin: Any, i: int, t: float, c_q: float, c_v: float) -> None:
     """q*, v*, the prediction of p'' and the relations between them as they are in space at t."""
     n = ws.n_ext
