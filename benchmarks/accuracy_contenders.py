@@ -11,7 +11,7 @@ from peer_equations import Equations, equations
 from peer_solvers import PeerFailed, dae_solver, ida, missing
 from tlismni.core import Simulation, SimulationError
 
-OURS, EXUDYN, SOLVE_DAE, IDA = "ours", "exudyn", "solve_dae", "IDA"
+OURS, EXUDYN, EXUDYN_TREE, SOLVE_DAE, IDA = "ours", "exudyn", "exudyn, minimal", "solve_dae", "IDA"
 
 
 @dataclass(frozen=True)
@@ -136,6 +136,23 @@ def exudyn(problem: Problem, limit: float, quick: bool) -> list[Contender]:
     return found
 
 
+def exudyn_tree(problem: Problem, limit: float, quick: bool) -> list[Contender]:
+    """exudyn's fastest way for chains without loops: minimal coordinates and explicit methods with error control."""
+    from exudyn_tree import METHODS, run_chain
+
+    if problem.name != "chain":
+        return []
+
+    def contender(method: str) -> Contender:
+        def run(tolerance: float) -> Run:
+            return Run(*run_chain(problem.model, problem.t_end, method, tolerance))
+
+        return Contender(EXUDYN_TREE, f"ObjectKinematicTree, {method}", settings[method], run)
+
+    settings = {"DOPRI5": decades(2, 11, 2), "ODE23": decades(2, 8, 1)}
+    return [contender(method) for method in METHODS]
+
+
 @cache
 def _equations(name: str, index: int) -> Equations:
     from accuracy_problems import problems
@@ -181,6 +198,7 @@ def ida_peer(problem: Problem, limit: float, quick: bool) -> list[Contender]:
 
 PEERS: dict[str, tuple[str, str, Callable[[Problem, float, bool], list[Contender]]]] = {
     EXUDYN: ("exudyn", "exudyn==1.13.*", exudyn),
+    EXUDYN_TREE: ("exudyn", "exudyn==1.13.*", exudyn_tree),
     SOLVE_DAE: ("scipy_dae", "scipy_dae", solve_dae),
     IDA: ("sksundae", "scikit-sundae", ida_peer),
 }

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from accuracy_contenders import EXUDYN, IDA, OURS, SOLVE_DAE, Contender
+from accuracy_contenders import EXUDYN, EXUDYN_TREE, IDA, OURS, SOLVE_DAE, Contender
 from accuracy_problems import Problem
 from rich.text import Text
 from tlismni.cli.screen import print_table, stdout
 from work_precision import Point
 
-SIDES = (OURS, EXUDYN, SOLVE_DAE, IDA)
+SIDES = (OURS, EXUDYN, EXUDYN_TREE, SOLVE_DAE, IDA)
 GENERALIZED_ALPHA = "generalized_alpha"
 
 
@@ -59,7 +59,7 @@ def print_problem(problem: Problem, curves: Sequence[CurveLike], targets: Sequen
     for target in targets:
         ours, method, reached = best(curves, OURS, target)
         row = [f"{target:.0e} m", f"{method}, {milliseconds(ours)} ms" if reached else "not reached"]
-        for side, name in ((EXUDYN, GENERALIZED_ALPHA), (EXUDYN, ""), (SOLVE_DAE, ""), (IDA, "")):
+        for side, name in ((EXUDYN, GENERALIZED_ALPHA), (EXUDYN, ""), (EXUDYN_TREE, ""), (SOLVE_DAE, ""), (IDA, "")):
             seconds, _, peer_reached = best(curves, side, target, name)
             if not any(c.contender.side == side for c in curves):
                 row.append("left out")
@@ -69,7 +69,7 @@ def print_problem(problem: Problem, curves: Sequence[CurveLike], targets: Sequen
                 ratio = f"{seconds / ours:.3g}"
                 row.append(ratio if peer_reached else f"not reached, about {ratio}")
         rows.append(row)
-    columns = ("error", "our best", "exudyn gen. alpha", "exudyn best", "solve_dae", "IDA")
+    columns = ("error", "our best", "exudyn gen. alpha", "exudyn best", "exudyn minimal", "solve_dae", "IDA")
     print_table("times as long as our best", columns, rows, left=2)
     for c in curves:
         if c.end:
@@ -84,7 +84,7 @@ def _finest(curve: CurveLike) -> str:
     return f"{point.error:.1e} m, {milliseconds(point.seconds)} ms"
 
 
-COLOURS = {OURS: "Blues", EXUDYN: "Reds", SOLVE_DAE: "Greens", IDA: "Oranges"}
+COLOURS = {OURS: "Blues", EXUDYN: "Reds", EXUDYN_TREE: "Purples", SOLVE_DAE: "Greens", IDA: "Oranges"}
 LIGHTEST, DARKEST = 0.45, 0.95
 """Of the shades that tell the methods of a side apart."""
 MARKERS = "osD^vP*X<>"

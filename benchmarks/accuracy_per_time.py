@@ -1,5 +1,7 @@
 """Accuracy per time: our methods, exudyn, solve_dae and IDA on three problems, in one run, on one core.
 
+exudyn runs in redundant coordinates and, for the chain, in minimal ones (`ObjectKinematicTree`), its fastest way.
+
 Run: python benchmarks/accuracy_per_time.py [--quick] [--json out.json] [--plot out.png] [--problems chain ...].
 The peers: pip install "exudyn==1.13.*" scipy_dae scikit-sundae; one that is missing is left out, and the table says so.
 Every method runs from rough to fine settings, all of them in turn, again and again; the best time counts: of the

@@ -7,7 +7,8 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time
 from ..rounding import ENERGY_GAIN, FORCE_ROUNDING
 from ..state.modes import APPROACH_SPEED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, OPEN
-from ..state.run_records import GAINS, GRAZE, IMPACT
+from ..state.run_records import GAINS, GRAZE, IMPACT, ROUNDS
+from ..state.workspace_records import COUNTERS_SIZE, IMPACTS_IN_ROUNDS
 from ..tables.evaluate import evaluate_energy, evaluate_residuals
 from .reading import unresolved_speed
 from .records import (
@@ -23,6 +24,7 @@ from .records import (
     FIRST_SEPARATION,
     FRICTION,
     IMPULSE,
+    IN_ROUNDS,
     LEAVES,
     LEFT,
     LOSS,
@@ -110,7 +112,7 @@ def _any_low(ev: Any, dr: Any, ws: Any) -> bool:
 def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Strike those without restitution; if they do not all stay then, it was the bounce."""
     count, v, bounced = whole(ev)[COUNT], vec(ws.v, ws.n_ext), vec(ev.bounced, ws.n_ext)
-    left, residual = real(ev)[LEFT], real(ev)[RESIDUAL]
+    left, residual, in_rounds = real(ev)[LEFT], real(ev)[RESIDUAL], whole(ev)[IN_ROUNDS]
     for one, other in _RESULTS:
         copy(col(ev, other), col(ev, one), count)
     for i in range(ws.n_ext):
@@ -134,7 +136,7 @@ def _rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return SETTLED
     for one, other in _RESULTS:
         copy(col(ev, one), col(ev, other), count)
-    real(ev)[LEFT], real(ev)[RESIDUAL] = left, residual
+    real(ev)[LEFT], real(ev)[RESIDUAL], whole(ev)[IN_ROUNDS] = left, residual, in_rounds
     for i in range(ws.n_ext):
         v[i] = bounced[i]
     clear(col(ev, STOP_IMPULSE), count)
@@ -158,7 +160,8 @@ def _account(ev: Any, dr: Any, ws: Any, ms: Any, gain: float) -> None:
     count, contacts, order = whole(ev)[COUNT], ivec(ev.contacts, ev.most), ivec(ev.order, 2 * ev.most)
     memory, t = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), history_time(ms, 0)
     impulse, loss, approach = col(ev, IMPULSE), col(ev, LOSS), col(ev, APPROACH)
-    least = 0.0
+    least, in_rounds, graze = 0.0, whole(ev)[IN_ROUNDS], True
+    ivec(ws.counters, COUNTERS_SIZE)[IMPACTS_IN_ROUNDS] += in_rounds
     for i in range(count):
         least = max(least, FORCE_ROUNDING * impulse[i])
         if gain > 0.0:
@@ -174,8 +177,10 @@ def _account(ev: Any, dr: Any, ws: Any, ms: Any, gain: float) -> None:
         k = contacts[i]
         if impulse[i] <= least:
             continue
-        # a gap that would open again by itself before it could be seen to be negative
-        graze = col(ev, WAS)[i] == OPEN and approach[i] <= unresolved_speed(ws, k, -col(ev, FALLS)[i])
+        if in_rounds != 0:
+            report(dr, t, ROUNDS, k, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        # a gap that would open again by itself before it could be seen to be negative, and that no other's blow closes
+        graze = graze and col(ev, WAS)[i] == OPEN and approach[i] <= unresolved_speed(ws, k, -col(ev, FALLS)[i])
         memory[k, IMPULSE_JUMP] += impulse[i]
         memory[k, LOSS_JUMP] += loss[i]
         if approach[i] > col(ev, ROUNDING)[i]:

@@ -10,7 +10,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..cones.sweeps import one_contact
-from ..rounding import ADDED, UNSOLVED
+from ..rounding import ADDED, ENERGY_GAIN, UNSOLVED
 from ..tables.evaluate import evaluate_residuals
 from .forces import NO_SOLUTION, impulses_among
 from .laws import POISSON, SEQUENTIAL
@@ -22,6 +22,7 @@ from .records import (
     ENDLESS_ROUNDS,
     FRICTION,
     IMPULSE,
+    IN_ROUNDS,
     KINETIC,
     LEFT,
     LOSS,
@@ -43,6 +44,10 @@ from .records import (
     SETTLED,
     SLIDE_BEFORE,
     SLIDE_RATE,
+    SPIN,
+    SPIN_BEFORE,
+    SWAY_BEFORE,
+    SWAY_RATE,
     WANTED,
     WITHOUT,
     col,
@@ -58,14 +63,19 @@ MOST_BLOWS = 100_000
 MOST_BOUNCES, MOST_ROUNDS = 50, 2000
 """Of impacts at one instant, each of the contacts that approach then: with restitution, and at all. Contacts that slide
 fast can feed bounces that go to and fro between the others and do not become lower."""
+FIRST, OF_ALL = range(2)
+"""Attempts at the first round of an impact."""
+_OF_MOTION = ((RATE, RATE_BEFORE), (SLIDE_RATE, SLIDE_BEFORE), (SWAY_RATE, SWAY_BEFORE), (SPIN, SPIN_BEFORE))
 
 
 @internal
 def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Change the current velocities by the laws of the touching contacts.
 
-    Those that separate beforehand take no part, so that none can put energy in without friction; if they approach
-    afterwards they are struck in another round. What it does goes to IMPULSE, FRICTION, LOSS, APPROACH, SEPARATION.
+    Those that separate beforehand take no part, so that none can put energy in without friction. Where they approach
+    afterwards, velocities are looked for that fulfil the laws of all contacts at once (`strikes_anew`); where there are
+    none that do not raise the energy, they are struck in another round: IN_ROUNDS. What it does goes to IMPULSE,
+    FRICTION, LOSS, APPROACH, SEPARATION.
     """
     count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
     rate, slide_rate, rounding, low = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, ROUNDING), whole(ev)[WITHOUT] != 0
@@ -80,6 +90,7 @@ def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         sequential = sequential or law[contacts[i]] == SEQUENTIAL
         largest = max(largest, abs(rate[i]), abs(slide_rate[i]))
     real(ev)[RESIDUAL], left, noise = 0.0, np.inf, UNSOLVED * largest
+    whole(ev)[IN_ROUNDS] = 0
     before_n, before_t = col(ev, RATE_BEFORE), col(ev, SLIDE_BEFORE)
     for turn in range(MOST_ROUNDS + 1):
         before_round, left, fastest = left, 0.0, 0.0
@@ -94,11 +105,19 @@ def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         for i in range(count):
             approach[i] = approach[i] if approach[i] > rounding[i] else -rate[i]
             before_n[i], before_t[i] = rate[i], slide_rate[i]
-        status = _sequence(ev, ws, low) if sequential else _at_once(ev, dr, ws, low, turn >= MOST_BOUNCES)
+        attempt, anew = FIRST, True
+        while anew:
+            last = turn >= MOST_BOUNCES
+            status = _sequence(ev, ws, low) if sequential else _at_once(ev, dr, ws, low, last, attempt == OF_ALL)
+            lost = 0.0
+            for i in range(count):
+                lost += _lost(ev, i)
+            anew = turn == 0 and not sequential and strikes_anew(ev, dr, ws, status, attempt, lost)
+            attempt += 1
         if status != SETTLED:
             return status
         for i in range(count):
-            loss[i] -= 0.5 * (p_n[i] * (before_n[i] + rate[i]) + p_t[i] * (before_t[i] + slide_rate[i]))
+            loss[i] += _lost(ev, i)
             col(ev, IMPULSE)[i] += p_n[i]
             col(ev, FRICTION)[i] += p_t[i]
     # the joints keep their rates
@@ -112,22 +131,56 @@ def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
+def _lost(ev: Any, i: int) -> float:
+    """Energy that contact i has taken in this round, J."""
+    along = col(ev, P_N)[i] * (col(ev, RATE_BEFORE)[i] + col(ev, RATE)[i])
+    return float(-0.5 * (along + col(ev, P_T)[i] * (col(ev, SLIDE_BEFORE)[i] + col(ev, SLIDE_RATE)[i])))
+
+
+@internal
+def strikes_anew(ev: Any, dr: Any, ws: Any, status: int, attempt: int, lost: float) -> bool:
+    """True if the first round of an impact is undone, for the next attempt at it: FIRST, where a contact that separated
+    beforehand approaches now; OF_ALL, where impulses of all contacts are not found or raise the energy (`lost` < 0, J).
+    The third, with the impulses of FIRST, is the first of some rounds, and so is FIRST where Poisson's law takes part,
+    which speaks of the impulses of each round."""
+    count, part, rate, rounding = whole(ev)[COUNT], col(ev, PART), col(ev, RATE), col(ev, ROUNDING)
+    poisson, anew = 0, attempt == OF_ALL and (status != SETTLED or lost < -ENERGY_GAIN * vec(ws.energy, 3)[0])
+    whole(ev)[IN_ROUNDS] = 1 if attempt > OF_ALL or anew else 0
+    if attempt == FIRST and status == SETTLED:
+        for i in range(count):
+            anew = anew or (part[i] == 0.0 and rate[i] < -rounding[i])
+        for i in range(count):
+            poisson += ivec(dr.law, ws.n_contacts)[ivec(ev.contacts, ev.most)[i]] == POISSON
+        if anew and poisson > 0:
+            whole(ev)[IN_ROUNDS] = 1 if poisson < count else 0
+            anew = False
+    if not anew:
+        return False
+    for i in range(ws.n):
+        vec(ws.v, ws.n_ext)[i] = vec(ev.velocities, ws.n_ext)[i]
+    for now, before in _OF_MOTION:
+        copy(col(ev, now), col(ev, before), count)
+    real(ev)[RESIDUAL] = 0.0
+    return True
+
+
+@internal
 def restitution(ev: Any, low: bool, i: int) -> float:
     """Of touching contact i; `low`: those that are `LOW` are struck without it."""
     return 0.0 if low and col(ev, LOW)[i] != 0.0 else col(ev, RESTITUTION)[i]
 
 
 @internal
-def _at_once(ev: Any, dr: Any, ws: Any, low: bool, last: bool) -> int:
-    """One complementarity problem of the contacts that do not separate, and a second one for the expansion of
-    Poisson's contacts. `last`: one of all contacts, without restitution, after which none approaches."""
+def _at_once(ev: Any, dr: Any, ws: Any, low: bool, last: bool, every: bool) -> int:
+    """One complementarity problem of the contacts that do not separate, or of `every` one, and a second one for the
+    expansion of Poisson's contacts. `last`: one of all contacts, without restitution, after which none approaches."""
     count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
     part, p_n, p_t, base = col(ev, PART), col(ev, P_N), col(ev, P_T), col(ev, BASE)
     rate, rounding, wanted, back = col(ev, RATE), col(ev, ROUNDING), col(ev, WANTED), False
     for i in range(count):
-        part[i] = last or rate[i] <= rounding[i]
+        part[i] = last or every or rate[i] <= rounding[i]
         poisson = law[contacts[i]] == POISSON
-        clear = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
+        clear = 0.0 if abs(rate[i]) <= rounding[i] else min(rate[i], 0.0)
         wanted[i] = 0.0 if poisson or last else restitution(ev, low, i) * clear
         base[i] = 0.0
         p_n[i] = p_t[i] = 0.0

@@ -9,7 +9,7 @@ from ..rounding import UNSOLVED
 from ..state.run_records import LOOP_TYPE
 from ..tables.evaluate import evaluate_residuals
 from ..tables.held import in_space
-from .impact import MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, restitution
+from .impact import FIRST, MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, OF_ALL, restitution, strikes_anew
 from .laws import POISSON, SEQUENTIAL
 from .rates_in_space import masses, push_in_space, read_rates_in_space
 from .records import (
@@ -20,6 +20,7 @@ from .records import (
     ENDLESS_ROUNDS,
     FRICTION,
     IMPULSE,
+    IN_ROUNDS,
     KNOWN,
     LEFT,
     LOSS,
@@ -43,6 +44,7 @@ from .records import (
     SWAY_RATE,
     WITHOUT,
     ZETA,
+    clear,
     col,
     copy,
     real,
@@ -51,6 +53,13 @@ from .records import (
 from .spin_impulses import any_spins, find_spins, push_spins, solve_blow, strike_spinning
 
 loop_at = record_view(LOOP_TYPE)
+_WORKS = (
+    (P_N, RATE_BEFORE, RATE),
+    (P_T, SLIDE_BEFORE, SLIDE_RATE),
+    (P_SPIN, SPIN_BEFORE, SPIN),
+    (P_S, SWAY_BEFORE, SWAY_RATE),
+)
+"""Impulses, and the rates before and after them."""
 
 
 @internal
@@ -73,6 +82,7 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         col(ev, APPROACH)[i] = max(-rate[i], 0.0)
         largest = max(largest, abs(rate[i]), abs(slide[i]), abs(sway[i]))
     real(ev)[RESIDUAL], noise = 0.0, UNSOLVED * largest
+    whole(ev)[IN_ROUNDS] = 0
     for turn in range(MOST_ROUNDS + 1):
         before_round, left, fastest = left, 0.0, 0.0
         for i in range(count):
@@ -86,14 +96,21 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             approach = col(ev, APPROACH)[i]
             col(ev, APPROACH)[i] = approach if approach > rounding[i] else -rate[i]
             before_n[i], before_t[i], before_s[i] = rate[i], slide[i], sway[i]
-            col(ev, SPIN_BEFORE)[i], col(ev, P_SPIN)[i] = col(ev, SPIN)[i], 0.0
-        status = _sequence(ev, dr, ws) if sequential else _blow(ev, dr, ws, turn >= MOST_BOUNCES)
+            col(ev, SPIN_BEFORE)[i] = col(ev, SPIN)[i]
+        attempt, anew = FIRST, True
+        while anew:
+            clear(col(ev, P_SPIN), count)
+            last = turn >= MOST_BOUNCES
+            status = _sequence(ev, dr, ws) if sequential else _blow(ev, dr, ws, last, attempt == OF_ALL)
+            lost = 0.0
+            for i in range(count):
+                lost += _lost(ev, i)
+            anew = turn == 0 and not sequential and strikes_anew(ev, dr, ws, status, attempt, lost)
+            attempt += 1
         if status != SETTLED:
             return status
         for i in range(count):
-            work = p_n[i] * (before_n[i] + rate[i]) + p_t[i] * (before_t[i] + slide[i])
-            work += col(ev, P_SPIN)[i] * (col(ev, SPIN_BEFORE)[i] + col(ev, SPIN)[i])
-            loss[i] -= 0.5 * (work + p_s[i] * (before_s[i] + sway[i]))
+            loss[i] += _lost(ev, i)
             col(ev, IMPULSE)[i] += p_n[i]
             rubs = math.sqrt(p_t[i] * p_t[i] + p_s[i] * p_s[i])
             col(ev, FRICTION)[i] += rubs if in_space(ws, ivec(ev.contacts, ev.most)[i]) else p_t[i]
@@ -107,15 +124,24 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
-def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
-    """One problem of the contacts that do not separate, and a second one for the expansion of Poisson's contacts; or
-    the `last`, of all contacts and without restitution."""
+def _lost(ev: Any, i: int) -> float:
+    """Energy that contact i has taken in this round, J."""
+    work = 0.0
+    for p, before, now in _WORKS:
+        work += col(ev, p)[i] * (col(ev, before)[i] + col(ev, now)[i])
+    return -0.5 * work
+
+
+@internal
+def _blow(ev: Any, dr: Any, ws: Any, last: bool, every: bool) -> int:
+    """One problem of the contacts that do not separate, or of `every` one, and a second one for the expansion of
+    Poisson's contacts; or the `last`, of all contacts and without restitution."""
     count, law, contacts = whole(ev)[COUNT], ivec(dr.law, ws.n_contacts), ivec(ev.contacts, ev.most)
     part, base, rate, rounding = col(ev, PART), col(ev, BASE), col(ev, RATE), col(ev, ROUNDING)
     p_n, p_t, p_s, back = col(ev, P_N), col(ev, P_T), col(ev, P_S), False
     low = whole(ev)[WITHOUT] != 0
     for i in range(count):
-        part[i] = 1.0 if last or rate[i] <= rounding[i] else 0.0
+        part[i] = 1.0 if last or every or rate[i] <= rounding[i] else 0.0
         base[i] = p_n[i] = p_t[i] = p_s[i] = 0.0
     for phase in range(2):
         b, p = vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
@@ -126,7 +152,8 @@ def _blow(ev: Any, dr: Any, ws: Any, last: bool) -> int:
             if phase == 1:
                 base[i] = e * max(p_n[i], 0.0) if poisson else 0.0
             clear_rate = 0.0 if abs(rate[i]) <= rounding[i] else rate[i]
-            wanted = e * (col(ev, RATE_BEFORE)[i] if phase == 1 else clear_rate) if not poisson else 0.0
+            before = min(col(ev, RATE_BEFORE)[i] if phase == 1 else clear_rate, 0.0)
+            wanted = 0.0 if poisson else e * before
             b[i] = clear_rate + wanted
             b[count + i], b[2 * count + i] = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i]
             if abs(b[count + i]) <= rounding[i] and abs(b[2 * count + i]) <= rounding[i]:

@@ -115,7 +115,8 @@ TURNS = 7  # 1: forces of contacts have torques against turning with them
 TOUCHED = 8  # contacts that touch, once the instant has been decided
 ALONE = 9  # 1: of the inverse masses of what is opened the diagonal alone is wanted
 TOUCHED_IN_SPACE = 10  # of TOUCHED, those that are decided as in space
-WHOLES = 11
+IN_ROUNDS = 11  # 1: the impact's contacts were struck one round after another (`impact.py`)
+WHOLES = 12
 
 # what settling an instant returns
 SETTLED = 0

@@ -6,8 +6,9 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat
 from ..state.run_records import COUNTS_SIZE, EVENT_SIZE, EVENTS
 
-MOST_EVENTS = 6
-"""Of a contact at one instant: a blow, three wedges, closing or opening, sliding or sticking."""
+MOST_EVENTS = 8
+"""Of a contact at one instant: a blow with what is to be said of it (GAINS, ROUNDS), three wedges, closing or opening,
+sliding or sticking."""
 
 
 @internal

@@ -1,6 +1,5 @@
 """The record of `drive` for one run, and what Python asks of it."""
 
-import logging
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -54,6 +53,7 @@ from ..state.run_records import (
     LAST_STOP,
     LOCATE_SIGNATURE,
     PASSED,
+    ROUNDS,
     RUN_SIGNATURE,
     SAMPLE_SIGNATURE,
     SETTLE_SIGNATURE,
@@ -61,11 +61,10 @@ from ..state.run_records import (
     TRIAL_SIGNATURE,
 )
 from ..tables.assembly import Assembly, ContactInfo
+from .event_warnings import warn_of_gain, warn_of_jump, warn_of_rounds
 
 if TYPE_CHECKING:
     from .engine import Engine
-
-logger = logging.getLogger(__name__)
 
 
 def _numbers_of(assembly: Assembly) -> dict[str, NDArray[Any]]:
@@ -110,26 +109,6 @@ def _forces_of(contacts: Sequence[ContactInfo]) -> dict[str, NDArray[Any]]:
     }
 
 
-def _warn_of_gain(t: float, gains: list[tuple[str, float]], laws: dict[str, str]) -> None:
-    logger.warning(
-        "at t = %.9g s an impact of %s raises the energy by %.3g J: Newton's law can with friction or several "
-        "contacts; PoissonImpact does not with friction",
-        t,
-        ", ".join(f"'{name}' ({laws[name]})" for name, _ in gains),
-        gains[0][1],
-    )
-
-
-def _warn_of_jump(t: float, jumps: list[tuple[str, float]]) -> None:
-    """Say which drivers strike: an event is of a contact, and a jump of a Ramp's velocity is seldom meant."""
-    logger.warning(
-        "at t = %.9g s the velocity jumps (%s): an impact of the driver; its work is in energy.input_work. "
-        "A Polynomial or a Table starts smoothly",
-        t,
-        ", ".join(f"driver '{name}' by {jump:.6g}" for name, jump in jumps),
-    )
-
-
 class Drive:
     """What `drive` of one run works with.
 
@@ -144,6 +123,7 @@ class Drive:
     def __init__(self, sim: "Engine", guard: Progress) -> None:
         assembly = sim.assembly
         contacts, self._names = assembly.contacts, [c.name for c in assembly.contacts]
+        self._told_of_rounds = False
         self._laws = {c.name: type(c.law).__name__ for c in contacts}
         count = max(len(contacts), 1)
         self.goals, self.counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
@@ -277,18 +257,23 @@ class Drive:
         """The events since the last call."""
         rows: NDArray[np.float64] = self.events[: self.counts[EVENTS]]
         self.counts[EVENTS] = 0
-        found, gains, jumps = [], [], []
+        found, gains, jumps, rounds = [], [], [], []
         for t, kind, k, *numbers in rows.tolist():
             if kind == JUMPS:
                 jumps.append((t, self._rows[int(k)], numbers[2]))
                 continue
             name = self._names[int(k)]
-            if kind == GAINS:
+            if kind == ROUNDS:
+                rounds.append((t, name))
+            elif kind == GAINS:
                 gains.append((t, name, -numbers[1]))
             else:
                 found.append(Event(t, EVENT_KINDS[int(kind)], name, *numbers))
         for t in dict.fromkeys(t for t, _, _ in gains):
-            _warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t], self._laws)
+            warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t], self._laws)
         for t in dict.fromkeys(t for t, _, _ in jumps if self.says_jumps):
-            _warn_of_jump(t, [(name, jump) for at, name, jump in jumps if at == t])
+            warn_of_jump(t, [(name, jump) for at, name, jump in jumps if at == t])
+        if rounds and not self._told_of_rounds:
+            self._told_of_rounds = True
+            warn_of_rounds(rounds[0][0], [name for t, name in rounds if t == rounds[0][0]])
         return found

@@ -176,7 +176,8 @@ RATE_SIZE = 14
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)
 OF_IMPULSES = 10  # steps of impulses, which are among the steps
-COUNTERS_SIZE = 11
+IMPACTS_IN_ROUNDS = 11  # see `events/impact.py`
+COUNTERS_SIZE = 12
 
 # status of stages, steps and of the loop
 OK = 0

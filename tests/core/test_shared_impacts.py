@@ -69,6 +69,8 @@ def test_five_balls():
     # at once: the first contact is struck; 0 <= g'+ + e g'-: the first ball recoils, the others go on as one
     at_once, result = after(balls((1.0, 0, 0, 0, 0), NewtonImpact(restitution=e)))
     assert at_once == pytest.approx([-0.6, 0.4, 0.4, 0.4, 0.4], abs=1e-13)
+    # none of them grazes: each passes on what those behind it get
+    assert [event.kind for event in result.events if event.impulse > 0.0] == ["impact"] * 4
     assert np.abs(result["energy.balance"]).max() < 1e-13
     assert 0.5 * at_once @ at_once == pytest.approx(0.5, rel=1e-12)
 
