@@ -113,22 +113,30 @@ def run_exudyn(
     if not (step > 0.0 and t_end > 0.0):
         raise ValueError(f"step = {step} s and t_end = {t_end} s must be positive")
     build = build_exudyn_model(model, clamped=clamped)
-    wall_time, steps = solve(build, t_end, step, settings or ExudynSettings())
+    try:
+        result, pulling = _recorded(build, t_end, step, settings or ExudynSettings())
+    finally:
+        # exudyn keeps what its sensors have stored, 10 to 200 MB, until it is told to let go of it
+        build.mbs.Reset()
+    return run_exudyn(model, t_end, step, settings, clamped | pulling) if pulling else result
+
+
+def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings) -> tuple[ExudynResult, frozenset[str]]:
+    """Solve, and copy what the sensors have stored; and which contacts have pulled. Raises ExudynFailed."""
+    model = build.model
+    wall_time, steps = solve(build, t_end, step, settings)
     if not build.columns:
         raise ExudynFailed(f"model '{model.name}' has no bodies: there is nothing to record")
     sensors = {c.sensor for c in build.columns} | {c.sensor for c in build.contacts}
     sensors |= {c.sensor for c in build.user_contacts}
-    data = {sensor: build.mbs.GetSensorStoredData(sensor) for sensor in sensors}
+    data = {sensor: np.array(build.mbs.GetSensorStoredData(sensor)) for sensor in sensors}
     t = data[build.columns[0].sensor][:, 0].copy()
     if abs(t[-1] - t_end) < 1e-3 * t_end / steps:
         t[-1] = t_end  # exudyn adds its steps up: after 1e5 of them the rounding is 1e-12 of the run and more
     channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}
     channels |= {d.channel: d.function(channels) for d in build.derived}
     channels |= _contact_channels(build, channels, data, t)
-    pulling = _pulling(build, channels)
-    if pulling:
-        return run_exudyn(model, t_end, step, settings, clamped | pulling)
-    return ExudynResult(
+    result = ExudynResult(
         t,
         channels,
         t_end / steps,
@@ -137,6 +145,7 @@ def run_exudyn(
         build.exudyn.version,
         tuple(build.notes),
     )
+    return result, _pulling(build, channels)
 
 
 def _pulling(build: Build, channels: Mapping[str, np.ndarray]) -> frozenset[str]:
