@@ -112,7 +112,7 @@ METHODS = {
             "trapezoidal",
             "TLISMNI with the trapezoidal rule, coordinates and velocities as unknowns; order 2, A-stable",
             {},
-            lambda o: Formula(adams_step, 2, (), 2),
+            lambda o: Formula(adams_step, 2, (), 2, turns=False),
         ),
         Method(
             "park",
@@ -145,7 +145,7 @@ METHODS = {
             "adams",
             "TLISMNI with implicit Adams formulas on the actual grid, Milne's error estimate; not for stiff systems",
             {"order": Option(4, 2, 8, "order; high ones for smooth, soft systems and tight tolerances", integer=True)},
-            lambda o: Formula(adams_step, int(o["order"]), (), int(o["order"])),
+            lambda o: Formula(adams_step, int(o["order"]), (), int(o["order"]), turns=False),
         ),
         Method(
             "irk",

@@ -7,7 +7,7 @@ from tlismni.core import EulerParameters, Marker3D, Model, Revolute3D, RigidBody
 ACROSS = EulerParameters(values=(0.5**0.5, -(0.5**0.5), 0.0, 0.0))
 """The z axis of a marker along the y axis."""
 TURNS = 100
-METHODS = ("ebdf", "mebdf", "bdf", "adams", "newmark", "hht", "trapezoidal", "park")
+METHODS = ("ebdf", "mebdf", "bdf", "newmark", "hht", "park")
 
 
 def rate_in_space(p: np.ndarray, rate: np.ndarray) -> np.ndarray:
