@@ -149,7 +149,13 @@ def _mangled(module: str) -> str:
     return "".join(f"{len(part)}{part}" for part in f"tlismni.core.{module}".split("."))
 
 
-_SELDOM = tuple(_mangled(module) for module in ("analysis", "cones", "events", "linalg.analyze", "repair"))
+_SELDOM = tuple(
+    _mangled(module)
+    for module in (
+        "analysis", "cones", "elements.measure3d", "elements.pid_controller2d", "events", "linalg.analyze",
+        "location.probe", "repair", "run", "shapes.bristle3d", "shapes.scalar_contact2d",
+    )
+)  # fmt: skip
 """Where few bytes are worth more than speed: nothing is repeated there to save a jump."""
 _BUSY, _ALONE = _mangled("cones.contact_blocks"), _mangled("cones.contact_blocks.sweep_contacts")
 """Of these, where time goes all the same, and what of it stays no part of its caller, which is one of the others."""
