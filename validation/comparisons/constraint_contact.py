@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...core import Result
+from ..errors import NotTranslatable
 from ..exudyn_run import run_exudyn, settings_for
 from .common import (
     Comparison,
@@ -20,7 +21,6 @@ from .common import (
     Task,
     Touch,
     at_times,
-    blows,
     contact_units,
     course_scale,
     energy_panel,
@@ -46,7 +46,6 @@ from .penalty_limit import (
     sure,
     with_stiffness,
 )
-from .persistent_contact import compare_persistent
 from .toggled import toggled_rows
 
 MOST_HALVINGS = 2
@@ -61,8 +60,7 @@ SAMPLES = 2001
 
 
 def compare_constraints(task: Task) -> Comparison:
-    """First impact, flight after it, state before the second impact; without an impact, where contacts are closed from
-    the start on or never touch, as `compare_persistent` has it.
+    """First impact, flight after it, state before the second impact.
 
     Raises
     ------
@@ -71,9 +69,9 @@ def compare_constraints(task: Task) -> Comparison:
     scenario = task.scenario
     task.progress("our run")
     first_run = our_run(scenario)
-    found = blows(touches(first_run.events))
+    found = touches(first_run.events)
     if not found:
-        return compare_persistent(task)
+        raise NotTranslatable(f"scenario '{scenario.name}' has no impact before {scenario.t_end:g} s: none to compare")
     t_end = _end(found, scenario.t_end)
     ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
     loose = our_looser_run(task, ours.t)
