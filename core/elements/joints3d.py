@@ -6,10 +6,14 @@ Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), secti
 from collections.abc import Mapping, Sequence
 from typing import ClassVar, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import model_validator
 
+from ..model.markers import GROUND
 from ..model.said_angle import SaidAngle
 from ..model.signals import Constant, Signal, Step
+from .base import BodyElement
 from .distance3d import Separation
 from .dot1_3d import Dot1
 from .dot2_3d import Dot2
@@ -17,6 +21,7 @@ from .joint3d import Joint3D, TurningJoint3D
 from .joint_coordinates3d import JointCoordinate, turned_marker
 from .point3d import Point
 from .primitive3d import Axis, Primitive
+from .spatial_body import start_of_marker
 from .start_angle3d import value_at_start
 from .twist3d import Twist
 
@@ -28,6 +33,8 @@ _ON_AXIS = (Dot2("x"), Dot2("y"))
 """The point of b is on the z axis of a."""
 _Z: tuple[tuple[Axis, Axis], ...] = (("z", "z"),)
 _ALL: tuple[tuple[Axis, Axis], ...] = (("x", "x"), ("z", "z"))
+MOST_BEND = 150.0
+"""Degrees; of a constant velocity joint at the start. At 180 its equation depends on the others."""
 
 
 class Spherical3D(Joint3D):
@@ -79,13 +86,39 @@ class Universal3D(Joint3D):
 
 class ConstantVelocity3D(Joint3D):
     """Homokinetic joint: the points are one and the joint bends without twisting, so that the spin about the z axes is
-    the same on both sides (4 rows)."""
+    the same on both sides (4 rows). It may start bent by up to 150 degrees."""
 
     type: Literal["ConstantVelocity3D"] = "ConstantVelocity3D"
-    aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
 
     def primitives(self) -> Sequence[Primitive]:
         return (Point(), Twist(("x", "y"), ("y", "x")))
+
+    def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
+        super().check_in(bodies)
+        if all(marker.body == GROUND or marker.body in bodies for marker in self.markers()):
+            _check_bend(self.name, *(start_of_marker(marker, bodies)[1] for marker in self.markers()))
+
+
+def _check_bend(name: str, of_a: NDArray[np.float64], of_b: NDArray[np.float64]) -> None:
+    """Refuse a start of a constant velocity joint that is folded back, or twisted by half a turn.
+
+    With (e0, e) the Euler parameters of b seen from a, its row a_x . b_y - a_y . b_x is -4 e0 e3: zero without twist
+    (e3 = 0), but also on a branch of rotations by half a turn (e0 = 0), which meets the first where the joint is folded
+    back by 180 degrees. 4 e0^2 = 1 + R11 + R22 + R33, 4 e3^2 = 1 - R11 - R22 + R33.
+    """
+    seen = of_a.T @ of_b
+    bend = float(np.degrees(np.arccos(np.clip(seen[2, 2], -1.0, 1.0))))
+    if bend > MOST_BEND:
+        raise ValueError(
+            f"'{name}' starts bent by {bend:.4g} degrees, nearly folded back on itself, where nothing tells its two "
+            f"ways of going on apart: the z axes of its markers may be up to {MOST_BEND:g} degrees apart. Turn the "
+            "`attitude` of one of the markers, or of a body"
+        )
+    if seen[0, 0] + seen[1, 1] <= 0.0:  # e0^2 <= e3^2
+        raise ValueError(
+            f"'{name}' starts twisted by half a turn or near it: along the bend, the x axes of its markers must point "
+            "the same way. Turn the `attitude` of one of the markers about its z axis"
+        )
 
 
 class Fixed3D(Joint3D):

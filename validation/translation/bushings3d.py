@@ -21,7 +21,7 @@ Quaternion = tuple[float, float, float, float]
 
 @translates(Bushing3D)
 def bushing(record: Bushing3D, build: Build) -> None:
-    """Forces -(K z + C z') along, and moments about, the axes of a."""
+    """Forces of K z and of C u, u the rates of the places and the angular velocity, along and about the axes of a."""
     check_bodies(record, build)
     nodes = Nodes(build, (record.a.body, record.b.body))
     if not nodes.nodes:
@@ -30,10 +30,10 @@ def bushing(record: Bushing3D, build: Build) -> None:
     stiffness, damping = (_matrix(given) for given in (record.stiffness, record.damping))
 
     def force(mbs: object, t: float, item: int, q: Numbers, v: Numbers) -> list[float]:
-        z, rows = deflection(list(map(add, nodes.reference, q)))
-        rates = [sum(map(mul, row, v)) for row in rows]
-        load = stiffness @ np.array(z) + damping @ np.array(rates)
-        return [float(x) for x in -load @ np.array(rows)]
+        z, rows, spins = deflection(list(map(add, nodes.reference, q)))
+        rates = np.array([sum(map(mul, row, v)) for row in spins])
+        load = stiffness @ np.array(z) @ np.array(rows) + damping @ rates @ np.array(spins)
+        return [float(x) for x in -load]
 
     build.add("ObjectGenericODE2", nodeNumbers=list(nodes.nodes), forceUserFunction=force)
     build.notes.append(f"{record.name}: a user function; exudyn's own connector has other angles")
@@ -54,10 +54,11 @@ class Deflection:
         e0 = self._turned(nodes.reference)[0]
         self.sign = 1.0 if e0 >= 0.0 else -1.0
 
-    def __call__(self, x: Numbers) -> tuple[list[float], list[list[float]]]:
-        """(z (6,), what z' is of the rates (6, n))."""
+    def __call__(self, x: Numbers) -> tuple[list[float], list[list[float]], list[list[float]]]:
+        """(z (6,), what z' and u are of the rates (6, n))."""
         z: list[float] = []
         rows: list[list[float]] = []
+        spins: list[list[float]] = []
         axes = [self.a.turned(x, axis) for axis in self.axes]
         place = self.b.place(x)
         way = plus(place, self.a.place(x), -1.0)
@@ -68,18 +69,24 @@ class Deflection:
             self.a.add(row, x, axis, place, -1.0)
             z.append(dot(axis, way))
             rows.append(row)
+            spins.append(row)
         e0, *e = (self.sign * value for value in self._turned(x))
         for k in range(3):
             # f' = e0 w + w x e along the axes of a, with w the rate of turning of b seen from a
             unit = vector(np.eye(3)[k])
             mix = plus(cross(vector(e), unit), unit, e0)
             about = plus(plus(plus((0.0, 0.0, 0.0), axes[0], mix[0]), axes[1], mix[1]), axes[2], mix[2])
-            row = [0.0] * len(x)
-            self.b.add_turn(row, x, about, 1.0)
-            self.a.add_turn(row, x, about, -1.0)
             z.append(2.0 * e[k])
-            rows.append(row)
-        return z, rows
+            rows.append(self._turning(x, about))
+            spins.append(self._turning(x, axes[k]))
+        return z, rows, spins
+
+    def _turning(self, x: Numbers, axis: Vector) -> list[float]:
+        """What the rate of turning of b seen from a is of the rates, about an axis in space."""
+        row = [0.0] * len(x)
+        self.b.add_turn(row, x, axis, 1.0)
+        self.a.add_turn(row, x, axis, -1.0)
+        return row
 
     def _turned(self, x: Numbers) -> Quaternion:
         """Euler parameters of b seen from a."""
