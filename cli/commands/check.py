@@ -12,16 +12,19 @@ EXAMPLES = "Examples:\n\n  tlismni check four_bar\n\n  tlismni check my_model.js
 def check(
     source: Source, sets: Set = None, plot: PlotFile = None, json: Json = False, debug: Debug = False
 ) -> None:  # fmt: skip
-    """Check a scenario or a model file: its fields, whether it can be assembled, degrees of freedom, redundant rows."""
+    """Check a scenario or a model file: its fields, whether it can be assembled, degrees of freedom, redundant rows, and
+    nodes that lines of contact miss."""
     check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
     check_file(plot)
 
     from ...core.analysis import mobility
+    from ...core.analysis.line_nodes import missed_nodes
     from ..source import ANY_END, read_source
 
     scenario = read_source(source, sets, t_end=ANY_END)
     with compile_notice():
         found = mobility(scenario.model)
+    missed = missed_nodes(scenario.model)
     figures = {
         "model": scenario.name,
         "coordinates": found.coordinates,
@@ -35,6 +38,7 @@ def check(
         "stuck": list(found.stuck),
         "least_singular_value": found.least_singular_value,
         "joints": found.joints,
+        "missed_nodes": [{"contact": m.contact, "node": m.node, "distance": m.distance} for m in missed],
     }
     if plot is not None:
         from ..analysis_plots import plot_mobility
@@ -53,9 +57,14 @@ def check(
     ]
     print_table(scenario.name, ("what", "count"), rows)
     for row in found.redundant:
-        stdout().print(f"redundant: row {row.row} of '{row.constraint}' repeats {', '.join(row.repeats)}", markup=False)
+        stdout().print(f"redundant: {row.equation} repeats {', '.join(row.repeats)}", markup=False)
     stdout().print(f"independent: {', '.join(found.independent) or 'none, nothing can move'}", markup=False)
     if found.stuck:
         stdout().print(f"cannot move: {', '.join(found.stuck)}", markup=False)
+    for m in missed:
+        stdout().print(
+            f"the line of '{m.contact}' passes its node {m.node} by {number(m.distance, 3)} m, farther than any other",
+            markup=False,
+        )
     if plot is not None:
         say(f"wrote {plot}")

@@ -29,11 +29,14 @@ NO_END = -1
 
 
 class Line2D(Record):
-    """A line through nodes on bodies that may move against each other; both sides can be touched.
+    """A line along nodes on bodies that may move against each other, which it misses where it bends: it passes a node b
+    on the inside by rounding/8 |a - 2 b + c|, its neighbours being a and c. `tlismni check` says by how much.
 
-    Straight between two nodes but for the part `rounding` of each half segment beside a vertex, which is rounded: the
-    line passes a vertex inside by rounding/8 |a - 2 b + c|, its neighbours being a and c. With rounding 1 it is a
-    quadratic spline with its nodes as control points.
+    Straight between two nodes but for the part `rounding` of each half segment beside a node, which a parabola takes.
+    With rounding 1 it is a quadratic spline with its nodes as control points. What is made of points of a curve, such
+    as a cam, is smaller than that curve, by (distance of the points)^2 rounding/8 times its curvature, and accelerations of
+    what follows it are those of parabolas and straight pieces: take more points where that is too much, and a smaller
+    rounding where the place counts more than the smoothness. Both sides can be touched.
 
     A line whose last node is its first one again (same body, same point) is closed: a cam, a ring. That vertex is
     rounded like all others, so that nothing tells where the line begins.
@@ -60,6 +63,13 @@ class Line2D(Record):
     def corners(self) -> tuple[Marker2D, ...]:
         """Its nodes, each once."""
         return self.nodes[:-1] if self.closed else self.nodes
+
+    def missed(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """By how much the line passes each of its corners at these points (corners, 2), m: zero at open ends."""
+        bends = np.roll(points, 1, axis=0) - 2.0 * points + np.roll(points, -1, axis=0)
+        if not self.closed:
+            bends[[0, -1]] = 0.0
+        return self.rounding / 8.0 * np.hypot(bends[:, 0], bends[:, 1])
 
 
 class DiskOnLine2D(Contact2D):
@@ -118,7 +128,7 @@ class DiskOnLine2D(Contact2D):
         ModelError : if neighbouring nodes start at the same place, or the line turns back on itself.
         """
         nodes, closed, law = self.line.corners, self.line.closed, self._law_columns(numbering)
-        start = np.array([place(node.point, numbering.initial(node.body)) for node in nodes])
+        start = self.corners_at_start(numbering)
         self._refuse_folds(start, closed)
         pieces = make_pieces(len(nodes), self.line.rounding, closed)
         rows = []
@@ -134,6 +144,10 @@ class DiskOnLine2D(Contact2D):
             )  # fmt: skip
             rows.append(Row(parameters, coordinates, (*law.extra, NO_END if closed else k, len(pieces))))
         return rows
+
+    def corners_at_start(self, numbering: Numbering) -> NDArray[np.float64]:
+        """Where the corners of the line start, (corners, 2), m."""
+        return np.array([place(node.point, numbering.initial(node.body)) for node in self.line.corners])
 
     def _refuse_folds(self, start: NDArray[np.float64], closed: bool) -> None:
         count = len(start)
