@@ -86,7 +86,10 @@ def _result(entries: dict[str, NDArray[Any]], allow_imports: bool | Collection[s
         header["stats"],
         [Fallback(**record) for record in header["fallbacks"]],
         entries.get(STEPS),
-        [RedundantRow(r["constraint"], r["row"], tuple(r["repeats"])) for r in header["redundant"]],
+        [
+            RedundantRow(r["constraint"], r["row"], tuple(r["repeats"]), bool(r.get("of_body", False)))
+            for r in header["redundant"]
+        ],
         _model(header["model"], allow_imports),
         {name: _setting(x) for name, x in header["settings"].items()},
     )

@@ -176,8 +176,8 @@ def _failure(sim: "Engine", status: int) -> ConsistencyError | SimulationError:
     if status == OVERLAPS:
         k = int(sim.beginning.found[WHO])
         return ConsistencyError(
-            f"contact '{sim.assembly.contacts[k].name}' starts with the shapes overlapping by {-sim.gap(k):.3g} m; "
-            "a constraint contact needs a gap >= 0 at the start"
+            f"contact '{sim.assembly.contacts[k].name}' starts with the shapes overlapping by {-sim.gap(k):.3g} "
+            f"{sim.assembly.contacts[k].units[0]}; a constraint contact needs a gap >= 0 at the start"
         )
     if status == SINGULAR_START:
         try:

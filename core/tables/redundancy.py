@@ -44,11 +44,20 @@ class RedundantRow:
     constraint : name of the joint (of user-written equations: constraint[k]).
     row : which of its equations, from 0.
     repeats : names of the constraints that imply it.
+    of_body : whether it is the norm of a body's Euler parameters, which is no joint's.
     """
 
     constraint: str
     row: int
     repeats: tuple[str, ...]
+    of_body: bool = False
+
+    @property
+    def equation(self) -> str:
+        """Which equation it is, in words."""
+        if self.of_body:
+            return f"the norm of the Euler parameters of '{self.constraint}'"
+        return f"row {self.row} of '{self.constraint}'"
 
 
 def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
@@ -100,7 +109,7 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
     logger.warning(
         "%s; these rows are left out of the equations but checked. The multipliers of these joints and of those that "
         "they repeat are not unique: those of the rows left out are reported as 0",
-        "; ".join(f"row {r.row} of '{r.constraint}' repeats what {', '.join(r.repeats)} say" for r in found),
+        "; ".join(f"{r.equation} repeats what {', '.join(r.repeats)} say" for r in found),
     )
     return found
 
@@ -130,7 +139,9 @@ def describe(workspace: Workspace) -> tuple[RedundantRow, ...]:
             repeated = {names[rows[k]] for k in kept[np.abs(factors[:, j]) > 1e-7]}
             # its other rows may take part, but what matters are the other joints
             repeated = (repeated - {names[row]}) or repeated
-            found.append(RedundantRow(names[row], int(row - names.index(names[row])), tuple(sorted(repeated))))
+            name, number = names[row], int(row - names.index(names[row]))
+            of_body = f"{name}.e0" in workspace.assembly.coordinate_names
+            found.append(RedundantRow(name, number, tuple(sorted(repeated)), of_body))
         return tuple(found)
 
 
