@@ -134,8 +134,8 @@ def forge_past(name):
     _, other, state = stored(name)
     before, refused = other.state(), 0
     for what, value in (
-        ("counters", []), ("counters", [0] * 12), ("counters", [-1] * 11), ("counters", [2**60] * 11),
-        ("counters", [0.5] * 11), ("counters", None), ("fallbacks", [[1]]), ("fallbacks", "x"), ("more", 0),
+        ("counters", []), ("counters", [0] * 13), ("counters", [-1] * 12), ("counters", [2**60] * 12),
+        ("counters", [0.5] * 12), ("counters", None), ("fallbacks", [[1]]), ("fallbacks", "x"), ("more", 0),
     ):  # fmt: skip
         forged = replace(state, past={**state.past, what: value})
         try:

@@ -1,4 +1,4 @@
-"""What holds or damps turns must do so at any angle: bushings through half a turn, constant velocity joints bent far."""
+"""What holds or damps turns does so at any angle: bushings through half a turn, constant velocity joints bent far."""
 
 import math
 
