@@ -12,8 +12,8 @@ EXAMPLES = "Examples:\n\n  tlismni check four_bar\n\n  tlismni check my_model.js
 def check(
     source: Source, sets: Set = None, plot: PlotFile = None, json: Json = False, debug: Debug = False
 ) -> None:  # fmt: skip
-    """Check a scenario or a model file: its fields, whether it can be assembled, degrees of freedom, redundant rows, and
-    nodes that lines of contact miss."""
+    """Check a scenario or a model file: its fields, whether it can be assembled, degrees of freedom, redundant rows,
+    and nodes that lines of contact miss."""
     check_suffix(plot, (".png", ".pdf", ".svg"), "--plot")
     check_file(plot)
 

@@ -34,9 +34,9 @@ class Line2D(Record):
 
     Straight between two nodes but for the part `rounding` of each half segment beside a node, which a parabola takes.
     With rounding 1 it is a quadratic spline with its nodes as control points. What is made of points of a curve, such
-    as a cam, is smaller than that curve, by (distance of the points)^2 rounding/8 times its curvature, and accelerations of
-    what follows it are those of parabolas and straight pieces: take more points where that is too much, and a smaller
-    rounding where the place counts more than the smoothness. Both sides can be touched.
+    as a cam, is smaller than that curve, by (distance of the points)^2 rounding/8 times its curvature, and
+    accelerations of what follows it are those of parabolas and straight pieces: take more points where that is too
+    much, and a smaller rounding where the place counts more than the smoothness. Both sides can be touched.
 
     A line whose last node is its first one again (same body, same point) is closed: a cam, a ring. That vertex is
     rounded like all others, so that nothing tells where the line begins.
