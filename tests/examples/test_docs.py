@@ -188,6 +188,8 @@ def test_the_page_of_sweeps_runs() -> None:
 
 def test_the_page_of_inputs_runs() -> None:
     names: dict[str, Any] = {}
-    (code,) = blocks("inputs.md", "python")
-    exec(code, names)
+    loads, motions = blocks("inputs.md", "python")
+    exec(loads, names)
     assert names["result"]["cart.vx"][-1] == pytest.approx(1.0, abs=1e-6)
+    exec(motions, names)
+    assert names["result"]["cart.x"][-1] == pytest.approx(0.1 * np.sin(5.0), abs=1e-9)
