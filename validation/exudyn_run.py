@@ -98,18 +98,24 @@ def run_exudyn(model: Model, t_end: float, step: float, settings: ExudynSettings
     """
     if not (step > 0.0 and t_end > 0.0):
         raise ValueError(f"step = {step} s and t_end = {t_end} s must be positive")
-    build = build_exudyn_model(model)
+<<<<<<< ours
+    build = build_exudyn_model(model, clamped=clamped)
     try:
-        return _recorded(build, t_end, step, settings or ExudynSettings())
+        result, pulling = _recorded(build, t_end, step, settings or ExudynSettings())
     finally:
         # exudyn keeps what its sensors have stored, 10 to 200 MB, until it is told to let go of it
         build.mbs.Reset()
+    return run_exudyn(model, t_end, step, settings, clamped | pulling) if pulling else result
 
 
-def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings) -> ExudynResult:
-    """Solve, and copy what the sensors have stored. Raises ExudynFailed."""
+def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings) -> tuple[ExudynResult, frozenset[str]]:
+    """Solve, and copy what the sensors have stored; and which contacts have pulled. Raises ExudynFailed."""
     model = build.model
     wall_time, steps = solve(build, t_end, step, settings)
+=======
+    build = build_exudyn_model(model)
+    wall_time, steps = solve(build, t_end, step, settings or ExudynSettings())
+>>>>>>> theirs
     if not build.columns:
         raise ExudynFailed(f"model '{model.name}' has no bodies: there is nothing to record")
     sensors = {c.sensor for c in build.columns} | {c.sensor for c in build.contacts}
@@ -121,7 +127,11 @@ def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings)
     channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}
     channels |= {d.channel: d.function(channels) for d in build.derived}
     channels |= _contact_channels(build, channels, data, t)
+<<<<<<< ours
+    result = ExudynResult(
+=======
     return ExudynResult(
+>>>>>>> theirs
         t,
         channels,
         t_end / steps,
@@ -130,6 +140,7 @@ def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings)
         build.exudyn.version,
         tuple(build.notes),
     )
+    return result, _pulling(build, channels)
 
 
 def solve(build: Build, t_end: float, step: float, settings: ExudynSettings) -> tuple[float, int]:

@@ -85,6 +85,7 @@ def start(sim: "Engine") -> None:
     sim.guard.begin(sim.t)  # what happens at the start does not count
 
 
+<<<<<<< ours
 def _attempt(sim: "Engine") -> int:
     """A start from the state as it is: its status."""
     numbers, before = sim.beginning.numbers, _now(sim.workspace)
@@ -130,6 +131,32 @@ def _follow_inputs(sim: "Engine", before: Kept) -> bool:
     return True
 
 
+def _forget_before(sim: "Engine") -> None:
+    """Contacts that touch at the start are closed from there on: the sample before they are settled, in which nothing
+    carries, is none of the motion. Where velocities jump by impacts both samples count."""
+    sim.flush()
+    sim.take_events()
+    if sum(map(len, sim.samples)) > 1 and not any(event.kind == "impact" for event in sim.events):
+        del sim.samples[0]
+
+
+def _warn_of_laid_contacts(sim: "Engine") -> None:
+    """Say which contacts press from the start with a law whose damping refers to a speed that they have not had."""
+    memory, contacts = sim.workspace.arrays["memory"], sim.assembly.contacts
+    laid = [c for c, row in zip(contacts, memory, strict=False) if row[MODE] == ACTIVE and row[LAID_MASS] > 0.0]
+    if laid:
+        logger.warning(
+            "%s begin%s without an approach, and the damping of %s refers to one: it is that of the blow which goes as "
+            "deep (docs/contact-laws.md). KelvinVoigt and Tsuji have a damping of their own; minimum_approach_speed "
+            "of the law sets a larger speed",
+            ", ".join(f"'{c.name}'" for c in laid),
+            "" if len(laid) > 1 else "s",
+            ", ".join(sorted({type(c.law).__name__ for c in laid})),
+        )
+
+
+=======
+>>>>>>> theirs
 def start_again(sim: "Simulation") -> None:
     """Start anew with the present inputs, as if nothing had happened yet.
 

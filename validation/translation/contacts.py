@@ -105,12 +105,25 @@ def _add(
 ) -> None:
     """The contact object with its law and memory; `sign` is +1 if its Force acts on the second shape's body."""
     law = contact_parameters(record.law, record.name)
+<<<<<<< ours
+    gap, rate = _at_start(build, shapes)
+    # the gap at the start: exudyn's active set begins with it
+    memory = build.add("NodeGenericData", numberOfDataCoordinates=4, initialCoordinates=[gap, 0.0, 0.0, 0.0])
+    releasing = record.law if isinstance(record.law, KelvinVoigt) and record.law.release == "force" else None
+    acts = releasing is None or _pushes(releasing, gap, rate)
+    item = build.add(item_name, nodeNumber=memory, activeConnector=acts, **fields, **law)
+    if build.sensors:
+        build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
+    if releasing is not None:
+        build.before_step.append(_release(build, item, memory, releasing, shapes, acts))
+=======
     memory = _data_node(build, shapes)
     item = build.add(item_name, nodeNumber=memory, **fields, **law)
     if build.sensors:
         build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
     if isinstance(record.law, KelvinVoigt) and record.law.release == "force":
         build.before_step.append(_release(build, item, memory, record.law, shapes))
+>>>>>>> theirs
         build.notes.append(f"{record.name}: switched off at the start of the step where its force would be tensile")
 
 
