@@ -3,6 +3,7 @@
 import math
 
 from ..core.laws import LAWS, ContactLaw, NewtonImpact
+from ..core.laws.damping_ratio import damping_ratio_without_pull
 from ..core.model.channels import Parameter
 from .parameters import ScenarioError, ScenarioParameter
 
@@ -133,26 +134,7 @@ def kelvin_voigt_damping_ratio(restitution: float) -> float:
             f"law 'kelvin_voigt' reaches restitution {restitution:g} only with extreme damping: "
             "give restitution >= 0.01, or damping"
         )
-    # importing scipy.optimize costs more than most runs: only who needs a root pays
-    from scipy.optimize import brentq
-
-    return float(brentq(lambda zeta: kelvin_voigt_restitution(zeta) - restitution, 0.0, 60.0, xtol=1e-15))
-
-
-def kelvin_voigt_restitution(damping_ratio: float) -> float:
-    """Restitution of Kelvin-Voigt released at zero force, without gravity.
-
-    The force k d + c d' is zero where tan(wd t) = -2 z s/(1 - 2 z^2), s = sqrt(1 - z^2); there the rebound
-    speed is v0 exp(-z w t). Above critical damping s becomes imaginary and the tangent hyperbolic.
-    """
-    z = damping_ratio
-    if z < 1.0:
-        s = math.sqrt(1.0 - z * z)
-        return math.exp(-z * math.atan2(2.0 * z * s, 2.0 * z * z - 1.0) / s) if s > 0.0 else math.exp(-2.0)
-    if z == 1.0:
-        return math.exp(-2.0)
-    s = math.sqrt(z * z - 1.0)
-    return math.exp(-z * math.atanh(2.0 * z * s / (2.0 * z * z - 1.0)) / s)
+    return damping_ratio_without_pull(restitution)
 
 
 def law_model_parameters(contact: str, law: ContactLaw, *others: str) -> tuple[Parameter, ...]:

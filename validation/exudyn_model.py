@@ -6,13 +6,14 @@ from ..core.description import Model
 from .errors import NotTranslatable
 from .exudyn_import import import_exudyn
 from .translation import Build, translate
+from .translation.laid_contacts import laid_contacts
 from .translation.redundant import redundant_rows
 
 
-def build_exudyn_model(model: Model, *, sensors: bool = True) -> Build:
+def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset[str] = frozenset()) -> Build:
     """`model` in exudyn, assembled and ready to run. Build it anew for every run: exudyn keeps state in it.
 
-    `sensors=False` leaves out recording (for timing).
+    `sensors=False` leaves out recording (for timing). `clamped`: contacts that exudyn's own objects would let pull.
 
     Raises
     ------
@@ -28,7 +29,10 @@ def build_exudyn_model(model: Model, *, sensors: bool = True) -> Build:
     mbs = container.AddSystem()
     ground = mbs.AddObject(exudyn.items.ObjectGround())
     ground_node = mbs.AddNode(exudyn.items.NodePointGround())
-    build = Build(exudyn, mbs, model, sensors, ground, ground_node, redundant=redundant_rows(model))
+    build = Build(
+        exudyn, mbs, model, sensors, ground, ground_node, laid=laid_contacts(model), clamped=clamped,
+        redundant=redundant_rows(model),
+    )  # fmt: skip
     for element in model.elements():
         translate(element, build)
     if model.inputs:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.description import Model
 from ..core.elements import Cable2D, FlexibleBody
+from ..core.laws.hunt_crossley import HuntCrossleyFamily
 from .errors import ExudynFailed
 from .exudyn_model import build_exudyn_model
 from .translation import Build
@@ -22,6 +23,10 @@ log = logging.getLogger(__name__)
 
 Integrator = Literal["generalized_alpha", "trapezoidal"]
 MOTION = ("x", "y", "angle", "vx", "vy", "angular_velocity")
+
+
+PULL = 1e-3
+"""Of a contact's largest force: less is what exudyn's steps leave at the end of a blow."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +92,17 @@ class ExudynResult:
         return self.channels[channel]
 
 
-def run_exudyn(model: Model, t_end: float, step: float, settings: ExudynSettings | None = None) -> ExudynResult:
+def run_exudyn(
+    model: Model,
+    t_end: float,
+    step: float,
+    settings: ExudynSettings | None = None,
+    clamped: frozenset[str] = frozenset(),
+) -> ExudynResult:
     """Run `model` in exudyn with fixed steps of about `step` (s), a whole number of them, to `t_end` (s).
+
+    Where exudyn's own contact has pulled and the law does not, it is run again with that contact as a user function;
+    `clamped` names those that are one from the first.
 
     Raises
     ------
@@ -98,7 +112,6 @@ def run_exudyn(model: Model, t_end: float, step: float, settings: ExudynSettings
     """
     if not (step > 0.0 and t_end > 0.0):
         raise ValueError(f"step = {step} s and t_end = {t_end} s must be positive")
-<<<<<<< ours
     build = build_exudyn_model(model, clamped=clamped)
     try:
         result, pulling = _recorded(build, t_end, step, settings or ExudynSettings())
@@ -112,10 +125,6 @@ def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings)
     """Solve, and copy what the sensors have stored; and which contacts have pulled. Raises ExudynFailed."""
     model = build.model
     wall_time, steps = solve(build, t_end, step, settings)
-=======
-    build = build_exudyn_model(model)
-    wall_time, steps = solve(build, t_end, step, settings or ExudynSettings())
->>>>>>> theirs
     if not build.columns:
         raise ExudynFailed(f"model '{model.name}' has no bodies: there is nothing to record")
     sensors = {c.sensor for c in build.columns} | {c.sensor for c in build.contacts}
@@ -127,11 +136,7 @@ def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings)
     channels = {c.channel: c.offset + c.factor * data[c.sensor][:, 1 + c.component] for c in build.columns}
     channels |= {d.channel: d.function(channels) for d in build.derived}
     channels |= _contact_channels(build, channels, data, t)
-<<<<<<< ours
     result = ExudynResult(
-=======
-    return ExudynResult(
->>>>>>> theirs
         t,
         channels,
         t_end / steps,
@@ -141,6 +146,18 @@ def _recorded(build: Build, t_end: float, step: float, settings: ExudynSettings)
         tuple(build.notes),
     )
     return result, _pulling(build, channels)
+
+
+def _pulling(build: Build, channels: Mapping[str, np.ndarray]) -> frozenset[str]:
+    """Contacts of the Hunt-Crossley family, exudyn's own, that have pulled though their law does not."""
+    own, found = {columns.name for columns in build.contacts}, set()
+    for contact in build.model.contacts:
+        law = contact.law
+        if contact.name in own and isinstance(law, HuntCrossleyFamily) and law.release_rule == "force":
+            force = channels[f"{contact.name}.normal_force"]
+            if np.min(force) < -PULL * np.max(np.abs(force)):
+                found.add(contact.name)
+    return frozenset(found)
 
 
 def solve(build: Build, t_end: float, step: float, settings: ExudynSettings) -> tuple[float, int]:

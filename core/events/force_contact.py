@@ -14,6 +14,7 @@ from ..state.modes import (
     APPROACH_SPEED,
     BEGUN_IMPULSE,
     BEGUN_LOSS,
+    LAID_MASS,
     LARGEST_APPROACH,
     LOSS_JUMP,
     MEMORY_SIZE,
@@ -70,15 +71,24 @@ def _begin(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int:
     least = vec(dr.least_approach, ws.n_contacts)[k]
     if least < 0.0:
         least = LEAST_APPROACH * vec(ws.control, CONTROL_SIZE)[RATE_SCALE] * size
-    pressing, settling = -vec(ws.phidd, ws.m_ext)[row], 0.0
-    if pressing > 0.0:
+    pressing, settling, mass = -vec(ws.phidd, ws.m_ext)[row], 0.0, 0.0
+    if pressing > 0.0 or (approach < least and ivec(dr.by_approach, ws.n_contacts)[k] != 0):
         ivec(ev.contacts, ev.most)[0], whole(ev)[COUNT] = k, 1
         status = call_part(ev.open_touching, ev, dr, ws, ms)
         if status != SETTLED:
             return int(status)
-        settling = _settling_speed(dr, ws, k, pressing, 1.0 / delassus(ev, 1)[0, 0], size)
+        mass = 1.0 / delassus(ev, 1)[0, 0]
+        if pressing > 0.0:
+            settling = _settling_speed(dr, ws, k, pressing, mass, size)
     memory[APPROACH_SPEED] = max(approach, least, settling)
+    laid = ivec(dr.by_approach, ws.n_contacts)[k] != 0 and approach < memory[APPROACH_SPEED]
+    memory[LAID_MASS] = mass if laid else 0.0
     memory[MODE] = ACTIVE
+    gap, early = min(vec(ws.phi, ws.m_ext)[row], 0.0), ivec(dr.ends_early, ws.n_contacts)[k] != 0
+    if early and gap < 0.0 and _law(dr, ws, k, -gap, approach, memory[APPROACH_SPEED])[0] < 0.0:
+        # shapes that overlap and come apart so fast that it would pull from the first
+        memory[MODE] = RELEASED
+        return SETTLED
     memory[LARGEST_APPROACH] = max(memory[LARGEST_APPROACH], approach)
     _let_bristles_go(dr, ws, k)
     memory[BEGUN_IMPULSE], memory[BEGUN_LOSS] = _impulse(dr, ws, k), _loss(dr, ws, k)

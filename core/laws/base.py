@@ -27,6 +27,9 @@ class ForceLaw(FormulaRecord):
     """
 
     parameter_count: ClassVar[int] = 4
+    damps_by_approach: ClassVar[bool] = False
+    """Whether the damping part of the force goes with 1/v0. Where shapes meet without an approach it is then that of
+    the blow which goes as deep."""
     shared_fields: ClassVar[tuple[str, ...]] = ("minimum_approach_speed",)
 
     minimum_approach_speed: float | None = None
@@ -59,8 +62,8 @@ class ReleasedLaw(ForceLaw):
     shared_fields: ClassVar[tuple[str, ...]] = (*ForceLaw.shared_fields, "release_rule")
 
     release_rule: Release = "force"
-    """When contact ends: when the force would become tensile ("force"), or at zero penetration ("gap"), the force
-    pulling before."""
+    """When contact ends: when the force would become tensile ("force", so that it never pulls), or at zero penetration
+    ("gap"), the force pulling before."""
 
     @property
     def release(self) -> Release:

@@ -3,8 +3,14 @@
 Each D approximates the root of the relation below for a requested e; how far what comes out (e_out) is from it stands
 in docs/contact-laws.md. Sources: da Silva et al. 2022 (Mech. Mach. Theory) compare them all.
 
-The rebound speed depends on D alone: (1 + D)/(1 - D e_out) = exp(D (1 + e_out)); contact ends at delta = 0 with
-F = 0 and F is never tensile, since D e_out < 1.
+The rebound speed of a free blow depends on D alone: (1 + D)/(1 - D e_out) = exp(D (1 + e_out)); contact ends at
+delta = 0 with F = 0 and F is not tensile, since D e_out < 1. Shapes that others draw apart faster than v0/D would be
+held back by the formula: the force is zero there, unless the release rule says otherwise.
+
+v0 is the speed of a blow; 1/v0 has no limit for shapes that are laid on each other. Hunt and Crossley's own damping
+constant 3 (1 - e)/(2 v0) belongs to the material (e = 1 - alpha v0) and stays finite. Laws for a given e need a speed:
+it is that of the blow which goes as deep as the shapes overlap, m v^2/2 = K delta^(n + 1)/(n + 1), once that is larger
+than v0. Then F = K delta^n + D sqrt((n + 1) m K/2) delta^((n - 1)/2) delta', for spheres Tsuji's form (1992).
 """
 
 import math
@@ -14,13 +20,15 @@ from pydantic import Field
 
 from ..compiled.jit import compiled
 from ..model.base import Positive, Restitution
-from .base import ForceLaw, LawParameters
+from .base import ForceLaw, LawParameters, Release
 
 
 @compiled
-def hunt_crossley_formula(d: float, dd: float, v0: float, k: float, n: float, factor: float, p3: float) -> Any:
+def hunt_crossley_formula(d: float, dd: float, v0: float, k: float, n: float, factor: float, pulls: float) -> Any:
     elastic = k * d**n
     damped = 1.0 + factor * dd / v0
+    if damped < 0.0 and pulls == 0.0:
+        return 0.0, 0.0, 0.0, elastic, elastic * d / (n + 1.0)
     return (
         elastic * damped,
         n * k * d ** (n - 1.0) * damped,
@@ -34,19 +42,24 @@ class HuntCrossleyFamily(ForceLaw):
     """Base of the laws F = K delta^n (1 + D delta'/v0). A new one is its type and its `damping_factor`."""
 
     formula: ClassVar[Any] = hunt_crossley_formula
+    damps_by_approach: ClassVar[bool] = True
+    shared_fields: ClassVar[tuple[str, ...]] = (*ForceLaw.shared_fields, "release_rule")
     stiffness: Positive
     """K, N/m^n."""
     restitution: Restitution
     """Requested coefficient of restitution e, dimensionless; what comes out differs from law to law."""
     exponent: Positive = 1.5
     """n, dimensionless."""
+    release_rule: Release = "force"
+    """What shapes do that are drawn apart faster than v0/D, where the formula is tensile: "force": there is no force,
+    so that contact never pulls; "gap": the formula holds as published, and pulls until they come apart."""
 
     def damping_factor(self) -> float:
         """D(e), dimensionless."""
         raise NotImplementedError(f"{type(self).__name__} must define its damping factor")
 
     def parameters(self) -> LawParameters:
-        return self.stiffness, self.exponent, self.damping_factor(), 0.0
+        return self.stiffness, self.exponent, self.damping_factor(), float(self.release_rule == "gap")
 
 
 class HuntCrossley(HuntCrossleyFamily):

@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 
 from ..compiled.jit import compiled
 from ..model.base import NonNegative, Positive
-from .base import LawParameters, Release, ReleasedLaw
+from .base import LawParameters, ReleasedLaw
+from .damping_ratio import damping_ratio_without_pull
 
 
 @compiled
@@ -26,9 +27,9 @@ def tsuji_formula(d: float, dd: float, v0: float, k: float, c: float, p2: float,
 class Tsuji(ReleasedLaw):
     """F = K delta^(3/2) + c delta^(1/4) delta' (Tsuji, Tanaka and Ishida 1992).
 
-    c is given as `damping`, or follows from `mass` and `restitution`: c = alpha sqrt(m K) with
-    alpha = -sqrt(5) ln e/sqrt(pi^2 + ln^2 e); released at zero penetration e is exact, whatever the speed (Antypov and
-    Elliott 2011). Released when the force becomes tensile it is larger.
+    c is given as `damping`, or follows from `mass` and `restitution`: c = zeta sqrt(5 m K), with the zeta for which e
+    comes out by the release rule, whatever the speed (Antypov and Elliott 2011): -ln e/sqrt(pi^2 + ln^2 e), as
+    published, for "gap", the root of `restitution_without_pull` for "force".
 
     Raises
     ------
@@ -45,9 +46,6 @@ class Tsuji(ReleasedLaw):
     """Effective mass of the two bodies m1 m2/(m1 + m2), kg."""
     restitution: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
     """Requested coefficient of restitution e, dimensionless."""
-    release_rule: Release = "gap"
-    """When contact ends: at zero penetration ("gap", the published rule), or when the force would become tensile
-    ("force")."""
 
     @model_validator(mode="after")
     def _one_way_to_say_it(self) -> Self:
@@ -65,7 +63,9 @@ class Tsuji(ReleasedLaw):
         if self.mass is None or self.restitution is None:
             return self.damping or 0.0
         loss = -math.log(self.restitution)
-        return math.sqrt(5.0 * self.mass * self.stiffness) * loss / math.hypot(math.pi, loss)
+        gap = self.release_rule == "gap"
+        ratio = loss / math.hypot(math.pi, loss) if gap else damping_ratio_without_pull(self.restitution)
+        return math.sqrt(5.0 * self.mass * self.stiffness) * ratio
 
     def parameters(self) -> LawParameters:
         return self.stiffness, self.damping_constant(), 0.0, 0.0

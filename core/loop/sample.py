@@ -15,6 +15,9 @@ from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, 
 from ..tables.evaluate import evaluate_energy, recorded_norm
 from ..tables.held import in_space
 
+ENDS_BY_FORCE = 2
+"""Of `contact_release`: a force law whose contact ends where its force would pull."""
+
 
 def sample_length(n: int, m: int, contacts: int, work: int) -> int:
     """Number of columns."""
@@ -49,12 +52,15 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
         monitor = vec(ws.monitor, 2 * contacts)
         slide_rows = ivec(ws.contact_slide_rows, contacts)
         memory = mat(ws.memory, contacts, MEMORY_SIZE)
-        rows = ivec(ws.contact_rows, contacts)
+        rows, release = ivec(ws.contact_rows, contacts), ivec(ws.contact_release, contacts)
         phi, phid = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
         for k in range(contacts):
             mode = memory[k, MODE]
-            # of an open one the mean force while instants are stepped through, else 0
-            out[at + k] = monitor[k] if mode == ACTIVE or mode == CLOSED else memory[k, PUSHED]
+            # of an open one the mean force while instants are stepped through, else 0; where a force jumps, the point
+            # at which it is to end lies behind the jump, and what its equations say there would pull
+            force = monitor[k] if mode == ACTIVE or mode == CLOSED else memory[k, PUSHED]
+            pushes = mode == CLOSED or (mode == ACTIVE and release[k] == ENDS_BY_FORCE)
+            out[at + k] = max(force, 0.0) if pushes else force
             out[at + contacts + k] = phi[rows[k]]
             out[at + 2 * contacts + k] = phid[rows[k]]
             out[at + 3 * contacts + k] = CLOSED if mode == OPEN and memory[k, PUSHED] > 0.0 else mode

@@ -52,7 +52,7 @@ def _of_beginning(sim: Any) -> list[NDArray[Any]]:
 _CONSTANT = (
     "near", "leap", "breakpoints", "law", "restitution", "rest_ratio", "friction", "places", "summed", "number",
     "column", "signs", "flags", "flag_columns", "force_law", "force_numbers", "least_approach", "ends_early",
-    "impulse_account", "dissipation_account", "bristles", "bristle_stiffness", "marker_columns", "marker_offsets",
-    "marker_angles", "marker_channels", "kinds", "forced",
+    "by_approach", "impulse_account", "dissipation_account", "bristles", "bristle_stiffness", "marker_columns",
+    "marker_offsets", "marker_angles", "marker_channels", "kinds", "forced",
 )  # fmt: skip
 """Arrays of the records that a run never writes into."""

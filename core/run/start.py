@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError, SimulationError
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
 from ..rounding import START_MOVED
+from ..state.modes import ACTIVE, LAID_MASS, MODE
 from ..state.workspace_records import ENERGY_SCALE, RATE_SCALE
 from ..tables.evaluate import evaluate_residuals
 from ..tables.partition import prepare
@@ -77,15 +78,16 @@ def start(sim: "Engine") -> None:
             logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, moved)
     if sim.redundant:
         check_rates(sim.workspace, sim.redundant)
+    _warn_of_laid_contacts(sim)
     sim.take_events()
     sim.table.initial_energy = sim.table.total_energy(sim.sample())
     sim._sample_now()
     sim.pending = sim.drive.take_pending()
     sim._handle_pending()
+    _forget_before(sim)
     sim.guard.begin(sim.t)  # what happens at the start does not count
 
 
-<<<<<<< ours
 def _attempt(sim: "Engine") -> int:
     """A start from the state as it is: its status."""
     numbers, before = sim.beginning.numbers, _now(sim.workspace)
@@ -155,8 +157,6 @@ def _warn_of_laid_contacts(sim: "Engine") -> None:
         )
 
 
-=======
->>>>>>> theirs
 def start_again(sim: "Simulation") -> None:
     """Start anew with the present inputs, as if nothing had happened yet.
 

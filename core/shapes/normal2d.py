@@ -6,6 +6,8 @@ contact makes them part of the constraints. A contact that acts as a force adds 
 
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, line_of, shown, shown_at
 from ..compiled.views import imat, ivec, mat, vec
@@ -20,7 +22,7 @@ from ..elements.geometry2d import (
     levels,
 )
 from ..laws import call_law
-from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MEMORY_SIZE, MODE
+from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, LAID_MASS, MEMORY_SIZE, MODE
 from .geometry_kinds import DISKS, PLANE, are
 
 LAW_ADDRESS = 1
@@ -46,17 +48,15 @@ def idle(b: Any, e: int, job: int) -> bool:
 @internal
 def evaluate_law(b: Any, e: int, k: int, g: float, rate: float) -> Any:
     """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) of element e, contact k."""
-    par = mat(b.par, b.count, b.npar)
-    return call_law(
-        imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS],
-        max(-g, 0.0),
-        -rate,
-        mat(b.memory, b.n_memory, MEMORY_SIZE)[k, APPROACH_SPEED],
-        par[e, 7],
-        par[e, 8],
-        par[e, 9],
-        par[e, 10],
-    )
+    memory, p = mat(b.memory, b.n_memory, MEMORY_SIZE)[k], mat(b.par, b.count, b.npar)[e]
+    law, depth, speed = imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS], max(-g, 0.0), memory[APPROACH_SPEED]
+    found = call_law(law, depth, -rate, speed, p[7], p[8], p[9], p[10])
+    # shapes that were laid on each other are damped as by the blow that goes as deep, m v^2/2 = elastic energy
+    twice, mass = 2.0 * found[4], memory[LAID_MASS]
+    if mass > 0.0 and twice > mass * speed * speed:
+        f, f_d, f_dd, elastic, energy = call_law(law, depth, -rate, np.sqrt(twice / mass), p[7], p[8], p[9], p[10])
+        return f, f_d + f_dd * rate * elastic / twice, f_dd, elastic, energy
+    return found
 
 
 @internal

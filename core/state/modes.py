@@ -28,6 +28,8 @@ BEGUN_LOSS = 10  # its dissipation then, J
 PUSHED = 11  # of a constraint contact in the last step of impulses: mean normal force, N
 PUSHES = 6  # columns: it, along two tangents, and torques against rolling about two axes and spinning, N m
 MEMORY_SIZE = PUSHED + PUSHES
+# of force contacts, in a column that these have no other use for:
+LAID_MASS = GAP_START  # effective mass of shapes that met without an approach, kg; else 0
 # of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):
 WAY = SLIDE_START  # angle of the first tangent, rad
 AXIS = BEGUN_IMPULSE  # which axis of the first marker angles are counted from: 1, 2, 3; 0: not chosen

@@ -119,8 +119,9 @@ DRIVE = np.dtype(
             "law",                                    # (n_contacts,) int64: how an impact is solved
             "restitution", "rest_ratio", "friction",  # (n_contacts,) float64
             # of those that act as forces: address of the law, (FORCE_NUMBERS,) its parameters, least approach speed
-            # (m/s; < 0: a part of the model's), 1 if the force may end before the gap opens
-            "force_law", "force_numbers", "least_approach", "ends_early",
+            # (m/s; < 0: a part of the model's), 1 if the force may end before the gap opens, 1 if its damping goes
+            # with 1/v0
+            "force_law", "force_numbers", "least_approach", "ends_early", "by_approach",
             "impulse_account", "dissipation_account",  # places in v
             "bristles", "bristle_stiffness",          # (n_contacts, 2): first place in v, how many; N/m
             "pending",                                # (n_contacts,) int64: 1 where an event has to be handled

@@ -44,7 +44,7 @@ from tlismni.core import (
     Table,
     Tsuji,
 )
-from tlismni.core.state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
+from tlismni.core.state.modes import ACTIVE, APPROACH_SPEED, CLOSED, LAID_MASS, MODE
 from tlismni.core.tables.evaluate import evaluate_residuals, evaluate_tangent
 from tlismni.core.tables.workspace import Workspace
 
@@ -74,7 +74,7 @@ def contact(law, kind="plane"):
 FORCE_LAWS = [
     Hertz(stiffness=5.0, exponent=2.0),
     KelvinVoigt(stiffness=4.0, damping=0.8),
-    Flores(stiffness=6.0, restitution=0.5, exponent=2.0),
+    Flores(stiffness=6.0, restitution=0.5, exponent=2.0, release_rule="gap"),
     Tsuji(stiffness=5.0, damping=0.7),
     KuwabaraKono(stiffness=5.0, relaxation_time=0.1),
 ]
@@ -172,6 +172,7 @@ CASES = {
     "open plane": {"contacts": [contact(NewtonImpact(restitution=0.5))]},
     **{f"{law.type} on plane": {"contacts": [contact(law)], "mode": ACTIVE} for law in FORCE_LAWS},
     **{f"{law.type} on disk": {"contacts": [contact(law, "disks")], "mode": ACTIVE} for law in FORCE_LAWS},
+    "Flores on disk, laid": {"contacts": [contact(FORCE_LAWS[2], "disks")], "mode": ACTIVE, "laid": 1e-3},
     **element_cases.CASES,
 }  # fmt: skip
 
@@ -179,12 +180,14 @@ CASES = {
 class Point:
     """A system at some point of its state space, asked for residuals and tangents."""
 
-    def __init__(self, system, mode=None):
+    def __init__(self, system, mode=None, laid=0.0):
         self.workspace = Workspace(system.assemble())
         if mode is not None:
             closed, engaged = (frozenset({0}) if mode == m else frozenset() for m in (CLOSED, ACTIVE))
             self.workspace.engage(closed, engaged)
             self.workspace.arrays["memory"][0, [MODE, APPROACH_SPEED]] = mode, 0.9
+            if mode == ACTIVE:
+                self.workspace.arrays["memory"][0, LAID_MASS] = laid
         self.n, self.m = self.workspace.assembly.n, self.workspace.assembly.m
 
     def at(self, t, q, v, a, lam):
@@ -240,9 +243,11 @@ def draw(point, seed):
 
 
 def system(case):
-    parts = {key: value for key, value in CASES[case].items() if key not in ("mode", "bodies")}
+    parts = {key: value for key, value in CASES[case].items() if key not in ("mode", "bodies", "laid")}
     bodies = [A, *CASES[case].get("bodies", ()), B, P]  # what follows a body of other size keeps its place
-    return Point(Model(gravity=(0.3, -9.0), bodies=bodies, **parts), CASES[case].get("mode"))
+    return Point(
+        Model(gravity=(0.3, -9.0), bodies=bodies, **parts), CASES[case].get("mode"), CASES[case].get("laid", 0.0)
+    )
 
 
 def check_matrix(point, state, c_q=0.6, c_v=0.8, h=H):

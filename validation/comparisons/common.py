@@ -257,6 +257,11 @@ def touches(events: Sequence[Event]) -> list[Touch]:
     return sorted(found, key=lambda touch: touch.start)
 
 
+def blows(found: Sequence[Touch]) -> list[Touch]:
+    """Those that begin with an approach and push: others have no speed or duration of a blow."""
+    return [touch for touch in found if touch.approach_speed > 0.0 and touch.impulse > 0.0]
+
+
 def nice_step(limit: float) -> float:
     """The largest of 1, 2, 5 times a power of ten that is not above `limit`."""
     power = 10.0 ** math.floor(math.log10(limit))
@@ -294,13 +299,14 @@ def contact_units(result: Result, contact: str) -> ContactUnits:
     return ContactUnits(unit_of(result, f"{contact}.gap_rate"), force, f"{force}.s")
 
 
-def course_scale(result: Result, channel: str, own: float) -> float | None:
+def course_scale(result: Result, channel: str, own: float) -> float:
     """What relative differences of a course in `result`, ours, refer to: its `own` scale, but at least STILL of the
-    largest value in that unit, since what stays at rest differs by rounding. None if all are zero."""
+    largest value in that unit, since what stays at rest differs by rounding, and ATOL, below which our runs know
+    nothing: where all is at rest there is no larger value."""
     unit = unit_of(result, channel)
     courses = [result[c.name] for c in result.channel_records if c.unit == unit]
     largest = max((float(np.max(np.abs(x))) for x in courses if x.size), default=0.0)
-    return max(own, STILL * largest) or None
+    return max(own, STILL * largest, ATOL)
 
 
 def residual_panel(result: Result) -> Panel:

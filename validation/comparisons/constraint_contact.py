@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 
 from ...core import Result
-from ..errors import NotTranslatable
 from ..exudyn_run import run_exudyn, settings_for
 from .common import (
     Comparison,
@@ -21,6 +20,7 @@ from .common import (
     Task,
     Touch,
     at_times,
+    blows,
     contact_units,
     course_scale,
     energy_panel,
@@ -46,6 +46,7 @@ from .penalty_limit import (
     sure,
     with_stiffness,
 )
+from .persistent_contact import compare_persistent
 from .toggled import toggled_rows
 
 MOST_HALVINGS = 2
@@ -60,7 +61,8 @@ SAMPLES = 2001
 
 
 def compare_constraints(task: Task) -> Comparison:
-    """First impact, flight after it, state before the second impact.
+    """First impact, flight after it, state before the second impact; without an impact, where contacts are closed from
+    the start on or never touch, as `compare_persistent` has it.
 
     Raises
     ------
@@ -69,9 +71,9 @@ def compare_constraints(task: Task) -> Comparison:
     scenario = task.scenario
     task.progress("our run")
     first_run = our_run(scenario)
-    found = touches(first_run.events)
+    found = blows(touches(first_run.events))
     if not found:
-        raise NotTranslatable(f"scenario '{scenario.name}' has no impact before {scenario.t_end:g} s: none to compare")
+        return compare_persistent(task)
     t_end = _end(found, scenario.t_end)
     ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
     loose = our_looser_run(task, ours.t)

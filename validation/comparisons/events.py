@@ -17,7 +17,9 @@ def away_from(t: np.ndarray, events: Sequence[Event], runs: Sequence[ExudynResul
         return np.ones(len(t), dtype=bool)
     apart = np.full(len(t), np.inf)
     for event in events:
-        apart = np.minimum(apart, np.abs(t - event.t) / (margin + _shift(event, runs)))
+        near, width = np.abs(t - event.t), margin + _shift(event, runs)
+        # contacts that take no time leave out nothing but their instants
+        apart = np.minimum(apart, near / width if width > 0.0 else np.where(near > 0.0, np.inf, 0.0))
     kept = apart > 1.0
     return kept if kept.any() else apart >= apart.max()
 

@@ -45,7 +45,8 @@ def first_step(model: Model, found: list[Touch], run: Result, t_end: float) -> f
     """
     limits = [t_end / 2000]
     for touch in found[:3]:
-        limits.append((touch.end - touch.start) / STEPS_IN_CONTACT)
+        if touch.end > touch.start:
+            limits.append((touch.end - touch.start) / STEPS_IN_CONTACT)
         k = int(np.searchsorted(run.t, touch.start)) - 1
         rate = run[f"{touch.contact}.gap_rate"]
         # without approach (a contact that starts closed) there is no speed to get wrong
@@ -78,7 +79,7 @@ def entry_error(model: Model, touch: Touch) -> float:
     beside m v0. Halving the step does not show it, because it depends on where in the step the touch falls.
     """
     law = next(c.law for c in model.contacts if c.name == touch.contact)
-    if not isinstance(law, KelvinVoigt):
+    if not isinstance(law, KelvinVoigt) or not touch.impulse > 0.0:
         return 0.0
     return law.damping * (touch.approach_speed + touch.separation_speed) / touch.impulse
 
@@ -103,7 +104,8 @@ def most_steps(model: Model) -> int:
 def jumps(model: Model, found: list[Touch]) -> bool:
     """Whether the first contact's force jumps at the touch, and comes to zero by itself at the end."""
     laws = [c.law for c in model.contacts if found and c.name == found[0].contact]
-    return any(isinstance(law, KelvinVoigt) and law.release == "force" for law in laws)
+    strikes = bool(found) and found[0].approach_speed > 0.0
+    return strikes and any(isinstance(law, KelvinVoigt) and law.release == "force" for law in laws)
 
 
 def aligned(step: float, touch: Touch, finest: float) -> float:

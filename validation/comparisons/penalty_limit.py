@@ -20,6 +20,7 @@ import numpy as np
 
 from ...core import Gonthier, NewtonImpact, Result
 from ...core.description import Model
+from ...core.laws.friction import CoulombFriction
 from ..errors import NotTranslatable
 from ..exudyn_run import ExudynResult
 from ..metrics import ContactInterval, contact_intervals, impulse, power_limit, speeds
@@ -150,11 +151,16 @@ def stiffer(stiffness: float, times: int) -> float:
 def with_stiffness(model: Model, stiffness: float) -> Model:
     """`model` with every constraint contact replaced by the force law with the same restitution.
 
-    Raises NotTranslatable for a restitution that the force law cannot have.
+    Raises NotTranslatable for a restitution that the force law cannot have, and for Coulomb's friction.
     """
     contacts = []
     for contact in model.contacts:
         law = contact.law
+        if isinstance(contact.friction, CoulombFriction):
+            raise NotTranslatable(
+                f"contact '{contact.name}' has Coulomb friction, and the limit of stiff contacts has none: compare it "
+                "without `whole`, by the limit of contacts that stick by a spring"
+            )
         if isinstance(law, NewtonImpact):
             if law.restitution < LOWEST_RESTITUTION:
                 raise NotTranslatable(

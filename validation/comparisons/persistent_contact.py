@@ -31,6 +31,7 @@ from .common import (
     Task,
     Touch,
     at_times,
+    blows,
     course_scale,
     energy_panel,
     is_contact_channel,
@@ -73,6 +74,8 @@ class Scale:
     mass: float
     approach: float
     load: float = 0.0
+    struck: bool = True
+    """Whether there is a blow of it in the run; without one its restitution says nothing."""
 
     def return_rate(self, least: float) -> float:
         """r, 1/s: at least so large that the load sinks no deeper than the blow, N T/(r m) <= v T."""
@@ -122,7 +125,7 @@ def compare_persistent(task: Task) -> Comparison:
     longest = (task.step or 0.0) * steps_in_time or LONGEST_TIME * scenario.t_end
     rate = (FLEXIBLE_RETURN_RATE if flexible else RETURN_RATE) / scenario.t_end
     events = [e for e in first_run.events if e.kind != "graze"]
-    blows = any(e.impulse > 0.0 for e in events)
+    struck = any(e.impulse > 0.0 for e in events)
     times = [share * longest for share in TIMES]
 
     def run(time: float, factor: float = 1.0) -> ExudynResult:
@@ -131,7 +134,9 @@ def compare_persistent(task: Task) -> Comparison:
         task.progress(f"exudyn, T = {time:.1e} s, step {step:.1e} s")
         return run_exudyn(model, scenario.t_end, step, settings_for(model))
 
-    limits = Limits(times, [run(time) for time in times], [run(time, 2.0) for time in (times[-1:] if blows else times)])
+    limits = Limits(
+        times, [run(time) for time in times], [run(time, 2.0) for time in (times[-1:] if struck else times)]
+    )
     channels = [c for c in scenario.compare if not is_contact_channel(task, c) and c in limits.runs[0].channels]
     error = our_error(task, ours, [*channels, *(f"{c.name}.impulse" for c in scenario.model.contacts)])
     margin = 3.0 * DURATION * longest if flexible else DURATION * longest
@@ -144,13 +149,13 @@ def compare_persistent(task: Task) -> Comparison:
     stepped = (
         f"what twice the step changes in the last run, {WEIGHTS:g} times for the three T (a blow begins anywhere in a "
         "step: irregular and of first order)"
-        if blows
+        if struck
         else "what twice the step changes in it"
     )
     notes = (
         "the constraint is compared with the limit of a damper with a weak spring that does not pull (restitution "
-        f"below {LOWEST_RESTITUTION:g}), of Gonthier's law (else) and of sticking by a stiff spring, extrapolated in "
-        f"the time T that a contact takes: {', '.join(f'{x:.1e}' for x in times)} s. exudyn's "
+        f"below {LOWEST_RESTITUTION:g}, or no blow), of Gonthier's law (else) and of sticking by a stiff spring, "
+        f"extrapolated in the time T that a contact takes: {', '.join(f'{x:.1e}' for x in times)} s. exudyn's "
         f"uncertainty is the difference of the quadratic and the linear extrapolation, and {stepped}"
         + (", and how far the limit of the last three T has moved with the last of them" if len(times) > 3 else ""),
         *runs[-1].notes,
@@ -234,7 +239,7 @@ def with_time(model: Model, scales: dict[str, Scale], time: float, rate: float) 
 
 
 def _law(restitution: float, scale: Scale, time: float, rate: float) -> KelvinVoigt | Gonthier:
-    if restitution < LOWEST_RESTITUTION:
+    if restitution < LOWEST_RESTITUTION or not scale.struck:
         return KelvinVoigt(stiffness=scale.return_rate(rate) * scale.mass / time, damping=scale.mass / time)
     # Hertz' duration 2.943 d/v of an impact with m v^2/2 = K d^2.5/2.5
     depth = DURATION * time * scale.approach / 2.943
@@ -248,14 +253,15 @@ def _load(force: np.ndarray) -> float:
 
 
 def _scale(model: Model, contact: Any, found: list[Touch], load: float) -> Scale:
-    struck = [x for x in found if x.approach_speed > 0.0 and x.impulse > 0.0]
+    struck = blows(found)
     # a contact that is never struck is scaled by the others
     own = [x for x in struck if x.contact == contact.name] or struck
     masses = [x.impulse / (x.approach_speed + x.separation_speed) for x in own]
     bodies = {marker.body for marker in contact.markers()}
     carried = [getattr(b, "mass", None) for b in model.bodies if b.name in bodies]
-    lightest = min((m for m in carried if isinstance(m, float)), default=1.0)
-    return Scale(max(masses, default=lightest), max((x.approach_speed for x in own), default=1.0), load)
+    lightest = min((m for m in carried if isinstance(m, float) and m > 0.0), default=1.0)
+    fastest, alone = max((x.approach_speed for x in own), default=1.0), all(x.contact != contact.name for x in struck)
+    return Scale(max(masses, default=lightest), fastest, load, not alone)
 
 
 def _channel_rows(

@@ -20,6 +20,7 @@ from .common import (
     Task,
     Touch,
     at_times,
+    blows,
     course_scale,
     is_contact_channel,
     nice_step,
@@ -77,8 +78,8 @@ def with_whole_run(task: Task, comparison: Comparison) -> Comparison:
     task.progress("our run")
     ours = our_run(scenario, np.linspace(0.0, scenario.t_end, SAMPLES))
     limit = _limit(task, ours)
-    blows = [e for e in ours.events if e.kind != "graze"]
-    away = away_from(ours.t, blows, limit.runs, limit.margin)
+    events = [e for e in ours.events if e.kind != "graze"]
+    away = away_from(ours.t, events, limit.runs, limit.margin)
     channels = [c for c in scenario.compare if c in limit.runs[0].channels and not is_contact_channel(task, c)]
     error = our_error(task, ours, channels)
     until = (
@@ -91,7 +92,7 @@ def with_whole_run(task: Task, comparison: Comparison) -> Comparison:
         last = limit.stiffnesses[-1]
         if _step(task, touches(ours.events), stiffer(last, 1)) * MOST_STEPS >= scenario.t_end:
             limit = _with_run(task, limit, touches(ours.events), stiffer(last, 1))
-            before &= away_from(ours.t, blows, limit.runs, limit.margin)
+            before &= away_from(ours.t, events, limit.runs, limit.margin)
             rows = [_row(channel, until, ours, limit, before, error, "") for channel in compared if before.any()]
         rows = unless_sure(rows, len(limit.runs) > RUNS, _open_limit(limit))
     for channel in channels if after.any() else ():
@@ -127,7 +128,7 @@ def _limit(task: Task, ours: Result) -> _Limit:
     model, found, t_end = task.exudyn_model, touches(ours.events), task.scenario.t_end
     settings, runs = settings_for(model), []
     if any(isinstance(c.law, ImpactLaw) for c in model.contacts):
-        struck = [touch for touch in found if touch.impulse > 0.0]
+        struck = blows(found)
         softest = softest_stiffness(struck, t_end) if struck else SOFTEST
         while softest > SOFTEST and _step(task, found, stiffer(softest, RUNS - 1)) * MOST_STEPS < t_end:
             softest = stiffer(softest, -1)
@@ -145,7 +146,7 @@ def _limit(task: Task, ours: Result) -> _Limit:
 
 def _contact(task: Task, found: Sequence[Touch], stiffness: float) -> float:
     """The least step, s, that resolves a contact of the run."""
-    steps = (contact_step(touch, stiffness) for touch in found if touch.impulse > 0.0)
+    steps = (contact_step(touch, stiffness) for touch in blows(found))
     return min(steps, default=task.scenario.t_end)
 
 

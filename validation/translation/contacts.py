@@ -53,7 +53,7 @@ def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
     exudyn needs a sphere with a radius, and one deeper than its diameter passes through: so the sphere gets
     a large radius, and the triangle is drawn back as much, which leaves gap and force line unchanged.
     """
-    if not is_native(record, _on_flexible(record, build)):
+    if not _is_native(record, build):
         return add_user_contact(record, build)
     plane, disk = record.plane, record.disk
     size = _size(build)
@@ -82,7 +82,7 @@ def disk_on_half_plane(record: DiskOnHalfPlane2D, build: Build) -> None:
 @translates(DiskOnDisk2D)
 def disk_on_disk(record: DiskOnDisk2D, build: Build) -> None:
     """ObjectContactSphereSphere; a user function for laws that exudyn lacks, and for friction."""
-    if not is_native(record, _on_flexible(record, build)):
+    if not _is_native(record, build):
         return add_user_contact(record, build)
     _add(
         build,
@@ -105,7 +105,6 @@ def _add(
 ) -> None:
     """The contact object with its law and memory; `sign` is +1 if its Force acts on the second shape's body."""
     law = contact_parameters(record.law, record.name)
-<<<<<<< ours
     gap, rate = _at_start(build, shapes)
     # the gap at the start: exudyn's active set begins with it
     memory = build.add("NodeGenericData", numberOfDataCoordinates=4, initialCoordinates=[gap, 0.0, 0.0, 0.0])
@@ -116,15 +115,12 @@ def _add(
         build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
     if releasing is not None:
         build.before_step.append(_release(build, item, memory, releasing, shapes, acts))
-=======
-    memory = _data_node(build, shapes)
-    item = build.add(item_name, nodeNumber=memory, **fields, **law)
-    if build.sensors:
-        build.contacts.append(ContactColumns(record.name, shapes, build.sensor(item, "Force"), sign))
-    if isinstance(record.law, KelvinVoigt) and record.law.release == "force":
-        build.before_step.append(_release(build, item, memory, record.law, shapes))
->>>>>>> theirs
         build.notes.append(f"{record.name}: switched off at the start of the step where its force would be tensile")
+
+
+def _is_native(record: DiskOnHalfPlane2D | DiskOnDisk2D, build: Build) -> bool:
+    native = is_native(record, _on_flexible(record, build))
+    return native and record.name not in build.laid and record.name not in build.clamped
 
 
 def _on_flexible(record: DiskOnHalfPlane2D | DiskOnDisk2D, build: Build) -> bool:
@@ -132,11 +128,16 @@ def _on_flexible(record: DiskOnHalfPlane2D | DiskOnDisk2D, build: Build) -> bool
     return any(body.elements or body.mesh_points for body in items)
 
 
-def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Shapes) -> BeforeStep:
+def _pushes(law: KelvinVoigt, gap: float, rate: float) -> bool:
+    """Whether the contact is to be on: its gap is open, or its force is not tensile."""
+    return gap > 0.0 or law.stiffness * gap + law.damping * rate <= 0.0
+
+
+def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Shapes, acts: bool) -> BeforeStep:
     """Switch the contact off when the force has come to zero, and on again when the gap has opened."""
     names = {marker.body for marker in (shapes[0].marker, shapes[1].marker)} - {GROUND}
     starts = {name: build.bodies[name].reference for name in names}
-    core, active = build.exudyn.core, [True]
+    core, active = build.exudyn.core, [acts]
 
     def before_step(mbs: Any, t: float) -> None:
         # while the contact is on, exudyn keeps its gap in the data node: nearly all steps are done with here
@@ -151,7 +152,7 @@ def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Sha
             bodies[name] = BodyStates(*(np.atleast_1d(x) for x in (*q, *v)))
         motion = gap_motion(shapes, States(1, bodies))
         gap, rate = float(motion.gap[0]), float(motion.rate[0])
-        wanted = gap > 0.0 or law.stiffness * gap + law.damping * rate < 0.0
+        wanted = _pushes(law, gap, rate)
         if wanted != active[0] and (gap > 0.0 or active[0]):
             active[0] = wanted
             mbs.SetObjectParameter(item, "activeConnector", wanted)
@@ -159,14 +160,14 @@ def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Sha
     return before_step
 
 
-def _data_node(build: Build, shapes: Shapes) -> Any:
-    """Node of the contact's memory, with the gap at the start: exudyn's active set begins with it."""
+def _at_start(build: Build, shapes: Shapes) -> tuple[float, float]:
+    """Gap (m) and its rate at the start."""
     names = {shape.marker.body for shape in shapes}
     bodies = {
         name: BodyStates(*(np.atleast_1d(x) for level in build.start(name) for x in level)) for name in names - {GROUND}
     }
-    gap = float(gap_motion(shapes, States(1, bodies)).gap[0])
-    return build.add("NodeGenericData", numberOfDataCoordinates=4, initialCoordinates=[gap, 0.0, 0.0, 0.0])
+    motion = gap_motion(shapes, States(1, bodies))
+    return float(motion.gap[0]), float(motion.rate[0])
 
 
 def _size(build: Build) -> float:

@@ -42,8 +42,17 @@ def normal_force(law: ForceLaw) -> NormalForce:
         return lambda d, dd, v0: k * d**n
     if isinstance(law, HuntCrossleyFamily) and type(law).formula is HuntCrossleyFamily.formula:
         k, n, chi = law.stiffness, law.exponent, _dissipation(law)
-        return lambda d, dd, v0: k * d**n * (1.0 + chi * dd / v0)
+        least = -math.inf if law.release_rule == "gap" else 0.0
+        return lambda d, dd, v0: k * d**n * max(1.0 + chi * dd / v0, least)
     return lambda d, dd, v0: law.evaluate(d, dd, v0)[0]
+
+
+def spring_energy(law: ForceLaw) -> Callable[[float], float]:
+    """What the spring of a contact law holds at a penetration, m, in J."""
+    if isinstance(law, HuntCrossleyFamily) and type(law).formula is HuntCrossleyFamily.formula:
+        k, n = law.stiffness, law.exponent
+        return lambda d: k * d ** (n + 1.0) / (n + 1.0)
+    return law.elastic_energy
 
 
 def _dissipation(law: Any) -> float:

@@ -12,6 +12,7 @@ from ...core.shapes.contact2d import Disk2D, HalfPlane2D
 from ...core.shapes.coordinate_contact import CoordinateContact
 from ..errors import NotTranslatable
 from ..exudyn_import import Exudyn
+from .laid_contacts import Laid
 
 Translator = Callable[[Any, "Build"], None]
 _TRANSLATORS: dict[type, Translator] = {}
@@ -177,6 +178,10 @@ class Build:
     derived: list[Derived] = field(default_factory=list)
     flexible: bool = False
     """Whether a body is flexible, so that exudyn should keep its Jacobian."""
+    laid: Mapping[str, Laid] = field(default_factory=dict)
+    """Contacts that start without an approach, and whose law refers to one."""
+    clamped: frozenset[str] = frozenset()
+    """Contacts whose force exudyn's own objects would let pull where the law does not: user functions."""
     redundant: Mapping[str, frozenset[int]] = field(default_factory=dict)
     """Equations of joints, counted from 0 in each, that others imply and exudyn must not get."""
     before_step: list[Callable[[Any, float], None]] = field(default_factory=list)

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ...core.laws.friction import LuGreFriction
-from .formulas import StickingCoulomb, friction_force, lugre, normal_force
+from .formulas import StickingCoulomb, friction_force, lugre, normal_force, spring_energy
+from .laid_contacts import Laid
 from .registry import Build, UserContact
 from .user_gaps import UserGap, user_gap
 
@@ -24,8 +25,9 @@ Numbers = Sequence[float]
 class Memory:
     """What a contact remembers from step to step: whether it is touching, and the speed with which it came."""
 
-    def __init__(self, least: float) -> None:
-        self.least, self.touching, self.speed = least, False, least
+    def __init__(self, least: float, laid: Laid | None = None) -> None:
+        self.least, self.touching, self.speed = least, laid is not None, least if laid is None else laid.speed
+        self.laid_mass = 0.0 if laid is None else laid.mass
         self.gap, self.rate = 0.0, 0.0
         self.t, self.end = 0.0, 0.0
         self.deflection, self.bending = 0.0, 0.0
@@ -40,9 +42,9 @@ class Memory:
 
     def after_step(self, gap: float, rate: float) -> None:
         """Called with the state at the end of each step."""
-        if gap >= 0.0:
-            self.touching = False
-        elif not self.touching:
+        if gap > 0.0 or (gap == 0.0 and self.laid_mass == 0.0):
+            self.touching, self.laid_mass = False, 0.0
+        elif gap < 0.0 and not self.touching:
             self.touching, self.speed = True, self.approach(gap, rate)
         self.gap, self.rate = gap, rate
 
@@ -50,6 +52,16 @@ class Memory:
 def add_user_contact(record: Any, build: Build, own: "Force | None" = None) -> None:
     """Contact, friction and their recording; `own` in place of the force of a contact in the plane."""
     force = Force(record, user_gap(record, build)) if own is None else own
+    if record.name in build.laid:
+        force.lay(build.laid[record.name])
+        build.notes.append(
+            f"{record.name}: it starts without an approach, which exudyn's own law would take for a very small one; "
+            "the damping is that of the blow as deep as the contact, with mass and settling speed of our start"
+        )
+    if record.name in build.clamped:
+        build.notes.append(
+            f"{record.name}: exudyn's own contact pulls where shapes are drawn apart fast; the law does not"
+        )
     gap, kinds = force.gap, build.exudyn.core.OutputVariableType
     build.add(
         "ObjectGenericODE2",
@@ -85,7 +97,7 @@ class Force:
 
     def __init__(self, record: Any, gap: UserGap) -> None:
         self.gap = gap
-        self.law, self.release = normal_force(record.law), record.law.release
+        self.law, self.release, self.energy = normal_force(record.law), record.law.release, spring_energy(record.law)
         self.memory = Memory(record.law.least_approach_speed())
         bristle = isinstance(record.friction, LuGreFriction)
         self.bristles = lugre(record.friction) if bristle else None
@@ -94,11 +106,19 @@ class Force:
         smooth = record.friction is not None and not bristle and self.coulomb is None
         self.friction = friction_force(record.friction) if smooth else None
 
+    def lay(self, laid: Laid) -> None:
+        """Let it press from the start on, without an approach."""
+        self.memory = Memory(self.memory.least, laid)
+
     def normal(self, gap: float, rate: float) -> float:
         """N; positive where it pushes."""
         if gap >= 0.0:
             return 0.0
-        force = self.law(-gap, -rate, self.memory.approach(gap, rate))
+        speed = self.memory.approach(gap, rate)
+        if self.memory.laid_mass > 0.0:
+            # m v^2/2 is what the spring holds at this depth
+            speed = max(speed, math.sqrt(2.0 * self.energy(-gap) / self.memory.laid_mass))
+        force = self.law(-gap, -rate, speed)
         return max(force, 0.0) if self.release == "force" else force
 
     def tangential(self, t: float, speed: float, normal: float) -> float:

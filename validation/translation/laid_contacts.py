@@ -1,0 +1,42 @@
+"""Contacts that start without an approach: what our start knows of those whose damping refers to one.
+
+exudyn takes its `minimumImpactVelocity` for the approach speed and so holds them as by glue. They become user functions
+whose force is that of `docs/contact-laws.md`, from the effective mass and the settling speed of our start.
+"""
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ...core.description import Model
+from ...core.laws import ForceLaw
+from ...core.run import start
+from ...core.run.simulation import Simulation
+from ...core.state.modes import ACTIVE, APPROACH_SPEED, LAID_MASS, MODE
+
+
+@dataclass(frozen=True)
+class Laid:
+    """A contact that presses from the start on without an approach: settling speed (m/s) and effective mass (kg)."""
+
+    speed: float
+    mass: float
+
+
+def laid_contacts(model: Model) -> Mapping[str, Laid]:
+    """Those of the model, by name."""
+    if not any(isinstance(c.law, ForceLaw) and c.law.damps_by_approach for c in model.contacts):
+        return {}
+    log = logging.getLogger(start.__name__)
+    level = log.level
+    log.setLevel(logging.ERROR)  # our own run has said it
+    try:
+        sim = Simulation(model)
+    finally:
+        log.setLevel(level)
+    rows = zip(sim.assembly.contacts, sim.workspace.arrays["memory"], strict=False)
+    return {
+        contact.name: Laid(float(row[APPROACH_SPEED]), float(row[LAID_MASS]))
+        for contact, row in rows
+        if row[MODE] == ACTIVE and row[LAID_MASS] > 0.0
+    }
