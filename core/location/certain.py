@@ -1,16 +1,16 @@
 """Has a gap changed its sign within a step, however large the step? Decided by bounds, not by samples.
 
-g is looked at as the polynomial p of fifth degree through (g, g', g'') at both ends of a part of the step. The rest is
-g - p = g^(6)(x)/720 s^3 (s - 1)^3, s in [0, 1]. In the basis of Bernstein's polynomials of degree 6, s^3 (1 - s)^3 is
-B_3/20: a bound of g^(6) lowers the coefficient c_3 of p, and if no coefficient is negative, neither is g. Where that
-decides nothing, g_0 + g_1 > the way that the gap can go does, or the line through both ends less
-G_2 s (1 - s)/2; else the part is halved. Halves of a part that holds no root are soon without: the rest shrinks with
-the sixth power of their length. Parts are looked at in their order, so that the first root is found.
+Of two rigid shapes a bound says whether the gap can reach zero between two places in the step (`separation.py`); where
+it can, the part between them is halved. Parts are looked at in their order, so that the first root is found. Gaps that
+are linear in the coordinates are polynomials themselves, whose coefficients in the basis of Bernstein bound them.
 
-The bounds are those of the motion (`motion_bounds`). Of gaps that are linear in the coordinates nothing is left. Of
-deformable lines and of kernels and functions that a user has written the rest is taken from how far the polynomial of
-the whole was off at the middle; lines, and edges of bodies, are divided at least until nothing moves by more than the
-shapes are thick.
+Of deformable lines, of edges, of parts of surfaces and of kernels and functions that a user has written, g is looked at
+as the polynomial p of fifth degree through (g, g', g'') at both ends of a part. The rest is
+g - p = g^(6)(x)/720 s^3 (s - 1)^3, s in [0, 1]. In the basis of Bernstein's polynomials of degree 6, s^3 (1 - s)^3 is
+B_3/20: a bound of g^(6) lowers the coefficient c_3 of p, and if no coefficient is negative, neither is g. The bound is
+an estimate, from how far the polynomial of the whole was off at the middle: the rest shrinks with the sixth power of a
+part's length. Lines, edges and parts of surfaces are divided at least until nothing moves by more than a share of their
+thickness. The same estimate is for shapes that touch all the while, which no bound tells from a root.
 """
 
 import math
@@ -24,30 +24,28 @@ from ..shapes.cable_line import BOTH as CABLE_BOTH
 from ..shapes.cable_line import LENGTH as CABLE_LENGTH
 from ..shapes.cable_line import POINT as CABLE_POINT
 from ..shapes.cable_line import VECTORS
-from ..shapes.edges_nearest3d import EDGES
-from ..shapes.geometry_kinds import CABLE, DISKS, EQUATIONS, LINE, LINEAR, OWN, PLANE, SEGMENT, SPHERE
+from ..shapes.geometry_kinds import CABLE, CABLE_IN_SPACE, EQUATIONS, LINE, LINEAR, OWN, SPHERE, STOP, TURN
 from ..shapes.held3d import ON_MESH
 from ..shapes.line2d import BOTH as LINE_BOTH
 from ..shapes.line2d import NODES, POINTS
 from ..shapes.mesh_nearest3d import OPEN
 from ..shapes.normal3d import KIND as SHAPES
 from ..shapes.normal3d import RADIUS_A, RADIUS_B
-from ..shapes.travel3d import way_of_sphere
-from .motion_bounds import control_points, gap_bounds
+from ..shapes.travel3d import way_of_cable, way_of_sphere
+from .motion_bounds import PLANAR, control_points
 from .probe import KIND, NEAR_SIZE, VIEW, look, probe_of, state_of_pair
+from .separation import NODE, STATE, arms, stays_apart, width_of
 
 SHORTEST = 2.0**-34
 """Of the step: what a gap does in a shorter part cannot be told from a touch."""
 MOST_LOOKS = 20_000
 """Parts of one step, for the gap of one contact."""
 DEPTH = 64
-NODE = 4 + 18
-"""A place in the step: s, the gap with its two derivatives, and the state of both bodies."""
-
-
-@internal
-def _pair(kind: int) -> bool:
-    return kind == DISKS or kind == PLANE or kind == SEGMENT
+THICK = 0.25
+"""Of the thickness of lines, edges and parts of surfaces: how far they may go in a part that is looked at as a
+polynomial."""
+BENDS = 4.0
+"""Of what a gap falls in a part: if it can bend by more there, it may rise and fall again."""
 
 
 @internal
@@ -64,18 +62,21 @@ def way_of_gap(ws: Any, lc: Any, k: int, fastest: int) -> float:
         for i in range(6):
             total += abs(par[0, 16 + i]) * way[coord[0, i]]
         return total
-    if _pair(kind):
-        c, p = coord[0], par[0]
-        total = way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]] + math.hypot(p[2], p[3]) * way[c[5]]
-        if kind == DISKS:
-            return total + math.hypot(p[0], p[1]) * way[c[2]]
-        if way[c[2]] > 0.0:
+    if kind == TURN:
+        return way[coord[0, 2]] + way[coord[0, 5]]
+    if width_of(kind) == PLANAR:
+        first, second, point, _ = arms(kind, par[0])
+        c = coord[0]
+        total = way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]] + second * way[c[5]]
+        if not point and way[c[2]] > 0.0:
             q = vec(ws.q, ws.n_ext)
-            arm = math.hypot(q[c[3]] - q[c[0]], q[c[4]] - q[c[1]]) + math.hypot(p[2], p[3])
-            total += way[c[2]] * (arm + way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]])
-        return total
-    if kind == SPHERE:
+            reach = math.hypot(q[c[3]] - q[c[0]], q[c[4]] - q[c[1]]) + second
+            first = reach + way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]]
+        return total + (first * way[c[2]] if way[c[2]] > 0.0 else 0.0)
+    if kind == SPHERE or kind == STOP:
         return way_of_sphere(vec(ws.q, ws.n_ext), coord[0], par[0], way)
+    if kind == CABLE_IN_SPACE:
+        return way_of_cable(vec(ws.q, ws.n_ext), coord, par, way)
     largest = 0.0
     if kind == LINE:
         for e in range(batch.count):
@@ -97,17 +98,18 @@ def way_of_gap(ws: Any, lc: Any, k: int, fastest: int) -> float:
 @internal
 def _thickness(lc: Any, k: int, kind: int) -> float:
     """Up to which way within a part the rest of the polynomial is trusted, m."""
+    if kind != LINE and kind != CABLE and kind != SPHERE and kind != CABLE_IN_SPACE:
+        return np.inf
+    batch = probe_of(lc, k)
+    par = mat(batch.par, batch.count, batch.npar)[0]
     if kind == LINE or kind == CABLE:
-        batch = probe_of(lc, k)
-        both = mat(batch.par, batch.count, batch.npar)[0, LINE_BOTH if kind == LINE else CABLE_BOTH]
-        return both if both > 0.0 else np.inf
-    if kind == SPHERE:
-        # edges that cross are apart again behind: the dip is as deep as they are round
-        batch = probe_of(lc, k)
-        par = mat(batch.par, batch.count, batch.npar)[0]
-        if int(par[SHAPES]) == ON_MESH and imat(batch.extra, batch.count, batch.nextra)[0, OPEN] == EDGES:
-            return par[RADIUS_A] + par[RADIUS_B]
-    return np.inf
+        both = par[LINE_BOTH if kind == LINE else CABLE_BOTH]
+    else:
+        both = par[RADIUS_A] + par[RADIUS_B]
+    if kind == SPHERE and (int(par[SHAPES]) != ON_MESH or imat(batch.extra, batch.count, batch.nextra)[0, OPEN] == 0):
+        return np.inf
+    # edges that cross are apart again behind: the dip is as deep as they are round
+    return THICK * both if both > 0.0 else np.inf
 
 
 @internal
@@ -133,40 +135,28 @@ def _first_rest(left: Any, right: Any, tau: float) -> float:
 
 @internal
 def _excluded(
-    lc: Any, k: int, kind: int, left: Any, right: Any, tau: float, sign: float, slack: float, speed: float,
-    thick: float, rest: float,
+    ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, left: Any, right: Any, sign: float, slack: float,
+    speed: float, thick: float, rest: float,
 ) -> Any:  # fmt: skip
     """(is there no root between two places, does the gap only fall there, is its polynomial somewhere negative)."""
-    c = np.empty(7)
+    c, tau = np.empty(7), (right[0] - left[0]) * h
     g0, g1 = sign * left[1], sign * right[1]
-    way = speed * tau
+    way, known, bends = speed * tau, False, 0.0
     if g0 + g1 > way:
         return True, False, False
+    if width_of(kind) > 0:
+        apart, known, bends = stays_apart(ws, ms, lc, k, kind, row, h, left, right, sign, slack)
+        if apart:
+            return True, False, False
     _coefficients(left, right, tau, sign, c)
     lowest = min(c[0], c[1], c[2], c[3], c[4], c[5], c[6])
-    second, lowered = np.inf, 3.2 * rest
-    if kind == LINEAR:
-        lowered = 0.0
-    elif _pair(kind):
-        batch = probe_of(lc, k)
-        par = mat(batch.par, batch.count, batch.npar)[0]
-        way, second, sixth = gap_bounds(kind, par, left[4:], right[4:], left[1], right[1], tau)
-        if g0 + g1 > way:
-            return True, False, False
-        lowered = sixth / 14400.0
-    elif way > thick:
+    lowered = 0.0 if kind == LINEAR or kind == TURN else 3.2 * rest
+    if way > thick:
         return False, False, lowest < -slack
-    if lowest >= -slack and c[3] - lowered >= -slack:
+    touching = g0 <= slack and g1 <= slack
+    if (touching or not known) and lowest >= -slack and c[3] - lowered >= -slack:
         return True, False, False
-    if second < np.inf and g0 >= -slack and g1 >= -slack:
-        least = min(g0, g1)
-        if second > 0.0:
-            s = 0.5 - (g1 - g0) / second
-            if 0.0 < s < 1.0:
-                least = g0 - 0.5 * second * s * s
-        if least >= -slack:
-            return True, False, False
-    falls = True
+    falls = bends <= BENDS * (g0 - g1)
     for i in range(6):
         falls = falls and c[i + 1] < c[i]
     falls = falls and c[3] - lowered < c[2] and lowered < 0.1 * (c[0] - c[6])
@@ -176,10 +166,11 @@ def _excluded(
 @internal
 def _place(ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, s: float, node: Any) -> None:
     """Look at a place between the ends of the step."""
+    node[:] = 0.0
     node[0] = s
     look(ws, ms, lc, k, row, h, s, node[1 : 1 + VIEW])
-    if _pair(kind):
-        state_of_pair(ws, ms, lc, k, h, s, node[4:])
+    if width_of(kind) > 0:
+        state_of_pair(ws, ms, lc, k, width_of(kind), h, s, node[STATE:])
 
 
 @internal
@@ -203,12 +194,12 @@ def first_root(
         vec(ws.phid, ws.m_ext)[row],
         vec(ws.phidd, ws.m_ext)[row],
     )
-    if _pair(kind):
-        state_of_pair(ws, ms, lc, k, h, 0.0, left[4:])
-        state_of_pair(ws, ms, lc, k, h, 1.0, right[4:])
+    if width_of(kind) > 0:
+        state_of_pair(ws, ms, lc, k, width_of(kind), h, 0.0, left[STATE:])
+        state_of_pair(ws, ms, lc, k, width_of(kind), h, 1.0, right[STATE:])
     # per second, for the whole step: of lines, whose nodes are many, and of thin edges
     speed, thick = np.inf, _thickness(lc, k, kind)
-    if kind == LINE or kind == CABLE or thick < np.inf:
+    if kind == LINE or kind == CABLE or kind == CABLE_IN_SPACE or thick < np.inf:
         speed = way_of_gap(ws, lc, k, 1) / h
     rests[0] = _first_rest(left, right, h)
     depth, looks = 1, 0
@@ -216,7 +207,9 @@ def first_root(
         right, rest = stack[depth - 1], rests[depth - 1]
         long = right[0] - left[0]
         beyond = ended if right[0] == 1.0 else sign * right[1] < -slack
-        excluded, falls, dips = _excluded(lc, k, kind, left, right, long * h, sign, slack, speed, thick, rest)
+        excluded, falls, dips = _excluded(
+            ws, ms, lc, k, kind, row, h, left, right, sign, slack, speed, thick, rest
+        )  # fmt: skip
         if not beyond and (excluded or (long <= SHORTEST and not dips) or looks > MOST_LOOKS):
             left[:] = right
             depth -= 1

@@ -14,7 +14,8 @@ from ..compiled.jit import internal
 from ..compiled.kernels import BATCH, RESIDUAL, TANGENT, batch_at, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
 from ..methods.history import history_row, history_time
-from ..shapes.geometry_kinds import EQUATIONS, MAY_SLEEP
+from ..shapes.geometry_kinds import EQUATIONS, MAY_SLEEP, STOP
+from ..shapes.stop3d import ACCOUNT
 from ..tables.evaluate import evaluate_residuals
 from ..tables.patterns import contacts_alone
 from ..tables.workspace import Workspace
@@ -136,6 +137,10 @@ def look(ws: Any, ms: Any, lc: Any, k: int, row: int, h: float, s: float, view: 
     to_q, to_v, to_a = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n)
     for i in coord:
         to_q[i], to_v[i], to_a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
+    if kind == STOP:
+        # its turns so far, which say of which turn the angle is
+        i = imat(batch.extra, batch.count, batch.nextra)[0, ACCOUNT]
+        to_v[i] = start[n + i] + s * (v[i] - start[n + i])
     call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, history_time(ms, 0) + s * h, batch)
     view[0], view[1], view[2] = (
         vec(lc.probe_phi, ws.m_ext)[row],
@@ -208,17 +213,31 @@ def pull_alone(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
 
 
 @internal
-def state_of_pair(ws: Any, ms: Any, lc: Any, k: int, h: float, s: float, state: Any) -> None:
-    """(x, y, theta), velocities and accelerations of the first body of contact k and of the second (18,), at s h."""
+def state_of_pair(ws: Any, ms: Any, lc: Any, k: int, width: int, h: float, s: float, state: Any) -> None:
+    """The `width` coordinates, velocities and accelerations of the first body of contact k and of the second, one after
+    the other, at s h."""
     batch, n = probe_of(lc, k), ws.n_ext
     coord, start = ivec(batch.coord, batch.ncoord), history_row(ws, ms, 0)
     q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
-    for j in range(6):
+    for j in range(2 * width):
         i = coord[j]
-        at = j if j < 3 else j + 6
-        state[at], state[at + 3], state[at + 6] = between(
+        at = j if j < width else j + 2 * width
+        state[at], state[at + width], state[at + 2 * width] = between(
             start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s
         )
+
+
+@internal
+def rate_alone(ws: Any, lc: Any, k: int, row: int, t: float, i: int) -> float:
+    """Rate of row `row` of contact k where it was looked at last, if coordinate i alone moved, with speed 1."""
+    batch = probe_of(lc, k)
+    coord, v = ivec(batch.coord, batch.count * batch.ncoord), vec(lc.probe_v, ws.n_ext)
+    for j in coord:
+        v[j] = 0.0
+    v[i] = 1.0
+    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
+    v[i] = 0.0
+    return float(vec(lc.probe_phid, ws.m_ext)[row])
 
 
 @internal

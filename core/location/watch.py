@@ -15,6 +15,10 @@ from .certain import first_root, way_of_gap
 from .force_watch import forces_may_vanish, forces_vanish, sliding_turns
 from .probe import BRACKET, HAPPENS, set_travel
 
+PRESSES_IN = 1e-5
+"""Of a gap's size: how far shapes that have just opened may press into each other at first, by methods that do not meet
+the constraints at all levels."""
+
 
 @compiled
 def remember(ws: Any, lc: Any) -> None:
@@ -118,7 +122,7 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
     if slack > 0.0 and ms.exact == 0 and not ended:
         # forces of methods that do not meet the constraints at all levels are not those that the next row begins with:
         # what has opened by them may first press a little
-        return False
+        slack = PRESSES_IN * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
     return first_root(ws, ms, lc, k, h, sign, start, ended, slack, bracket)
 
 

@@ -67,6 +67,7 @@ from ..state.workspace_records import (
     WORST_CONDITION,
 )
 from ..tables.levels import position_level
+from .leap import leap_of
 from .sample import write_sample
 from .step_size import next_step, step_factor
 
@@ -196,16 +197,6 @@ def partition_strained(ws: Any) -> bool:
     return False
 
 
-@internal
-def _leap(ws: Any, ms: Any, lc: Any) -> float:
-    """How far the step has gone, relative to what it may: beyond 1 two shapes could have passed through each other."""
-    row, q, leap = history_row(ws, ms, 0), vec(ws.q, ws.n), vec(lc.leap, ws.n)
-    largest = 0.0
-    for i in range(ws.n):
-        largest = max(largest, abs(q[i] - row[i]) / leap[i])
-    return largest
-
-
 @compiled
 def violates_redundant(ws: Any, relaxed: float) -> bool:
     """True if the motion breaks a row that was taken for redundant."""
@@ -268,7 +259,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
                 return STEP_TOO_SMALL if status == OK else status
             continue
         if ws.n_contacts > 0 and not fixed:
-            leap = _leap(ws, ms, lc)
+            leap = leap_of(ws, ms, lc, h)
             if leap > 1.0:
                 clock[STEP_SIZE], clock[HELD] = 0.9 * h / leap, 0.0
                 counters[REJECTED] += 1

@@ -8,6 +8,7 @@ from pydantic import model_validator
 from ..elements.base import BodyElement
 from ..elements.formula2d import Frame2D
 from ..model.markers import Marker2D
+from .geometry_kinds import TURN, are
 from .scalar_contact2d import ScalarContact, ScalarContact2D, scalar_contact
 
 
@@ -47,3 +48,6 @@ class AngleStop2D(ScalarContact2D):
 
     def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
         return "rad", "rad"
+
+
+are(TURN, room)

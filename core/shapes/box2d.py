@@ -13,6 +13,7 @@ from ..model.base import Positive, Record
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
 from .disk_contact2d import DiskContact2D
+from .geometry_kinds import OUTLINE, are
 from .scalar_contact2d import ScalarContact, scalar_contact
 
 
@@ -115,3 +116,6 @@ class DiskOnBox2D(DiskContact2D):
 
     def extent(self) -> float:
         return min(self.shape.width, self.shape.height) + 2.0 * self.disk.radius
+
+
+are(OUTLINE, box_gap)

@@ -29,7 +29,7 @@ from ..model.rotation3d import along, constant, dot, four, less, plus, times, tu
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
 from .cable_contact3d import gap_of_cable
 from .cable_foot3d import FOOT_ROWS, WIDTH
-from .geometry_kinds import SPHERE, are
+from .geometry_kinds import CABLE_IN_SPACE, SPHERE, are
 from .held3d import MOVES, ON_MESH, POINT_OF_CABLE, on_plane
 from .mesh_nearest3d import OPEN, hold_on_mesh
 from .normal2d import act, asleep, evaluate_law
@@ -209,3 +209,4 @@ def bristle_cable3d_kernel(job: int, t: float, b: Any) -> None:
 
 
 are(SPHERE, bristle_sphere3d_kernel)
+are(CABLE_IN_SPACE, bristle_cable3d_kernel)

@@ -14,6 +14,7 @@ from ..elements.measure3d import COLUMNS, measure
 from .cable_foot3d import FOOT_ROWS, OWN, PIECES, WIDE_PACKED, WIDTH, gather, hold_on_cable, spread_gap
 from .frame3d import FRAME_ROWS
 from .friction3d import regularised
+from .geometry_kinds import CABLE_IN_SPACE, are
 from .gripping3d import grip
 from .held3d import SIZE, measured
 from .normal2d import act, asleep
@@ -71,3 +72,6 @@ def gripping_cable3d_kernel(job: int, t: float, b: Any) -> None:
             act(b, job, piece, g, gradient, packed)
             grip(int(par[e, KIND]), b, job, piece, gradient, held, moves, work)
         e += extra[e, PIECES]
+
+
+are(CABLE_IN_SPACE, cable3d_contact_kernel, gripping_cable3d_kernel, rubbing_cable3d_kernel)

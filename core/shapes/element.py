@@ -47,6 +47,10 @@ class ContactElement(Element):
         """Distance over which the shapes could pass through each other, m; infinite for a half-plane."""
         return math.inf
 
+    def geometry(self) -> Any:
+        """What says how its gap moves with the shapes (`geometry_kinds.py`): its kernel."""
+        return self.form().kernel
+
     def disks(self) -> Sequence[Any]:
         """The planar disks (`Disk2D`) that it brings in touch, for the drawing."""
         return ()

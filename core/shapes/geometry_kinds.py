@@ -2,10 +2,16 @@
 
 from typing import Any
 
-OWN, DISKS, PLANE, SEGMENT, LINEAR, LINE, CABLE, EQUATIONS, SPHERE = range(9)
-"""OWN: a kernel of which nothing is known; LINEAR: a gap that is linear in the coordinates; EQUATIONS: a gap function
-of an `EquationSystem`, which is asked for through the whole system; SPHERE: a sphere in space, on another, on a
-half-space or a mesh."""
+(
+    OWN, DISKS, PLANE, SEGMENT, LINEAR, LINE, CABLE, EQUATIONS, SPHERE,
+    OUTLINE, RING, ROPE, TURN, STOP, CABLE_IN_SPACE,
+) = range(15)  # fmt: skip
+"""OWN: a gap of which nothing is known; LINEAR: a gap that is linear in the coordinates; EQUATIONS: a gap function
+of an `EquationSystem`, which is asked for through the whole system; SPHERE: two shapes in space, such as a sphere and a
+half-space; OUTLINE: a disk on a convex outline in the plane; RING: a disk in a round hole; TURN: an end stop of an
+angle in the plane; STOP: an end stop or a rope in space."""
+NOT_BOUND = (OWN, EQUATIONS)
+"""Kinds of which nothing bounds how far the gap can go within a step."""
 
 _KINDS: dict[Any, int] = {}
 MAY_SLEEP = (DISKS, PLANE, SEGMENT, SPHERE)
@@ -13,10 +19,11 @@ MAY_SLEEP = (DISKS, PLANE, SEGMENT, SPHERE)
 
 
 def are(kind: int, *kernels: Any) -> None:
-    """Say, where these kernels stand, of which kind they are."""
+    """Say, where these kernels (or formulas of gaps) stand, of which kind they are."""
     _KINDS.update(dict.fromkeys(kernels, kind))
 
 
 def kind_of(kernel: Any) -> int:
-    """The kind of a contact with this kernel (not of the record's class, whose heirs may bring a kernel of theirs)."""
+    """The kind of a contact with this kernel, or this formula of its gap (not of the record's class, whose heirs may
+    bring one of theirs)."""
     return _KINDS.get(kernel, OWN)

@@ -17,6 +17,7 @@ from ..model.base import Record
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
 from .disk_contact2d import DiskContact2D
+from .geometry_kinds import OUTLINE, are
 from .scalar_contact2d import ScalarContact, scalar_contact
 
 MOST_SIDES = 8
@@ -182,3 +183,6 @@ class DiskOnPolygon2D(DiskContact2D):
 
     def extent(self) -> float:
         return min(math.dist(a, b) for a, b in zip(self.shape.vertices, self.shape.vertices[1:], strict=False))
+
+
+are(OUTLINE, polygon_gap)

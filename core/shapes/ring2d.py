@@ -14,6 +14,7 @@ from ..elements.formula2d import Frame2D
 from ..model.base import Positive, Record
 from ..model.markers import Marker2D
 from .disk_contact2d import DiskContact2D
+from .geometry_kinds import RING, are
 from .scalar_contact2d import ScalarContact, scalar_contact
 
 
@@ -72,3 +73,6 @@ class DiskInRing2D(DiskContact2D):
 
     def slide_period(self) -> float:
         return 2.0 * math.pi * (self.shape.radius - self.disk.radius)
+
+
+are(RING, ring_gap)

@@ -13,6 +13,7 @@ from pydantic import model_validator
 from ..elements.formula2d import Frame2D
 from ..model.base import Positive
 from ..model.markers import Marker2D
+from .geometry_kinds import ROPE, are
 from .scalar_contact2d import ScalarContact, ScalarContact2D, scalar_contact
 
 
@@ -47,3 +48,6 @@ class Rope2D(ScalarContact2D):
 
     def lengths(self) -> Sequence[float]:
         return (self.length,)
+
+
+are(ROPE, slack)

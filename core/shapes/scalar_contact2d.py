@@ -127,6 +127,10 @@ class ScalarContact2D(Contact2D):
             return None
         return BRISTLE_KIND if isinstance(self.friction, LuGreFriction) else SLIDING_KIND
 
+    def geometry(self) -> Any:
+        """The formula of its gap."""
+        return self.formula.gap
+
     def arguments(self) -> Arguments:
         """What its formulas take."""
         return Arguments.of(self, self.formula.names)

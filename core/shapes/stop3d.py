@@ -22,6 +22,7 @@ from ..model.base import Positive
 from ..model.markers import GROUND, Marker3D
 from ..model.said_angle import CountedAngle, SaidAngle
 from .element import ContactElement
+from .geometry_kinds import STOP, are
 from .normal2d import act, asleep
 from .normal3d import PACKED, SIZE, pair_of
 
@@ -218,3 +219,6 @@ def _refuse_meeting(ends: str, stop: Stop3D, bodies: Mapping[str, BodyElement]) 
     (x, _), (y, _) = (start_of_marker(marker, bodies) for marker in stop.markers())
     if float(np.linalg.norm(y - x)) < LEAST * stop.bound:
         raise ValueError(f"{ends} meet at the start, where it has no direction: start with one of them a little aside")
+
+
+are(STOP, stop3d_kernel)

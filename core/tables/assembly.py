@@ -141,8 +141,8 @@ class Assembly:
 
     @property
     def leap(self) -> NDArray[np.float64]:
-        """How far one error-controlled step may move each coordinate, (n,): half its scale, so that the dense output
-        between its ends is as good as these. Without contacts nothing limits it."""
+        """How far one error-controlled step may move each coordinate, (n,), where that is no polynomial of time: half
+        its scale, so that the dense output between its ends is as good as these. Without contacts nothing limits it."""
         if not self.contacts:
             return np.full(self.n, np.inf)
         leap = 0.5 * self.coordinate_scale
@@ -290,7 +290,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 max(len(contact_rows[c.name]) - 1, 1),
                 c.friction,
                 _bristles_of(c, numbering),
-                kind=kind_of(c.form().kernel),
+                kind=kind_of(c.geometry()),
                 units=c.units_in(numbering.bodies),
             )
             for c in model.contacts
