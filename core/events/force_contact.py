@@ -85,7 +85,7 @@ def _begin(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int:
     memory[LAID_MASS] = mass if laid else 0.0
     memory[MODE] = ACTIVE
     gap, early = min(vec(ws.phi, ws.m_ext)[row], 0.0), ivec(dr.ends_early, ws.n_contacts)[k] != 0
-    if early and gap < 0.0 and _law(dr, ws, k, -gap, approach, memory[APPROACH_SPEED])[0] < 0.0:
+    if early and gap < 0.0 and _law(dr, ws, k, -gap, approach, memory[APPROACH_SPEED])[0] <= 0.0:
         # shapes that overlap and come apart so fast that it would pull from the first
         memory[MODE] = RELEASED
         return SETTLED
@@ -114,7 +114,7 @@ def _end(dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> None:
             memory[LOSS_JUMP] -= _at_rest(dr, ws, k, max(-gap, 0.0))[4]
             _start_small(lc, vec(ws.row_scale, ws.m_ext)[row], memory[APPROACH_SPEED])
         return
-    early = ivec(dr.ends_early, ws.n_contacts)[k] != 0
+    early = ivec(dr.ends_early, ws.n_contacts)[k] != 0 and gap < 0.0
     if early:
         # what the spring still holds when the force has reached zero is never given back
         memory[LOSS_JUMP] += _at_rest(dr, ws, k, max(-gap, 0.0))[4]

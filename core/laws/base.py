@@ -46,6 +46,11 @@ class ForceLaw(FormulaRecord):
         """When contact ends: "gap" (at zero penetration) or "force" (when the force would become tensile)."""
         return "gap"
 
+    @property
+    def never_pulls(self) -> bool:
+        """Whether the force is never tensile, however fast the shapes are drawn apart."""
+        return self.release == "force"
+
     def evaluate(self, penetration: float, rate: float, approach_speed: float) -> tuple[float, ...]:
         """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) from Python."""
         result = type(self).formula(float(penetration), float(rate), float(approach_speed), *self.formula_parameters())

@@ -54,6 +54,10 @@ class HuntCrossleyFamily(ForceLaw):
     """What shapes do that are drawn apart faster than v0/D, where the formula is tensile: "force": there is no force,
     so that contact never pulls; "gap": the formula holds as published, and pulls until they come apart."""
 
+    @property
+    def never_pulls(self) -> bool:
+        return self.release_rule == "force"
+
     def damping_factor(self) -> float:
         """D(e), dimensionless."""
         raise NotImplementedError(f"{type(self).__name__} must define its damping factor")

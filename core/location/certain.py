@@ -202,7 +202,8 @@ def first_root(
     if kind == LINE or kind == CABLE or kind == CABLE_IN_SPACE or thick < np.inf:
         speed = way_of_gap(ws, lc, k, 1) / h
     rests[0] = _first_rest(left, right, h)
-    depth, looks = 1, 0
+    # a place where it is zero but for the slack is none before the root: a low bounce would end below zero
+    depth, looks, above = 1, 0, 0.0
     while depth > 0:
         right, rest = stack[depth - 1], rests[depth - 1]
         long = right[0] - left[0]
@@ -212,10 +213,11 @@ def first_root(
         )  # fmt: skip
         if not beyond and (excluded or (long <= SHORTEST and not dips) or looks > MOST_LOOKS):
             left[:] = right
+            above = left[0] if sign * left[1] > 0.0 else above
             depth -= 1
             continue
         if (beyond and falls) or long <= SHORTEST or depth == DEPTH:
-            bracket[0], bracket[1] = left[0], right[0]
+            bracket[0], bracket[1] = above, right[0]
             _deepen(ws, ms, lc, k, kind, row, h, sign, bracket)
             return True
         _coefficients(left, right, long * h, 1.0, half)

@@ -7,11 +7,12 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
+from ..methods.history import history_row
 from ..rounding import GAP_ROUNDING, PRESSING, RESOLVED_TIME, UNRESOLVED
-from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, OPEN
+from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, MEMORY_SIZE, MODE, OPEN
 from ..state.run_records import WATCH
 from ..state.workspace_records import OK
-from ..tables.levels import position_level
+from ..tables.levels import position_level_at
 from .roots import find_root, go_back, root_by_rate
 from .trials import CLOSING, FORCE, GAP, OVERLAP, trial_value
 
@@ -66,9 +67,10 @@ def event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: Any
     if mode == CLOSED or (mode != OPEN and end <= 0.0 and high == h):
         return _by_force(dr, ws, ms, lc, k, 1.0 if mode == CLOSED or mode == ACTIVE else -1.0, low, high, h)
     sign = 1.0 if mode == OPEN else -1.0
-    size = position_level(ws) * vec(ws.row_scale, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
+    row = ivec(ws.contact_rows, ws.n_contacts)[k]
+    size = position_level_at(ws, history_row(ws, ms, 0)) * vec(ws.row_scale, ws.m_ext)[row]
     overlap = GAP_ROUNDING * size
-    pulls = mode == ACTIVE and ivec(ws.contact_release, ws.n_contacts)[k] == 2
+    pulls = mode == ACTIVE and ivec(ws.contact_release, ws.n_contacts)[k] == AT_ZERO_FORCE
     start = mat(lc.watch, ws.n_contacts, WATCH)[k]
     comes_from_afar = abs(start[0]) > overlap or sign * start[1] * guess > overlap
     if not pulls and low < guess < high and comes_from_afar:

@@ -4,11 +4,12 @@ from typing import Any
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
+from ..methods.history import history_row
 from ..rounding import FORCE_ROUNDING, GAP_MOVES, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
-from ..state.modes import ACTIVE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE
+from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE
 from ..state.run_records import WATCH
 from ..tables.held import held_friction, is_held
-from ..tables.levels import force_level, position_level, rate_size
+from ..tables.levels import force_level, position_level, position_level_at, rate_size
 from .asleep import sleeps_on
 from .broad_phase import keep_watch
 from .certain import first_root, way_of_gap
@@ -89,7 +90,7 @@ def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
             return friction_margin(ws, k) < -max(no_force, SLIP_EXCESS * limit)
         return friction_margin(ws, k) < -_no_sliding(ws, k)
     if mode == ACTIVE:
-        return g > 0.0 or (release == 2 and force < 0.0)
+        return g > 0.0 or (release == AT_ZERO_FORCE and force < 0.0)
     if mode == RELEASED:
         return g > 0.0 or force > 0.0
     return False
@@ -115,14 +116,16 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
         return True
     if not ended and (sign * g < 0.0 or sign * (start[0] + g) > way_of_gap(ws, lc, k, 0)):
         return False
-    overlap = GAP_ROUNDING * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+    # where the step began: shapes that fly far past each other would make what was touching then out of a clear gap
+    level = position_level_at(ws, history_row(ws, ms, 0))
+    overlap = GAP_ROUNDING * level * vec(ws.row_scale, ws.m_ext)[row]
     if sign * start[0] < -overlap:
         return ended
     slack = (1.0 + GAP_MOVES) * overlap if sign * start[0] <= overlap else 0.0
     if slack > 0.0 and ms.exact == 0 and not ended:
         # forces of methods that do not meet the constraints at all levels are not those that the next row begins with:
         # what has opened by them may first press a little
-        slack = PRESSES_IN * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        slack = PRESSES_IN * level * vec(ws.row_scale, ws.m_ext)[row]
     return first_root(ws, ms, lc, k, h, sign, start, ended, slack, bracket)
 
 

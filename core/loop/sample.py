@@ -11,12 +11,9 @@ import numpy as np
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..state.modes import ACTIVE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, OPEN, PUSHED, SLIDE
+from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, OPEN, PUSHED, SLIDE
 from ..tables.evaluate import evaluate_energy, recorded_norm
 from ..tables.held import in_space
-
-ENDS_BY_FORCE = 2
-"""Of `contact_release`: a force law whose contact ends where its force would pull."""
 
 
 def sample_length(n: int, m: int, contacts: int, work: int) -> int:
@@ -59,7 +56,7 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
             # of an open one the mean force while instants are stepped through, else 0; where a force jumps, the point
             # at which it is to end lies behind the jump, and what its equations say there would pull
             force = monitor[k] if mode == ACTIVE or mode == CLOSED else memory[k, PUSHED]
-            pushes = mode == CLOSED or (mode == ACTIVE and release[k] == ENDS_BY_FORCE)
+            pushes = mode == CLOSED or (mode == ACTIVE and release[k] >= AT_ZERO_FORCE)
             out[at + k] = max(force, 0.0) if pushes else force
             out[at + contacts + k] = phi[rows[k]]
             out[at + 2 * contacts + k] = phid[rows[k]]

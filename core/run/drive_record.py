@@ -100,7 +100,7 @@ def _forces_of(contacts: Sequence[ContactInfo]) -> dict[str, NDArray[Any]]:
             [law.formula_parameters() if law else (0.0,) * FORCE_NUMBERS for law in laws], dtype=np.float64
         ).reshape(-1, FORCE_NUMBERS),
         "least_approach": np.array(least, dtype=np.float64),
-        "ends_early": np.array([law is not None and law.release == "force" for law in laws], dtype=np.int64),
+        "ends_early": np.array([law is not None and law.never_pulls for law in laws], dtype=np.int64),
         "by_approach": np.array([law is not None and law.damps_by_approach for law in laws], dtype=np.int64),
         "impulse_account": np.array([c.impulse_account for c in contacts], dtype=np.int64),
         "dissipation_account": np.array([c.dissipation_account for c in contacts], dtype=np.int64),

@@ -18,7 +18,7 @@ from ..loop.sample import write_sample
 from ..model.derived import HEAD_SIZE, derive_row
 from ..model.signals import INPUT_SIZE
 from ..rounding import SENSITIVITY_SOLVED
-from ..state.modes import ALONG, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..state.modes import ACTIVE, ALONG, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
 from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
 from ..tables.held import in_space
@@ -50,9 +50,14 @@ def _channels_at(ex: Any, ws: Any, held: Any, out: Any) -> None:
     evaluate_residuals(ws)
     sample = vec(ex.sample, ex.sample_length)
     write_sample(ws, sample)
+    monitor, memory = vec(ws.monitor, 2 * ws.n_contacts), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
     for k in range(ws.n_contacts):
-        place = 1 + 3 * ws.n + ws.m_ext - 1 + 6 * ws.n_contacts + k
-        sample[place] = _change_of_friction(ws, k, held, sample[place])
+        normal = 1 + 3 * ws.n + ws.m_ext - 1 + k
+        if memory[k, MODE] == CLOSED or memory[k, MODE] == ACTIVE:
+            # a change may have either sign, where a sample shows no force that pulls
+            sample[normal] = monitor[k]
+        along = normal + 6 * ws.n_contacts
+        sample[along] = _change_of_friction(ws, k, held, sample[along])
     put_channels(ex, out, ivec(ex.wants, ex.n_wants)[OF_GROUPS:])
 
 

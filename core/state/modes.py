@@ -8,6 +8,12 @@ UNWATCHED = -1.0  # CCM, within a step of impulses: open, and nobody looks for i
 
 MODE_NAMES: dict[float, str] = {OPEN: "open", CLOSED: "closed", ACTIVE: "active", RELEASED: "released"}
 
+# when a contact that acts as a force ends (`contact_release`)
+NO_FORCE_LAW = 0  # it is a constraint contact
+AT_ZERO_GAP = 1
+AT_ZERO_FORCE = 2
+AT_ZERO_GAP_WITHOUT_PULL = 3  # where others draw the shapes apart faster than its force allows, that is zero
+
 # how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
 STICKS = 0.0  # its sliding distance is a constraint
 IDLE = 2.0  # it cannot slide because others hold it, and carries a share of its normal force (RATIO)

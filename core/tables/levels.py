@@ -12,10 +12,9 @@ from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE, RATE_SCALE
 
 
 @internal
-def _level(ws: Any, address: int, least: float) -> float:
+def _level(ws: Any, x: Any, least: float) -> float:
     """Largest |x_i| / scale_i, at least `least`; of angles less (`ANGLES`)."""
-    x, scale = vec(address, ws.n), vec(ws.level_scale, ws.n)
-    largest = least
+    scale, largest = vec(ws.level_scale, ws.n), least
     for i in range(ws.n):
         y = abs(x[i]) / scale[i]
         if y > largest:
@@ -26,13 +25,19 @@ def _level(ws: Any, address: int, least: float) -> float:
 @compiled
 def position_level(ws: Any) -> float:
     """Of the coordinates, at least 1."""
-    return _level(ws, ws.q, 1.0)
+    return _level(ws, vec(ws.q, ws.n), 1.0)
+
+
+@internal
+def position_level_at(ws: Any, q: Any) -> float:
+    """The same of other coordinates than the present ones."""
+    return _level(ws, q, 1.0)
 
 
 @compiled
 def rate_level(ws: Any) -> float:
     """Of the velocities, at least what the model's own time makes, 1/s."""
-    return _level(ws, ws.v, vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
+    return _level(ws, vec(ws.v, ws.n), vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
 
 
 @internal
@@ -47,7 +52,7 @@ def rate_size(ws: Any, k: int) -> float:
 def acceleration_level(ws: Any) -> float:
     """Of the accelerations, at least what the model's own time makes, 1/s^2."""
     rate = vec(ws.control, CONTROL_SIZE)[RATE_SCALE]
-    return _level(ws, ws.a, rate * rate)
+    return _level(ws, vec(ws.a, ws.n), rate * rate)
 
 
 @compiled

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..laws import ForceLaw
 from ..rounding import ANGLES
+from ..state.modes import AT_ZERO_FORCE, AT_ZERO_GAP, AT_ZERO_GAP_WITHOUT_PULL, NO_FORCE_LAW
 from .assembly import Assembly
 
 CHEAP = 0.5
@@ -31,7 +32,9 @@ def constraints_are_cheap(assembly: Assembly) -> bool:
 
 
 def release(law: Any) -> int:
-    """0: constraint contact; 1: force, released at zero gap; 2: force, released at zero force."""
+    """When a contact with this law ends (`modes.AT_ZERO_GAP` and the like)."""
     if not isinstance(law, ForceLaw):
-        return 0
-    return 2 if law.release == "force" else 1
+        return NO_FORCE_LAW
+    if law.release == "force":
+        return AT_ZERO_FORCE
+    return AT_ZERO_GAP_WITHOUT_PULL if law.never_pulls else AT_ZERO_GAP

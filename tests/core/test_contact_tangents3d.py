@@ -41,7 +41,7 @@ def on_sphere(law, a, b, **more):
 
 
 KELVIN = KelvinVoigt(stiffness=4.0, damping=0.8)
-HUNT = HuntCrossley(stiffness=3.0, exponent=1.5, restitution=0.6)
+HUNT = HuntCrossley(stiffness=3.0, exponent=1.5, restitution=0.6, release_rule="gap")
 PLACES = {"two bodies": (LEFT, RIGHT), "ground": (GROUND, RIGHT), "a point mass": (LEFT, MASS)}
 TURNABLE = {name: ends for name, ends in PLACES.items() if name != "a point mass"}
 CASES = {

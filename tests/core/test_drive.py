@@ -155,7 +155,7 @@ def test_the_room_for_events_is_emptied():
     """More bounces in one call than the buffer holds, each at its time."""
     sim = Simulation(load("bouncing_ball", restitution=1.0).model, "irk", rtol=1e-8)
     fall = math.sqrt(2.0 / G)
-    sim.advance(2500.5 * 2.0 * fall)
+    sim.advance(2501.0 * 2.0 * fall)
     assert len(sim.events) == 2501
     times = np.array([e.t for e in sim.events])
     n = np.arange(1, len(times) + 1)
