@@ -85,7 +85,7 @@ def _begin(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int:
     memory[LAID_MASS] = mass if laid else 0.0
     memory[MODE] = ACTIVE
     gap, early = min(vec(ws.phi, ws.m_ext)[row], 0.0), ivec(dr.ends_early, ws.n_contacts)[k] != 0
-    if early and gap < 0.0 and _law(dr, ws, k, -gap, approach, memory[APPROACH_SPEED])[0] <= 0.0:
+    if early and gap < 0.0 and _present(dr, ws, k, -gap, approach)[0] < 0.0:
         # shapes that overlap and come apart so fast that it would pull from the first
         memory[MODE] = RELEASED
         return SETTLED
@@ -101,11 +101,11 @@ def _begin(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int:
 def _end(dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> None:
     memory, row = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(ws.contact_rows, ws.n_contacts)[k]
     gap, rate = vec(ws.phi, ws.m_ext)[row], vec(ws.phid, ws.m_ext)[row]
+    apart = gap >= -GAP_ROUNDING * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
     if memory[MODE] == RELEASED:
         # either the shapes come apart, where the spring holds nothing against the damper, or the force is back at zero,
         # where it holds as much: while they still separate, if something pushes them together
-        force, _, _, spring, _ = _law(dr, ws, k, max(-gap, 0.0), -rate, memory[APPROACH_SPEED])
-        apart = gap >= -GAP_ROUNDING * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        force, _, _, spring, _ = _present(dr, ws, k, max(-gap, 0.0), -rate)
         if apart or (rate > 0.0 and force <= -0.5 * spring):
             memory[MODE] = OPEN
         else:
@@ -114,7 +114,7 @@ def _end(dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> None:
             memory[LOSS_JUMP] -= _at_rest(dr, ws, k, max(-gap, 0.0))[4]
             _start_small(lc, vec(ws.row_scale, ws.m_ext)[row], memory[APPROACH_SPEED])
         return
-    early = ivec(dr.ends_early, ws.n_contacts)[k] != 0 and gap < 0.0
+    early = ivec(dr.ends_early, ws.n_contacts)[k] != 0 and not apart
     if early:
         # what the spring still holds when the force has reached zero is never given back
         memory[LOSS_JUMP] += _at_rest(dr, ws, k, max(-gap, 0.0))[4]
@@ -129,6 +129,16 @@ def _law(dr: Any, ws: Any, k: int, penetration: float, rate: float, approach: fl
     """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) of contact k."""
     p = mat(dr.force_numbers, ws.n_contacts, FORCE_NUMBERS)[k]
     return call_law(ivec(dr.force_law, ws.n_contacts)[k], penetration, rate, approach, p[0], p[1], p[2], p[3])
+
+
+@internal
+def _present(dr: Any, ws: Any, k: int, penetration: float, rate: float) -> Any:
+    """The same with the approach speed that it has now (`shapes.normal2d.evaluate_law`)."""
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+    speed, mass = memory[APPROACH_SPEED], memory[LAID_MASS]
+    if mass > 0.0:
+        speed = max(speed, np.sqrt(2.0 * _at_rest(dr, ws, k, penetration)[4] / mass))
+    return _law(dr, ws, k, penetration, rate, speed)
 
 
 @internal

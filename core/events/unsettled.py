@@ -4,12 +4,12 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..rounding import FORCE_ROUNDING, GAP_ROUNDING, SLIP_EXCESS
-from ..state.modes import ACTIVE, AT_ZERO_FORCE, AXIS, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE
+from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
+from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..state.workspace_records import OK, structure_at
 from ..tables.held import held_friction, is_held
-from ..tables.levels import force_level, position_level
+from ..tables.levels import force_level
 from .laws import MASSLESS
 from .reading import comes_back
 from .records import (
@@ -32,18 +32,13 @@ NO, YES = -1, -2
 
 @internal
 def find_unsettled(ev: Any, ws: Any, found: Any) -> bool:
-    """Contacts that pull, or are held beyond their friction, at the current point: 1 in `found` (n_contacts,). Those
-    that act as forces pull where shapes are suddenly drawn apart faster than their force allows."""
+    """Contacts that pull, or are held beyond their friction, at the current point: 1 in `found` (n_contacts,)."""
     memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
     work, static = FORCE_ROUNDING * force_level(ws), vec(ws.contact_sticking, ws.n_contacts)
     scale, any_found, noisy = vec(ws.row_scale, ws.m_ext), False, False
-    release, force_of = ivec(ws.contact_release, ws.n_contacts), vec(ws.monitor, ws.n_contacts)
     for k in range(ws.n_contacts):
         found[k] = 0
-        if memory[k, MODE] == ACTIVE and release[k] >= AT_ZERO_FORCE and force_of[k] <= 0.0:
-            pulled = vec(ws.phi, ws.m_ext)[rows[k]] < -GAP_ROUNDING * position_level(ws) * scale[rows[k]]
-            found[k], any_found = int(pulled), any_found or pulled
         if memory[k, MODE] != CLOSED:
             continue
         force, none = -lam[rows[k]], work / scale[rows[k]]

@@ -5,7 +5,7 @@ in docs/contact-laws.md. Sources: da Silva et al. 2022 (Mech. Mach. Theory) comp
 
 The rebound speed of a free blow depends on D alone: (1 + D)/(1 - D e_out) = exp(D (1 + e_out)); contact ends at
 delta = 0 with F = 0 and F is not tensile, since D e_out < 1. Shapes that others draw apart faster than v0/D would be
-held back by the formula: the force is zero there, unless the release rule says otherwise.
+held back by the formula: contact ends there, unless the release rule says otherwise.
 
 v0 is the speed of a blow; 1/v0 has no limit for shapes that are laid on each other. Hunt and Crossley's own damping
 constant 3 (1 - e)/(2 v0) belongs to the material (e = 1 - alpha v0) and stays finite. Laws for a given e need a speed:
@@ -24,11 +24,9 @@ from .base import ForceLaw, LawParameters, Release
 
 
 @compiled
-def hunt_crossley_formula(d: float, dd: float, v0: float, k: float, n: float, factor: float, pulls: float) -> Any:
+def hunt_crossley_formula(d: float, dd: float, v0: float, k: float, n: float, factor: float, p3: float) -> Any:
     elastic = k * d**n
     damped = 1.0 + factor * dd / v0
-    if damped < 0.0 and pulls == 0.0:
-        return 0.0, 0.0, 0.0, elastic, elastic * d / (n + 1.0)
     return (
         elastic * damped,
         n * k * d ** (n - 1.0) * damped,
@@ -51,8 +49,8 @@ class HuntCrossleyFamily(ForceLaw):
     exponent: Positive = 1.5
     """n, dimensionless."""
     release_rule: Release = "force"
-    """What shapes do that are drawn apart faster than v0/D, where the formula is tensile: "force": there is no force,
-    so that contact never pulls; "gap": the formula holds as published, and pulls until they come apart."""
+    """What shapes do that are drawn apart faster than v0/D, where the formula is tensile: "force": contact ends, so it
+    never pulls; "gap": the formula holds as published, and pulls until they come apart."""
 
     @property
     def never_pulls(self) -> bool:
@@ -63,7 +61,7 @@ class HuntCrossleyFamily(ForceLaw):
         raise NotImplementedError(f"{type(self).__name__} must define its damping factor")
 
     def parameters(self) -> LawParameters:
-        return self.stiffness, self.exponent, self.damping_factor(), float(self.release_rule == "gap")
+        return self.stiffness, self.exponent, self.damping_factor(), 0.0
 
 
 class HuntCrossley(HuntCrossleyFamily):

@@ -9,7 +9,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row
 from ..rounding import GAP_ROUNDING, PRESSING, RESOLVED_TIME, UNRESOLVED
-from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, MEMORY_SIZE, MODE, OPEN
+from ..state.modes import ACTIVE, AT_ZERO_FORCE, AT_ZERO_GAP_OR_FORCE, CLOSED, MEMORY_SIZE, MODE, OPEN
 from ..state.run_records import WATCH
 from ..state.workspace_records import OK
 from ..tables.levels import position_level_at
@@ -70,11 +70,14 @@ def event_step(dr: Any, ws: Any, ms: Any, lc: Any, k: int, h: float, places: Any
     row = ivec(ws.contact_rows, ws.n_contacts)[k]
     size = position_level_at(ws, history_row(ws, ms, 0)) * vec(ws.row_scale, ws.m_ext)[row]
     overlap = GAP_ROUNDING * size
-    pulls = mode == ACTIVE and ivec(ws.contact_release, ws.n_contacts)[k] == AT_ZERO_FORCE
+    release = ivec(ws.contact_release, ws.n_contacts)[k]
+    pulls = mode == ACTIVE and release >= AT_ZERO_FORCE
     start = mat(lc.watch, ws.n_contacts, WATCH)[k]
     comes_from_afar = abs(start[0]) > overlap or sign * start[1] * guess > overlap
-    if not pulls and low < guess < high and comes_from_afar:
+    if (not pulls or release == AT_ZERO_GAP_OR_FORCE) and low < guess < high and comes_from_afar:
         status, found, good = root_by_rate(dr, ws, ms, lc, k, sign, low, high, guess, RESOLVED_TIME * size, h)
+        if status == OK and good and pulls and vec(ws.monitor, ws.n_contacts)[k] < 0.0:
+            return find_root(dr, ws, ms, lc, k, FORCE, 1.0, 0.0, 0.0, found, 0.0, h)
         if status != OK or good:
             return status, found, good
     if high < h:

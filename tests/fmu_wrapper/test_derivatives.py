@@ -51,12 +51,13 @@ def test_pendulum_in_the_air_and_on_the_stop():
         closed = slave["stop.mode"] == 1
         seen.add(closed)
         rows = []
-        for torque in (-0.25, 0.5):
+        # both press it against the stop: the channel shows no force that pulls
+        for torque in (-0.25, -0.05):
             slave.set_by_name({"torque": torque})
             rows.append([slave[n] for n in names])
         # a little pressure: hanging straight down on the stop without any, rounding would say whether it touches
         slave.set_by_name({"torque": -0.1})
-        secant = (np.array(rows[1]) - rows[0]) / 0.75
+        secant = (np.array(rows[1]) - rows[0]) / 0.2
         np.testing.assert_allclose(slope, secant, rtol=1e-7, atol=1e-9 * np.max(np.abs(secant)))
         if closed:
             assert abs(slope[0]) < 1e-12 and abs(slope[1]) > 0.1
