@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from ..run.simulation import Simulation
 from ..tables.projection import bring_to_rest
-from ..tables.redundancy import RedundantRow, singular_directions
+from ..tables.redundancy import RedundantRow
+from ..tables.singular_values import singular_directions
 from .at_rest import Matrices, matrices, place, run_of
 
 STUCK = 1e-8

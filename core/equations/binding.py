@@ -1,12 +1,15 @@
 """What the kernel of user-written equations calls back to: the user's functions, put into a workspace's arrays."""
 
 import ctypes
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
+from ..compiled.weakly import Weakly
 from ..laws import ForceLaw
 from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
 from .errors import EquationError
@@ -22,12 +25,18 @@ class EquationBinding:
     def __init__(self, system: "EquationSystem") -> None:
         self.system = system
         self.errors: list[BaseException] = []
-        self.workspace: Any = None
-        self._callback = CALLBACK(self._call)
+        # the workspace holds this, through its assembly
+        self._workspace: Callable[[], Any] = lambda: None
+        self._callback = CALLBACK(Weakly(self._call))
         self.address = int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
 
     def bind(self, workspace: Any) -> None:
-        self.workspace = workspace
+        self._workspace = ref(workspace)
+
+    @property
+    def workspace(self) -> Any:
+        """That of the run; None before there is one."""
+        return self._workspace()
 
     def _call(self, job: int, t: float) -> int:
         try:

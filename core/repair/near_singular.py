@@ -12,7 +12,7 @@ import numpy as np
 from ..location.dense_output import interpolate
 from ..state.workspace_records import LEAST_CONDITION, OK, WORST_CONDITION
 from ..tables.evaluate import evaluate_power, evaluate_residuals
-from ..tables.redundancy import least_singular_value
+from ..tables.singular_values import least_singular_value
 
 if TYPE_CHECKING:
     from ..run.engine import Engine

@@ -31,29 +31,23 @@ from ..state.workspace_records import (
     REANALYZE,
 )
 from ..tables.evaluate import evaluate_residuals
-from ..tables.redundancy import singular_directions
+from ..tables.singular_values import singular_directions
 from .collocation import Collocation, Points, gauss
 from .singular_position import find_singular, natural_step
+from .step_plans import clear_stages, step_plans
 
 if TYPE_CHECKING:
     from ..run.simulation import Simulation
 
 logger = logging.getLogger(__name__)
 
-STAGES = (4, 6, 8, 10)
-"""Of the long step. Even numbers leave the widest gap between stages in the middle of the step."""
-ALL_STAGES = tuple(range(3, 11))
-CLEARANCE = 0.2
-"""Least distance of a stage from the position, in units of the step over the number of stages."""
-LENGTHS = (1.0, 1.5, 2.2, 3.3, 5.0)
-"""Longer steps, with the position not in the middle, where rounding asks for them."""
-SHORTER = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
-"""Of what remains to a stop, where it leaves no room for the steps above: some of these have stages that keep clear."""
 FALLING = 0.3
 """Ratio of two differences between orders up to which truncation is what they show."""
 UNDETERMINED = 1e-4
 """Least singular value of the scaled Phi_q up to which a point is not brought onto the constraints: rounding would move
 it by more than the error of the polynomial."""
+NOISELESS = 0.01
+"""Of the tolerance: directions across which rounding is less are not looked for."""
 LARGEST_TOLERANCE = 1e-4
 """Relative error up to which a step over the position is better than none."""
 TURN = 0.2
@@ -82,7 +76,7 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> "tuple[int, L
     over = LongStep(sim, near, steepness)
     may_come_nearer = near > 2.0 * natural and not last_resort
     best: _Result | None = None
-    for h, stages in _plans(near, natural, remaining):
+    for h, stages in step_plans(near, natural, remaining):
         result = over.make(h, stages)
         logger.debug(
             "over the singular position %.3g s from t = %.9g s by %.3g s: error %.3g of the tolerance%s",
@@ -105,27 +99,6 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> "tuple[int, L
             sim.t_internal + near, best.error, sim.settings.rtol,
         )  # fmt: skip
     return _accept(sim, over, best.points, natural)
-
-
-def _plans(near: float, natural: float, remaining: float) -> list[tuple[float, tuple[int, ...]]]:
-    """Sizes of steps, s, in the order in which to try them, each with the numbers of stages to try."""
-    plans: list[tuple[float, tuple[int, ...]]] = []
-    if 0.25 * natural <= near <= 0.5 * remaining:
-        plans.append((2.0 * near, STAGES))
-    least = 2.0 * max(abs(near), natural)
-    lengths = [min(length * least, remaining) for length in LENGTHS]
-    plans += _clear_plans(sorted(set(lengths)), near)
-    return plans or _clear_plans([length * remaining for length in SHORTER], near)
-
-
-def _clear_plans(sizes: list[float], near: float) -> list[tuple[float, tuple[int, ...]]]:
-    """Those sizes of steps for which there are numbers of stages that can be compared."""
-    return [(h, clear) for h in sizes if len(clear := _clear_stages(h, near)) > 1]
-
-
-def _clear_stages(h: float, near: float) -> tuple[int, ...]:
-    """Numbers of stages that keep clear of the position, `near` s from the start, in a step of size h."""
-    return tuple(s for s in ALL_STAGES if np.min(np.abs(gauss(s).c * h - near)) >= CLEARANCE * h / s)
 
 
 @dataclass
@@ -183,7 +156,7 @@ class LongStep:
         ------
         SimulationError : if there is none.
         """
-        points = self.make(h, _clear_stages(h, self.near)).points
+        points = self.make(h, clear_stages(h, self.near)).points
         if points is None:
             raise SimulationError(
                 f"at t = {self.sim.t_internal + h:.9g} s a contact has an event so near to the singular position of "
@@ -234,11 +207,13 @@ class LongStep:
         workspace, n = self.sim.workspace, len(self.weights[0])
         workspace.arrays["q"][:n], workspace.arrays["v"][:n] = one.q[-1], one.v[-1]
         workspace.arrays["t"][0] = one.times[-1]
-        values, directions = singular_directions(workspace)
         scale = self.sim.assembly.coordinate_scale
-        level = max(1.0, float(np.max(np.abs(one.q[-1] / scale))))
-        noise_q = CONSTRAINT_NOISE * level / np.maximum(values, 1e-300)
-        noise_v = noise_q * float(np.max(np.abs(one.v[-1] / scale))) / np.maximum(values, 1e-300)
+        level = CONSTRAINT_NOISE * max(1.0, float(np.max(np.abs(one.q[-1] / scale))))
+        speed = float(np.max(np.abs(one.v[-1] / scale)))
+        least_q, least_v = (NOISELESS * float(np.min(weight / scale)) for weight in self.weights)
+        values, directions = singular_directions(workspace, max(level / least_q, np.sqrt(level * speed / least_v)))
+        noise_q = level / np.maximum(values, 1e-300)
+        noise_v = noise_q * speed / np.maximum(values, 1e-300)
         ends = []
         for x, y, noise in ((one.q[-1], other.q[-1], noise_q), (one.v[-1], other.v[-1], noise_v)):
             parts = directions @ ((x - y) / scale)

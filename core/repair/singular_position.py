@@ -6,7 +6,7 @@ import numpy as np
 
 from ..methods.history import recall
 from ..state.run_records import TRIAL_STEP
-from ..tables.redundancy import least_singular_value
+from ..tables.singular_values import least_singular_value
 
 if TYPE_CHECKING:
     from ..run.simulation import Simulation
@@ -65,7 +65,7 @@ def find_singular(sim: "Simulation", natural: float) -> tuple[float, float] | No
     ahead, behind = (max(3.0 * natural, 1.5 * far * side) for side in (next_one < here, next_one > here))
     ahead, behind = min(ahead, FARTHEST / speed), min(behind, FARTHEST / speed)
     times = np.concatenate([np.linspace(-behind, 0.0, LOOKS)[:-1], np.linspace(0.0, ahead, LOOKS)])
-    values = np.array([distance(s) for s in times])
+    values = np.array([distance(s) if s != 0.0 else here for s in times])
     nearest: tuple[float, float] | None = None
     for k in range(1, len(times) - 1):
         if not values[k - 1] >= values[k] <= values[k + 1]:

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
 from ..rounding import CONTRADICTION, START_RANK
-from ..state.workspace_records import FACTOR_AGE, LEAST_CONDITION
+from ..state.workspace_records import LEAST_CONDITION
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level, rate_level
 from .partition import pivots_of, prepare, redundancy_error
 from .projection import bring_to_rest
+from .singular_values import AllRows, ScaledJacobian, evaluate
 from .workspace import Workspace
 
 logger = logging.getLogger(__name__)
@@ -68,12 +69,12 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
     ConsistencyError : for rows that contradict others, that constrain nothing, or that depend on others only here.
     """
     arrays, n = workspace.arrays, workspace.assembly.n
-    _evaluate(workspace)
+    evaluate(workspace)
     active = workspace.structure.active
     if len(active) == 0:
         return ()
     phi = arrays["phi"][active]
-    scaled = _Scaled(workspace)
+    scaled = ScaledJacobian(workspace)
     violation = float(np.max(np.abs(phi) / scaled.row_size, initial=0.0))
     # off the constraints, rows that repeat others seem to be independent, by about as much as they are violated
     doubtful = pivots_of(workspace, min(max(START_RANK, 30.0 * violation), 0.03)).redundant
@@ -87,7 +88,7 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
         workspace.drop(frozenset())
         if not met:
             return ()
-        _evaluate(workspace)
+        evaluate(workspace)
         pivots = pivots_of(workspace, START_RANK)
         if len(pivots.redundant) == 0:
             return ()
@@ -130,7 +131,7 @@ def describe(workspace: Workspace) -> tuple[RedundantRow, ...]:
     """The rows left out of the present structure, and what they repeat at the current point."""
     dropped = np.array(sorted(workspace.dropped), dtype=np.int64)
     names = workspace.assembly.row_names
-    with _AllRows(workspace) as scaled:
+    with AllRows(workspace) as scaled:
         rows = workspace.structure.active
         kept = np.flatnonzero(~np.isin(rows, dropped))
         factors, *_ = np.linalg.lstsq(scaled.matrix[kept].T, scaled.matrix[np.isin(rows, dropped)].T, rcond=None)
@@ -156,7 +157,7 @@ def choose_rows(workspace: Workspace) -> bool:
     # importing scipy costs more than most runs: only who needs it pays
     from scipy.linalg import qr
 
-    with _AllRows(workspace) as scaled:
+    with AllRows(workspace) as scaled:
         joints = np.flatnonzero(workspace.structure.active < workspace.assembly.m_joints)
         rows, matrix = workspace.structure.active[joints], scaled.matrix[joints]
         rank = len(rows) - len(dropped)
@@ -173,77 +174,14 @@ def choose_rows(workspace: Workspace) -> bool:
     return worse
 
 
-def least_singular_value(workspace: Workspace) -> float:
-    """Least singular value of Phi_q at the current point, rows and columns scaled, that is zero at singular positions
-    only: not one of those that redundant rows make zero. 1 without constraints."""
-    matrix, rank = _scaled_jacobian(workspace)
-    return float(np.linalg.svd(matrix, compute_uv=False)[rank - 1]) if rank else 1.0
-
-
-def singular_directions(workspace: Workspace) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Singular values of that matrix but those that redundant rows make zero, and the directions (values, n) in which
-    the constraints hold the coordinates by them, as parts of the coordinates' scales."""
-    matrix, rank = _scaled_jacobian(workspace)
-    _, values, directions = np.linalg.svd(matrix, full_matrices=False)
-    return values[:rank], directions[:rank]
-
-
-def _scaled_jacobian(workspace: Workspace) -> tuple[NDArray[np.float64], int]:
-    """The matrix, with redundant rows, and its rank away from singular positions."""
-    left_out = len(workspace.dropped)
-    if left_out:
-        with _AllRows(workspace) as scaled:
-            return scaled.matrix, len(scaled.matrix) - left_out
-    _evaluate(workspace)
-    matrix = _Scaled(workspace).matrix
-    return matrix, len(matrix)
-
-
 def _least_singular_value(matrix: NDArray[np.float64]) -> float:
     return float(np.linalg.svd(matrix, compute_uv=False)[-1]) if matrix.size else 1.0
-
-
-def _evaluate(workspace: Workspace) -> None:
-    evaluate_residuals(workspace.record)
-    evaluate_tangent(workspace.record, 0.0, 0.0)
-
-
-class _Scaled:
-    """Dense Phi_q of the active rows: columns times the coordinates' scales, rows divided by their largest entry."""
-
-    def __init__(self, workspace: Workspace) -> None:
-        rows, cols, values = workspace.jacobian()
-        matrix = np.zeros((len(workspace.structure.active), workspace.assembly.n))
-        matrix[rows, cols] = values * workspace.assembly.coordinate_scale[cols]
-        size = np.max(np.abs(matrix), axis=1, initial=0.0)
-        self.row_size = np.where(size > 0.0, size, 1.0)
-        self.matrix = matrix / self.row_size[:, None]
-
-
-class _AllRows:
-    """Context in which no row is left out; its value is the scaled Jacobian."""
-
-    def __init__(self, workspace: Workspace) -> None:
-        self.workspace, self.dropped = workspace, workspace.dropped
-
-    def __enter__(self) -> _Scaled:
-        # engaging another structure forgets the conditions measured in the present one
-        self.rate = self.workspace.arrays["rate"].copy()
-        self.workspace.drop(frozenset())
-        _evaluate(self.workspace)
-        return _Scaled(self.workspace)
-
-    def __exit__(self, *_: object) -> None:
-        self.workspace.drop(self.dropped)
-        self.rate[FACTOR_AGE] = -1.0
-        self.workspace.arrays["rate"][:] = self.rate
-        _evaluate(self.workspace)
 
 
 def _only_here(workspace: Workspace, redundant: NDArray[np.int64]) -> list[int]:
     """Those of the redundant rows (positions among the active ones) that small motions along the others violate."""
     arrays, scale, n = workspace.arrays, workspace.assembly.coordinate_scale, workspace.assembly.n
-    scaled = _Scaled(workspace)
+    scaled = ScaledJacobian(workspace)
     active = workspace.structure.active
     size = scaled.row_size[redundant]
     kept = np.delete(scaled.matrix, redundant, axis=0)
@@ -270,14 +208,14 @@ def _only_here(workspace: Workspace, redundant: NDArray[np.int64]) -> list[int]:
     finally:
         arrays["q"][:n] = here
         workspace.drop(frozenset())
-        _evaluate(workspace)
+        evaluate(workspace)
     return sorted(found)
 
 
 def _singular_text(workspace: Workspace, rows: list[int]) -> str:
     names = workspace.assembly.row_names
     active = workspace.structure.active
-    scaled = _Scaled(workspace)
+    scaled = ScaledJacobian(workspace)
     others = np.delete(np.arange(len(active)), rows)
     factors, *_ = np.linalg.lstsq(scaled.matrix[others].T, scaled.matrix[rows].T, rcond=None)
     dependent = {names[active[row]] for row in rows}

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from ..compiled.image import Arrays
 from ..compiled.records import words_of
+from ..compiled.weakly import Weakly
 from ..linalg import Matrix
+from ..linalg.factorization import Grow
 from ..state.workspace_records import PARTITION, STRUCTURE
 from .slots import MATRICES, Slots
 from .switch import key_of
@@ -27,6 +29,12 @@ columns."""
 _NAMES = {"entry_row": "rows", "entry_col": "cols"}
 
 
+def _matrix(slots: Slots, number: int, name: str, give_room: Grow, like: Matrix | None = None) -> Matrix:
+    """One of the factorisations of the place with this number."""
+    k = MATRICES.index(name)
+    return Matrix(slots.lus[number, k : k + 1], slots.view, give_room, like)
+
+
 class Partition:
     """The partition of a structure.
 
@@ -34,28 +42,28 @@ class Partition:
     dependent positions from Phi_q alone, the pivots of its rows, which come first. All other positions are integrated.
     """
 
-    def __init__(self, structure: "Structure", number: int) -> None:
-        self._structure = structure
-        self._record = structure.slots.record("partitions", number)
+    def __init__(self, slots: Slots, number: int, m_act: int, two: bool, give_room: Grow) -> None:
+        self._slots, self._number, self._two, self._give_room = slots, number, two, give_room
+        self._record = slots.record("partitions", number)
         self.serial = self._record["serial"]
-        self.dependent = structure.view(self._record["dependent"], structure.m_act, np.int64).copy()
+        self.dependent = slots.view(self._record["dependent"], m_act, np.int64).copy()
         """(m_act,)."""
 
     def array(self, name: str) -> NDArray[np.int64]:
         """One of OF_PARTITION."""
-        return self.dependent if name == "dependent" else self._structure.view(
+        return self.dependent if name == "dependent" else self._slots.view(
             self._record[name], self._record["n_free"], np.int64
         )  # fmt: skip
 
     @cached_property
     def lu_d(self) -> Matrix:
         """Factorisation of Phi_qd."""
-        return self._structure.matrix("lu_d")
+        return _matrix(self._slots, self._number, "lu_d", self._give_room)
 
     @cached_property
     def lu_p(self) -> Matrix | None:
         """Of Phi_qd for dependent positions alone, in models with velocity-level rows."""
-        return self._structure.matrix("lu_p") if self._structure.two_partitions else None
+        return _matrix(self._slots, self._number, "lu_p", self._give_room) if self._two else None
 
     @property
     def factorizations(self) -> tuple[Matrix, ...]:
@@ -76,9 +84,11 @@ class Structure:
     Parameters
     ----------
     shapes : number of elements, of their coordinates and of their rows, of each batch.
+    two : see `two_partitions`.
+    give_room : gives the memory that `slots` say is needed.
     """
 
-    def __init__(self, slots: Slots, address: int, shapes: list[tuple[int, ...]], two: bool, give_room: Any) -> None:
+    def __init__(self, slots: Slots, address: int, shapes: list[tuple[int, ...]], two: bool, give_room: Grow) -> None:
         self.slots, self.two_partitions, self.address = slots, two, address
         self._shapes, self._give_room, self._number = shapes, give_room, slots.index(address)
         self.record = slots.record("structures", self._number)
@@ -109,7 +119,10 @@ class Structure:
     @cached_property
     def arrays(self) -> dict[str, Array]:
         """Its arrays under the names that they have in the record of the workspace, as long as they do not move."""
-        return Arrays(OF_STRUCTURE, lambda name: getattr(self, _NAMES.get(name, name)))
+        return Arrays(OF_STRUCTURE, Weakly(self._array))
+
+    def _array(self, name: str) -> Array:
+        return np.asarray(getattr(self, _NAMES.get(name, name)))
 
     @property
     def codes(self) -> NDArray[np.int64]:
@@ -174,8 +187,7 @@ class Structure:
 
     def matrix(self, name: str, like: Matrix | None = None) -> Matrix:
         """One of the factorisations."""
-        k = MATRICES.index(name)
-        return Matrix(self.slots.lus[self._number, k : k + 1], self.slots.view, self._give_room, like)
+        return _matrix(self.slots, self._number, name, self._give_room, like)
 
     @cached_property
     def kkt(self) -> Matrix:
@@ -193,7 +205,7 @@ class Structure:
         if not self._partition.item(_READY):
             return None
         if self._latest is None or self._latest.serial != self._partition.item(_SERIAL):
-            self._latest = Partition(self, self._number)
+            self._latest = Partition(self.slots, self._number, self.m_act, self.two_partitions, self._give_room)
         return self._latest
 
     @property

@@ -10,6 +10,7 @@ from ..compiled.image import Arrays, Take, twin
 from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record, words_of
+from ..compiled.weakly import Weakly
 from ..linalg import DENSE_LIMIT
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
 from ..linalg.memory import addresses
@@ -171,7 +172,7 @@ class Workspace:
                 "kkt": 0, "lu_d": 0, "lu_p": 0, "kkt_query": 0,
             },
         )  # fmt: skip
-        self.arrays = Arrays(arrays, self._of_now)
+        self.arrays = Arrays(arrays, Weakly(self._of_now))
         self.arrays.update({name: x for name, x in arrays.items() if name not in _OF_NOW})
         self._structure: Structure | None = None
         if 0 < contacts <= FEW_CONTACTS:
@@ -205,7 +206,7 @@ class Workspace:
         new = twin(self)
         new.state, new.state_bytes = take(self.state), take(self.state_bytes)
         new._record, new._building = self._record.moved(take), self._building.moved(take)
-        batches, arrays, of_now = self._batches, self.arrays, new._of_now
+        batches, arrays, of_now = self._batches, self.arrays, Weakly(new._of_now)
         new._made_batches, new._make_batches = None, lambda: [batch.moved(take) for batch in batches]
         new.arrays = Arrays(arrays.names, lambda name: of_now(name) if name in _OF_NOW else take(arrays[name]))
         new.slots = self.slots.moved(take)
@@ -342,7 +343,7 @@ class Workspace:
         seen = self._views.get(address)
         if seen is None or seen.serial != seen.record.word(_SERIAL):
             two = bool(self.assembly.rate_rows)
-            seen = self._views[address] = Structure(self.slots, address, self._shapes, two, self.give_room)
+            seen = self._views[address] = Structure(self.slots, address, self._shapes, two, Weakly(self.give_room))
         self._structure, self._partition = seen, seen.present
         self._forget_arrays(_OF_NOW)
 

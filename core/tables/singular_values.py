@@ -1,0 +1,134 @@
+"""Singular values of the scaled constraint Jacobian: how near a singular position is, and across which directions.
+
+Few of them are asked for, the smallest ones, at many points in a row. Small mechanisms take all values of the dense
+matrix, larger ones those few from sparse factors.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..linalg.smallest_singular import smallest_singular
+from ..state.workspace_records import FACTOR_AGE
+from .evaluate import evaluate_residuals, evaluate_tangent
+from .workspace import Workspace
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+Floats = NDArray[np.float64]
+
+DENSE_ROWS = 240
+"""Rows up to which all singular values of the dense matrix cost less than a few of the sparse one. Measured."""
+FEW = 0.25
+"""Part of all singular values beyond which the dense matrix costs less, too."""
+DIRECTIONS = 32
+"""So many are looked for in the sparse matrix; where more matter, as in a row of loops that turn alike, all are."""
+
+
+class ScaledJacobian:
+    """Phi_q of the active rows as last evaluated: columns times the coordinates' scales, rows divided by their largest
+    entry.
+
+    Attributes
+    ----------
+    row_size : (m,), the largest entry of each row before that; 1 for a row of zeros.
+    """
+
+    def __init__(self, workspace: Workspace) -> None:
+        rows, cols, values = workspace.jacobian()
+        self.rows, self.cols = rows.copy(), cols.copy()  # the structure's own change with it
+        self.shape = len(workspace.structure.active), workspace.assembly.n
+        values = values * workspace.assembly.coordinate_scale[cols]
+        size = np.zeros(self.shape[0])
+        np.maximum.at(size, self.rows, np.abs(values))
+        self.row_size = np.where(size > 0.0, size, 1.0)
+        self.values = values / self.row_size[self.rows]
+
+    @property
+    def matrix(self) -> Floats:
+        """The dense matrix (m, n)."""
+        matrix = np.zeros(self.shape)
+        matrix[self.rows, self.cols] = self.values
+        return matrix
+
+    @property
+    def sparse(self) -> "csr_array":
+        """The same matrix by its entries."""
+        # importing scipy costs more than most runs: only who needs it pays
+        from scipy.sparse import csr_array
+
+        return csr_array((self.values, (self.rows, self.cols)), shape=self.shape)
+
+
+class AllRows:
+    """Context in which no row is left out; its value is the scaled Jacobian."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self.workspace, self.dropped = workspace, workspace.dropped
+
+    def __enter__(self) -> ScaledJacobian:
+        # engaging another structure forgets the conditions measured in the present one
+        self.rate = self.workspace.arrays["rate"].copy()
+        self.workspace.drop(frozenset())
+        evaluate(self.workspace)
+        return ScaledJacobian(self.workspace)
+
+    def __exit__(self, *_: object) -> None:
+        self.workspace.drop(self.dropped)
+        self.rate[FACTOR_AGE] = -1.0
+        self.workspace.arrays["rate"][:] = self.rate
+        evaluate(self.workspace)
+
+
+def evaluate(workspace: Workspace) -> None:
+    """Residuals and Phi_q at the current point."""
+    evaluate_residuals(workspace.record)
+    evaluate_tangent(workspace.record, 0.0, 0.0)
+
+
+def least_singular_value(workspace: Workspace) -> float:
+    """Least singular value of Phi_q at the current point, rows and columns scaled, that is zero at singular positions
+    only: not one of those that redundant rows make zero. 1 without constraints."""
+    jacobian, rank = _scaled_jacobian(workspace)
+    return least_of(jacobian, rank) if rank else 1.0
+
+
+def least_of(jacobian: ScaledJacobian, rank: int) -> float:
+    """The `rank`-th of its singular values in descending order."""
+    found = _smallest(jacobian, jacobian.shape[0] - rank + 1)
+    if found is None:
+        return float(np.linalg.svd(jacobian.matrix, compute_uv=False)[rank - 1])
+    return float(found[0][0])
+
+
+def singular_directions(workspace: Workspace, matter: float = np.inf) -> tuple[Floats, Floats]:
+    """Singular values of that matrix but those that redundant rows make zero, in descending order, and the directions
+    (values, n) in which the constraints hold the coordinates by them, as parts of the coordinates' scales: all whose
+    value is below `matter`, and what more is found with them."""
+    jacobian, rank = _scaled_jacobian(workspace)
+    found = _smallest(jacobian, jacobian.shape[0] - rank + DIRECTIONS) if matter < np.inf else None
+    if found is not None and found[0][0] >= matter:
+        return found[0][:DIRECTIONS], found[1][:DIRECTIONS]
+    _, values, directions = np.linalg.svd(jacobian.matrix, full_matrices=False)
+    return values[:rank], directions[:rank]
+
+
+def _smallest(jacobian: ScaledJacobian, count: int) -> tuple[Floats, Floats] | None:
+    """That many of the smallest singular values with their directions; None where the dense matrix costs less."""
+    m, n = jacobian.shape
+    if m <= DENSE_ROWS or m > n or count > FEW * m:
+        return None
+    return smallest_singular(jacobian.sparse, count)
+
+
+def _scaled_jacobian(workspace: Workspace) -> tuple[ScaledJacobian, int]:
+    """The matrix, with redundant rows, and its rank away from singular positions."""
+    left_out = len(workspace.dropped)
+    if left_out:
+        with AllRows(workspace) as jacobian:
+            return jacobian, jacobian.shape[0] - left_out
+    evaluate(workspace)
+    jacobian = ScaledJacobian(workspace)
+    return jacobian, jacobian.shape[0]
