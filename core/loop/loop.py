@@ -7,12 +7,13 @@ from ..compiled.views import ivec, mat, vec
 from ..location.asleep import doze, look_at_all
 from ..location.broad_phase import go_on
 from ..location.watch import remember
+from ..methods.frames import select_in_frames, step_at_rest, step_in_frames, turn_error
 from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
 from ..rounding import CONTRADICTION, COORDINATE_DIFFERENCES, LARGEST, NO_STEP
 from ..stage.inner import STRAINED
 from ..stage.matrices import CHOICE_GROWTH
-from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
+from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
 from ..state.run_records import (
     BREAK_TIME,
     CHUNK,
@@ -131,7 +132,10 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     set_weights(ws, ms)
     rate = vec(ws.rate, RATE_SIZE)
     rate[WORST_CONDITION] = rate[CONDITION]
-    status = call_step(lc.starter if starting else lc.step, ws, ms, h)
+    if starting:
+        status = step_at_rest(ws, ms, lc.starter, h)
+    else:
+        status = step_in_frames(ws, ms, lc.step, h)
     if status == OK and not all_finite(ws):
         return NOT_FINITE
     return status
@@ -282,8 +286,9 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             choice = vec(ms.choice, CHOICE_SIZE)
             if multistep and lc.select != 0:
                 hold = choice[K] + 1.0
-                if clock[HELD] >= hold and call_step(lc.select, ws, ms, h) == OK and choice[NEXT_K] > 0.0:
-                    choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
+                if clock[HELD] >= hold and select_in_frames(ws, ms, lc.select, h):
+                    choice[K], order = choice[NEXT_K], choice[NEXT_K]
+                    norm = max(choice[NEXT_NORM], turn_error(ws, ms, h, order))
                     choice[NEXT_K] = 0.0
             proposed = next_step(lc, h, norm, order, multistep, hold)
             clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed

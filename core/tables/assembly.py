@@ -11,6 +11,7 @@ from ..compiled.kernels import kernel_address
 from ..elements.base import Element, Form, Row
 from ..elements.coordinate import Coordinate
 from ..elements.internal import internal_coordinates_kernel
+from ..elements.spatial_body import EULER
 from ..errors import ModelError
 from ..laws import ForceLaw, ImpactLaw
 from ..laws.friction import CoulombFriction, Friction
@@ -148,6 +149,11 @@ class Assembly:
         leap = 0.5 * self.coordinate_scale
         leap[self.n - self.n_internal :] = np.inf
         return leap
+
+    @property
+    def spinning(self) -> NDArray[np.int64]:
+        """The first of the Euler parameters of each body that has some."""
+        return np.array([index for _, coordinate, index in self.body_columns if coordinate == EULER[0]], dtype=np.int64)
 
     @property
     def is_internal(self) -> NDArray[np.bool_]:
