@@ -7,13 +7,13 @@ from ..compiled.views import ivec, mat, vec
 from ..location.asleep import doze, look_at_all
 from ..location.broad_phase import go_on
 from ..location.watch import remember
-from ..methods.frames import select_in_frames, step_at_rest, step_in_frames, turn_error
+from ..methods.frames import select_in_frames, step_in_frames
 from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
 from ..rounding import CONTRADICTION, COORDINATE_DIFFERENCES, LARGEST, NO_STEP
 from ..stage.inner import STRAINED
 from ..stage.matrices import CHOICE_GROWTH
-from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
+from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
 from ..state.run_records import (
     BREAK_TIME,
     CHUNK,
@@ -133,7 +133,7 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     rate = vec(ws.rate, RATE_SIZE)
     rate[WORST_CONDITION] = rate[CONDITION]
     if starting:
-        status = step_at_rest(ws, ms, lc.starter, h)
+        status = call_step(lc.starter, ws, ms, h)
     else:
         status = step_in_frames(ws, ms, lc.step, h)
     if status == OK and not all_finite(ws):
@@ -286,9 +286,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             choice = vec(ms.choice, CHOICE_SIZE)
             if multistep and lc.select != 0:
                 hold = choice[K] + 1.0
-                if clock[HELD] >= hold and select_in_frames(ws, ms, lc.select, h):
-                    choice[K], order = choice[NEXT_K], choice[NEXT_K]
-                    norm = max(choice[NEXT_NORM], turn_error(ws, ms, h, order))
+                if select_in_frames(ws, ms, lc.select, h, clock[HELD] >= hold):
+                    choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
                     choice[NEXT_K] = 0.0
             proposed = next_step(lc, h, norm, order, multistep, hold)
             clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed

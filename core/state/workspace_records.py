@@ -42,10 +42,10 @@ WORKSPACE = np.dtype(
             "part_first",
             # (n_contacts + 1,) int64: how many contacts do not sleep deeply, and which (`location/broad_phase.py`)
             "looked",
-            # bodies whose Euler parameters are solved for in a turning frame (`stage/corotating.py`): the first of
-            # these, (n_spins,) int64, (n_spins, SPIN_SIZE), the history in their frames for the time of a step, and the
-            # function that solves their stages in space
-            "n_spins", "spinning", "spin", "turned", "plain_stage",
+            # the first of the Euler parameters of each body that may be in a turning frame (`stage/corotating.py`),
+            # (n_attitudes,) int64; for the time of a step those which are, (n_spins,) int64, their frames,
+            # (n_spins, SPIN_SIZE), and the history in these; and the function that solves their stages in space
+            "n_attitudes", "attitudes", "n_spins", "spinning", "spin", "turned", "plain_stage",
             # force that the stages of comparison methods subtract from r: (n_ext,)
             "offset",
         )
@@ -132,7 +132,7 @@ call_stage = caller(STAGE_SIGNATURE)
 COUPLED_STAGES = 3
 """Rows of `stage_rows`: the most stages that are solved together."""
 
-SPIN_SIZE = 32
+SPIN_SIZE = 40
 
 # columns of `control` (float64)
 NEWTON_TOLERANCE = 0

@@ -151,7 +151,7 @@ class Assembly:
         return leap
 
     @property
-    def spinning(self) -> NDArray[np.int64]:
+    def attitudes(self) -> NDArray[np.int64]:
         """The first of the Euler parameters of each body that has some."""
         return np.array([index for _, coordinate, index in self.body_columns if coordinate == EULER[0]], dtype=np.int64)
 

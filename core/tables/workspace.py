@@ -138,9 +138,10 @@ class Workspace:
             "scratch": np.zeros(64),
             "query_kept": np.zeros(2 * (a.n + m_ext)),
             "basis": np.zeros((1, n_ext)),
-            "spinning": a.spinning,
-            "spin": np.zeros((max(len(a.spinning), 1), SPIN_SIZE)),
-            "turned": np.zeros((MAX_NODES, row_length(a)) if len(a.spinning) else 1),
+            "attitudes": a.attitudes,
+            "spinning": np.zeros(len(a.attitudes), dtype=np.int64),
+            "spin": np.zeros((max(len(a.attitudes), 1), SPIN_SIZE)),
+            "turned": np.zeros((MAX_NODES, row_length(a)) if len(a.attitudes) else 1),
             "atol_q": np.zeros(n_ext),
             "atol_v": np.zeros(n_ext),
             "control": np.zeros(CONTROL_SIZE),
@@ -171,7 +172,8 @@ class Workspace:
                 "n_work": len(a.work_names), "structure": 0, "kept": 0,
                 "building": self._building.address, "engage": address_of(engage_wanted, ENGAGE_SIGNATURE),
                 "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
-                "stage_function": 0, "plain_stage": 0, "n_spins": 0, "analyze": address_of(analyze, ANALYZE_SIGNATURE),
+                "stage_function": 0, "plain_stage": 0, "n_attitudes": 0, "n_spins": 0,
+                "analyze": address_of(analyze, ANALYZE_SIGNATURE),
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE),
                 "kkt": 0, "lu_d": 0, "lu_p": 0, "kkt_query": 0,
             },
@@ -255,10 +257,10 @@ class Workspace:
     def use_stage(self, address: int, corotating: int = 0) -> None:
         """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE). That at `corotating`, if not
         0, calls it for models with bodies that turn in space, whose attitudes are in turning frames then."""
-        spins = len(self.assembly.spinning) if corotating else 0
+        attitudes = len(self.assembly.attitudes) if corotating else 0
         self._record.set_size("plain_stage", address)
-        self._record.set_size("n_spins", spins)
-        self._record.set_size("stage_function", corotating if spins else address)
+        self._record.set_size("n_attitudes", attitudes)
+        self._record.set_size("stage_function", corotating if attitudes else address)
 
     def make_basis(self, count: int) -> None:
         """Room for `count` vectors of an accelerated or Krylov outer loop."""

@@ -16,6 +16,14 @@ def rate_in_space(p: np.ndarray, rate: np.ndarray) -> np.ndarray:
     return 2.0 * (e0 * rate[1:] - rate[0] * e + np.cross(e, rate[1:]))
 
 
+def momentum_in_space(body: RigidBody3D, p: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    """A J A^T w, N m s."""
+    e0, e = p[0], p[1:]
+    skew = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
+    turn = (2.0 * e0 * e0 - 1.0) * np.eye(3) + 2.0 * (np.outer(e, e) + e0 * skew)
+    return turn @ (np.array(body.inertia) * (turn.T @ rate_in_space(p, rate)))
+
+
 def spin(body: RigidBody3D, joints: list[Revolute3D], speed: float, method: str, **options: object) -> tuple:
     """By how much energy and angular velocity at the end differ from those after three turns, relative, and steps a
     turn. The start, by a Runge-Kutta formula in space, errs by parts of the tolerance."""
@@ -61,6 +69,37 @@ def test_balls_that_spin_about_any_axis_at_any_speed_keep_it(seed: int) -> None:
     assert abs(off) < 1e-10
     assert abs(gain) < 1e-10
     assert steps <= 22.0  # the start included
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_symmetrical_body_that_nutates_keeps_energy_and_momentum(method: str) -> None:
+    # its angular velocity turns about the angular momentum in space and about the axis in the body: regular precession
+    body = RigidBody3D(name="top", mass=1.0, inertia=(0.15, 0.15, 0.25), angular_velocity=(60.0, -20.0, 180.0))
+    model = Model(gravity=(0.0, 0.0, 0.0), bodies=[body])
+    result = simulate(model, 1.0, method=method)
+    energy = result["energy.kinetic"]
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-8
+    begun = int(np.searchsorted(result.t, 0.05))
+    assert abs(energy[-1] / energy[begun] - 1.0) < 1e-11
+    momenta = [momentum_in_space(body, result.q[k, 3:7], result.v[k, 3:7]) for k in (begun, -1)]
+    assert np.linalg.norm(momenta[1] - momenta[0]) < 1e-11 * np.linalg.norm(momenta[0])
+
+
+@pytest.mark.parametrize("method, most", (("ebdf", 2e-5), ("bdf", 5e-3), ("hht", 2e-3)))
+@pytest.mark.parametrize("seed", range(3))
+def test_a_body_that_tumbles_is_no_worse_than_its_tolerance(method: str, most: float, seed: int) -> None:
+    # frames that turn with it would be rougher than space: ten times these errors
+    rng = np.random.default_rng(seed)
+    moments = tuple(np.array([0.1, 0.2, 0.25]) * rng.uniform(0.95, 1.05, 3))
+    axis = rng.uniform(0.3, 1.0, 3)
+    body = RigidBody3D(
+        name="body", mass=1.0, inertia=moments, angular_velocity=tuple(200.0 * axis / np.linalg.norm(axis))
+    )
+    result = simulate(Model(gravity=(0.0, 0.0, 0.0), bodies=[body]), 2.0, method=method)
+    energy = result["energy.kinetic"]
+    assert np.abs(energy / energy[0] - 1.0).max() < most
+    momenta = [momentum_in_space(body, result.q[k, 3:7], result.v[k, 3:7]) for k in (0, -1)]
+    assert np.linalg.norm(momenta[1] - momenta[0]) < most * np.linalg.norm(momenta[0])
 
 
 @pytest.mark.parametrize("outer", ("simple", "jfnk"))
