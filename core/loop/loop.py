@@ -286,7 +286,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             choice = vec(ms.choice, CHOICE_SIZE)
             if multistep and lc.select != 0:
                 hold = choice[K] + 1.0
-                if select_in_frames(ws, ms, lc.select, h, clock[HELD] >= hold):
+                if clock[HELD] >= hold and select_in_frames(ws, ms, lc.select, h):
                     choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
                     choice[NEXT_K] = 0.0
             proposed = next_step(lc, h, norm, order, multistep, hold)

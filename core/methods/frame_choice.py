@@ -14,7 +14,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import mat, vec
 from ..model.rotation3d import space_rate
 from ..stage.corotating import RATES, enter, four_of, product, put_four, set_rates
-from ..state.method_records import CHOICE_SIZE, ESTIMATE, K
+from ..state.method_records import CHOICE_SIZE, K
 from .history import history_row, history_time
 from .multistep import rows_available
 
@@ -22,9 +22,8 @@ MOST_TURN = 1.0
 """Beyond which a body's attitude stays in the frame of space: the outer loop would not converge."""
 SMOOTHER = 0.1
 """Differences in a frame are at most this part of those in space: errors there have up to three times the frequency."""
-NEGLIGIBLE, ROUNDED = 1e-10, 1e-13
-"""What a formula may err by in a step in space, rad, at most, to stay there, under error control and with fixed steps,
-whose error should be the less the smaller they are, down to rounding."""
+NEGLIGIBLE = 1e-10
+"""What a formula may err by in a step in space, rad, at most, to stay there: rounding in a frame would be more soon."""
 
 
 @inlined
@@ -96,8 +95,7 @@ def choose_frame(ws: Any, ms: Any, spin: Any, i: int, t: float) -> bool:
     w = space_rate(p, four_of(row, n + i))
     size = h * np.sqrt(_dot(w, w))
     order = max(vec(ms.choice, CHOICE_SIZE)[K], 2.0)
-    negligible = NEGLIGIBLE if vec(ms.parameters, 8)[ESTIMATE] != 0.0 else ROUNDED
-    if 2.0 * size > MOST_TURN or size ** (order + 1.0) < negligible:
+    if 2.0 * size > MOST_TURN or size ** (order + 1.0) < NEGLIGIBLE:
         return False
     rows = min(rows_available(ms), 3)
     second = mat(ws.scratch, 3, 4)

@@ -19,7 +19,6 @@ from ..stage.corotating import (
 from ..state.method_records import (
     CARRIES,
     CHOICE_SIZE,
-    EACH_STEP,
     ESTIMATE,
     NEXT_K,
     NEXT_NORM,
@@ -161,8 +160,12 @@ def _turn_error(h: float, rate: float, order: float) -> float:
 
 @internal
 def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
-    """The step at this address from the newest row by h, with attitudes in turning frames where these are a help."""
-    if ws.n_attitudes == 0:
+    """The step at this address from the newest row by h, with attitudes in turning frames where these are a help.
+
+    Fixed steps have none: frames come and go with the motion and the size of the steps, and errors would not fall with
+    these as they do for one formula.
+    """
+    if ws.n_attitudes == 0 or vec(ms.parameters, 8)[ESTIMATE] == 0.0:
         return call_step(step, ws, ms, h)
     error, control = vec(ms.error, 2), vec(ws.control, CONTROL_SIZE)
     newton, exactness = control[NEWTON_TOLERANCE], control[EXACTNESS]
@@ -170,8 +173,7 @@ def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
     while True:
         _begin(ws, ms, history_time(ms, 0) + h)
         fastest = _fastest(ws)
-        fast = vec(ms.parameters, 8)[ESTIMATE] != 0.0 and h * fastest > FAST * LARGEST_TURN
-        if not fast:
+        if h * fastest <= FAST * LARGEST_TURN:
             finer = 1.0
         control[NEWTON_TOLERANCE], control[EXACTNESS] = finer * newton, finer * exactness
         status = call_step(step, ws, ms, h)
@@ -188,14 +190,11 @@ def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
 
 
 @internal
-def select_in_frames(ws: Any, ms: Any, select: int, h: float, held: bool) -> bool:
+def select_in_frames(ws: Any, ms: Any, select: int, h: float) -> bool:
     """Whether the function at this address proposes other steps k after a step of size h. It sees the same history as
-    a step does. `held`: the step has been the same for long enough to judge by the history."""
-    choice, each = vec(ms.choice, CHOICE_SIZE), vec(ms.parameters, 8)[EACH_STEP] != 0.0
-    if not (each or held):
-        return False
-    if not each:
-        _begin(ws, ms, history_time(ms, 0))
+    a step does."""
+    choice = vec(ms.choice, CHOICE_SIZE)
+    _begin(ws, ms, history_time(ms, 0))
     fastest = _fastest(ws)
     status = call_step(select, ws, ms, h)
     _end(ws, ms, False)

@@ -8,19 +8,11 @@ EBDF and MEBDF are judged by the same: their first stage is that BDF.
 
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..state.method_records import (
-    CHOICE_SIZE,
-    COUNT,
-    NEXT_K,
-    NEXT_NORM,
-    OTHER,
-    PATIENCE,
-    SPAN,
-    WAIT,
-    K,
-)
+from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, WAVES, K
 from ..state.workspace_records import CONTROL_SIZE, OK, STIFFNESS_SCALE
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
@@ -28,14 +20,8 @@ from .multistep import COUNT_ROW, difference_norm, rows_available, weight_rows
 
 LEAST_K, MOST_K = 1, 2  # parameters of the formula
 RESOLVED = 0.07
-"""Angle of the model's fastest vibration in a step, rad, from which on a formula that is not A-stable may be worse than
-one that is: vibrations grow in it up to the tolerance, and hold the step at the angle where that ends, 0.1 to 0.5."""
-WINDOW, UNCOUNTED = 24.0, 8.0
-"""Steps by which a formula is measured, and how many of these at first are those of the formula before."""
-BETTER = 1.25
-"""By which steps of the formula that is not A-stable have to be larger."""
-FIRST_PATIENCE, MOST_PATIENCE = 3.0, 64.0
-"""Windows until the other formula is tried again; each time it takes twice as many."""
+"""Angle of the model's fastest vibration in a step, rad, from which on a formula that is not A-stable is left: the
+vibration would grow in it up to the tolerance, and hold the step at the angle where that ends, 0.1 to 0.5."""
 # another k must promise a step larger by this factor: changing costs new coefficients
 WORTH = 1.1
 # rows of the table of coefficients that no formula needs after its step
@@ -82,42 +68,15 @@ def select_k(ws: Any, ms: Any, h: float) -> int:
 
 @internal
 def select_stable_k(ws: Any, ms: Any, h: float) -> int:
-    """Propose the other of LEAST_K, A-stable, and MOST_K, of higher order, where that is better.
+    """Propose LEAST_K steps, of an A-stable formula, once a step does not resolve the fastest vibration of a model that
+    has WAVES.
 
-    While steps do not resolve the model's fastest vibration (that of the stiffness at the start; without any, as in
-    rigid mechanisms, MOST_K remains), LEAST_K is taken unless the steps of MOST_K are BETTER times as large: that
-    depends on whether there are vibrations between those that the steps follow and those so fast that both formulas
-    damp them. MOST_K is tried for a window, and LEAST_K again when it no longer is: what has grown takes time to decay.
+    The vibration is that of the stiffness at the start. A few stiff springs are no reason: both formulas damp what is
+    far beyond the step; among the vibrations of a mesh there are always some in between, which grow.
     """
     choice, parameters = vec(ms.choice, CHOICE_SIZE), vec(ms.parameters, 8)
-    least, most = parameters[LEAST_K], parameters[MOST_K]
+    k, angle = parameters[LEAST_K], h * np.sqrt(vec(ws.control, CONTROL_SIZE)[STIFFNESS_SCALE])
     choice[NEXT_K] = 0.0
-    if h * h * vec(ws.control, CONTROL_SIZE)[STIFFNESS_SCALE] <= RESOLVED * RESOLVED:
-        return OK
-    change = choice[PATIENCE] == 0.0
-    if change:
-        choice[PATIENCE] = choice[WAIT] = FIRST_PATIENCE
-    else:
-        choice[COUNT] += 1.0
-        if choice[COUNT] > UNCOUNTED:
-            choice[SPAN] += h
-        if choice[COUNT] < WINDOW:
-            return OK
-        mean, other = choice[SPAN] / (WINDOW - UNCOUNTED), choice[OTHER]
-        choice[COUNT] = choice[SPAN] = 0.0
-        choice[WAIT] -= 1.0
-        if choice[K] == most:
-            change = mean < BETTER * other
-        else:
-            change = other > BETTER * mean
-            choice[OTHER] = 0.0
-        if not change and choice[WAIT] <= 0.0:
-            change = True
-            choice[PATIENCE] = min(2.0 * choice[PATIENCE], MOST_PATIENCE)
-            choice[WAIT] = choice[PATIENCE]
-        if change:
-            choice[OTHER] = mean
-    if change:
-        choice[NEXT_K] = least + most - choice[K]
-        choice[NEXT_NORM] = vec(ms.error, 2)[0]
+    if choice[K] > k and parameters[WAVES] != 0.0 and angle > RESOLVED:
+        choice[NEXT_K], choice[NEXT_NORM] = k, vec(ms.error, 2)[0]
     return OK

@@ -42,8 +42,8 @@ _EXTENDED = Option(
     "stable",
     1,
     8,
-    "number of steps k, the order is k + 1; stable: 4, or 3, which is A-stable, where it takes larger steps while "
-    "these do not resolve the model's fastest vibration; auto: chosen by the error",
+    "number of steps k, the order is k + 1; stable: 4, and with flexible bodies 3, which is A-stable, from "
+    "when steps do not resolve their fastest vibration; auto: chosen by the error",
     integer=True,
     choices=("stable", "auto"),
 )
@@ -53,7 +53,7 @@ def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: t
     """A formula of k steps; "auto": k is chosen as the run goes, among those that are stable enough."""
     stages = (1.0,) if name == "bdf" else (1.0, 2.0)
     if k == "stable":
-        return Formula(step, 4, (*parameters, 3.0, 4.0, 0.0, 0.0, 1.0), 5, stages, select=select_stable_k)
+        return Formula(step, 4, (*parameters, 3.0, 4.0), 5, stages, select=select_stable_k)
     if k != "auto":
         growth = 2.0 if name == "bdf" else EBDF_GROWTH.get(int(k), 2.0)
         return Formula(step, int(k), parameters, int(k) + 1, stages, growth)

