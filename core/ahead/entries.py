@@ -113,6 +113,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     for way in (_no_solution, dense.dense_solve, sparse.sparse_solve):
         yield way, record.SOLVE_SIGNATURE
     yield order_selection.select_k, STEP_SIGNATURE
+    yield order_selection.select_stable_k, STEP_SIGNATURE
 
 
 def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:

@@ -153,7 +153,8 @@ _SELDOM = tuple(
     _mangled(module)
     for module in (
         "analysis", "cones", "elements.measure3d", "elements.pid_controller2d", "events", "linalg.analyze",
-        "location.probe", "repair", "run", "shapes.bristle3d", "shapes.scalar_contact2d",
+        "location.probe", "methods.frame_choice", "methods.frames", "repair", "run", "shapes.bristle3d",
+        "shapes.scalar_contact2d", "stage.corotating",
     )
 )  # fmt: skip
 """Where few bytes are worth more than speed: nothing is repeated there to save a jump."""

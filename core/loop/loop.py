@@ -7,6 +7,7 @@ from ..compiled.views import ivec, mat, vec
 from ..location.asleep import doze, look_at_all
 from ..location.broad_phase import go_on
 from ..location.watch import remember
+from ..methods.frames import select_in_frames, step_in_frames
 from ..methods.history import history_row, history_time, leave_bridge, push
 from ..methods.multistep import rows_available
 from ..rounding import CONTRADICTION, COORDINATE_DIFFERENCES, LARGEST, NO_STEP
@@ -131,7 +132,10 @@ def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
     set_weights(ws, ms)
     rate = vec(ws.rate, RATE_SIZE)
     rate[WORST_CONDITION] = rate[CONDITION]
-    status = call_step(lc.starter if starting else lc.step, ws, ms, h)
+    if starting:
+        status = call_step(lc.starter, ws, ms, h)
+    else:
+        status = step_in_frames(ws, ms, lc.step, h)
     if status == OK and not all_finite(ws):
         return NOT_FINITE
     return status
@@ -282,7 +286,7 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             choice = vec(ms.choice, CHOICE_SIZE)
             if multistep and lc.select != 0:
                 hold = choice[K] + 1.0
-                if clock[HELD] >= hold and call_step(lc.select, ws, ms, h) == OK and choice[NEXT_K] > 0.0:
+                if clock[HELD] >= hold and select_in_frames(ws, ms, lc.select, h):
                     choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
                     choice[NEXT_K] = 0.0
             proposed = next_step(lc, h, norm, order, multistep, hold)

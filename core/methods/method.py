@@ -75,6 +75,8 @@ class Formula:
     """First content of the method record's `weights`, row by row."""
     carries: bool = False
     """True if it carries accelerations of its own from step to step, beside the true ones."""
+    turns: bool = True
+    """True if attitudes in space are integrated in turning frames (`frames.py`)."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
 

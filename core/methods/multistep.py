@@ -90,7 +90,8 @@ def finish_stage(ws: Any, t: float, c_v: float) -> int:
     status = call_stage(ws.stage_function, ws, t, c_v * c_v, c_v)
     if status != 0:
         return status
-    evaluate_power(ws)
+    if ws.n_spins == 0:
+        evaluate_power(ws)
     n = ws.n_ext
     v, v_star, a = vec(ws.v, n), vec(ws.v_star, n), vec(ws.a, n)
     for i in range(n - ws.n_work, n):

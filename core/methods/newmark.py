@@ -62,7 +62,8 @@ def newmark_step(ws: Any, ms: Any, h: float) -> int:
         status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
     if status != OK:
         return status
-    evaluate_power(ws)
+    if ws.n_spins == 0:
+        evaluate_power(ws)
     v, aux = vec(ws.v, n), vec(ws.aux, n)
     for i in range(n - ws.n_work, n):
         v[i] = v_star[i] + c_v * a[i]

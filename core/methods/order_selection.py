@@ -8,15 +8,20 @@ EBDF and MEBDF are judged by the same: their first stage is that BDF.
 
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
-from ..state.workspace_records import OK
+from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, WAVES, K
+from ..state.workspace_records import CONTROL_SIZE, OK, STIFFNESS_SCALE
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import COUNT_ROW, difference_norm, rows_available, weight_rows
 
 LEAST_K, MOST_K = 1, 2  # parameters of the formula
+RESOLVED = 0.07
+"""Angle of the model's fastest vibration in a step, rad, from which on a formula that is not A-stable is left: the
+vibration would grow in it up to the tolerance, and hold the step at the angle where that ends, 0.1 to 0.5."""
 # another k must promise a step larger by this factor: changing costs new coefficients
 WORTH = 1.1
 # rows of the table of coefficients that no formula needs after its step
@@ -58,4 +63,20 @@ def select_k(ws: Any, ms: Any, h: float) -> int:
     weight_rows(ms)[COUNT_ROW, 0] = 0.0
     if best != k:
         choice[NEXT_K], choice[NEXT_NORM] = best, best_norm
+    return OK
+
+
+@internal
+def select_stable_k(ws: Any, ms: Any, h: float) -> int:
+    """Propose LEAST_K steps, of an A-stable formula, once a step does not resolve the fastest vibration of a model that
+    has WAVES.
+
+    The vibration is that of the stiffness at the start. A few stiff springs are no reason: both formulas damp what is
+    far beyond the step; among the vibrations of a mesh there are always some in between, which grow.
+    """
+    choice, parameters = vec(ms.choice, CHOICE_SIZE), vec(ms.parameters, 8)
+    k, angle = parameters[LEAST_K], h * np.sqrt(vec(ws.control, CONTROL_SIZE)[STIFFNESS_SCALE])
+    choice[NEXT_K] = 0.0
+    if choice[K] > k and parameters[WAVES] != 0.0 and angle > RESOLVED:
+        choice[NEXT_K], choice[NEXT_NORM] = k, vec(ms.error, 2)[0]
     return OK

@@ -11,7 +11,7 @@ from .ebdf import ebdf_step
 from .irk import irk_step
 from .method import Formula, Method, Option
 from .newmark import newmark_step
-from .order_selection import select_k
+from .order_selection import select_k, select_stable_k
 from .park import park_step
 from .sdirk import C, sdirk_fine_step, sdirk_step
 from .tableaus import TABLEAUS
@@ -38,9 +38,22 @@ def _steps(default: int, most: int, description: str) -> Option:
     return Option(default, 1, most, description, integer=True, choices=("auto",))
 
 
+_EXTENDED = Option(
+    "stable",
+    1,
+    8,
+    "number of steps k, the order is k + 1; stable: 4, and with flexible bodies 3, which is A-stable, from "
+    "when steps do not resolve their fastest vibration; auto: chosen by the error",
+    integer=True,
+    choices=("stable", "auto"),
+)
+
+
 def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: tuple[float, ...]) -> Formula:
     """A formula of k steps; "auto": k is chosen as the run goes, among those that are stable enough."""
     stages = (1.0,) if name == "bdf" else (1.0, 2.0)
+    if k == "stable":
+        return Formula(step, 4, (*parameters, 3.0, 4.0), 5, stages, select=select_stable_k)
     if k != "auto":
         growth = 2.0 if name == "bdf" else EBDF_GROWTH.get(int(k), 2.0)
         return Formula(step, int(k), parameters, int(k) + 1, stages, growth)
@@ -56,12 +69,14 @@ FINE = 1e-3
 
 def _irk(name: str) -> Formula:
     if name == "sdirk4":
-        return Formula(sdirk_step, stages=STARTER_STAGES, newton_tolerance=FINE)
+        return Formula(sdirk_step, stages=STARTER_STAGES, newton_tolerance=FINE, turns=False)
     tableau = TABLEAUS[name]
     parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_error)
     stages = (*tableau.c, 1.0)
-    loops = ("newton", "simple")
-    return Formula(irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(), outer_loops=loops)
+    loops, weights = ("newton", "simple"), tableau.data()
+    return Formula(
+        irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=weights, outer_loops=loops, turns=False
+    )  # fmt: skip
 
 
 def _newmark(alpha: float, beta: float, gamma: float) -> Formula:
@@ -117,13 +132,13 @@ METHODS = {
         Method(
             "ebdf",
             "TLISMNI with Cash's extended BDF of k steps, order k + 1; A-stable up to k = 3",
-            {"k": _steps(4, 8, "number of steps k, or chosen by the error; the order is k + 1"), "angle": _ANGLE},
+            {"k": _EXTENDED, "angle": _ANGLE},
             lambda o: _multistep("ebdf", ebdf_step, o["k"], o["angle"], (0.0,)),
         ),
         Method(
             "mebdf",
             "TLISMNI with the modified extended BDF: as ebdf, more stable, one matrix for all its stages",
-            {"k": _steps(4, 8, "number of steps k, or chosen by the error; the order is k + 1"), "angle": _ANGLE},
+            {"k": _EXTENDED, "angle": _ANGLE},
             lambda o: _multistep("mebdf", ebdf_step, o["k"], o["angle"], (1.0,)),
         ),
         Method(

@@ -55,7 +55,8 @@ def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
         status = call_stage(ws.stage_function, ws, t + C[s] * h, c_v * c_v, c_v)
         if status != OK:
             return status, 0.0
-        evaluate_power(ws)
+        if ws.n_spins == 0:
+            evaluate_power(ws)
         for i in range(first_work, n):
             v[i] = v_star[i] + c_v * a[i]
         for i in range(n):

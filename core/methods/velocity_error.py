@@ -19,6 +19,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
+from ..stage.corotating import enter_frame, leave_frame
 from ..stage.solver import weighted_norm
 from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
 from ..tables.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
@@ -148,7 +149,9 @@ def filtered_velocity_error(ws: Any, ms: Any, h: float, norm: float) -> float:
     rhs, weight_v = vec(ws.rhs, ws.n), vec(ws.weight_v, ws.n_ext)
     if weighted_norm(rhs, weight_v, ws.n) <= norm:
         return norm
+    leave_frame(ws)
     _filter(ws, h, 1 if rows_available(ms) < SETTLED else 2)
+    enter_frame(ws)
     return max(norm, weighted_norm(rhs, weight_v, ws.n))
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 _OF_WORKSPACE = (
     "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v", "offset", "phi", "phid", "phidd",
     "coef", "energy", "monitor", "stage_v", "stage_a", "stage_rows", "rhs", "scratch",
-    "query_kept", "basis", "counters",
+    "query_kept", "basis", "counters", "spin", "spinning", "turned",
 )  # fmt: skip
 _OF_LOOP = (
     *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor")),

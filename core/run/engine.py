@@ -23,6 +23,7 @@ from ..methods.history import recall, restart
 from ..methods.registry import FINE_STARTER, Formula, get_formula
 from ..repair.near_singular import smooth_query, strained
 from ..stage import OUTER_LOOPS
+from ..stage.corotating import solve_spinning_stage
 from ..state.method_records import step_address
 from ..state.run_records import HANDLED, HANDLED_AT, HERE
 from ..state.workspace_records import (
@@ -125,7 +126,7 @@ class Engine(ContactSide):
         self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
-        self._method = build_method(self.formula, self.settings, self.workspace.state)
+        self._method = build_method(self.formula, self.settings, self.assembly.has_waves, self.workspace.state)
         self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
         self.name_arrays()
         self.fine_starter = step_address(FINE_STARTER)
@@ -174,7 +175,9 @@ class Engine(ContactSide):
         loop = OUTER_LOOPS[name]
         self.outer = name
         self.workspace.make_basis(loop.basis_rows)
-        self.workspace.use_stage(address_of(self.formula.stage or loop.stage, STAGE_SIGNATURE))
+        turns = self.formula.turns and self.formula.stage is None
+        corotating = address_of(solve_spinning_stage, STAGE_SIGNATURE) if turns else 0
+        self.workspace.use_stage(address_of(self.formula.stage or loop.stage, STAGE_SIGNATURE), corotating)
         control = self.workspace.arrays["control"]
         control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, float(name == "simple")
         self.workspace.arrays["rate"][FACTOR_AGE] = -1.0

@@ -16,7 +16,7 @@ from ..loop.controllers import CONTROLLERS
 from ..loop.sample import empty_buffer, sample_length
 from ..methods.registry import FINE_STARTER, STARTER, Formula
 from ..stage.accelerations import solve_accelerations
-from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
+from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, WAVES, K, step_address
 from ..state.run_records import (
     A2,
     ACCELERATIONS_SIGNATURE,
@@ -64,13 +64,14 @@ def state_fields(assembly: Assembly) -> list[Field]:
     ]
 
 
-def build_method(formula: Formula, settings: Settings, state: NDArray[Any]) -> ArrayRecord:
+def build_method(formula: Formula, settings: Settings, has_waves: bool, state: NDArray[Any]) -> ArrayRecord:
     """The METHOD record of a formula: its coefficients and an empty history, in the state's buffer (1,)."""
     names = ("history", "times", "ring", "parameters", "weights", "error", "choice")
     arrays = {name: state[f"method_{name}"][0] for name in names}
     parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
     parameters[CARRIES], parameters[ESTIMATE] = float(formula.carries), float(settings.step is None)
+    parameters[WAVES] = float(has_waves)
     for row, values in zip(weights, formula.weights, strict=False):
         row[: len(values)] = values
     arrays["choice"][K] = formula.k

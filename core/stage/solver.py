@@ -42,6 +42,7 @@ from ..state.workspace_records import (
     STAGES,
 )
 from ..tables.evaluate import evaluate_constraints, evaluate_residuals
+from .corotating import add_in_frame
 from .inner import inner_loop
 from .matrices import refactor
 
@@ -92,6 +93,7 @@ def evaluate_prediction(ws: Any, c_q: float, c_v: float) -> None:
     for i in range(ws.n):
         q[i] = q_star[i] + c_q * a[i]
         v[i] = v_star[i] + c_v * a[i]
+    add_in_frame(ws, a)
     evaluate_residuals(ws)
 
 
@@ -141,6 +143,7 @@ def add_increment(ws: Any, c_q: float, c_v: float) -> None:
         q[i] += c_q * increment[i]
         v[i] += c_v * increment[i]
         a[i] += increment[i]
+    add_in_frame(ws, increment)
     for i in range(m_act):
         lam[active[i]] += increment[n + i]
 

@@ -42,6 +42,10 @@ WORKSPACE = np.dtype(
             "part_first",
             # (n_contacts + 1,) int64: how many contacts do not sleep deeply, and which (`location/broad_phase.py`)
             "looked",
+            # the first of the Euler parameters of each body that may be in a turning frame (`stage/corotating.py`),
+            # (n_attitudes,) int64; for the time of a step those which are, (n_spins,) int64, their frames,
+            # (n_spins, SPIN_SIZE), and the history in these; and the function that solves their stages in space
+            "n_attitudes", "attitudes", "n_spins", "spinning", "spin", "turned", "plain_stage",
             # force that the stages of comparison methods subtract from r: (n_ext,)
             "offset",
         )
@@ -127,6 +131,8 @@ call_stage = caller(STAGE_SIGNATURE)
 
 COUPLED_STAGES = 3
 """Rows of `stage_rows`: the most stages that are solved together."""
+
+SPIN_SIZE = 40
 
 # columns of `control` (float64)
 NEWTON_TOLERANCE = 0

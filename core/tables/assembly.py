@@ -1,5 +1,6 @@
 """Assembly: a model's elements as batches of flat tables, independent of which contacts are closed."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,6 +12,7 @@ from ..compiled.kernels import kernel_address
 from ..elements.base import Element, Form, Row
 from ..elements.coordinate import Coordinate
 from ..elements.internal import internal_coordinates_kernel
+from ..elements.spatial_body import EULER
 from ..errors import ModelError
 from ..laws import ForceLaw, ImpactLaw
 from ..laws.friction import CoulombFriction, Friction
@@ -22,6 +24,9 @@ from ..shapes.element import ContactElement
 from ..shapes.geometry_kinds import EQUATIONS, kind_of
 from .numbering import AT_REST, NO_START, ModelNumbering
 from .parts import Parts
+
+LARGEST_RIGID = 7
+"""Coordinates of a rigid body in space: place and Euler parameters."""
 
 
 @dataclass
@@ -148,6 +153,17 @@ class Assembly:
         leap = 0.5 * self.coordinate_scale
         leap[self.n - self.n_internal :] = np.inf
         return leap
+
+    @property
+    def has_waves(self) -> bool:
+        """Whether a body has more coordinates than a rigid one: those of a mesh or modes, with own vibrations."""
+        counts = Counter(body for body, _, _ in self.body_columns)
+        return max(counts.values(), default=0) > LARGEST_RIGID
+
+    @property
+    def attitudes(self) -> NDArray[np.int64]:
+        """The first of the Euler parameters of each body that has some."""
+        return np.array([index for _, coordinate, index in self.body_columns if coordinate == EULER[0]], dtype=np.int64)
 
     @property
     def is_internal(self) -> NDArray[np.bool_]:

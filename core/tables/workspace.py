@@ -15,6 +15,7 @@ from ..linalg import DENSE_LIMIT
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
 from ..linalg.memory import addresses
 from ..linalg.record import PROGRAM_LIMIT
+from ..state.method_records import MAX_NODES
 from ..state.workspace_records import (
     BUILDING,
     CONTROL_SIZE,
@@ -24,6 +25,7 @@ from ..state.workspace_records import (
     EVALUATE_SIGNATURE,
     FACTOR_AGE,
     OK,
+    SPIN_SIZE,
     STRUCTURE,
     WORKSPACE,
 )
@@ -137,6 +139,10 @@ class Workspace:
             "scratch": np.zeros(64),
             "query_kept": np.zeros(2 * (a.n + m_ext)),
             "basis": np.zeros((1, n_ext)),
+            "attitudes": a.attitudes,
+            "spinning": np.zeros(len(a.attitudes), dtype=np.int64),
+            "spin": np.zeros((max(len(a.attitudes), 1), SPIN_SIZE)),
+            "turned": np.zeros((MAX_NODES, row_length(a)) if len(a.attitudes) else 1),
             "atol_q": np.zeros(n_ext),
             "atol_v": np.zeros(n_ext),
             "control": np.zeros(CONTROL_SIZE),
@@ -167,7 +173,8 @@ class Workspace:
                 "n_work": len(a.work_names), "structure": 0, "kept": 0,
                 "building": self._building.address, "engage": address_of(engage_wanted, ENGAGE_SIGNATURE),
                 "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
-                "stage_function": 0, "analyze": address_of(analyze, ANALYZE_SIGNATURE),
+                "stage_function": 0, "plain_stage": 0, "n_attitudes": 0, "n_spins": 0,
+                "analyze": address_of(analyze, ANALYZE_SIGNATURE),
                 "evaluate_function": address_of(all_kernels, EVALUATE_SIGNATURE),
                 "kkt": 0, "lu_d": 0, "lu_p": 0, "kkt_query": 0,
             },
@@ -248,9 +255,13 @@ class Workspace:
         """Address of the record."""
         return self._record.address
 
-    def use_stage(self, address: int) -> None:
-        """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE)."""
-        self._record.set_size("stage_function", address)
+    def use_stage(self, address: int, corotating: int = 0) -> None:
+        """Let steps solve their stages with the function at `address` (STAGE_SIGNATURE). That at `corotating`, if not
+        0, calls it for models with bodies that turn in space, whose attitudes are in turning frames then."""
+        attitudes = len(self.assembly.attitudes) if corotating else 0
+        self._record.set_size("plain_stage", address)
+        self._record.set_size("n_attitudes", attitudes)
+        self._record.set_size("stage_function", corotating if attitudes else address)
 
     def make_basis(self, count: int) -> None:
         """Room for `count` vectors of an accelerated or Krylov outer loop."""

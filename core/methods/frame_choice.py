@@ -1,0 +1,117 @@
+"""In which frame a body's attitude is integrated in a step: one that turns, or that of space.
+
+A frame is a help where the motion is smoother in it: errors of a formula are those of the differences of its history.
+So each step looks at its three newest rows in space, in a frame with the body's angular velocity and in one of regular
+precession, and takes a frame only if the accelerations there differ much less. Else the body is integrated in space, as
+if there were no frames.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import inlined, internal
+from ..compiled.views import mat, vec
+from ..model.rotation3d import space_rate
+from ..stage.corotating import RATES, enter, four_of, product, put_four, set_rates
+from ..state.method_records import CHOICE_SIZE, K
+from .history import history_row, history_time
+from .multistep import rows_available
+
+MOST_TURN = 1.0
+"""Beyond which a body's attitude stays in the frame of space: the outer loop would not converge."""
+SMOOTHER = 0.1
+"""Differences in a frame are at most this part of those in space: errors there have up to three times the frequency."""
+NEGLIGIBLE = 1e-10
+"""What a formula may err by in a step in space, rad, at most, to stay there: rounding in a frame would be more soon."""
+
+
+@inlined
+def _cross(a: Any, b: Any) -> Any:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inlined
+def _dot(a: Any, b: Any) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def _acceleration(row: Any, n: int, i: int) -> Any:
+    """Half the angular acceleration in space, of a row of the history."""
+    return space_rate(four_of(row, i), four_of(row, 2 * n + i))
+
+
+@internal
+def _difference(ms: Any, rows: int, second: Any) -> float:
+    """Square of the divided difference of second derivatives at the newest rows, one in each row of `second`."""
+    total = 0.0
+    t, before = history_time(ms, 0), history_time(ms, 1) if rows > 1 else 0.0
+    for j in range(4):
+        found = second[0, j]
+        if rows > 1:
+            found = (found - second[1, j]) / (t - before)
+        if rows > 2:
+            oldest = history_time(ms, 2)
+            found = (found - (second[1, j] - second[2, j]) / (before - oldest)) / (t - oldest)
+        total += found * found
+    return total
+
+
+@internal
+def _roughness(ws: Any, ms: Any, spin: Any, i: int, rows: int) -> float:
+    """How much accelerations differ in this frame; `_difference` of the newest rows there."""
+    n, q, v = ws.n_ext, vec(ws.scratch, 4), vec(ws.scratch + 4 * 8, 4)
+    second = mat(ws.scratch + 8 * 8, 3, 4)
+    for back in range(rows):
+        row = history_row(ws, ms, back)
+        put_four(q, 0, four_of(row, i))
+        put_four(v, 0, four_of(row, n + i))
+        put_four(second[back], 0, four_of(row, 2 * n + i))
+        enter(spin, history_time(ms, back), q, v, second[back], 0)
+    return _difference(ms, rows, second)
+
+
+@internal
+def _precession(ws: Any, ms: Any, i: int) -> Any:
+    """Half the angular velocity of a regular precession: angular accelerations turn with it from row to row."""
+    now = _acceleration(history_row(ws, ms, 0), ws.n_ext, i)
+    before = _acceleration(history_row(ws, ms, 1), ws.n_ext, i)
+    axis = _cross(before, now)
+    size = np.sqrt(_dot(axis, axis))
+    if size == 0.0:
+        return 0.0, 0.0, 0.0
+    part = 0.5 * np.arctan2(size, _dot(before, now)) / (size * (history_time(ms, 0) - history_time(ms, 1)))
+    return part * axis[0], part * axis[1], part * axis[2]
+
+
+@internal
+def choose_frame(ws: Any, ms: Any, spin: Any, i: int, t: float) -> bool:
+    """Whether a frame makes the motion of a body until t smoother, and which: its rates in `spin`."""
+    n, row, at = ws.n_ext, history_row(ws, ms, 0), history_time(ms, 0)
+    # of the newest step while it is looked at which formula is to follow
+    h = t - at if t > at else at - history_time(ms, 1)
+    p = four_of(row, i)
+    w = space_rate(p, four_of(row, n + i))
+    size = h * np.sqrt(_dot(w, w))
+    order = max(vec(ms.choice, CHOICE_SIZE)[K], 2.0)
+    if 2.0 * size > MOST_TURN or size ** (order + 1.0) < NEGLIGIBLE:
+        return False
+    rows = min(rows_available(ms), 3)
+    second = mat(ws.scratch, 3, 4)
+    for back in range(rows):
+        put_four(second[back], 0, four_of(history_row(ws, ms, back), 2 * n + i))
+    most = SMOOTHER * SMOOTHER * _difference(ms, rows, second)
+    none = (0.0, 0.0, 0.0)
+    set_rates(spin, w, none, t)
+    own = _roughness(ws, ms, spin, i, rows)
+    if rows > 1:
+        precession = _precession(ws, ms, i)
+        rest = (0.0, w[0] - precession[0], w[1] - precession[1], w[2] - precession[2])
+        s = product(product((p[0], -p[1], -p[2], -p[3]), rest), p)
+        # the norm is one to rounding
+        set_rates(spin, precession, (s[1], s[2], s[3]), t)
+        if 2.0 * h * spin[RATES + 1] <= MOST_TURN and _roughness(ws, ms, spin, i, rows) < min(own, most):
+            return True
+        set_rates(spin, w, none, t)
+    return own < most

@@ -1,0 +1,204 @@
+"""The history of a step in frames that turn with the bodies (`stage/corotating.py`), and how far these may turn."""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..stage.corotating import (
+    POINT,
+    RATES,
+    enter,
+    four_of,
+    plus_times,
+    put_four,
+    rotation_of,
+    times_function,
+)
+from ..state.method_records import (
+    CARRIES,
+    CHOICE_SIZE,
+    ESTIMATE,
+    NEXT_K,
+    NEXT_NORM,
+    RING_SIZE,
+    call_step,
+)
+from ..state.workspace_records import (
+    CONTROL_SIZE,
+    EXACTNESS,
+    NEWTON_TOLERANCE,
+    OK,
+    RATE_SIZE,
+    REANALYZE,
+    SENSITIVITY,
+    SPIN_SIZE,
+)
+from .frame_choice import choose_frame
+from .history import history_row, history_time, row_index
+
+LARGEST_TURN = 0.4
+"""By which a frame may turn in a step under error control, rad: a sixteenth of a turn. What is asked for between steps
+is interpolated in p, to 1e-13 then."""
+FAST, FINER, COARSER = 0.5, 1e-4, 100.0
+"""Part of LARGEST_TURN beyond which it is the turn that limits the step, and not the error; by how much finer the outer
+loop solves then, and by how much less fine if it fails. What it leaves would be the largest error, and energy would
+drift with it. It costs nothing: the frames predict such steps so well that the iterations begin there, or nearly."""
+LEAST_PART = 0.25
+"""Of a unit quaternion, that a component which a partition relies on has, over the next two steps: with less, what the
+iterations leave is large in the dependent parameters, and a turning frame makes it an error of all of them."""
+
+
+@internal
+def _share_weights(ws: Any, i: int) -> None:
+    """Error weights of a body's Euler parameters in a frame: those of their mean, as each is in turn."""
+    for weights in (vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)):
+        mean = 0.25 * (weights[i] + weights[i + 1] + weights[i + 2] + weights[i + 3])
+        put_four(weights, i, (mean, mean, mean, mean))
+
+
+@internal
+def _begin(ws: Any, ms: Any, t: float) -> None:
+    """Choose the frames until t, the end of the step, and put the history that is in them in its place, if there are
+    some."""
+    n, spins, spinning = ws.n_ext, mat(ws.spin, ws.n_attitudes, SPIN_SIZE), ivec(ws.spinning, ws.n_attitudes)
+    count = 0
+    for k in range(ws.n_attitudes):
+        i = ivec(ws.attitudes, ws.n_attitudes)[k]
+        if choose_frame(ws, ms, spins[count], i, t):
+            spinning[count] = i
+            count += 1
+            _share_weights(ws, i)
+    ws.n_spins = count
+    if count == 0:
+        return
+    rows, carries = mat(ws.turned, ms.capacity, ws.row_length), vec(ms.parameters, 8)[CARRIES] != 0.0
+    for back in range(ivec(ms.ring, RING_SIZE)[1]):
+        row, to = history_row(ws, ms, back), rows[row_index(ms, back)]
+        for i in range(ws.row_length):
+            to[i] = row[i]
+        q, v, a, aux = to[:n], to[n : 2 * n], to[2 * n : 3 * n], to[3 * n : 4 * n]
+        at = history_time(ms, back)
+        for k in range(count):
+            i = spinning[k]
+            # what a formula carries turns as accelerations do
+            carried = plus_times(four_of(aux, i), four_of(a, i), -1.0)
+            enter(spins[k], at, q, v, a, i)
+            if back == 0 and carries:
+                own = times_function(spins[k], rotation_of(spins[k], t - at), carried)
+                put_four(aux, i, plus_times(four_of(a, i), own, 1.0))
+    ms.history, ws.turned = ws.turned, ms.history
+
+
+@internal
+def _end(ws: Any, ms: Any, done: bool) -> None:
+    """The history in space again, and, where the step is `done`, the workspace's point."""
+    n, count = ws.n_ext, ws.n_spins
+    ws.n_spins = 0
+    if count == 0:
+        return
+    ms.history, ws.turned = ws.turned, ms.history
+    if not done:
+        return
+    q, v, a, aux = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.aux, n)
+    for k in range(count):
+        i, spin = ivec(ws.spinning, count)[k], mat(ws.spin, count, SPIN_SIZE)[k]
+        if vec(ms.parameters, 8)[CARRIES] != 0.0:
+            carried = plus_times(four_of(aux, i), four_of(a, i), -1.0)
+            put_four(aux, i, plus_times(four_of(spin, POINT + 8), carried, 1.0))
+        put_four(q, i, four_of(spin, POINT))
+        put_four(v, i, four_of(spin, POINT + 4))
+        put_four(a, i, four_of(spin, POINT + 8))
+
+
+@internal
+def _fastest(ws: Any) -> float:
+    """Rate of the frame that turns fastest, rad/s."""
+    rate = 0.0
+    for k in range(ws.n_spins):
+        rate = max(rate, 2.0 * mat(ws.spin, ws.n_spins, SPIN_SIZE)[k, RATES + 1])
+    return rate
+
+
+@internal
+def _partition_ends(ws: Any, h: float) -> bool:
+    """Whether the Euler parameter that follows from the norm, or the one that the others follow from (as with a hinge),
+    passes zero within two steps of size h, while another one does not."""
+    dependent = ivec(ws.dependent, ws.m_act)
+    for k in range(ws.n_spins):
+        i, spin = ivec(ws.spinning, ws.n_spins)[k], mat(ws.spin, ws.n_spins, SPIN_SIZE)[k]
+        count, which = 0, 0
+        for d in range(ws.m_act):
+            if 0 <= dependent[d] - i < 4:
+                count += 1
+                which += dependent[d] - i
+        p, rate = spin[POINT : POINT + 4], spin[POINT + 4 : POINT + 8]
+        speed = np.sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2] + rate[3] * rate[3])
+        if speed == 0.0 or (count != 1 and count != 3):
+            continue
+        across, along = np.cos(2.0 * h * speed), np.sin(2.0 * h * speed)
+        relied, best = 0.0, 0.0
+        for j in range(4):
+            now, soon = p[j], across * p[j] + along * rate[j] / speed
+            if count == 3:
+                now, soon = rate[j] / speed, across * rate[j] / speed - along * p[j]
+            least = min(abs(now), abs(soon)) if now * soon > 0.0 else 0.0
+            best = max(best, least)
+            if j == (which if count == 1 else 6 - which):
+                relied = least
+        if relied < LEAST_PART and 2.0 * relied < best:
+            return True
+    return False
+
+
+@internal
+def _turn_error(h: float, rate: float, order: float) -> float:
+    """Error norm of a formula of this order that lets a frame of this rate turn by LARGEST_TURN in a step."""
+    return (h * rate / LARGEST_TURN) ** (order + 1.0)
+
+
+@internal
+def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
+    """The step at this address from the newest row by h, with attitudes in turning frames where these are a help.
+
+    Fixed steps have none: frames come and go with the motion and the size of the steps, and errors would not fall with
+    these as they do for one formula.
+    """
+    if ws.n_attitudes == 0 or vec(ms.parameters, 8)[ESTIMATE] == 0.0:
+        return call_step(step, ws, ms, h)
+    error, control = vec(ms.error, 2), vec(ws.control, CONTROL_SIZE)
+    newton, exactness = control[NEWTON_TOLERANCE], control[EXACTNESS]
+    finer = FINER
+    while True:
+        _begin(ws, ms, history_time(ms, 0) + h)
+        fastest = _fastest(ws)
+        if h * fastest <= FAST * LARGEST_TURN:
+            finer = 1.0
+        control[NEWTON_TOLERANCE], control[EXACTNESS] = finer * newton, finer * exactness
+        status = call_step(step, ws, ms, h)
+        if status == OK and _partition_ends(ws, h):
+            vec(ws.rate, RATE_SIZE)[SENSITIVITY] = np.inf
+        _end(ws, ms, status == OK)
+        if status == OK or status == REANALYZE or finer == 1.0:
+            break
+        # rounding does not let the loops come so far: a dependent parameter passes zero
+        finer = min(1.0, COARSER * finer)
+    control[NEWTON_TOLERANCE], control[EXACTNESS] = newton, exactness
+    error[0] = max(error[0], _turn_error(h, fastest, error[1]))
+    return status
+
+
+@internal
+def select_in_frames(ws: Any, ms: Any, select: int, h: float) -> bool:
+    """Whether the function at this address proposes other steps k after a step of size h. It sees the same history as
+    a step does."""
+    choice = vec(ms.choice, CHOICE_SIZE)
+    _begin(ws, ms, history_time(ms, 0))
+    fastest = _fastest(ws)
+    status = call_step(select, ws, ms, h)
+    _end(ws, ms, False)
+    if status != OK or choice[NEXT_K] == 0.0:
+        return False
+    choice[NEXT_NORM] = max(choice[NEXT_NORM], _turn_error(h, fastest, choice[NEXT_K]))
+    return True
