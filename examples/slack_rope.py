@@ -20,7 +20,7 @@ def build() -> Model:
 
 def run() -> dict[str, Any]:
     """The jerk takes the part of the velocity along the rope: m v cos a, and the energy of that part."""
-    result = simulate(build(), 2.5, rtol=1e-9, atol=1e-11, t_eval=np.linspace(0.0, 2.5, 501))
+    result = simulate(build(), 2.5, rtol=1e-10, atol=1e-12, t_eval=np.linspace(0.0, 2.5, 501))
     drop = math.sqrt(LENGTH**2 - BESIDE**2)
     speed = math.sqrt(2.0 * G * (drop + ABOVE)) * drop / LENGTH
     return {

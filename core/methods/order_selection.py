@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, WAVES, K
+from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
 from ..state.workspace_records import CONTROL_SIZE, OK, STIFFNESS_SCALE
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
@@ -68,8 +68,8 @@ def select_k(ws: Any, ms: Any, h: float) -> int:
 
 @internal
 def select_stable_k(ws: Any, ms: Any, h: float) -> int:
-    """Propose LEAST_K steps, of an A-stable formula, once a step does not resolve the fastest vibration of a model that
-    has WAVES.
+    """Propose LEAST_K steps, of an A-stable formula, once a step does not resolve the fastest vibration of a model; of
+    one without bodies of many vibrations (`Assembly.has_waves`) LEAST_K is MOST_K.
 
     The vibration is that of the stiffness at the start. A few stiff springs are no reason: both formulas damp what is
     far beyond the step; among the vibrations of a mesh there are always some in between, which grow.
@@ -77,6 +77,6 @@ def select_stable_k(ws: Any, ms: Any, h: float) -> int:
     choice, parameters = vec(ms.choice, CHOICE_SIZE), vec(ms.parameters, 8)
     k, angle = parameters[LEAST_K], h * np.sqrt(vec(ws.control, CONTROL_SIZE)[STIFFNESS_SCALE])
     choice[NEXT_K] = 0.0
-    if choice[K] > k and parameters[WAVES] != 0.0 and angle > RESOLVED:
+    if choice[K] > k and angle > RESOLVED:
         choice[NEXT_K], choice[NEXT_NORM] = k, vec(ms.error, 2)[0]
     return OK

@@ -14,9 +14,10 @@ from ..location.probe import build_probes
 from ..location.watch import find_events
 from ..loop.controllers import CONTROLLERS
 from ..loop.sample import empty_buffer, sample_length
+from ..methods.order_selection import LEAST_K, MOST_K, select_stable_k
 from ..methods.registry import FINE_STARTER, STARTER, Formula
 from ..stage.accelerations import solve_accelerations
-from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, WAVES, K, step_address
+from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
 from ..state.run_records import (
     A2,
     ACCELERATIONS_SIGNATURE,
@@ -71,7 +72,8 @@ def build_method(formula: Formula, settings: Settings, has_waves: bool, state: N
     parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
     parameters[CARRIES], parameters[ESTIMATE] = float(formula.carries), float(settings.step is None)
-    parameters[WAVES] = float(has_waves)
+    if formula.select is select_stable_k and not has_waves:
+        parameters[LEAST_K] = parameters[MOST_K]
     for row, values in zip(weights, formula.weights, strict=False):
         row[: len(values)] = values
     arrays["choice"][K] = formula.k

@@ -37,8 +37,6 @@ NEXT_K = 1  # k that the next step shall take; 0: the same
 NEXT_NORM = 2  # error norm that it would have had
 CHOICE_SIZE = 3
 # columns of `parameters`
-WAVES = 5
-"""1: the model has bodies with many vibrations (`Assembly.has_waves`)."""
 CARRIES = 6
 """1: the formula carries accelerations of its own, `aux`, from step to step."""
 ESTIMATE = 7

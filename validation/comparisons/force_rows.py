@@ -117,7 +117,7 @@ def _measure(t: np.ndarray, channels: Channels, contact: str, pulls: bool, numbe
 def _pulls(model: Model, contact: str) -> bool:
     """Whether the law of `contact` may pull before it lets go at zero penetration."""
     law = next(c.law for c in model.contacts if c.name == contact)
-    return isinstance(law, ForceLaw) and law.release == "gap"
+    return isinstance(law, ForceLaw) and not law.never_pulls
 
 
 def _contact_rows(sides: Sides, contact: str) -> list[Row]:
