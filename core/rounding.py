@@ -24,6 +24,8 @@ MET = 1e-15
 """Of a row: a Newton correction at rare work stops here, a few roundings."""
 NEARLY_MET = 1e-11
 """Of a row: where corrections no longer halve what is left, this much of it is rounding."""
+ROW_ROUNDING = 1e-15
+"""Of the sum of the magnitudes that cancel in a row: a few roundings, which no correction takes away."""
 CONTRADICTION = 1e-8
 """Of a row: a redundant row violated by more contradicts those that it repeats. Roots of what positions are solved to,
 since redundant rows see the others' errors through their conditioning."""

@@ -29,6 +29,7 @@ from ..state.workspace_records import (
 )
 from ..tables.evaluate import constraint_norm, evaluate_constraints, evaluate_residuals
 from ..tables.levels import acceleration_level, position_level, rate_level
+from ..tables.row_rounding import row_rounding
 
 STRAINED = 8.0  # growth of the condition beyond which the constraints are solved more exactly
 
@@ -86,21 +87,31 @@ def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> 
         p = constraint_norm(ws, ws.phi)
         v = constraint_norm(ws, ws.phid)
         a = constraint_norm(ws, ws.phidd)
+        # what no longer halves is rounding where the row's terms are so large (`row_rounding`), and enough;
         # a level is judged once those above it hold: correcting q moves the residuals of v and a
         correct_p = p > tol_p and not enough_p >= p >= 0.5 * last_p
         correct_v = v > tol_v and not enough_v >= v >= 0.5 * last_v
         correct_a = a > tol_a and not enough_a >= a >= 0.5 * last_a
         if correct_p:
             if not p < 0.5 * last_p:
-                return INNER_DIVERGED
+                if not p <= row_rounding(ws, ws.q, False):
+                    return INNER_DIVERGED
+                enough_p = tol_p = p
+                continue
             last_p, last_v, last_a = p, np.inf, np.inf
         elif correct_v:
             if not v < 0.5 * last_v:
-                return INNER_DIVERGED
+                if not v <= row_rounding(ws, ws.v, False):
+                    return INNER_DIVERGED
+                enough_v = tol_v = v
+                continue
             last_v, last_a = v, np.inf
         elif correct_a:
             if not a < 0.5 * last_a:
-                return INNER_DIVERGED
+                if not a <= row_rounding(ws, ws.a, True):
+                    return INNER_DIVERGED
+                enough_a = tol_a = a
+                continue
             last_a = a
         else:
             return OK
