@@ -15,6 +15,8 @@ logger = logging.getLogger(__name__)
 
 MOST_HALVINGS = 20
 """Of a fixed step: what does not converge with a millionth of it does so for other reasons than its size."""
+MOST_FAILURES = 100
+"""In one fixed step. One in which every other small step fails would take hours."""
 AT_ONCE = 4
 """Smaller steps that are made before they grow again."""
 
@@ -30,7 +32,7 @@ class Division:
 
     def __init__(self, sim: "Simulation") -> None:
         self._sim, self._whole = sim, float(sim.clock[FIXED_STEP])
-        self._halvings = 0
+        self._halvings = self._failures = 0
         self.until, self.stop = -math.inf, math.inf
 
     def halve(self) -> bool:
@@ -38,6 +40,9 @@ class Division:
         control, by the simple iteration, whose limit is what a user wants to know, or where it has been tried."""
         sim = self._sim
         if self._whole == 0.0 or sim.outer == "simple" or self._halvings == MOST_HALVINGS:
+            return False
+        self._failures += 1
+        if self._failures > MOST_FAILURES:
             return False
         if self.stop == math.inf:
             self.until = sim.t_internal + float(sim.clock[TRIAL_STEP])
@@ -72,5 +77,5 @@ class Division:
 
     def end(self) -> None:
         """Go on with whole steps."""
-        self._halvings, self.until, self.stop = 0, -math.inf, math.inf
+        self._halvings, self._failures, self.until, self.stop = 0, 0, -math.inf, math.inf
         self._sim.clock[FIXED_STEP] = self._whole

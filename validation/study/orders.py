@@ -32,6 +32,10 @@ and NEWTON_TOLERANCE leave adds up from step to step, and accelerations, hence m
 tolerance over h. Found by refining the step beyond where errors fall; errors below are not read."""
 
 
+MOST_PARTS = 8
+"""Steps that a run may take for each fixed step."""
+
+
 @dataclass(frozen=True)
 class OrderRow:
     """One case: its errors, and what they say."""
@@ -158,9 +162,12 @@ def measure(case: OrderCase, counts: Sequence[int], swing: Swing) -> OrderRow:
 def _run(case: OrderCase, swing: Swing, h: float) -> Result:
     """With fixed steps h."""
     setting = case.setting
+    # a run whose steps are divided again and again has no order to tell
+    most = MOST_PARTS * max(round(swing.t_end / h), 1)
     return simulate(
-        swing.model(), swing.t_end, setting.method, step=h, newton_tolerance=NEWTON_TOLERANCE, **setting.options
-    )
+        swing.model(), swing.t_end, setting.method, step=h, newton_tolerance=NEWTON_TOLERANCE, max_steps=most,
+        **setting.options,
+    )  # fmt: skip
 
 
 def _errors(result: Result, swing: Swing) -> tuple[float, float, float]:
