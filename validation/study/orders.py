@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core import Result, SimulationError, simulate
+from ...core import SimulationError, simulate
 from .cases import OrderCase, order_cases
 from .swing import Swing
 
@@ -30,10 +30,6 @@ FLOOR = (3e-14, 1e-13, 1.2e-12)
 """Rounding of positions (m), velocities (m/s) and multipliers (N), times the number of steps: what double precision
 and NEWTON_TOLERANCE leave adds up from step to step, and accelerations, hence multipliers, are known to that
 tolerance over h. Found by refining the step beyond where errors fall; errors below are not read."""
-
-
-MOST_PARTS = 8
-"""Steps that a run may take for each fixed step."""
 
 
 @dataclass(frozen=True)
@@ -144,14 +140,10 @@ def measure(case: OrderCase, counts: Sequence[int], swing: Swing) -> OrderRow:
     for count in counts:
         h = swing.t_end / count
         try:
-            result = _run(case, swing, h)
+            found = errors_of(case, swing, h)
         except SimulationError as error:
             failed.append(str(error))
             continue
-        if result.stats["divided_steps"]:
-            failed.append(f"{result.stats['divided_steps']:.0f} of {count} steps of {h:.3g} s do not converge")
-            continue
-        found = _errors(result, swing)
         steps.append(h)
         errors.append(found)
         if all(error < floor * count for error, floor in zip(found, FLOOR, strict=True)):
@@ -159,19 +151,12 @@ def measure(case: OrderCase, counts: Sequence[int], swing: Swing) -> OrderRow:
     return OrderRow(case, swing.t_end, tuple(steps), tuple(errors), tuple(failed))
 
 
-def _run(case: OrderCase, swing: Swing, h: float) -> Result:
-    """With fixed steps h."""
+def errors_of(case: OrderCase, swing: Swing, h: float) -> tuple[float, float, float]:
+    """Root mean square errors of a run with fixed steps h: m, m/s, N."""
     setting = case.setting
-    # a run whose steps are divided again and again has no order to tell
-    most = MOST_PARTS * max(round(swing.t_end / h), 1)
-    return simulate(
-        swing.model(), swing.t_end, setting.method, step=h, newton_tolerance=NEWTON_TOLERANCE, max_steps=most,
-        **setting.options,
-    )  # fmt: skip
-
-
-def _errors(result: Result, swing: Swing) -> tuple[float, float, float]:
-    """Root mean square errors: m, m/s, N."""
+    result = simulate(
+        swing.model(), swing.t_end, setting.method, step=h, newton_tolerance=NEWTON_TOLERANCE, **setting.options
+    )
     q, v, multipliers = swing.exact(result.t)
     return _rms(result.q - q), _rms(result.v - v), _rms(result.multipliers - multipliers)
 
