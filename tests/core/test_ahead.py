@@ -6,10 +6,12 @@ import platform
 import shutil
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tlismni.core.ahead.__main__ import FRESH
 from tlismni.core.ahead.make import MEMORY
 from tlismni.core.ahead.module import QUICK, undefined
 from tlismni.core.ahead.packed import put, take
@@ -20,6 +22,8 @@ from tlismni.core.source_digests import c_digest, core_digest
 
 PART = ("tsuji_formula", "position_level", "eliminate", "directions", "violates_redundant")
 """Functions that take seconds to make a library of: numbers, a record, arrays; of both parts that are recorded."""
+CALLER, CALLED = ("linalg.analyze.analyze", "stage.joints.factor_joints"), "linalg5solve6factor"
+"""Two functions, each of another part, and what both call, as it is in LLVM's names."""
 
 
 def run(code: str, library: str | Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -48,11 +52,62 @@ def make(folder: Path, *arguments: str) -> Path:
     return made
 
 
+RECORDED_ONCE = """
+import json, sys
+from contextlib import contextmanager
+import llvmlite.binding as llvm
+from tlismni.core.ahead import __main__ as command, make
+
+if __name__ == "__main__":
+    whole, recorded = make.whole_module, make.recorded
+    parts, modules = [], []
+
+    @contextmanager
+    def watched(only):
+        with recorded(only) as made:
+            parts.extend(made)
+            yield parts
+
+    def once(only):
+        modules[:] = modules or [whole(only)]
+        return modules[0]
+
+    make.recorded, make.whole_module = watched, once
+    for words in json.loads(sys.argv[1]):
+        sys.argv = ["ahead", *words]
+        assert command.main() == 0
+    defined = [[x.name for x in llvm.parse_bitcode(part.bitcode).functions if not x.is_declaration] for part in parts]
+    print(json.dumps(defined))
+"""
+"""The command with each of some arguments, on one recording; prints the names of what each of its parts has defined."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """Libraries of a few functions, from one recording."""
+
+    library: Path
+    quick: Path
+    """Made in less time."""
+    names: list[list[str]]
+    """LLVM's, of the functions of each part."""
+
+
 @pytest.fixture(scope="session")
-def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
+    only = [word for name in (*PART, *CALLER) for word in ("--only", name)]
+    folders = [tmp_path_factory.mktemp(name) for name in ("part", "quick")]
+    words = [["--output", str(folder), *only] for folder in folders]
+    words[1] += ["--patience", "0"]
+    names = answer(run(RECORDED_ONCE, "none", json.dumps(words), **{k: v for k, v in FRESH.items() if k != PLACE}))
+    (library,), (quick,) = (list(folder.rglob("tlismni_core.*")) for folder in folders)
+    return Made(library, quick, names)
+
+
+@pytest.fixture(scope="session")
+def part(made: Made) -> Path:
     """A library of a few functions."""
-    only = [word for name in PART for word in ("--only", name)]
-    return make(tmp_path_factory.mktemp("part"), *only)
+    return made.library
 
 
 def test_types_as_texts() -> None:
@@ -109,11 +164,16 @@ def test_the_same_bits_as_compiled_in_the_process(part: Path) -> None:
     assert (loaded, needed) == (False, True)
 
 
-def test_code_that_is_made_in_less_time_gives_the_same_bits(part: Path, tmp_path: Path) -> None:
-    only = [word for name in PART for word in ("--only", name)]
-    quick = make(tmp_path, *only, "--patience", "0")
-    assert QUICK.encode() in quick.read_bytes() and QUICK.encode() not in part.read_bytes()
-    assert answer(run(CALLS, quick)) == answer(run(CALLS, part))
+def test_code_that_is_made_in_less_time_gives_the_same_bits(made: Made) -> None:
+    assert QUICK.encode() in made.quick.read_bytes() and QUICK.encode() not in made.library.read_bytes()
+    assert answer(run(CALLS, made.quick)) == answer(run(CALLS, made.library))
+
+
+def test_the_command_begins_anew_in_its_own_environment(tmp_path: Path) -> None:
+    """And says by its exit code that there is nothing to take."""
+    command = [sys.executable, "-m", "tlismni.core.ahead", "--take", str(tmp_path), "--no-make"]
+    assert any(os.environ.get(name) != value for name, value in FRESH.items())
+    assert subprocess.run(command, check=False).returncode == 1
 
 
 def test_a_packed_library_is_taken_if_it_is_of_these_sources(tmp_path: Path) -> None:
@@ -132,19 +192,9 @@ def test_a_packed_library_is_taken_if_it_is_of_these_sources(tmp_path: Path) -> 
     assert not place.exists() or place.read_bytes() == library.read_bytes()
 
 
-def test_what_both_recording_processes_need_has_one_name() -> None:
+def test_what_both_recording_processes_need_has_one_name(made: Made) -> None:
     """So it is in the module once: one of two functions, each of another part, calls the other."""
-    code = """
-import json
-import llvmlite.binding as llvm
-from tlismni.core.ahead.parts import recorded
-
-with recorded(("linalg.analyze.analyze", "stage.joints.factor_joints")) as made:
-    modules = [llvm.parse_bitcode(part.bitcode) for part in made]
-defined = [[x.name for x in module.functions if not x.is_declaration] for module in modules]
-print(json.dumps([[name for name in names if "linalg5solve6factor" in name] for names in defined]))
-"""
-    first, second = answer(run(code, "none", NUMBA_OPT="0"))
+    first, second = ([name for name in names if CALLED in name] for names in made.names)
     assert first == second and len(first) == 1
 
 
