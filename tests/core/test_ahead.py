@@ -340,13 +340,69 @@ def test_scenarios_give_the_same_bits_and_need_no_numba(whole: Path) -> None:
     assert not loaded
 
 
+SAMPLE = """
+import json, sys
+import numpy as np
+from tlismni.core.cones.directions import farthest_directions
+from tlismni.core.laws.friction.ambrosio import ambrosio_formula
+from tlismni.core.laws.friction.brown_mcphee import brown_mcphee_formula
+from tlismni.core.laws.friction.step import step_formula
+from tlismni.core.laws.friction.tanh import tanh_formula
+from tlismni.core.laws.friction.threlfall import threlfall_formula
+from tlismni.core.laws.hertz import hertz_formula
+from tlismni.core.laws.hunt_crossley import hunt_crossley_formula
+from tlismni.core.laws.kelvin_voigt import kelvin_voigt_formula
+from tlismni.core.laws.viscoelastic import kuwabara_kono_formula, tsuji_formula
+from tlismni.core.linalg import Factorization
+from tlismni.core.linalg.row_pivoting import pivot_rows
+
+rng = np.random.default_rng(int(sys.argv[1], 16))
+found = []
+for formula in (hertz_formula, hunt_crossley_formula, kelvin_voigt_formula, kuwabara_kono_formula, tsuji_formula):
+    for _ in range(200):
+        numbers = (1e-3, 2.0, 1.0, 1e6, 1.5, 100.0, 1.0) * rng.uniform(0.0, 1.0, 7)
+        found += [x.hex() for x in formula(*map(float, numbers))]
+for formula in (ambrosio_formula, brown_mcphee_formula, step_formula, tanh_formula, threlfall_formula):
+    for _ in range(200):
+        numbers = (1.0, 50.0, 0.3, 0.4, 0.1, 0.5, 1.0) * rng.uniform((-1.0, *[0.1] * 6), 1.0)
+        found += [x.hex() for x in formula(*map(float, numbers))]
+for n in (3, 20, 40):
+    place = {(i, int(j)): rng.uniform(3.0, 5.0) for i, j in enumerate(rng.permutation(n))}
+    for _ in range(3 * n):
+        place.setdefault((int(rng.integers(n)), int(rng.integers(n))), rng.uniform(-1.0, 1.0))
+    rows, columns = np.array(list(place)).T
+    values = np.array(list(place.values()))
+    lu = Factorization(n, rows, columns, np.arange(len(values)), dense=False)
+    lu.analyze(values)
+    found += [x.hex() for x in lu.solve(rng.normal(size=n)).tolist()]
+    matrix = rng.normal(size=(n, n))
+    kept, work = np.zeros(n, np.int64), np.zeros(8 * n * n)
+    found += [farthest_directions(matrix @ matrix.T, np.arange(n), kept, work), *kept.tolist()]
+    order = np.lexsort((columns, rows))
+    starts = np.searchsorted(rows[order], np.arange(n + 1))
+    found += pivot_rows(n, n, starts, columns[order], values[order]).pivot_column.tolist()
+print(json.dumps([found, "numba" in sys.modules]))
+"""
+
+
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+def test_the_library_that_is_here_gives_the_bits_of_the_process() -> None:
+    """Of laws, a sparse solver, pivots, at arguments that change with the sources; of whole runs with `-m full`, since
+    to compile what one takes is minutes."""
+    assert LIBRARY is not None
+    path = str(LIBRARY.path)
+    ahead, loaded = answer(run(SAMPLE, path, core_digest()))
+    here, compiled = answer(run(SAMPLE, "none", core_digest(), TLISMNI_LIBM=path))
+    assert ahead == here and (loaded, compiled) == (False, True)
+
+
 FEW = ("bouncing_ball", "pendulum_stop", "slider_crank_stop", "stick_slip", "cable_ground", "heavy_top", "dropped_box")
 
 
-@pytest.mark.slow
+@pytest.mark.full
 @pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
-def test_the_library_that_is_here_gives_the_bits_of_the_process() -> None:
-    """Of some scenarios, each time that the library is there: of all of them above."""
+def test_runs_with_the_library_that_is_here_have_the_bits_of_the_process() -> None:
+    """Of some scenarios: of all of them above."""
     assert LIBRARY is not None
     path = str(LIBRARY.path)
     ahead, loaded = answer(run(SCENARIOS, path, *FEW))

@@ -21,7 +21,7 @@ from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.errors import ExportError
 from tlismni.fmu_wrapper.export import fmi3_platform, shim_path
 from tlismni.fmu_wrapper.in_process3 import InProcess3
-from tlismni.models import load, names
+from tlismni.models import load
 
 HERE = Path(__file__).parent
 CC = shutil.which("cc")
@@ -90,13 +90,6 @@ def pendulum(tmp_path_factory):
 
 def simulation_of(scenario):
     return Simulation(scenario.model, scenario.method, scenario.rtol, scenario.atol, **scenario.options)
-
-
-@pytest.mark.parametrize("name", names())
-def test_every_scenario_validates_in_both_versions(tmp_path, name):
-    scenario = load(name)
-    for version in ("2.0", "3.0"):
-        assert validate_fmu(str(export_fmu(scenario, tmp_path / "x.fmu", version))) == [], version
 
 
 @pytest.mark.parametrize(

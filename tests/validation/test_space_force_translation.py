@@ -60,8 +60,7 @@ def ends(bodies):
 
 
 @needs_exudyn
-@pytest.mark.parametrize("on_ground", [False, True])
-@pytest.mark.parametrize("coupled", [False, True])
+@pytest.mark.parametrize(("on_ground", "coupled"), [(False, True), (True, False)])
 def test_a_bushing_turns_by_more_than_a_radian(on_ground, coupled):
     bodies = pair(about=14.0)
     stiffness, damping = np.diag([900.0, 700.0, 1200.0, 3.0, 2.0, 4.0]), np.diag([3.0, 4.0, 2.0, 0.02, 0.01, 0.03])
@@ -75,7 +74,7 @@ def test_a_bushing_turns_by_more_than_a_radian(on_ground, coupled):
         stiffness=tuple(map(tuple, stiffness)), damping=tuple(map(tuple, damping)),
     )  # fmt: skip
     model = Model(bodies=bodies, forces=[bushing], gravity=(0.0, 0.0, -9.81))
-    agree(model, (*MOTION, "two.angular_velocity_x", "two.angular_velocity_y"), 0.2, 1e-3)
+    agree(model, (*MOTION, "two.angular_velocity_x", "two.angular_velocity_y"), 0.1, 1e-3)
 
 
 @needs_exudyn
@@ -130,7 +129,9 @@ def test_forces_on_a_sleeve(force):
     bodies = pair(along=1.0, about=9.0)
     at = ends(bodies)
     model = Model(bodies=bodies, joints=[Cylindrical3D(name="sleeve", **at)], forces=[FORCES[force](at)])
-    agree(model, (*MOTION, "sleeve.angle", "sleeve.position"), 0.5, 1.25e-3)
+    # the angle passes half a turn, and a kink of its table, at 0.33 s
+    end = 0.5 if force == "table of an angle" else 0.25
+    agree(model, (*MOTION, "sleeve.angle", "sleeve.position"), end, 1.25e-3)
 
 
 @needs_exudyn
