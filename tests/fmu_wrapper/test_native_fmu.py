@@ -30,10 +30,16 @@ CC = shutil.which("cc")
 WAYS = [(False, False), (False, True), (True, False), (True, True)]
 
 
-@pytest.mark.parametrize("version", ["2.0", "3.0"])
 @pytest.mark.parametrize(
-    "name",
-    ["bouncing_ball", "chain", "slider_crank_stop", "stick_slip", "impact_oscillator", "spatial_slider_crank_stop"],
+    ("name", "version"),
+    [
+        ("bouncing_ball", "2.0"),
+        ("chain", "3.0"),
+        ("slider_crank_stop", "2.0"),
+        ("stick_slip", "3.0"),
+        ("impact_oscillator", "3.0"),
+        ("spatial_slider_crank_stop", "2.0"),
+    ],
 )
 def test_the_same_bits_as_with_python(name, version, tmp_path):
     pair = scenario_pair(name, tmp_path, version)

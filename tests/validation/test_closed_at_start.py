@@ -85,7 +85,7 @@ def test_coulomb_friction_is_refused_in_words_over_the_whole_run():
 def test_a_blow_beside_a_contact_that_starts_pressed_is_compared():
     """The first of the events has no approach; the impact that comes later has."""
     held = ball(KelvinVoigt(stiffness=K, damping=50.0), height=-9.81e-5)
-    falling = PointMass2D(name="second", mass=1.0, position=(1.0, 1e-4), velocity=(0.0, -0.1))
+    falling = PointMass2D(name="second", mass=1.0, position=(1.0, 2e-5), velocity=(0.0, -0.1))
     stop = DiskOnHalfPlane2D(
         name="stop", plane=HalfPlane2D(), disk=Disk2D(marker=Marker2D(body="second")), law=NewtonImpact(restitution=0.5)
     )

@@ -115,7 +115,7 @@ def test_a_run_that_ends_before_its_first_impact_is_compared() -> None:
 @needs_exudyn
 def test_what_cannot_be_compared_is_said() -> None:
     with pytest.raises(NotTranslatable, match="Coulomb friction"):
-        crosscheck("rocking_block", whole=True, t_end=0.01)
+        crosscheck("rocking_block", whole=True, t_end=0.01, step=5e-4)
     with pytest.raises(ScenarioError, match="did you mean"):
         crosscheck("pendulum_stp")
 

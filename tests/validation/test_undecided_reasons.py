@@ -54,7 +54,7 @@ def stopped_mass(mass: float, law: Any, deep: bool = False) -> Model:
 @needs_exudyn
 def test_a_heavy_mass_on_a_stop_is_compared_with_stiffnesses_that_suit_it() -> None:
     """With 1e6 ... 1e8 N/m^1.5 its contacts take as long as its own motion: a limit of nothing."""
-    found = crosscheck(stopped_mass(2000.0, NewtonImpact(restitution=0.7)), t_end=0.25)
+    found = crosscheck(stopped_mass(2000.0, NewtonImpact(restitution=0.7)), t_end=0.16)
     assert found.ok and not found.undecided
     assert row(found, "impulse").verdict == "agree"
 
