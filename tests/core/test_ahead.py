@@ -17,6 +17,7 @@ from tlismni.core.ahead.module import QUICK, undefined
 from tlismni.core.ahead.packed import put, take
 from tlismni.core.ahead.targets import TARGETS
 from tlismni.core.compiled.library import LIBRARY, PLACE, packed, unpacked
+from tlismni.core.compiled.lock import ProcessLock
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
 from tlismni.core.source_digests import c_digest, core_digest
 
@@ -94,14 +95,24 @@ class Made:
 
 
 @pytest.fixture(scope="session")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
-    only = [word for name in (*PART, *CALLER) for word in ("--only", name)]
-    folders = [tmp_path_factory.mktemp(name) for name in ("part", "quick")]
-    words = [["--output", str(folder), *only] for folder in folders]
-    words[1] += ["--patience", "0"]
-    names = answer(run(RECORDED_ONCE, "none", json.dumps(words), **{k: v for k, v in FRESH.items() if k != PLACE}))
-    (library,), (quick,) = (list(folder.rglob("tlismni_core.*")) for folder in folders)
-    return Made(library, quick, names)
+def made(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Made:
+    """Made once for all workers of a session."""
+    own = tmp_path_factory.getbasetemp()
+    place = (own if worker_id == "master" else own.parent) / "libraries"
+    lock = ProcessLock(place / "made.lock")
+    lock.acquire()
+    try:
+        if not (place / "names.json").exists():
+            only = [word for name in (*PART, *CALLER) for word in ("--only", name)]
+            words = [["--output", str(place / "part"), *only], ["--output", str(place / "quick"), *only]]
+            words[1] += ["--patience", "0"]
+            environment = {name: value for name, value in FRESH.items() if name != PLACE}
+            names = answer(run(RECORDED_ONCE, "none", json.dumps(words), **environment))
+            (place / "names.json").write_text(json.dumps(names))
+    finally:
+        lock.release()
+    (library,), (quick,) = (list((place / name).rglob("tlismni_core.*")) for name in ("part", "quick"))
+    return Made(library, quick, json.loads((place / "names.json").read_text()))
 
 
 @pytest.fixture(scope="session")

@@ -1,10 +1,12 @@
 """The catalogue against exudyn: every scenario in its coarse form, and in full behind a marker."""
 
 import json
+import random
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tlismni.core.source_digests import core_digest
 from tlismni.models import ScenarioError, load, names
 from tlismni.validation import Case, cases, crosscheck, crosscheck_all, run_case
 from tlismni.validation.cases import CASES
@@ -17,6 +19,27 @@ HALVES = ("split_striker", "split_wall")
 FIRST = [next(case for case in COMPARABLE if case.scenario == name) for name in names() if name not in HALVES]
 FLUCTUATING = ("woodpecker",)
 """Compared in full only: exudyn's limit is expensive there."""
+LONG = (
+    "newtons_cradle",
+    "mass_on_rod",
+    "arm_stop",
+    "bricard",
+    "double_pendulum_wall",
+    "impact_oscillator",
+    "hub_beam_stop",
+    "flexible_slider_crank_stop",
+)
+"""Scenarios whose coarse comparison takes five to fifteen seconds: two of them, others whenever the core changes; the
+rest with `-m full`."""
+SOME_LONG = random.Random(core_digest()).sample(LONG, 2)
+
+
+def marked(case: Case) -> Any:
+    """A parameter."""
+    left_out = case.scenario in LONG and case.scenario not in SOME_LONG
+    return pytest.param(case, id=case.name, marks=[pytest.mark.full] if left_out else [])
+
+
 WITH_THIRD_OPINION = (
     "bouncing_ball",
     "pendulum",
@@ -44,7 +67,7 @@ def test_every_scenario_has_a_case_that_can_be_compared_and_every_case_a_scenari
 
 
 @needs_exudyn
-@pytest.mark.parametrize("case", [c for c in FIRST if c.scenario not in FLUCTUATING], ids=lambda c: c.name)
+@pytest.mark.parametrize("case", [marked(c) for c in FIRST if c.scenario not in FLUCTUATING])
 def test_coarse_cross_check(case: Case) -> None:
     found = run_case(case, coarse=True)
     assert found.ok, wrong(found)
