@@ -50,7 +50,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """By powers of two of seconds, so that tests which share what is made for a module stay together."""
+    """By powers of two of seconds. Tests of a file that share what is made once for it stay together, where the longest
+    of them is: else each worker makes it anew for each power."""
     known = json.loads(DURATIONS.read_text())
 
     def level(item: pytest.Item) -> int:
@@ -58,7 +59,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         seconds = known.get(function, known.get("/".join(function.split("/")[:2]), LISTED))
         return max(math.ceil(math.log2(seconds / LISTED)), 0)
 
-    items.sort(key=level)
+    together: dict[Path, int] = defaultdict(int)
+    sharing = {item for item in items if _shares(item)}
+    for item in sharing:
+        together[item.path] = max(together[item.path], level(item))
+    items.sort(key=lambda item: together[item.path] if item in sharing else level(item))
+
+
+def _shares(item: pytest.Item) -> bool:
+    """Whether a test uses a fixture that its own file makes once for all tests."""
+    if not isinstance(item, pytest.Function):
+        return False
+    used = item._fixtureinfo.name2fixturedefs.values()
+    return any(d.scope == "module" and d.baseid == item.nodeid.partition("::")[0] for found in used for d in found)
 
 
 @pytest.hookimpl(tryfirst=True)
