@@ -381,7 +381,7 @@ def test_fmutool_finds_nothing_to_complain_about(tmp_path, caplog, version):
     assert caplog.records or check
 
 
-@pytest.mark.parametrize(("name", "version"), zip(names(), cycle(("2.0", "3.0"))))
+@pytest.mark.parametrize(("name", "version"), list(zip(names(), cycle(("2.0", "3.0")))))
 def test_every_scenario_is_described_validly(tmp_path, name, version):
     """Each in one version; `-m full`: in the other one, too."""
     path = export_fmu(load(name), tmp_path / "x.fmu", version)
@@ -389,7 +389,7 @@ def test_every_scenario_is_described_validly(tmp_path, name, version):
 
 
 @pytest.mark.full
-@pytest.mark.parametrize(("name", "version"), zip(names(), cycle(("3.0", "2.0"))))
+@pytest.mark.parametrize(("name", "version"), list(zip(names(), cycle(("3.0", "2.0")))))
 def test_every_scenario_is_described_validly_in_the_other_version(tmp_path, name, version):
     path = export_fmu(load(name), tmp_path / "x.fmu", version)
     assert validate_fmu(str(path)) == []
