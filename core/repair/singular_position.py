@@ -37,7 +37,9 @@ def natural_step(sim: "Simulation") -> float:
     ring, times = sim.method_arrays["ring"], sim.method_arrays["times"]
     rows = [int(ring[0] - back) % len(times) for back in range(min(int(ring[1]), RECENT))]
     gaps = -np.diff(times[rows])
-    return max(float(sim.clock[TRIAL_STEP]), float(np.median(gaps)) if len(gaps) else 0.0)
+    # a fixed step may have been divided
+    step = max(float(sim.clock[TRIAL_STEP]), sim.settings.step or 0.0)
+    return max(step, float(np.median(gaps)) if len(gaps) else 0.0)
 
 
 def find_singular(sim: "Simulation", natural: float) -> tuple[float, float] | None:

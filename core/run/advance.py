@@ -44,6 +44,7 @@ from ..state.workspace_records import (
     SINGULAR,
     WORST_CONDITION,
 )
+from .division import Division
 from .failures import failure_of
 from .locating import locate_again, locate_in_long_step
 from .painleve import refuse_passed_jam
@@ -90,6 +91,14 @@ def advance_to(
 
 def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tuple[int, int] | None) -> None:
     first, code = (step_count(sim), None) if came is None else came
+    divided = Division(sim)
+    try:
+        _go(sim, t, stop, hold, first, code, divided)
+    finally:
+        divided.end()
+
+
+def _go(sim: "Simulation", t: float, stop: float, hold: bool, first: int, code: int | None, divided: Division) -> None:
     repaired_at = math.nan
     chunk = steps_at_once(sim.assembly.n)
     while True:
@@ -101,7 +110,7 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
                 sim._handle_pending()
                 continue
             left = min(chunk, steps_left(sim, first, t))
-            code = sim.drive.go(t, stop, left, hold or not sim.compiled_events)
+            code = sim.drive.go(max(t, divided.until), min(stop, divided.stop), left, hold or not sim.compiled_events)
             sim.workspace.sync()
             sim.take_events()
         returned, code = code, None
@@ -109,7 +118,8 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
         if returned in (CHUNK, FULL):
             sim.report_progress(sim.t_internal)
         elif returned == REACHED:
-            return
+            if not divided.go_on() or sim.t_internal >= max(t, divided.until):
+                return
         elif returned == DUE:
             # only now: until the run goes on from here, samples before this time need the history
             restart_at(sim, min(b for b in sim.assembly.breakpoints if b > sim.t_internal))
@@ -120,8 +130,8 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
         elif returned == FAILED:
             raise failure_of(sim, sim.drive.status)
         elif returned == UNLOCATED:
-            if not locate_again(sim) and (sim.clock[FIXED_STEP] > 0.0 or not _shrink(sim)):
-                _fail(sim, OUTER_SLOW)
+            if not locate_again(sim) and not (divided.halve() if sim.clock[FIXED_STEP] > 0.0 else _shrink(sim)):
+                _fail(sim, OUTER_SLOW, divided)
         elif returned == JAM:
             if not _go_by_impulses(sim, "sliding contacts jam"):
                 refuse_passed_jam(sim)
@@ -145,8 +155,8 @@ def _advance_to(sim: "Simulation", t: float, stop: float, hold: bool, came: tupl
         elif returned in (INNER_DIVERGED, SINGULAR, REANALYZE) and sim.clock[FIXED_STEP] == 0.0 and _shrink(sim):
             if returned == REANALYZE:  # the matrix of the shorter step has other pivots
                 repaired_at = math.nan
-        elif not _pass_after_all(sim) and not _go_by_impulses(sim, _reason(returned)[1]):
-            _fail(sim, returned)
+        elif not (divided.halve() or _pass_after_all(sim) or _go_by_impulses(sim, _reason(returned)[1])):
+            _fail(sim, returned, divided)
 
 
 def _next_break(sim: "Simulation") -> float:
@@ -238,12 +248,12 @@ def _reason(code: int) -> tuple[str, str]:
     return _REASONS.get(code, ("outer", f"status {code}"))
 
 
-def _fail(sim: "Simulation", code: int) -> None:
+def _fail(sim: "Simulation", code: int, divided: Division) -> None:
     from ..repair.singular_position import near_singular
 
     loop, reason = _reason(code)
     t, h, settings = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.settings
-    tried = f"fixed step {h:.3g} s" if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"
+    tried = divided.tried() if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"
     if sim.outer == "simple" and loop == "outer":
         rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
         remedy = (

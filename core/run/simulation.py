@@ -63,6 +63,10 @@ class Simulation(Engine):
     ModelError, ConsistencyError : before anything is computed.
     """
 
+    divided_steps: int = 0
+    """Fixed steps that did not converge and were divided inside."""
+    reported_division: bool = False
+    """That steps are divided has been said: once is enough."""
     reported_jumps: frozenset[int] = frozenset()
     """Rows of the motions whose large jumps have been said: once is enough."""
     stored_events: tuple[Event, ...] = ()
@@ -252,7 +256,7 @@ class Simulation(Engine):
         """Counters of the run so far."""
         counters = self.workspace.arrays["counters"]
         counts = {name: int(counters[k]) for k, name in enumerate(_COUNTER_NAMES[:COUNTERS_SIZE])}
-        return {**counts, "fallbacks": len(self.fallbacks)}
+        return {**counts, "fallbacks": len(self.fallbacks), "divided_steps": self.divided_steps}
 
     def set_inputs(self, values: Mapping[str, float], derivatives: Mapping[str, Sequence[float]] | None = None) -> None:
         """Set input channels from the present time on.

@@ -63,6 +63,8 @@ class Snapshot(NamedTuple):
     """Beside the state."""
     fallbacks: tuple[Any, ...]
     """Beside the state."""
+    divided_steps: int
+    """Beside the state."""
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """The arrays by name."""
@@ -96,6 +98,7 @@ class Snapshot(NamedTuple):
         return {
             "counters": self.counters.tolist(),
             "fallbacks": [[f.t, f.outer, f.reason] for f in self.fallbacks],
+            "divided_steps": self.divided_steps,
         }
 
 
@@ -149,6 +152,7 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         sim.table.initial_energy,
         workspace.arrays["counters"].copy(),
         tuple(sim.fallbacks),
+        sim.divided_steps,
     )  # fmt: skip
 
 
@@ -187,4 +191,5 @@ def snapshot_of(
         float(facts["initial_energy"]),
         np.array(past["counters"], dtype=np.int64),
         tuple(fallback(*entry) for entry in past["fallbacks"]),
+        int(past["divided_steps"]),
     )

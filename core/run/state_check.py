@@ -146,7 +146,11 @@ def _check_facts(sim: "Simulation", state: State) -> None:
     energy = facts["initial_energy"]
     _need("initial_energy", _text_number(energy), f"is {energy!r}, no energy")
     past = state.past
-    _need("past", set(past) == {"counters", "fallbacks"}, f"is {sorted(past)}: counters and fallbacks are needed")
+    _need(
+        "past",
+        set(past) == {"counters", "fallbacks", "divided_steps"},
+        f"is {sorted(past)}: counters, fallbacks and divided_steps are needed",
+    )
     counters = past["counters"]
     whole = isinstance(counters, list) and all(isinstance(x, int) and not isinstance(x, bool) for x in counters)
     fits = whole and len(counters) == COUNTERS_SIZE and all(0 <= x <= _LARGEST_COUNT for x in counters)
@@ -156,6 +160,8 @@ def _check_facts(sim: "Simulation", state: State) -> None:
         isinstance(f, list) and len(f) == 3 and _number(f[0]) and isinstance(f[1], str) and isinstance(f[2], str)
         for f in fallbacks
     )
+    divided = past["divided_steps"]
+    _need("divided_steps", _indices([divided], _LARGEST_COUNT), f"is {divided!r}, no count")
     _need("fallbacks", listed, f"is {fallbacks!r}: time, outer loop and reason each")
     names = [contact.name for contact in assembly.contacts]
     for event in state.events:

@@ -160,7 +160,7 @@ def test_model_file_needs_an_end_time(tlismni: Command, tmp_path: Path) -> None:
         (("chain", "--option", "k=two"), "not 'two'"),
         (("chain", "--option", "record=false"), "no option ['record']"),
         (("no_such_file.json", "--t-end", "1"), "No such file"),
-        (("chain", "--step", "1.0"), "Use a smaller step"),
+        (("chain", "--step", "1.0", "--option", "outer=simple"), "or a smaller step"),
     ],
 )
 def test_failures_are_one_line_and_exit_code_1(tlismni: Command, arguments: tuple[str, ...], text: str) -> None:

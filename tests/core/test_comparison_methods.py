@@ -7,7 +7,7 @@ import pytest
 from helpers import G, circle_pendulum, order, pendulum_angles, point_pendulum, residuals, rod_pendulum
 from test_orders import ANGLE, RATE, exact, swing
 from test_state import CASES, started, trajectory
-from tlismni.core import METHODS, ModelError, Simulation, SimulationError, simulate
+from tlismni.core import METHODS, EquationSystem, ModelError, Simulation, SimulationError, simulate
 from tlismni.core.state.workspace_records import CORRECTION
 
 VARIANTS = {
@@ -268,9 +268,17 @@ def test_bad_options_are_refused_by_name(method, options, named):
 
 
 def test_a_step_that_no_newton_iteration_solves_ends_in_an_error_with_the_partial_result():
+    def jumps_back(t, q, v):
+        return [np.where(q[0] + 1e3 * v[0] > 0.1, -1e12, 1e12)]
+
     with pytest.raises(SimulationError, match="hht_i3") as caught:
-        run("hht_i3", point_pendulum(ANGLE, 8.0), 5.0, step=1.0)
+        run("hht_i3", EquationSystem(mass=np.eye(1), force=jumps_back, q0=[0.0], v0=[0.0]), 1.0, step=1e-3)
     assert len(caught.value.partial) >= 1
+
+
+def test_a_step_that_one_newton_iteration_does_not_solve_is_divided():
+    result = run("hht_i3", point_pendulum(ANGLE, 8.0), 5.0, step=1.0)
+    assert result.stats["divided_steps"] == 5 and result.t[-1] == 5.0
 
 
 def test_fast_turns_need_no_partition():

@@ -136,6 +136,7 @@ def forge_past(name):
     for what, value in (
         ("counters", []), ("counters", [0] * 13), ("counters", [-1] * 12), ("counters", [2**60] * 12),
         ("counters", [0.5] * 12), ("counters", None), ("fallbacks", [[1]]), ("fallbacks", "x"), ("more", 0),
+        ("divided_steps", -1), ("divided_steps", 0.5),
     ):  # fmt: skip
         forged = replace(state, past={**state.past, what: value})
         try:
@@ -183,7 +184,7 @@ def test_what_is_out_of_range_is_refused():
 
 
 def test_a_past_that_cannot_be_is_refused():
-    assert forge_past("a chain") == 9
+    assert forge_past("a chain") == 11
 
 
 @pytest.mark.parametrize("name", ["a pendulum over impacts", "a chain"])

@@ -127,7 +127,7 @@ def test_looking_and_what_lies_behind_change_no_byte_of_a_state(name, t, method)
     past = replace(
         State.from_bytes(state.to_bytes()),
         events=(),
-        past={"counters": [7] * len(state.past["counters"]), "fallbacks": []},
+        past={"counters": [7] * len(state.past["counters"]), "fallbacks": [], "divided_steps": 3},
     )
     assert past == state and hash(past) == hash(state) and past.to_bytes() != state.to_bytes()
     other.advance(0.5 * t)

@@ -105,7 +105,7 @@ def test_steps_that_fail_are_reported() -> None:
     (case,) = (c for c in order_cases(["bdf"]) if c.setting.options["order"] == 1)
     row = measure(case, (8, *COUNTS[8:12]), Swing())
     assert len(row.failed) + len(row.steps) == 5
-    assert row.failed and "stopped at t" in row.failed[0]
+    assert row.failed and "do not converge" in row.failed[0]
     assert row.to_dict()["failed"] == list(row.failed)
 
 

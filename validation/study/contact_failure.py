@@ -168,6 +168,8 @@ def measure(
         run.run_to(problem.t_end or 0.0)
     except SimulationError as error:
         return ContactRow(problem.label, setting, jump, step, None, exact, str(error))
+    if divided := run.stats["divided_steps"]:
+        return ContactRow(problem.label, setting, jump, step, None, exact, f"{divided} steps do not converge")
     return ContactRow(problem.label, setting, jump, step, first_contact(run), exact)
 
 

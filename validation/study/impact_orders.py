@@ -124,7 +124,7 @@ def measure(
             failed.append(str(error))
             continue
         if found is None:
-            failed.append(f"step {t_end / count:.3g} s: another number of blows")
+            failed.append(f"step {t_end / count:.3g} s: another number of blows, or steps that do not converge")
             continue
         steps.append(t_end / count)
         errors.append(found)
@@ -135,7 +135,7 @@ Problem = tuple[Scenario, tuple[Blow, ...]]
 
 
 def _errors(case: OrderCase, h: float, problems: Sequence[Problem]) -> tuple[float, float] | None:
-    """Root mean square errors of times and impulses; None if some run has another number of blows."""
+    """Root mean square errors of times and impulses; None if some run has another number of blows, or divides steps."""
     times, impulses = [], []
     for scenario, blows in problems:
         result = simulate(
@@ -143,7 +143,7 @@ def _errors(case: OrderCase, h: float, problems: Sequence[Problem]) -> tuple[flo
             record=False, **case.setting.options,
         )  # fmt: skip
         impacts = [event for event in result.events if event.kind == "impact"]
-        if len(impacts) != len(blows):
+        if len(impacts) != len(blows) or result.stats["divided_steps"]:
             return None
         times += [impact.t - blow.t for impact, blow in zip(impacts, blows, strict=True)]
         impulses += [impact.impulse - blow.impulse for impact, blow in zip(impacts, blows, strict=True)]

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core import SimulationError, simulate
+from ...core import Result, SimulationError, simulate
 from .cases import OrderCase, order_cases
 from .swing import Swing
 
@@ -140,10 +140,14 @@ def measure(case: OrderCase, counts: Sequence[int], swing: Swing) -> OrderRow:
     for count in counts:
         h = swing.t_end / count
         try:
-            found = errors_of(case, swing, h)
+            result = _run(case, swing, h)
         except SimulationError as error:
             failed.append(str(error))
             continue
+        if result.stats["divided_steps"]:
+            failed.append(f"{result.stats['divided_steps']:.0f} of {count} steps of {h:.3g} s do not converge")
+            continue
+        found = _errors(result, swing)
         steps.append(h)
         errors.append(found)
         if all(error < floor * count for error, floor in zip(found, FLOOR, strict=True)):
@@ -151,12 +155,16 @@ def measure(case: OrderCase, counts: Sequence[int], swing: Swing) -> OrderRow:
     return OrderRow(case, swing.t_end, tuple(steps), tuple(errors), tuple(failed))
 
 
-def errors_of(case: OrderCase, swing: Swing, h: float) -> tuple[float, float, float]:
-    """Root mean square errors of a run with fixed steps h: m, m/s, N."""
+def _run(case: OrderCase, swing: Swing, h: float) -> Result:
+    """With fixed steps h."""
     setting = case.setting
-    result = simulate(
+    return simulate(
         swing.model(), swing.t_end, setting.method, step=h, newton_tolerance=NEWTON_TOLERANCE, **setting.options
     )
+
+
+def _errors(result: Result, swing: Swing) -> tuple[float, float, float]:
+    """Root mean square errors: m, m/s, N."""
     q, v, multipliers = swing.exact(result.t)
     return _rms(result.q - q), _rms(result.v - v), _rms(result.multipliers - multipliers)
 
