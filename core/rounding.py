@@ -34,6 +34,8 @@ ONLY_ROUNDING = 8.0 * 2.220446049250313e-16
 CONTINUOUS = 1e-9
 """Of a row's rate: a larger change at a breakpoint is a jump of a driver's rate. What the constraints are met to is a
 thousand times smaller."""
+COMPATIBLE = 1e-12
+"""Part of a force by which rows of compatibility that have not been renewed may be off."""
 RANK_TOLERANCE = 1e-9
 """Of a row: with less left of it after elimination it repeats others."""
 NOT_DEPENDENT = 1e-9
@@ -91,9 +93,13 @@ NO_SLIDING = 2e-13
 PRESSING = 1e-6
 """Of the accelerations: with more, the gap of shapes that touch begins to close. The forces of many contacts leave less
 of it."""
+IMPLIED_MOVES = 1e-9
+"""Of the level of positions: a closed gap that others imply, and that has moved by more, they do not imply."""
 SLIP_EXCESS = 1e-9
 """Of its limit: friction that is beyond it by no more has not passed it. Blocks that ride on one another need exactly
 the limit all along, and rounding must not let them slip."""
+TURNS = 1e-6
+"""The same where friction at its limit turns: from here on its direction is taken anew."""
 UNSOLVED = 1e-7
 """Of the fastest motion: rounds of impacts that leave less, and no less than those before, are at their end."""
 FIRST_TOUCH = 1e-8
@@ -152,6 +158,8 @@ FRICTION_ENOUGH = 1e-14
 """Of the largest force of several contacts in space: what a sweep changes when it is done."""
 FRICTION_NEAR = 1e-12
 """The same: what Newton's method may leave."""
+FRICTION_EXACT = 1e-10
+"""Of the largest force: what extrapolated forces may leave."""
 FRICTION_GOOD = 1e-8
 """The same: contacts that nearly repeat each other leave what they differ by."""
 FRICTION_ROUGH = 1e-5

@@ -50,7 +50,7 @@ from ..stage import accelerations, joints
 from ..state import run_records as run_records
 from ..state.method_records import METHOD_TYPE, STEP_SIGNATURE
 from ..state.workspace_records import ENGAGE_SIGNATURE, EVALUATE_SIGNATURE, STAGE_SIGNATURE, WORKSPACE_TYPE
-from ..tables import building, evaluate, levels, matrix_words, partition_building, probe, projection
+from ..tables import building, compatibility, evaluate, levels, matrix_words, partition_building, probe, projection
 from .formed import forms
 
 _WS, _MS, _LC, _DR = WORKSPACE_TYPE, METHOD_TYPE, run_records.LOOP_TYPE, run_records.DRIVE_TYPE
@@ -153,6 +153,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield projection.meet, (_WS, _FLAG)
     yield partition_building.partition_wanted, (_WS,)
     yield probe.set_probe, (_WS,)
+    yield compatibility.share_load, (_WS,)
     yield matrix_words.matrix_words, (_WS,)
     yield matrix_words.save_matrices, matrix_words.SAVE_ARGUMENTS
     yield matrix_words.restore_matrices, matrix_words.RESTORE_ARGUMENTS

@@ -89,10 +89,10 @@ def tangent(sim: Simulation, c_q: float, c_v: float) -> tuple[Floats, Floats]:
     workspace, n = sim.workspace, sim.assembly.n
     evaluate_tangent(workspace.record, c_q, c_v)
     structure = workspace.structure
-    size = n + len(structure.active)
+    size = n + len(structure.multiplier_rows)
     full = np.zeros((size, size))
     np.add.at(full, (structure.rows, structure.cols), workspace.arrays["values"][: structure.nnz])
-    return full[:n, :n], full[n:, :n]
+    return full[:n, :n], full[n : n + structure.m_act, :n]
 
 
 def matrices(sim: Simulation) -> Matrices:

@@ -46,7 +46,7 @@ def friction_cones_size(n: int) -> int:
 
 
 @internal
-def _sweep(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, part: float) -> Any:
+def sweep_over_cones(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, part: float) -> Any:
     """(found, largest change, largest force) of one sweep over all contacts, each of which goes `part` of its way."""
     change, largest = 0.0, 0.0
     for i in range(n):
@@ -79,7 +79,7 @@ def _sweep(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: 
 
 
 @internal
-def _newton(
+def newton_on_cones(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
 ) -> float:
     """Semismooth Newton from p, which becomes the best point found: the residual there."""
@@ -122,13 +122,13 @@ def _give_way(
                 soft[i, j] = a[i, j]
             soft[i, i] += first * a[i, i]
         for _ in range(MOST_SWEEPS):
-            found, change, largest = _sweep(n, soft, b, mu, base, known, way, p, 1.0)
+            found, change, largest = sweep_over_cones(n, soft, b, mu, base, known, way, p, 1.0)
             if not found:
                 return False
             if change <= FRICTION_FOLLOWED * largest:
                 break
         if follow_cones(n, a, b, mu, base, known, way, p, first, longest, work):
-            _newton(least_norm, n, a, b, mu, base, known, way, p, work)
+            newton_on_cones(least_norm, n, a, b, mu, base, known, way, p, work)
             for i in range(n):
                 p[i] = max(p[i], base[i])
             if motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_GOOD:
@@ -162,7 +162,7 @@ def solve_friction_cones(
     sweeps, wait, part, before, change, largest, followed = 0, SWEEPS, 1.0, math.inf, 0.0, 0.0, False
     while sweeps < MOST_SWEEPS:
         for _ in range(wait):
-            found, change, largest = _sweep(n, a, b, mu, base, known, way, p, part)
+            found, change, largest = sweep_over_cones(n, a, b, mu, base, known, way, p, part)
             sweeps += 1
             if not found:
                 return FAILED
@@ -171,7 +171,7 @@ def solve_friction_cones(
         for i in range(3 * n):
             kept[i] = p[i]
         largest = 0.0
-        left = _newton(least_norm, n, a, b, mu, base, known, way, p, work)
+        left = newton_on_cones(least_norm, n, a, b, mu, base, known, way, p, work)
         for i in range(n):
             largest = max(largest, p[i])
         # directions that nearly repeat each other leave what they differ by

@@ -6,6 +6,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import REACHES_LIMIT, REACHES_LIMIT_NOW, STICKS_STILL
+from .free_tangents import is_free, is_full, list_held
 from .jams import name_jammed, refuse_jam
 from .loaded import note_loaded
 from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
@@ -31,6 +32,7 @@ from .records import (
     MU,
     NO_FORCES,
     NONE,
+    OTHER_FLAG,
     PART,
     RATE,
     READY,
@@ -108,33 +110,39 @@ def balance_in_space(ev: Any, ws: Any, part: Any, more: bool) -> int:
         b[i], b[count + i], b[2 * count + i] = col(ev, B_N)[i], col(ev, B_T)[i], col(ev, B_S)[i]
         fastest = max(fastest, abs(b[i]), abs(b[count + i]), abs(b[2 * count + i]))
         direction[i], col(ev, BASE)[i] = col(ev, KNOWN)[i], 0.0
-    mu = col(ev, MU)
+    mu, free = col(ev, MU), col(ev, OTHER_FLAG)
     for _ in range(2 * count + 2):
         for i in range(count):
             mu[i] = col(ev, KINETIC)[i] if direction[i] != 0.0 else col(ev, STATIC)[i]
         if not solve_cones_in_space(ev, a, count, takes, b, mu, col(ev, BASE), direction, p):
             name_jammed(ev, ws)
             return NO_FORCES
-        again = False
+        again, held = False, 0
+        for i in range(count):
+            col(ev, F_N)[i], col(ev, F_T)[i], col(ev, F_S)[i] = p[i], p[count + i], p[2 * count + i]
+        if any_slips:
+            held = list_held(ev, ws, direction, REACHES_LIMIT_NOW)
+            for i in range(count):
+                full = direction[i] == 0.0 and mu[i] > 0.0 and is_full(ev, i, REACHES_LIMIT_NOW)
+                free[i] = 1.0 if full and is_free(ev, held, i) else 0.0
         for i in range(count):
             w_n, w_t, w_s = b[i], b[count + i], b[2 * count + i]
             for j in range(3 * count):
                 w_n += a[i, j] * p[j]
                 w_t += a[count + i, j] * p[j]
                 w_s += a[2 * count + i, j] * p[j]
-            col(ev, F_N)[i], col(ev, F_T)[i], col(ev, F_S)[i] = p[i], p[count + i], p[2 * count + i]
             col(ev, W_N)[i], col(ev, W_T)[i], col(ev, W_S)[i] = w_n, w_t, w_s
             if direction[i] == 0.0 and mu[i] > 0.0 and p[i] > 0.0:
                 # at its limit, and it moves: it begins to slide, against its friction
                 force, limit = math.sqrt(p[count + i] ** 2 + p[2 * count + i] ** 2), mu[i] * p[i]
                 moves = math.sqrt(w_t * w_t + w_s * w_s) > STICKS_STILL * fastest
-                # contacts that hold each other reach it together
-                now = any_slips
-                least = limit * (1.0 - (REACHES_LIMIT_NOW if now else REACHES_LIMIT))
-                if force >= least and (moves or now):
+                # where a contact has its event at its limit, so have those that nothing else holds
+                now = any_slips and not moves
+                least = limit * (1.0 - (REACHES_LIMIT_NOW if any_slips else REACHES_LIMIT))
+                if force >= least and (moves or (now and free[i] != 0.0)):
                     direction[i] = BEGINS
                     col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -p[count + i] / force, -p[2 * count + i] / force
-                    again = again or now or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
+                    again = again or any_slips or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
             elif more and takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0:
                 if w_n < -1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
                     takes[i], again = 1.0, True

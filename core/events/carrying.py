@@ -23,6 +23,7 @@ from .records import (
     FIRST,
     FLAG,
     KINETIC,
+    NEW_IMPLIED,
     NEW_RATIO,
     NEW_SLIDE,
     RANK,
@@ -65,6 +66,7 @@ def _keep(ev: Any, ws: Any) -> int:
     slide, ratio, kinetic, direction = col(ev, NEW_SLIDE), col(ev, NEW_RATIO), col(ev, KINETIC), col(ev, DIRECTION)
     rank = real(ev)[RANK]
     clear(flag, count)
+    clear(col(ev, NEW_IMPLIED), count)
     stuck, normals, kept = sticking(ev), 0, 0
     for i in range(count):
         if closes[i] != 0.0:

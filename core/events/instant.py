@@ -19,6 +19,7 @@ from ..cones.directions import (
     independent_size,
 )
 from ..cones.friction_cones import friction_cones_size
+from ..cones.least_forces import least_forces_size
 from ..laws import ForceLaw
 from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
@@ -117,7 +118,9 @@ class Instant:
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
                 "space_a": spatial * spatial, "space_b": spatial, "space_p": spatial,
                 "pressing_a": spatial * spatial, "torques": (spatial // 3) * n,
-                "space_room": spatial * spatial + 4 * spatial + friction_cones_size(most) if spatial else 0,
+                "space_room": spatial * spatial + 4 * spatial + friction_cones_size(most) + least_forces_size(most)
+                if spatial
+                else 0,
                 "slots_work": min(n * n, n + entries_of_few(assembly, contacts)[0]),
             },
             {

@@ -11,10 +11,11 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import (
-    ALONG,
+    AT_LIMIT,
     AXIS,
     CLOSED,
     GAP_START,
+    IMPLIED,
     LEAN,
     MEMORY_SIZE,
     MODE,
@@ -44,6 +45,7 @@ from .records import (
     GAP,
     HELD_SPIN,
     MET_LOSS,
+    NEW_IMPLIED,
     NEW_RATIO,
     NEW_SLIDE,
     NO_ACCELERATIONS,
@@ -84,6 +86,7 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         memory[MODE] = CLOSED if taken else OPEN
         memory[SLIDE] = col(ev, NEW_SLIDE)[i] if taken else STUCK
         memory[RATIO] = col(ev, NEW_RATIO)[i] if taken else 0.0
+        memory[IMPLIED] = col(ev, NEW_IMPLIED)[i] if taken else 0.0
         if taken and ws.tangents == 2 and not in_space(ws, k):
             _take_in_plane(memory, col(ev, COS_WAY)[i])
         if not taken:
@@ -118,7 +121,7 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 def _take_in_plane(memory: Any, way: float) -> None:
     """What has been decided in space, for the memory of a contact of the plane (`each_kind.py`); `way`: cosine of its
     direction."""
-    if memory[SLIDE] == ALONG:
+    if memory[SLIDE] == AT_LIMIT:
         memory[SLIDE], memory[RATIO] = STUCK, 0.0
     elif memory[SLIDE] == 1.0:
         memory[SLIDE] = np.sign(way)

@@ -23,6 +23,7 @@ from ..state.workspace_records import (
     SENSITIVITY,
     structure_at,
 )
+from ..tables.compatibility import analyze_equations
 from ..tables.evaluate import evaluate_tangent
 from ..tables.partition_building import partition_wanted
 from ..tables.probe import set_probe
@@ -42,7 +43,7 @@ def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     counters, rate = ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE)
     counters[PARTITIONS] += 1
     counters[ANALYSES] += 1
-    code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
+    code = analyze_equations(ws, ws.kkt)
     if code == OK and ws.m_act > 0:
         code = call_analyze(ws.analyze, lu_at(ws.lu_d), ws.values)
     if code == OK and 0 < ws.m_held < ws.m_act:

@@ -4,9 +4,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
+from ..cones.directions import call_farthest
 from ..cones.friction_cones import FOUND, solve_friction_cones
-from ..linalg.small import call_least_norm
-from ..rounding import DIRECTION_RANK, FRICTION_NEAR, STICKS_STILL
+from ..cones.least_forces import take_least_forces
+from ..cones.projections import motion_of
+from ..rounding import STICKS_STILL
 from ..tables.held import in_space
 from .forces import cones_at
 from .records import COS_WAY, COUNT, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, col, whole
@@ -61,44 +63,23 @@ def push_in_space(ev: Any, ws: Any, p: Any) -> None:
 
 
 @internal
-def _spread(least_norm: int, n: int, a: Any, b: Any, mu: Any, known: Any, p: Any, work: int) -> None:
-    """Friction of contacts that stick is not unique where they hold each other: of all that leave the same motion take
-    the one that is farthest from its limits, by the sum of squares, if it is within them all."""
-    m, fastest, held = 3 * n, 0.0, 0
-    for i in range(m):
+def _repeat(ev: Any, n: int, a: Any, b: Any, known: Any, p: Any, work: int) -> bool:
+    """True if rows of the contacts that press repeat each other, normals and tangents of those that stick, so that
+    their forces p are not unique."""
+    fastest, rows = 0.0, ivec(work, 3 * n)
+    for i in range(3 * n):
         fastest = max(fastest, abs(b[i]))
-    sticking, matrix = ivec(work, n), work + 8 * n
-    for i in range(n):
-        speed = 0.0
-        for block in range(1, 3):
-            w = b[block * n + i]
-            for j in range(m):
-                w += a[block * n + i, j] * p[j]
-            speed = max(speed, abs(w))
-        if known[i] == 0.0 and mu[i] * p[i] > 0.0 and speed <= STICKS_STILL * fastest:
-            sticking[held] = i
-            held += 1
-    if held < 2:
-        return
-    shares, effect = mat(matrix, m, 2 * held), mat(matrix + 8 * 2 * m * held, m, 1)
-    found = mat(matrix + 8 * (2 * m * held + m), 2 * held, 1)
-    for i in range(m):
-        effect[i, 0] = 0.0
-        for k in range(held):
-            for block in range(2):
-                j = (block + 1) * n + sticking[k]
-                shares[i, 2 * k + block] = a[i, j] * mu[sticking[k]] * p[sticking[k]]
-                effect[i, 0] += a[i, j] * p[j]
-    call_least_norm(least_norm, shares, effect, found, DIRECTION_RANK, matrix + 8 * (2 * m * held + m + 2 * held))
-    largest = 0.0
-    for k in range(held):
-        largest = max(largest, found[2 * k, 0] ** 2 + found[2 * k + 1, 0] ** 2)
-    # (their limits as well as the forces are known)
-    if largest > 1.0 + FRICTION_NEAR:
-        return
-    for k in range(held):
-        for block in range(2):
-            p[(block + 1) * n + sticking[k]] = found[2 * k + block, 0] * mu[sticking[k]] * p[sticking[k]]
+    count = 0
+    for block in range(3):
+        for i in range(n):
+            row = block * n + i
+            sticks = block == 0 or (known[i] == 0.0 and abs(motion_of(a, b, p, row)) <= STICKS_STILL * fastest)
+            if p[i] >= 0.0 and a[row, row] > 0.0 and sticks:
+                if block > 0 or abs(motion_of(a, b, p, row)) <= STICKS_STILL * fastest:
+                    rows[count] = row
+                    count += 1
+    kept, room = ivec(work + 24 * n, 3 * n), vec(work + 48 * n, count * (count + 2))
+    return int(call_farthest(ev.farthest, a, rows[:count], kept, room)) < count
 
 
 @internal
@@ -135,9 +116,9 @@ def solve_cones_in_space(
         p[i] = 0.0
     if status != FOUND:
         return False
-    _spread(
-        cones_at(ev.cones).least_norm, n, own, own_b, own_mu, own_known, own_p, ev.space_room + 8 * (9 * n * n + 11 * n)
-    )
+    work = ev.space_room + 8 * (9 * n * n + 11 * n)
+    if n > 1 and _repeat(ev, n, own, own_b, own_known, own_p, work):
+        take_least_forces(cones_at(ev.cones).least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work)
     for i in range(n):
         for block in range(3):
             p[block * count + some[i]] = own_p[block * n + i]

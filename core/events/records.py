@@ -93,8 +93,9 @@ instant_at = record_view(INSTANT_TYPE)
     EARLY,                             # of contacts that stick, the larger, the earlier in their order
     SPIN, HELD_SPIN,                   # r w_n on a patch, m/s; part of the torque against it at rest
     ZETA, P_SPIN, SPIN_BEFORE,         # impulse M/r against it, N s: of one problem, of a blow; the spin before, m/s
-) = range(86)  # fmt: skip
-COLUMNS = 86
+    NEW_IMPLIED,                       # which of its rows others imply: IMPLIED of `state/modes.py`
+) = range(87)  # fmt: skip
+COLUMNS = 87
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)

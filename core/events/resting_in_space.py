@@ -6,10 +6,12 @@ What an instant finds out about the direction of sliding is kept as WAY.
 import math
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import NO_ACCELERATION, PERHAPS_REST
-from ..state.modes import CLOSED, MEMORY_SIZE
+from ..state.modes import CLOSED, IMPLIED, MEMORY_SIZE, OF_NORMAL
 from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
@@ -77,9 +79,10 @@ def begin_rest_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
     read_rates_in_space(ev, ws)
     _look(ev, dr, ws)
-    slow = whole(ev)[STRUCK] == 0
+    slow, memory = whole(ev)[STRUCK] == 0, mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
     for i in range(count):
-        held = whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED
+        implied = ms.exact != 0 and np.int64(memory[contacts[i], IMPLIED]) & OF_NORMAL != 0
+        held = whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED and not implied
         at_rest[i] = 1.0 if held or abs(col(ev, RATE)[i]) <= col(ev, ROUNDING)[i] else 0.0
         slow = slow or abs(col(ev, RATE)[i]) <= PERHAPS_REST * rate_size(ws, contacts[i])
     whole(ev)[READY] = 0

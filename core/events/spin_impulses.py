@@ -12,11 +12,11 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.one_cone import one_cone
 from ..cones.patches import one_patch, sweep_patches
-from ..linalg import lu_at, solve
 from ..location.probe import probe_of
 from ..model.rotation3d import times
 from ..shapes.normal3d import SIZE, pair_of
 from ..shapes.turning3d import FRICTION_RADIUS, turning_gradient
+from ..tables.compatibility import solve_equations
 from .rates_in_space import masses, solve_cones_in_space
 from .records import (
     BASE,
@@ -56,7 +56,7 @@ def find_spins(ev: Any, ws: Any, lc: Any) -> None:
                 z += directions[row, j] * v[j]
             for j in range(ws.m_act):
                 rhs[n + j] = 0.0
-            solve(lu_at(ws.kkt_query), ws.rhs)
+            solve_equations(ws, ws.kkt_query)
             for j in range(n):
                 responses[row, j] = rhs[j]
         col(ev, SPIN)[i] = z

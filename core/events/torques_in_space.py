@@ -8,10 +8,10 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg import lu_at, solve
 from ..location.probe import can_look, pull_alone
 from ..shapes.gripping3d import TURNS_HARD
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE, OPEN
+from ..tables.compatibility import solve_equations
 from ..tables.evaluate import evaluate_residuals
 from .rates_in_space import masses
 from .records import AXIS_NOW, FLAG, TURNS, clear, col, whole
@@ -80,7 +80,7 @@ def press_with_torques(ev: Any, ws: Any, count: int) -> None:
             rhs[j] = torques[i, j] - directions[i, j]
         for j in range(ws.m_act):
             rhs[n + j] = 0.0
-        solve(lu_at(ws.kkt_query), ws.rhs)
+        solve_equations(ws, ws.kkt_query)
         for k in range(3 * count):
             if a[k, k] == 0.0:
                 continue

@@ -9,14 +9,13 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg import lu_at, solve
-from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ROOM
 from ..location.probe import can_look, gradient_alone, tell_gradients
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
 from ..state.run_records import COUNTS_SIZE, HERE, call_accelerations, loop_at
 from ..state.workspace_records import OK
+from ..tables.compatibility import analyze_equations, solve_equations
 from ..tables.evaluate import evaluate_energy, evaluate_tangent
 from ..tables.levels import acceleration_level, position_level, rate_level
 from ..tables.switch import engage_modes
@@ -118,7 +117,7 @@ def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         memory[k, MODE] = OPEN
     evaluate_tangent(ws, 0.0, 0.0)
     # pivots of an earlier visit to this structure would be a state that no State holds
-    code = call_analyze(ws.analyze, lu_at(ws.kkt_query), ws.values)
+    code = analyze_equations(ws, ws.kkt_query)
     if code != OK:
         return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
     _respond(ev, ws, count, slides)
@@ -138,7 +137,7 @@ def _respond(ev: Any, ws: Any, count: int, slides: Any) -> None:
             rhs[j] = directions[i, j]
         for j in range(ws.m_act):
             rhs[n + j] = 0.0
-        solve(lu_at(ws.kkt_query), ws.rhs)
+        solve_equations(ws, ws.kkt_query)
         for j in range(n):
             responses[i, j] = rhs[j]
     alone = whole(ev)[ALONE] != 0

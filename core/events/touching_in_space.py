@@ -10,8 +10,6 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg import lu_at, solve
-from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ROOM
 from ..location.probe import can_look, tell_gradients
 from ..rounding import IMMOVABLE
@@ -19,6 +17,7 @@ from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import loop_at
 from ..state.workspace_records import OK
+from ..tables.compatibility import analyze_equations, solve_equations
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.held import in_space
 from ..tables.switch import engage_modes
@@ -65,7 +64,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
                 clear(to, n)
         memory[k, MODE] = OPEN
     evaluate_tangent(ws, 0.0, 0.0)
-    code = call_analyze(ws.analyze, lu_at(ws.kkt_query), ws.values)
+    code = analyze_equations(ws, ws.kkt_query)
     if code != OK:
         return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
     _respond(ev, ws, count)
@@ -82,7 +81,7 @@ def _respond(ev: Any, ws: Any, count: int) -> None:
             rhs[j] = directions[i, j]
         for j in range(ws.m_act):
             rhs[n + j] = 0.0
-        solve(lu_at(ws.kkt_query), ws.rhs)
+        solve_equations(ws, ws.kkt_query)
         for j in range(n):
             responses[i, j] = rhs[j]
     some = ivec(ev.columns, n)

@@ -11,11 +11,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg import lu_at, solve
 from ..location.probe import probe_of
 from ..model.rotation3d import cross, times
 from ..shapes.normal3d import SIZE, pair_of
 from ..shapes.turning3d import FRICTION_RADIUS, ROLLING, SPINNING, turning_gradient
+from ..tables.compatibility import solve_equations
 from .records import COUNT, FLAG, clear, col, whole
 
 TURNING_ROWS = 3
@@ -60,6 +60,6 @@ def find_turning_rows(ev: Any, ws: Any, lc: Any, first: int, arms: Any) -> None:
                 rhs[j] = directions[row, j]
             for j in range(ws.m_act):
                 rhs[n + j] = 0.0
-            solve(lu_at(ws.kkt_query), ws.rhs)
+            solve_equations(ws, ws.kkt_query)
             for j in range(n):
                 responses[row, j] = rhs[j]

@@ -8,7 +8,7 @@ from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
 from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..state.workspace_records import OK, structure_at
-from ..tables.held import held_friction, is_held
+from ..tables.held import friction_limit, held_friction, is_held
 from ..tables.levels import force_level
 from .laws import MASSLESS
 from .reading import comes_back
@@ -35,7 +35,7 @@ def find_unsettled(ev: Any, ws: Any, found: Any) -> bool:
     """Contacts that pull, or are held beyond their friction, at the current point: 1 in `found` (n_contacts,)."""
     memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    work, static = FORCE_ROUNDING * force_level(ws), vec(ws.contact_sticking, ws.n_contacts)
+    work = FORCE_ROUNDING * force_level(ws)
     scale, any_found, noisy = vec(ws.row_scale, ws.m_ext), False, False
     for k in range(ws.n_contacts):
         found[k] = 0
@@ -50,7 +50,7 @@ def find_unsettled(ev: Any, ws: Any, found: Any) -> bool:
                 found[k], any_found = 1, True
                 continue
         if slides[k] >= 0 and is_held(ws, k):
-            if held_friction(ws, k, lam) > static[k] * force * (1.0 + SLIP_EXCESS) + none:
+            if held_friction(ws, k, lam) > friction_limit(ws, k, force) * (1.0 + SLIP_EXCESS) + none:
                 found[k], any_found = 1, True
     return any_found
 

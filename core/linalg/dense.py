@@ -89,3 +89,24 @@ def dense_solve(lu: Any, b_address: int) -> None:
         for j in range(i + 1, n):
             s -= a[i * n + j] * b[j]
         b[i] = s * a[inverse + i]
+
+
+@internal
+def dense_solve_transposed(lu: Any, b_address: int) -> None:
+    """Overwrite the (n,) vector at `b_address` with the solution of A^T x = b."""
+    n = lu.n
+    a = vec(lu.values, n * n + n)
+    inverse = n * n
+    row_at = ivec(lu.pivots, n)
+    b = vec(b_address, n)
+    y = vec(lu.work, n)
+    for i in range(n):
+        s = b[i]
+        for j in range(i):
+            s -= a[j * n + i] * y[j]
+        y[i] = s * a[inverse + i]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            y[i] -= a[j * n + i] * y[j]
+    for i in range(n):
+        b[row_at[i]] = y[i]

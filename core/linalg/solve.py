@@ -7,9 +7,9 @@ import numpy as np
 
 from ..compiled.jit import address_of, caller, compiled, internal
 from ..compiled.views import vec
-from .dense import dense_factor, dense_solve
-from .record import FACTOR_SIGNATURE, OK, REANALYSE, SOLVE_SIGNATURE
-from .sparse import columns_factor, program_factor, sparse_solve
+from .dense import dense_factor, dense_solve, dense_solve_transposed
+from .record import DENSE, FACTOR_SIGNATURE, OK, REANALYSE, SOLVE_SIGNATURE
+from .sparse import columns_factor, program_factor, sparse_solve, sparse_solve_transposed
 
 _call_factor = caller(FACTOR_SIGNATURE)
 _call_solve = caller(SOLVE_SIGNATURE)
@@ -41,6 +41,17 @@ def solve(lu: Any, b_address: int) -> None:
     """Solve A x = b in place on the (n,) float64 vector at `b_address`, after a `factor` that returned 0."""
     if lu.n > 0:
         _call_solve(lu.solve_function, lu, b_address)
+
+
+@internal
+def solve_transposed(lu: Any, b_address: int) -> None:
+    """Solve A^T x = b in place on the (n,) float64 vector at `b_address`, after a `factor` that returned 0."""
+    if lu.n == 0:
+        return
+    if lu.kind == DENSE:
+        dense_solve_transposed(lu, b_address)
+    else:
+        sparse_solve_transposed(lu, b_address)
 
 
 @internal

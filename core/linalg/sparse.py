@@ -162,3 +162,29 @@ def sparse_solve(lu: Any, b_address: int) -> None:
         y[u_row[k]] -= v[np.uint64(nl) + k] * y[u_col[k]]
     for j in range(n):
         b[col_at[j]] = y[j] * v[nl + nu + j]
+
+
+@internal
+def sparse_solve_transposed(lu: Any, b_address: int) -> None:
+    """Overwrite the (n,) vector at `b_address` with the solution of A^T x = b."""
+    n = lu.n
+    nl = lu.nl
+    nu = lu.nu
+    v = vec(lu.values, nl + nu + n)
+    y = vec(lu.work, n)
+    b = vec(b_address, n)
+    l_row = uvec(lu.l_row, nl)
+    l_col = uvec(lu.l_col, nl)
+    u_row = uvec(lu.u_row, nu)
+    u_col = uvec(lu.u_col, nu)
+    row_at = uvec(lu.row_at, n)
+    col_at = uvec(lu.col_at, n)
+    for j in range(n):
+        y[j] = b[col_at[j]] * v[nl + nu + j]
+    for p in range(nu):
+        y[u_col[p]] -= v[nl + p] * y[u_row[p]]
+    for i in range(nl):
+        k = np.uint64(nl - 1 - i)
+        y[l_col[k]] -= v[k] * y[l_row[k]]
+    for j in range(n):
+        b[row_at[j]] = y[j]

@@ -17,7 +17,7 @@ from ..rounding import AS_LONG, SLIP_EXCESS
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, WATCH, call_accelerations
 from ..state.workspace_records import OK
-from ..tables.held import held_friction, is_held
+from ..tables.held import friction_limit, held_friction, is_held
 from .certain import SHORTEST
 from .probe import BRACKET, HAPPENS, VIEW, between, look
 
@@ -45,7 +45,7 @@ def _margins(ws: Any, k: int, lam: Any) -> Any:
     force, left = -lam[ivec(ws.contact_rows, ws.n_contacts)[k]], np.inf
     most = vec(ws.contact_sticking, ws.n_contacts)[k]
     if most > 0.0 and is_held(ws, k):
-        left = (1.0 + SLIP_EXCESS) * most * force - held_friction(ws, k, lam)
+        left = (1.0 + SLIP_EXCESS) * friction_limit(ws, k, force) - held_friction(ws, k, lam)
     return force, left
 
 

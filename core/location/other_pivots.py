@@ -9,14 +9,15 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg import determinant_sign, factor, lu_at
+from ..linalg import determinant_sign, lu_at
 from ..linalg.analyze import call_analyze
 from ..linalg.record import ANALYZE_SPARSE, DENSE
 from ..linalg.record import WANT_ROOM as NO_MEMORY
 from ..stage.accelerations import solve_accelerations
 from ..stage.project import project_motion
-from ..state.modes import ALONG, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
+from ..state.modes import AT_LIMIT, CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.workspace_records import OK, REANALYZE, SINGULAR
+from ..tables.compatibility import analyze_equations, factor_equations
 from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
 
 
@@ -28,7 +29,7 @@ def _take_own(ws: Any) -> int:
     kept, pivots, limits = vec(ws.query_kept, 2 * lu.n), ivec(lu.perm_r, lu.n), _limits(lu)
     for i in range(lu.n):
         kept[i], kept[lu.n + i] = pivots[i], limits[i]
-    code = call_analyze(ws.analyze, lu, ws.values)
+    code = analyze_equations(ws, ws.kkt_query)
     if code == NO_MEMORY:
         return REANALYZE
     return OK if code == OK else SINGULAR
@@ -96,7 +97,7 @@ def _evaluate_sliding(ws: Any) -> None:
     evaluate_residuals(ws)
     for k in range(ws.n_contacts):
         kept[k] = memory[k, RATIO]
-        if memory[k, MODE] == CLOSED and (memory[k, SLIDE] == IDLE or memory[k, SLIDE] == ALONG):
+        if memory[k, MODE] == CLOSED and (memory[k, SLIDE] == IDLE or memory[k, SLIDE] == AT_LIMIT):
             memory[k, RATIO] = 0.0
     evaluate_tangent(ws, 0.0, 0.0)
     for k in range(ws.n_contacts):
@@ -111,16 +112,16 @@ def orientation(ws: Any) -> float:
     lu = lu_at(ws.kkt_query)
     if lu.kind != DENSE and lu.ready == 0:
         # pivots that nobody has chosen yet need not be put back
-        code = call_analyze(ws.analyze, lu, ws.values)
+        code = analyze_equations(ws, ws.kkt_query)
         if code != OK:
             return np.nan if code == NO_MEMORY else 0.0
-    status = factor(lu, ws.values)
+    status = factor_equations(ws, ws.kkt_query)
     if status == OK or lu.kind == DENSE:
         return determinant_sign(lu) if status == OK else 0.0
     # also where a pivot is next to nothing, for they may have been chosen for other values
     status = _take_own(ws)
     if status == OK:
-        status = factor(lu, ws.values)
+        status = factor_equations(ws, ws.kkt_query)
     sign = determinant_sign(lu) if status == OK else (np.nan if status == REANALYZE else 0.0)
     _put_back(ws)
     return sign

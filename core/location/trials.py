@@ -7,6 +7,8 @@ from ..compiled.views import ivec, mat, vec
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE
 from ..state.run_records import call_trial
 from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
+from ..tables.held import implied_margin
+from ..tables.levels import force_level
 from .watch import friction_margin
 
 # what is searched for a root
@@ -51,4 +53,7 @@ def trial_value(
     force = sign * vec(ws.monitor, ws.n_contacts)[k]
     if memory[MODE] == CLOSED and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0 and memory[SLIDE] != IDLE:
         force = min(force, friction_margin(ws, k))
+    margin = implied_margin(ws, k) if ms.exact != 0 else 1.0
+    if margin < 1.0:
+        force = min(force, force_level(ws) / vec(ws.row_scale, ws.m_ext)[row] * margin)
     return OK, force

@@ -8,7 +8,7 @@ from ..methods.history import history_row
 from ..rounding import FORCE_ROUNDING, GAP_MOVES, GAP_ROUNDING, RATE_ROUNDING, SLIP_EXCESS
 from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, IDLE, MEMORY_SIZE, MODE, OPEN, RELEASED, SLIDE
 from ..state.run_records import WATCH
-from ..tables.held import held_friction, is_held
+from ..tables.held import friction_limit, held_friction, implied_margin, is_held
 from ..tables.levels import force_level, position_level, position_level_at, rate_size
 from .asleep import sleeps_on
 from .broad_phase import keep_watch
@@ -46,7 +46,7 @@ def friction_margin(ws: Any, k: int) -> float:
     row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
     if is_held(ws, k):
         friction = held_friction(ws, k, vec(ws.lam, ws.m_ext))
-        return vec(ws.contact_sticking, ws.n_contacts)[k] * vec(ws.monitor, ws.n_contacts)[k] - friction
+        return friction_limit(ws, k, vec(ws.monitor, ws.n_contacts)[k]) - friction
     if memory[SLIDE] == IDLE:
         return 0.0
     return memory[SLIDE] * vec(ws.phid, ws.m_ext)[row]
@@ -106,6 +106,8 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     row = ivec(ws.contact_rows, ws.n_contacts)[k]
     g = vec(ws.phi, ws.m_ext)[row]
+    if mode == CLOSED and not ended and ms.exact != 0 and implied_margin(ws, k) <= 0.0:
+        return True
     if mode == CLOSED and not ended and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0:
         return sliding_turns(ws, ms, lc, k, h, _no_sliding(ws, k))
     if mode != OPEN and mode != ACTIVE:

@@ -39,10 +39,10 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
         out[1 + 2 * n + i] = a[i]
     at = 1 + 3 * n
     lam = vec(ws.lam, ws.m_ext)
-    active = ivec(ws.active, ws.m_act)
+    active = ivec(ws.active, ws.m_act + ws.n_implied)
     for i in range(m):
         out[at + i] = 0.0
-    for i in range(ws.m_act):
+    for i in range(ws.m_act + ws.n_implied):
         out[at + active[i]] = lam[active[i]]
     at += m
     if contacts:

@@ -82,10 +82,10 @@ def _refactor(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
 @internal
 def _sweep(ws: Any, ms: Any, t: float, h: float, slack: float, simple: bool) -> int:
     """One pass over the stages: corrections of their accelerations and multipliers."""
-    n, m_act = ws.n_ext, ws.m_act
+    n, multipliers = ws.n_ext, ws.m_act + ws.n_implied
     table, rows = weight_rows(ms), stage_rows(ws)
-    q, v, active = vec(ws.q, n), vec(ws.v, n), ivec(ws.active, m_act)
-    increment = vec(ws.rhs, ws.n + m_act)
+    q, v, active = vec(ws.q, n), vec(ws.v, n), ivec(ws.active, multipliers)
+    increment = vec(ws.rhs, ws.n + multipliers)
     counters = ivec(ws.counters, COUNTERS_SIZE)
     for i in range(stage_count(ms)):
         load_stage(ws, ms, i, t, h)
@@ -110,7 +110,7 @@ def _sweep(ws: Any, ms: Any, t: float, h: float, slack: float, simple: bool) -> 
             row[n + l] = v[l]
             row[2 * n + l] += increment[l]
             row[3 * n + l] = increment[l]
-        for l in range(m_act):
+        for l in range(multipliers):
             row[4 * n + active[l]] += increment[ws.n + l]
     return OK
 

@@ -22,11 +22,11 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
-from ..linalg import lu_at, solve
 from ..stage.accelerations import solve_accelerations
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
 from ..state.workspace_records import OK, call_stage
+from ..tables.compatibility import solve_equations
 from ..tables.evaluate import evaluate_power, evaluate_residuals
 from .history import history_row, history_time
 from .multistep import rows_available
@@ -97,7 +97,7 @@ def _find_algorithmic(ws: Any, ms: Any, h: float) -> int:
             rhs[i] = 0.0
         for i in range(ws.m_act):
             rhs[ws.n + i] = phidd[active[i]]
-        solve(lu_at(ws.kkt_query), ws.rhs)
+        solve_equations(ws, ws.kkt_query)
         for i in range(ws.n):
             v_shift[i] = rhs[i]
     return OK

@@ -51,8 +51,8 @@ def push(ws: Any, ms: Any) -> None:
         row[3 * n + i] = aux[i]
     for i in range(ws.m_ext):
         row[4 * n + i] = 0.0
-    active = ivec(ws.active, ws.m_act)
-    for i in range(ws.m_act):
+    active = ivec(ws.active, ws.m_act + ws.n_implied)
+    for i in range(ws.m_act + ws.n_implied):
         row[4 * n + active[i]] = lam[active[i]]
     vec(ms.times, ms.capacity)[ring[0]] = vec(ws.t, 1)[0]
 

@@ -18,10 +18,10 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at, solve
 from ..stage.corotating import enter_frame, leave_frame
 from ..stage.solver import weighted_norm
 from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
+from ..tables.compatibility import factor_equations, solve_equations
 from ..tables.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
 from .history import history_row, history_time
 from .multistep import rows_available
@@ -92,7 +92,7 @@ def _remove_normal_part(ws: Any) -> None:
     for i in range(n):
         rhs[i] = 0.0
         v[i] += error[i]
-    solve(lu_at(ws.kkt_query), ws.rhs)
+    solve_equations(ws, ws.kkt_query)
     for i in range(n):
         rhs[i] += error[i]
     evaluate_residuals(ws)
@@ -127,7 +127,7 @@ def _filter(ws: Any, h: float, times: int) -> None:
             rhs[i] = h * (r[i] - left[i])
         for i in range(ws.m_act):
             rhs[n + i] = 0.0
-        solve(lu_at(ws.kkt), ws.rhs)
+        solve_equations(ws, ws.kkt)
     for i in range(n):
         a[i] = kept[i]
     evaluate_constraints(ws)
@@ -166,7 +166,7 @@ def absolute_velocity_error(ws: Any, ms: Any, h: float, shift: float, factored: 
     """
     if ws.m_act > 0 and not factored:
         evaluate_tangent(ws, 0.0, 0.0)
-        if factor(lu_at(ws.kkt_query), ws.values) != 0:
+        if factor_equations(ws, ws.kkt_query) != 0:
             return REANALYZE, 0.0
         ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     _find_error(ws, ms, h, shift)

@@ -108,6 +108,7 @@ class Collocation:
         self.n, self.n_ext = sim.assembly.n, sim.assembly.n_extended
         self.n_work = len(sim.assembly.work_names)
         self.active = self.workspace.structure.active.copy()
+        self.rows = self.workspace.structure.multiplier_rows.copy()
         self.t0 = float(start.times[0])
         scale, rtol = sim.assembly.coordinate_scale, sim.settings.rtol
         # to see whether the iteration converges: rounding moves coordinates that stand still as much as large ones
@@ -157,13 +158,13 @@ class Collocation:
     ) -> tuple[Floats, Floats, float] | None:
         """Increments of the accelerations and multipliers of all stages, and the norm of what they move."""
         q[:], v[:] = self._predict(h, table, a)
-        arrays, n, m, s = self.workspace.arrays, self.n, len(self.active), len(times)
+        arrays, n, m, s = self.workspace.arrays, self.n, len(self.rows), len(times)
         blocks, rhs = [], np.empty((s, n + m))
         for i in range(s):
             if not self._place(float(times[i]), q[i], v[i], a[i], lam[i]):
                 return None
             rhs[i, :n] = -arrays["r"][:n]
-            rhs[i, n:] = -arrays["phidd"][self.active]
+            rhs[i, n:] = self._left()
             plain = self._values(0.0, 0.0)
             blocks.append((plain, self._values(0.0, 1.0) - plain, self._values(1.0, 0.0) - plain))
         increment = self._solve_coupled(h, table, blocks, rhs.ravel())
@@ -180,7 +181,7 @@ class Collocation:
         """Solve with the matrix of all stages: block (i, j) is h a_ij D_i + h^2 a2_ij K_i, and that of [M, Phi_q^T;
         Phi_q, 0] at the stage is added for i = j."""
         structure, s = self.workspace.structure, len(blocks)
-        rows, cols, size = structure.rows, structure.cols, self.n + len(self.active)
+        rows, cols, size = structure.rows, structure.cols, self.n + len(self.rows)
         if s * size <= LARGEST_DENSE:
             matrix = np.zeros((s, size, s, size))
             for i, (plain, of_v, of_q) in enumerate(blocks):
@@ -200,6 +201,13 @@ class Collocation:
                 entries.append((i * size + rows[beside], j * size + cols[beside], value))
         places = [np.concatenate([entry[k] for entry in entries]) for k in range(3)]
         return _solve(coo_matrix((places[2], (places[0], places[1])), shape=(s * size, s * size)).tocsc(), rhs)
+
+    def _left(self) -> Floats:
+        """What accelerations leave of the constraints, and multipliers of the rows of compatibility: its negative."""
+        structure, arrays = self.workspace.structure, self.workspace.arrays
+        shares = structure.compatibility.reshape(structure.n_implied, len(structure.sharing))
+        shared = shares @ arrays["lam"][self.rows[structure.sharing]]
+        return -np.concatenate([arrays["phidd"][self.active], shared])
 
     def _values(self, c_q: float, c_v: float) -> Floats:
         """Entries of [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] at the current point."""
@@ -224,7 +232,7 @@ class Collocation:
         arrays, n = self.workspace.arrays, self.n
         arrays["t"][0] = t
         arrays["q"][:n], arrays["v"][:n], arrays["a"][:n] = q, v, a
-        arrays["lam"][self.active] = lam
+        arrays["lam"][self.rows] = lam
         evaluate_residuals(self.workspace.record)
         met = len(self.active) == 0 or not self.trusted(t) or (self._meet("phi", "q") and self._meet("phid", "v"))
         q[:], v[:] = arrays["q"][:n], arrays["v"][:n]
@@ -243,7 +251,8 @@ class Collocation:
             if not size <= 10.0 * previous:
                 return False
             previous = size
-            correction = self._kkt(np.concatenate([np.zeros(n), -violation]))
+            rest = np.zeros(len(self.rows) - len(self.active))
+            correction = self._kkt(np.concatenate([np.zeros(n), -violation, rest]))
             if correction is None:
                 return False
             arrays[x][:n] += correction[:n]
@@ -270,14 +279,14 @@ class Collocation:
             return None
         if self.trusted(t_end):
             for _ in range(3):
-                rhs = np.concatenate([-arrays["r"][: self.n], -arrays["phidd"][self.active]])
+                rhs = np.concatenate([-arrays["r"][: self.n], self._left()])
                 increment = self._kkt(rhs)
                 if increment is None:
                     return None
                 arrays["a"][: self.n] += increment[: self.n]
-                arrays["lam"][self.active] += increment[self.n :]
+                arrays["lam"][self.rows] += increment[self.n :]
                 evaluate_residuals(self.workspace.record)
-            a_end, lam_end = arrays["a"][: self.n].copy(), arrays["lam"][self.active].copy()
+            a_end, lam_end = arrays["a"][: self.n].copy(), arrays["lam"][self.rows].copy()
         evaluate_power(self.workspace.record)
         work_end, power_end = start.work[0] + h * (table.b @ power), arrays["a"][w:].copy()
         return Points(

@@ -9,13 +9,12 @@ from typing import Any
 from ..compiled.jit import compiled
 from ..compiled.views import vec
 from ..events.records import DECLINED, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, call_part, instant_at
-from ..linalg import lu_at
-from ..linalg.analyze import call_analyze
 from ..linalg.record import WANT_ROOM
 from ..loop.drive import loop_at, method_at, workspace_at
 from ..methods.history import recall
 from ..state.run_records import CLOCK_SIZE, PUSH_STEP, STEP_SIZE
 from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV, OK, RATE_SIZE
+from ..tables.compatibility import analyze_equations
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 
@@ -33,10 +32,10 @@ def repair_now(dr: Any) -> int:
     rate[CHOICE_CONDITION] = condition
     # pivots of the stages' matrix, which may be others than those of the mass matrix alone
     evaluate_tangent(ws, c_v * c_v, c_v)
-    code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
+    code = analyze_equations(ws, ws.kkt)
     if code != OK and code != WANT_ROOM:
         evaluate_tangent(ws, 0.0, 0.0)
-        code = call_analyze(ws.analyze, lu_at(ws.kkt), ws.values)
+        code = analyze_equations(ws, ws.kkt)
     if code == WANT_ROOM:
         return WANT_MEMORY
     return SETTLED if code == OK else SINGULAR_MATRIX

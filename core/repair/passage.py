@@ -118,10 +118,10 @@ class LongStep:
         recall(sim.workspace.record, sim._method.record, 0)
         self.sim, self.near, arrays = sim, near, sim.workspace.arrays
         n, w = sim.assembly.n, sim.assembly.n_extended - len(sim.assembly.work_names)
-        active = sim.workspace.structure.active
+        rows = sim.workspace.structure.multiplier_rows
         self.start = Points(
             *(np.array(x)[None] for x in (
-                arrays["t"][0], arrays["q"][:n], arrays["v"][:n], arrays["a"][:n], arrays["lam"][active],
+                arrays["t"][0], arrays["q"][:n], arrays["v"][:n], arrays["a"][:n], arrays["lam"][rows],
                 arrays["v"][w:], arrays["a"][w:],
             ))
         )  # fmt: skip
@@ -144,7 +144,7 @@ class LongStep:
             # the stop time itself, not t + h with its rounding
             arrays["t"][0] = stop
         arrays["q"][:n], arrays["v"][:n], arrays["a"][:n] = points.q[k], points.v[k], points.a[k]
-        arrays["lam"][self.sim.workspace.structure.active] = points.lam[k]
+        arrays["lam"][self.sim.workspace.structure.multiplier_rows] = points.lam[k]
         arrays["v"][w:], arrays["a"][w:] = points.work[k], points.power[k]
         arrays["aux"][:] = arrays["a"]
         evaluate_residuals(self.sim.workspace.record)

@@ -13,7 +13,7 @@ from ..events.records import SETTLED, WANT_MEMORY, WANT_ROOM
 from ..methods.registry import Formula
 from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
-from ..state.modes import ACTIVE, ALONG, CLOSED, MODE, SLIDE, STICKS
+from ..state.modes import ACTIVE, AT_LIMIT, CLOSED, IMPLIED, MODE, OF_FIRST, OF_NORMAL, OF_SECOND, SLIDE, STICKS
 from ..state.run_records import HANDLED, HERE
 from ..state.workspace_records import OK
 from ..tables.assembly import Assembly
@@ -108,9 +108,9 @@ class ContactSide:
         modes = self.memory[: len(self.assembly.contacts), MODE]
         closed = frozenset(int(k) for k in np.flatnonzero(modes == CLOSED))
         engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
-        sticking = frozenset(self._sticking(closed))
-        if self.workspace.key != (closed, engaged, sticking):
-            self.workspace.engage(closed, engaged, sticking)
+        sticking, implied = frozenset(self._sticking(closed)), frozenset(self._implied(closed))
+        if self.workspace.key != (closed, engaged, sticking, implied):
+            self.workspace.engage(closed, engaged, sticking, implied)
         if choose_rows(self.workspace):
             self.note_redundant()
         prepare(self.workspace)
@@ -121,10 +121,17 @@ class ContactSide:
         """Those that stick, as `tables/switch.codes_of` takes them."""
         for k in closed:
             contact, slide = self.assembly.contacts[k], self.memory[k, SLIDE]
-            if contact.coulomb is not None and slide in (STICKS, ALONG):
+            if contact.coulomb is not None and slide in (STICKS, AT_LIMIT):
                 yield k
                 if contact.tangents > 1 and slide == STICKS:
                     yield k + len(self.assembly.contacts)
+
+    def _implied(self, closed: Collection[int]) -> Iterator[int]:
+        """Their rows that others imply, as `tables/switch.codes_of` takes them."""
+        for k in closed:
+            for of, bit in enumerate((OF_NORMAL, OF_FIRST, OF_SECOND)):
+                if int(self.memory[k, IMPLIED]) & bit:
+                    yield k + of * len(self.assembly.contacts)
 
     def note_redundant(self) -> None:
         """Other rows are left out than before: add them to what the result tells."""

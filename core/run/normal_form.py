@@ -24,6 +24,7 @@ from ..state.modes import (
     BEGUN_IMPULSE,
     BEGUN_LOSS,
     CLOSED,
+    IMPLIED,
     LARGEST_APPROACH,
     MEMORY_SIZE,
     MODE,
@@ -199,6 +200,8 @@ def _forget_in_memories(dr: Any, ws: Any, lc: Any, shift: int) -> None:
         memory = memories[k]
         for block in range(0 if pushing else BLOCKS):
             memory[PUSHED + block] = 0.0
+        if law[k] == FORCE or memory[MODE] != CLOSED or ws.tangents == 1:
+            memory[IMPLIED] = 0.0
         if law[k] == FORCE:
             memory[LARGEST_APPROACH] = 0.0
             if memory[MODE] == OPEN:

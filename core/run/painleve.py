@@ -14,7 +14,7 @@ from ..errors import SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
 from ..stage.joints import factor_joints, solve_joints
-from ..state.modes import ALONG, CLOSED, IDLE, MODE, RATIO, SLIDE
+from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE, RATIO, SLIDE
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -46,7 +46,7 @@ def refuse_passed_jam(sim: "Engine") -> NoReturn:
     behind that place, its force pulls the gap's acceleration down."""
     workspace, n, sliding, memory = sim.workspace, sim.assembly.n, sliding_contacts(sim), sim.memory
     # constant shares of contacts that others hold are given forces, as for the determinant (`other_pivots.py`)
-    held = (memory[:, SLIDE] == IDLE) | (memory[:, SLIDE] == ALONG)
+    held = (memory[:, SLIDE] == IDLE) | (memory[:, SLIDE] == AT_LIMIT)
     shares = memory[held, RATIO]
     memory[held, RATIO] = 0.0
     singular = factor_joints(workspace.record) != 0
@@ -55,10 +55,10 @@ def refuse_passed_jam(sim: "Engine") -> NoReturn:
             workspace.structure.kkt_query.analyze(workspace.arrays["values"])
             singular = factor_joints(workspace.record) != 0
     memory[held, RATIO] = shares
-    active, rhs, worst, most = workspace.structure.active, workspace.arrays["rhs"], sliding[0], (False, 0.0)
+    rows, rhs, worst, most = workspace.structure.multiplier_rows, workspace.arrays["rhs"], sliding[0], (False, 0.0)
     for k in sliding:
-        row = n + int(np.flatnonzero(active == sim.assembly.contacts[k].row)[0])
-        rhs[: n + len(active)] = 0.0
+        row = n + int(np.flatnonzero(rows == sim.assembly.contacts[k].row)[0])
+        rhs[: n + len(rows)] = 0.0
         rhs[row] = 1.0
         # multiplier that gives the gap a unit acceleration: -1/(A_NN + RATIO A_NT), the other contacts included
         if not singular:

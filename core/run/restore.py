@@ -76,6 +76,12 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
         workspace.set_partition(parts.dependent)
         present = structure.present
     workspace.set_probe(parts.probe)
+    if parts.compatibility.shape != structure.compatibility.shape:
+        raise ModelError(
+            f"the rows of compatibility of the solver state are not {len(structure.compatibility)} numbers but "
+            f"{len(parts.compatibility)}"
+        )
+    structure.compatibility[:] = parts.compatibility
     if present is None:
         raise RuntimeError("a structure has a partition once one was chosen")
     factorizations = (structure.kkt, structure.kkt_query, *present.factorizations)

@@ -12,14 +12,15 @@ import numpy as np
 from ..compiled import types
 from ..compiled.jit import compiled, internal
 from ..compiled.views import imat, ivec, mat, vec
-from ..linalg import factor, lu_at, solve
+from ..linalg import lu_at, solve
 from ..loop.drive import workspace_at
 from ..loop.sample import write_sample
 from ..model.derived import HEAD_SIZE, derive_row
 from ..model.signals import INPUT_SIZE
 from ..rounding import SENSITIVITY_SOLVED
-from ..state.modes import ACTIVE, ALONG, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
+from ..state.modes import ACTIVE, AT_LIMIT, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, STICKS
 from ..state.workspace_records import OK
+from ..tables.compatibility import factor_equations
 from ..tables.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
 from ..tables.held import in_space
 from .exchange_record import EXCHANGE, OF_GROUPS
@@ -69,11 +70,11 @@ def _change_of_friction(ws: Any, k: int, held: Any, size: float) -> float:
     if row < 0 or memory[MODE] != CLOSED or not in_space(ws, k):
         return size
     lam, normal, state = vec(ws.lam, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)[k], memory[SLIDE]
-    if state != STICKS and state != ALONG:
+    if state != STICKS and state != AT_LIMIT:
         # a part of the normal force, which is -lam
         return -size if lam[normal] > 0.0 else size
-    across = normal if state == ALONG else row + 1
-    part = memory[RATIO] * memory[RATIO] if state == ALONG else 1.0
+    across = normal if state == AT_LIMIT else row + 1
+    part = memory[RATIO] * memory[RATIO] if state == AT_LIMIT else 1.0
     force = math.sqrt(held[row] * held[row] + part * held[across] * held[across])
     return (held[row] * lam[row] + part * held[across] * lam[across]) / force if force > 0.0 else size
 
@@ -81,7 +82,7 @@ def _change_of_friction(ws: Any, k: int, held: Any, size: float) -> float:
 @internal
 def _solve_joints(ws: Any, x: Any, load: Any) -> int:
     """[M Phi_q^T; Phi_q 0] x = (-load, 0), the matrix being factorised: OK or UNSOLVED."""
-    n, size = ws.n, ws.n + ws.m_act
+    n, size = ws.n, ws.n + ws.m_act + ws.n_implied
     lu = lu_at(ws.kkt_query)
     count = lu.nnz
     row, col, values = ivec(ws.entry_row, count), ivec(ws.entry_col, count), vec(ws.values, count)
@@ -114,7 +115,8 @@ def along_inputs(ex: Any, seed: Any, found: Any) -> int:
     """Derivatives of all channels along `seed` (inputs,), whose largest number is 1: OK, UNSOLVED, or what `factor`
     returns for the pivots that there are. The workspace's point is changed."""
     ws = workspace_at(ex.workspace)
-    n, active = ws.n, ivec(ws.active, ws.m_act)
+    n, multipliers = ws.n, ws.m_act + ws.n_implied
+    active = ivec(ws.active, multipliers)
     a, lam, r = vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext), vec(ws.r, ws.n_ext)
     inputs, held = vec(ws.inputs, len(seed) * INPUT_SIZE), lam.copy()
     for k in range(len(seed)):
@@ -137,15 +139,15 @@ def along_inputs(ex: Any, seed: Any, found: Any) -> int:
     evaluate_residuals(ws)
     load = (r[:n] - at_rest) / size
     evaluate_tangent(ws, 0.0, 0.0)
-    status = factor(lu_at(ws.kkt_query), ws.values)
+    status = factor_equations(ws, ws.kkt_query)
     if status != OK:
         return int(status)
-    change = np.zeros(n + ws.m_act)
+    change = np.zeros(n + multipliers)
     if _solve_joints(ws, change, load) != OK:
         return UNSOLVED
     for i in range(n):
         a[i] = size * change[i]
-    for i in range(ws.m_act):
+    for i in range(multipliers):
         lam[active[i]] = size * change[n + i]
     _channels_at(ex, ws, held, found)
     for k in range(ex.n_channels):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..state.run_records import HANDLED_AT, HERE
 from ..tables.state_fields import STATE
+from ..tables.switch import Key
 from .normal_form import normalise_buffer
 
 if TYPE_CHECKING:
@@ -26,7 +27,6 @@ _OF_METHOD = ("history", "times", "ring", "parameters", "weights", "error", "cho
 
 Whole: TypeAlias = NDArray[np.int64]
 Real: TypeAlias = NDArray[np.float64]
-Key = tuple[frozenset[int], frozenset[int], frozenset[int]]
 
 
 class Factors(NamedTuple):
@@ -49,8 +49,9 @@ class Snapshot(NamedTuple):
     """In the order of FACTORIZATIONS."""
     dependent: NDArray[np.int64]
     probe: NDArray[np.float64]
+    compatibility: NDArray[np.float64]
     key: Key
-    """Contacts closed, engaged and sticking."""
+    """Contacts closed, engaged and sticking, and rows that others imply."""
     dropped: frozenset[int]
     t: float
     pending: tuple[int, ...]
@@ -72,19 +73,21 @@ class Snapshot(NamedTuple):
         state = self.buffer.view(self.layout)
         arrays: dict[str, NDArray[Any]] = {name: state[name][0] for name in names}
         arrays["dependent"], arrays["probe"] = self.dependent, self.probe
+        arrays["compatibility"] = self.compatibility
         for name, factors in zip(FACTORIZATIONS, self.factors, strict=False):
             arrays |= {f"{name}_{part}": x for part, x in factors._asdict().items()}
         return arrays
 
     def facts(self) -> dict[str, Any]:
         """What is no array, as JSON data."""
-        closed, engaged, sticking = self.key
+        closed, engaged, sticking, implied = self.key
         return {
             "t": self.t,
             "closed": sorted(closed),
             "dropped": sorted(self.dropped),
             "engaged": sorted(engaged),
             "sticking": sorted(sticking),
+            "implied": sorted(implied),
             "pending": list(self.pending),
             "handled": [repr(self.handled[0]), self.handled[1]],
             "outer": self.outer,
@@ -141,6 +144,7 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         tuple(factors),
         partition.dependent,
         structure.arrays["probe"].copy(),
+        structure.compatibility.copy(),
         workspace.key,
         workspace.dropped,
         sim.t,
@@ -180,7 +184,13 @@ def snapshot_of(
         ),
         arrays["dependent"],
         np.ascontiguousarray(arrays["probe"]),
-        (frozenset(facts["closed"]), frozenset(facts["engaged"]), frozenset(facts["sticking"])),
+        np.ascontiguousarray(arrays["compatibility"]),
+        (
+            frozenset(facts["closed"]),
+            frozenset(facts["engaged"]),
+            frozenset(facts["sticking"]),
+            frozenset(facts["implied"]),
+        ),
         frozenset(facts["dropped"]),
         float(facts["t"]),
         tuple(int(k) for k in facts["pending"]),

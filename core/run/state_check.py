@@ -15,7 +15,7 @@ from ..events import Event
 from ..methods.order_selection import MOST_K
 from ..stage import OUTER_LOOPS
 from ..state.method_records import NEXT_K, K
-from ..state.modes import ALONG, CLOSED, IDLE, MODE, MODE_NAMES, SLIDE, STICKS
+from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE, MODE_NAMES, SLIDE, STICKS
 from ..state.run_records import (
     A2,
     B1,
@@ -47,6 +47,7 @@ _FINITE = (
     "lam",
     "memory",
     "probe",
+    "compatibility",
     "method_weights",
     "method_times",
     "method_history",
@@ -69,13 +70,14 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     ModelError : says what is wrong with which part.
     """
     _check_facts(sim, state)
-    closed, sticking = (frozenset(state.facts[name]) for name in ("closed", "sticking"))
-    active, held = sim.assembly.count_active(closed, sticking, frozenset(state.facts["dropped"]))
-    _check_arrays(state, own, active)
+    closed, sticking, implied = (frozenset(state.facts[name]) for name in ("closed", "sticking", "implied"))
+    active, held = sim.assembly.count_active(closed, sticking, frozenset(state.facts["dropped"]), implied)
+    sharing = len(implied) * (len(closed) + len(sticking))
+    _check_arrays(state, own, {"dependent": active, "probe": active, "compatibility": sharing})
     arrays = state.arrays
     _need("dependent", len(set(arrays["dependent"].tolist())) == len(arrays["dependent"]), "names a coordinate twice")
     _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
-    _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + sim.assembly.n)
+    _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + len(implied) + sim.assembly.n)
     _check_memory(sim, state)
     _check_method(sim, arrays, own.arrays)
     _check_clock(arrays["clock"], own.arrays["clock"])
@@ -121,12 +123,13 @@ def _indices(x: Any, count: int) -> bool:
 def _check_facts(sim: "Simulation", state: State) -> None:
     facts, contacts, assembly = state.facts, len(sim.assembly.contacts), sim.assembly
     own = {
-        "t", "closed", "dropped", "engaged", "sticking", "pending", "handled", "outer", "start_open",
+        "t", "closed", "dropped", "engaged", "sticking", "implied", "pending", "handled", "outer", "start_open",
         "input_times", "initial_energy",
     }  # fmt: skip
     _need("facts", set(facts) == own, f"are {sorted(facts)}, needed are {sorted(own)}")
     for name, count in (
         ("closed", contacts), ("engaged", contacts), ("sticking", 2 * contacts), ("pending", contacts),
+        ("implied", 3 * contacts),
         ("dropped", assembly.m_joints),
     ):  # fmt: skip
         _need(name, _indices(facts[name], count), f"is {facts[name]!r}: a list of different numbers below {count}")
@@ -135,6 +138,8 @@ def _check_facts(sim: "Simulation", state: State) -> None:
     slides = {k for k, contact in enumerate(assembly.contacts) if contact.slide_row >= 0}
     twice = {k + contacts for k in closed & slides if assembly.contacts[k].tangents > 1 and k in sticking}
     _need("sticking", sticking <= closed & slides | twice, "has contacts that are not closed, or have no friction")
+    rows = closed | {k + contacts for k in sticking}
+    _need("implied", set(facts["implied"]) <= rows, "has rows of contacts that are not closed, or do not stick")
     _need("t", _number(facts["t"]), f"is {facts['t']!r}, no time")
     handled, times = facts["handled"], facts["input_times"]
     counted = isinstance(handled, list) and len(handled) == 2 and _text_number(handled[0], True)
@@ -173,7 +178,7 @@ def _numbers_of(event: Event) -> list[Any]:
     return [value for name, value in event.to_dict().items() if name not in ("kind", "contact")]
 
 
-def _check_arrays(state: State, own: State, active: int) -> None:
+def _check_arrays(state: State, own: State, sizes: dict[str, int]) -> None:
     """Names, types and shapes, as far as they do not depend on pivots; numbers that must be some."""
     arrays, expected = state.arrays, own.arrays
     _need("arrays", arrays.keys() == expected.keys(), f"are {sorted(arrays)}, needed are {sorted(expected)}")
@@ -183,7 +188,7 @@ def _check_arrays(state: State, own: State, active: int) -> None:
             name, array.dtype == x.dtype and array.ndim == x.ndim, f"is of type {array.dtype} and shape {array.shape}"
         )
         if not name.startswith(FACTORIZATIONS):
-            shape = (active,) if name in ("dependent", "probe") else x.shape
+            shape = (sizes[name],) if name in sizes else x.shape
             _need(name, array.shape == shape, f"has shape {array.shape}, needed is {shape}")
     for name in _FINITE:
         _need(name, np.isfinite(arrays[name]).all(), "has values that are not finite")
@@ -206,7 +211,7 @@ def _check_memory(sim: "Simulation", state: State) -> None:
     memory = state.arrays["memory"][: len(sim.assembly.contacts)]
     _need("memory", np.isin(memory[:, MODE], list(MODE_NAMES)).all(), f"has modes {memory[:, MODE].tolist()}")
     in_space = np.array([contact.tangents == 2 for contact in sim.assembly.contacts], dtype=bool)
-    known = np.isin(memory[:, SLIDE], _SLIDES) | (in_space & (memory[:, SLIDE] == ALONG))
+    known = np.isin(memory[:, SLIDE], _SLIDES) | (in_space & (memory[:, SLIDE] == AT_LIMIT))
     _need("memory", bool(known.all()), f"has ways of sliding {memory[:, SLIDE].tolist()}")
     closed = set(np.flatnonzero(memory[:, MODE] == CLOSED).tolist())
     _need("closed", closed == set(state.facts["closed"]), f"is not what the modes say: {sorted(closed)}")

@@ -1,12 +1,13 @@
 """Coulomb friction of contacts in space that are constraints.
 
 A closed contact that sticks has, beside the gap, two rows at velocity level: the sliding velocity along both tangents
-is zero; one that others hold along the second tangent has the first one's row, and carries along the second a share of
-its normal force. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|. Where |u_T| comes to zero a direction
-has to go on through it: steps end beyond the event before they end at it, and a speed that is less than what error
-control resolves has no direction but that of its errors. With x and y along the tangents, x along the direction of
-sliding at the last event, and the speed SLOW that is so small, s^2 = x^2 + SLOW^2, the angle of friction is atan(y/s):
-that of u_T but for (SLOW/x)^2/2. It is there where sliding begins, and draws y to zero from the first instant on.
+is zero; one that others hold at the limit of its friction has the first one's row, across that friction, which is a
+constant part of its normal force along the second one. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|.
+Where |u_T| comes to zero a direction has to go on through it: steps end beyond the event before they end at it, and a
+speed that is less than what error control resolves has no direction but that of its errors. With x and y along the
+tangents, x along the direction of sliding at the last event, and the speed SLOW that is so small, s^2 = x^2 + SLOW^2,
+the angle of friction is atan(y/s): that of u_T but for (SLOW/x)^2/2. It is there where sliding begins, and draws y to
+zero from the first instant on.
 
 On a patch (`patch3d.py`) z = r w_n stands beside x and y, and the torque over r beside both forces: it slides or spins
 as a whole, with a direction in space, at the angle LEAN out of the tangent plane.
@@ -26,7 +27,7 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT, line_of, shown, shown_a
 from ..compiled.views import imat, ivec, mat, vec
 from ..elements.measure3d import COLUMNS
 from ..model.rotation3d import dot, less, plus, times
-from ..state.modes import ALONG, AXIS, CLOSED, IDLE, LEAN, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
+from ..state.modes import AT_LIMIT, AXIS, CLOSED, IDLE, LEAN, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
 from .geometry_kinds import SPHERE, are
 from .held3d import MOVES, moves_on
@@ -81,7 +82,7 @@ def _state(par: Any, memory: Any, closed: bool) -> Any:
     slide) of a contact."""
     state = memory[SLIDE]
     slides = closed and abs(state) == 1.0
-    return slides, closed and state == STICKS, closed and state == ALONG, (
+    return slides, closed and state == STICKS, closed and state == AT_LIMIT, (
         max(par[STILL_SPEED], memory[SLOW]) if slides else -1.0
     )  # fmt: skip
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at, solve
+from ..linalg import lu_at, solve
 from ..rounding import ONLY_ROUNDING
 from ..state.workspace_records import (
     CONTROL_SIZE,
@@ -41,6 +41,7 @@ from ..state.workspace_records import (
     STAGE_BETA,
     VELOCITY_TOLERANCE,
 )
+from ..tables.compatibility import factor_equations, left_of_sharing, solve_equations
 from ..tables.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
 from ..tables.levels import position_level, rate_level
 from .solver import (
@@ -64,7 +65,7 @@ _USED = 1.0  # age of a factorisation that has been used; there is no partition 
 def _factored(ws: Any, lu_address: int, c_q: float, c_v: float) -> int:
     """Factor [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] of the current point."""
     evaluate_tangent(ws, c_q, c_v)
-    status = factor(lu_at(lu_address), ws.values)
+    status = factor_equations(ws, lu_address)
     if status == 2:
         return REANALYZE
     ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
@@ -107,6 +108,7 @@ def solve_rows(ws: Any, c_q: float, c_v: float, index: int) -> None:
             rhs[n + i] = -phid[k] / c_v
         else:
             rhs[n + i] = -phi[k] / c_q
+    left_of_sharing(ws)
     solve(lu_at(ws.kkt), ws.rhs)
 
 
@@ -125,7 +127,7 @@ def _correct_coordinates(ws: Any, c_q: float, c_v: float) -> float:
     for i in range(ws.m_act):
         # along what velocity-level rows allow
         rhs[n + i] = -phi[active[i]] + c_q / c_v * phid[active[i]] if i < ws.m_held else 0.0
-    solve(lu_at(ws.kkt_query), ws.rhs)
+    solve_equations(ws, ws.kkt_query)
     q = vec(ws.q, n)
     for i in range(n):
         q[i] += rhs[i]

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..compiled.jit import compiled_unlocked, internal
 from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at
 from ..rounding import ACCELERATIONS_LOST, ACCELERATIONS_SOLVED, COORDINATE_NOISE
 from ..state.workspace_records import CONTROL_SIZE, OK, OUTER_SLOW, REANALYZE, STIFFNESS_SCALE
+from ..tables.compatibility import factor_equations
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.levels import acceleration_level
 from .solver import solve_increment
@@ -28,12 +28,12 @@ def _largest(ws: Any, x: Any) -> float:
 @compiled_unlocked
 def solve_accelerations(ws: Any) -> int:
     """(a, lambda) of the current (q, v) from the augmented system [M, Phi_q^T; Phi_q, 0], with matrices of its own."""
-    n = ws.n
+    n, rows = ws.n, ws.m_act + ws.n_implied
     a, lam = vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext)
-    active = ivec(ws.active, ws.m_act)
-    increment = vec(ws.rhs, n + ws.m_act)
+    active = ivec(ws.active, rows)
+    increment = vec(ws.rhs, n + rows)
     evaluate_tangent(ws, 0.0, 0.0)
-    if factor(lu_at(ws.kkt_query), ws.values) != 0:
+    if factor_equations(ws, ws.kkt_query) != 0:
         return REANALYZE
     previous, norm, size = np.inf, np.inf, 0.0
     for _ in range(10):
@@ -41,7 +41,7 @@ def solve_accelerations(ws: Any) -> int:
         solve_increment(ws, ws.kkt_query)
         for i in range(n):
             a[i] += increment[i]
-        for i in range(ws.m_act):
+        for i in range(rows):
             lam[active[i]] += increment[n + i]
         norm, size = _largest(ws, increment), acceleration_level(ws)
         if norm <= ACCELERATIONS_SOLVED * size or norm >= previous:

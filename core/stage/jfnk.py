@@ -14,7 +14,6 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg import lu_at, solve
 from ..state.workspace_records import (
     CONTROL_SIZE,
     COUNTERS_SIZE,
@@ -34,6 +33,7 @@ from ..state.workspace_records import (
     OUTER_SLOW,
     RATE_SIZE,
 )
+from ..tables.compatibility import solve_equations
 from ..tables.evaluate import evaluate_residuals
 from .inner import inner_loop
 from .solver import (
@@ -93,7 +93,7 @@ def _apply(ws: Any, w: Any, c_q: float, c_v: float) -> None:
         rhs[i] = (r[i] - basis[POINT_R, i]) / size
     for i in range(ws.m_act):
         rhs[n + i] = (phidd[active[i]] - vec(ws.basis + 8 * POINT_C * ws.n_ext, ws.m_act)[i]) / size
-    solve(lu_at(ws.kkt), ws.rhs)
+    solve_equations(ws, ws.kkt)
 
 
 @internal
@@ -220,11 +220,11 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
     control, counters, rate = (
         vec(ws.control, CONTROL_SIZE), ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE),
     )  # fmt: skip
-    n, m_act = ws.n, ws.m_act
+    n, rows = ws.n, ws.m_act + ws.n_implied
     basis = mat(ws.basis, ws.n_basis, ws.n_ext)
     weight = vec(ws.weight_v, ws.n_ext)
-    increment = vec(ws.rhs, n + m_act)
-    lam, active = vec(ws.lam, ws.m_ext), ivec(ws.active, m_act)
+    increment = vec(ws.rhs, n + rows)
+    lam, active = vec(ws.lam, ws.m_ext), ivec(ws.active, rows)
     hessenberg = np.zeros((MOST_VECTORS + 4, MOST_VECTORS + 1))
     tolerance, slack = control[NEWTON_TOLERANCE], inner_slack(control)
     start_inner = counters[INNER]
@@ -239,7 +239,7 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         norm = increment_norm(ws, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
-        for i in range(m_act):
+        for i in range(rows):
             lam[active[i]] += increment[n + i]
         known = min(rate[OUTER_RATE] * RATE_GROWTH, 0.99)
         # an old preconditioner may hide some of the increment, but not all of it
@@ -270,7 +270,7 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
                 return OUTER_DIVERGED
             forcing = min(MOST_FORCING, max(LEAST_FORCING, 0.9 * contraction * contraction))
         previous = norm
-        for i in range(m_act):
+        for i in range(rows):
             increment[n + i] = 0.0
         add_increment(ws, c_q, c_v)
         evaluate_residuals(ws)

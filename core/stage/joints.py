@@ -3,7 +3,7 @@
 from typing import Any
 
 from ..compiled.jit import compiled
-from ..linalg import factor, lu_at, solve
+from ..tables.compatibility import factor_equations, solve_equations
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 
@@ -18,10 +18,10 @@ def evaluate_joints(ws: Any) -> None:
 def factor_joints(ws: Any) -> int:
     """The same matrix as `evaluate_joints`, and its factors with the pivots that the structure has."""
     evaluate_joints(ws)
-    return int(factor(lu_at(ws.kkt_query), ws.values))
+    return int(factor_equations(ws, ws.kkt_query))
 
 
 @compiled
 def solve_joints(ws: Any) -> None:
     """rhs -> its solution with the factorised matrix."""
-    solve(lu_at(ws.kkt_query), ws.rhs)
+    solve_equations(ws, ws.kkt_query)

@@ -27,6 +27,7 @@ from ..state.workspace_records import (
     SINGULAR,
     WORST_CONDITION,
 )
+from ..tables.compatibility import factor_equations, solve_equations
 from ..tables.evaluate import evaluate_tangent
 
 # Growth of the condition after which other redundant rows may be the better ones to leave out.
@@ -47,7 +48,7 @@ def refactor(ws: Any, c_q: float, c_v: float) -> int:
         # without velocity-level rows the third is the second
         if size == 0 or (k == 2 and ws.m_held == ws.m_act):
             continue
-        status = factor(lu_at(address), ws.values)
+        status = factor_equations(ws, address) if k == 0 else factor(lu_at(address), ws.values)
         if status == 2:
             return REANALYZE
         if status != 0:
@@ -120,7 +121,7 @@ def _measure_condition(ws: Any) -> None:
         rhs[i] = 0.0
     for i in range(ws.m_act):
         rhs[ws.n + i] = probe[i]
-    solve(lu_at(ws.kkt), ws.rhs)
+    solve_equations(ws, ws.kkt)
     largest = 0.0
     for i in range(ws.n):
         largest = max(largest, abs(rhs[i]) / scale[i])

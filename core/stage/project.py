@@ -6,7 +6,6 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..linalg import factor, lu_at
 from ..state.workspace_records import (
     CONTROL_SIZE,
     INNER_DIVERGED,
@@ -15,6 +14,7 @@ from ..state.workspace_records import (
     REANALYZE,
     VELOCITY_TOLERANCE,
 )
+from ..tables.compatibility import factor_equations
 from ..tables.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..tables.levels import position_level, rate_level
 from ..tables.projection import correct_least
@@ -47,7 +47,7 @@ def project_motion(ws: Any) -> int:
     evaluate_residuals(ws)
     if ws.m_act > 0:
         evaluate_tangent(ws, 0.0, 0.0)
-        if factor(lu_at(ws.kkt_query), ws.values) != 0:
+        if factor_equations(ws, ws.kkt_query) != 0:
             return REANALYZE
         status = _project_level(ws, ws.phi, ws.q, control[POSITION_TOLERANCE])
         if status != OK:

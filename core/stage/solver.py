@@ -41,6 +41,7 @@ from ..state.workspace_records import (
     RTOL,
     STAGES,
 )
+from ..tables.compatibility import left_of_sharing
 from ..tables.evaluate import evaluate_constraints, evaluate_residuals
 from .corotating import add_in_frame
 from .inner import inner_loop
@@ -63,7 +64,7 @@ SLOW = 0.2
 
 @internal
 def solve_increment(ws: Any, lu_address: int) -> None:
-    """rhs = -matrix^-1 (r, phidd)."""
+    """rhs = -matrix^-1 (r, phidd), and what is left of compatibility."""
     rhs = vec(ws.rhs, ws.n + ws.m_act)
     r = vec(ws.r, ws.n)
     phidd = vec(ws.phidd, ws.m_ext)
@@ -72,6 +73,7 @@ def solve_increment(ws: Any, lu_address: int) -> None:
         rhs[i] = -r[i]
     for i in range(ws.m_act):
         rhs[ws.n + i] = -phidd[active[i]]
+    left_of_sharing(ws)
     solve(lu_at(lu_address), ws.rhs)
 
 
@@ -136,15 +138,15 @@ def add_increment(ws: Any, c_q: float, c_v: float) -> None:
     """Add the increments of accelerations and multipliers in `rhs`; q and v follow."""
     n, m_act = ws.n, ws.m_act
     q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
-    lam = vec(ws.lam, ws.m_ext)
-    active = ivec(ws.active, m_act)
-    increment = vec(ws.rhs, n + m_act)
+    lam, rows = vec(ws.lam, ws.m_ext), m_act + ws.n_implied
+    active = ivec(ws.active, rows)
+    increment = vec(ws.rhs, n + rows)
     for i in range(n):
         q[i] += c_q * increment[i]
         v[i] += c_v * increment[i]
         a[i] += increment[i]
     add_in_frame(ws, increment)
-    for i in range(m_act):
+    for i in range(rows):
         lam[active[i]] += increment[n + i]
 
 

@@ -17,7 +17,8 @@ AT_ZERO_GAP_OR_FORCE = 3  # the latter where others draw the shapes apart faster
 # how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
 STICKS = 0.0  # its sliding distance is a constraint
 IDLE = 2.0  # it cannot slide because others hold it, and carries a share of its normal force (RATIO)
-ALONG = 3.0  # in space: its sliding is zero along the first tangent; along the second it is IDLE
+AT_LIMIT = 3.0  # in space: others hold it, with its friction RATIO F_N along the second tangent at its limit; along the
+# first one, across that friction, its sliding is zero, and that row's multiplier turns the direction a little
 
 # columns of the memory
 MODE = 0
@@ -25,7 +26,7 @@ APPROACH_SPEED = 1  # at the last first touch, m/s
 LARGEST_APPROACH = 2  # since the start, m/s
 IMPULSE_JUMP = 3  # sum of impact impulses, N s
 LOSS_JUMP = 4  # sum of energy lost at impacts and releases, J
-SLIDE = 5  # STICKS, IDLE, ALONG, +1 or -1 (in space +1: along WAY)
+SLIDE = 5  # STICKS, IDLE, AT_LIMIT, +1 or -1 (in space +1: along WAY)
 SLIDE_START = 6  # sliding distance at which the contact began to stick, m
 RATIO = 7  # F_T/F_N of a closed contact that does not stick: +-mu while it slides
 GAP_START = 8  # gap at which a contact constraint holds, next to nothing, m
@@ -33,7 +34,9 @@ BEGUN_IMPULSE = 9  # impulse of a contact force when it began to act, N s
 BEGUN_LOSS = 10  # its dissipation then, J
 PUSHED = 11  # of a constraint contact in the last step of impulses: mean normal force, N
 PUSHES = 6  # columns: it, along two tangents, and torques against rolling about two axes and spinning, N m
-MEMORY_SIZE = PUSHED + PUSHES
+IMPLIED = PUSHED + PUSHES  # of a closed contact, which of its rows are implied by others: a sum of the following
+OF_NORMAL, OF_FIRST, OF_SECOND = 1, 2, 4
+MEMORY_SIZE = IMPLIED + 1
 # of force contacts, in a column that these have no other use for:
 LAID_MASS = GAP_START  # effective mass of shapes that met without an approach, kg; else 0
 # of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):

@@ -10,7 +10,8 @@ WORKSPACE = np.dtype(
         (name, np.int64)
         for name in (
             # sizes
-            "n", "n_ext", "m_ext", "m_act", "m_held", "n_kernels", "n_values", "n_contacts", "n_work", "row_length",
+            "n", "n_ext", "m_ext", "m_act", "m_held", "n_implied", "n_kernels", "n_values", "n_contacts", "n_work",
+            "row_length",
             "tangents",  # with which instants are decided now: 1 in the plane, 2 in space
             # the current point
             "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
@@ -58,7 +59,7 @@ STRUCTURE = np.dtype(
         (name, np.int64)
         for name in (
             # what the workspace takes over, under the same names
-            "n_values", "values", "m_act", "m_held", "active", "n_redundant", "redundant", "probe",
+            "n_values", "values", "m_act", "m_held", "n_implied", "active", "n_redundant", "redundant", "probe",
             "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "n_mass", "mass_slot",
             "kkt", "kkt_query",
             "codes",                                  # (contacts,) int64: which it is for (`switch.py`)
@@ -67,6 +68,8 @@ STRUCTURE = np.dtype(
             "nnz",                                    # entries of the matrix
             # Phi_q by rows, of the active ones
             "n_jacobian", "jacobian_start", "jacobian_row", "jacobian_col", "jacobian_slot",
+            # rows of compatibility, (n_implied, n_sharing): places of the multipliers that they are of, slots, numbers
+            "n_sharing", "sharing", "sharing_slot", "compatibility",
             "partition",                              # address of its PARTITION record
             "built", "serial", "used",                # 1: it is one; a number that no other has; when it was taken last
             # memory for its integers and its numbers, and how many there is room for

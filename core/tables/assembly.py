@@ -188,14 +188,16 @@ class Assembly:
         return self.n + AT_REST + len(self.work_names)
 
     def count_active(
-        self, closed: frozenset[int], sticking: frozenset[int], dropped: frozenset[int]
+        self, closed: frozenset[int], sticking: frozenset[int], dropped: frozenset[int], implied: frozenset[int]
     ) -> tuple[int, int]:
-        """How many rows of Phi are constraints with these contacts (`tables/switch.key_of`) and without the rows
-        `dropped`, and how many of them have a position form."""
+        """How many rows of Phi are constraints with these contacts (`tables/switch.key_of`), without the rows `dropped`
+        and those that others imply, and how many of them have a position form."""
         count, contacts = len(self.contacts), self.contacts
         out = dropped | {row for row, by in self.replaced_rows.items() if by & closed}
         rows = {row for row in range(self.m_joints) if row not in out} | {contacts[k].row for k in closed}
         rows |= {contacts[k % count].slide_row + k // count for k in sticking}
+        rows -= {contacts[k].row for k in implied if k < count}
+        rows -= {contacts[k % count].slide_row + k // count - 1 for k in implied if k >= count}
         return len(rows), len(rows - self.rate_rows)
 
     def work_index(self, name: str) -> int:

@@ -50,9 +50,9 @@ def size_of_entries(ws: Any, b: Any) -> tuple[int, int]:
 
 
 @internal
-def list_entries(ws: Any, b: Any, full: int, matrix_row: Any, row: Any, col: Any) -> None:
+def list_entries(ws: Any, b: Any, matrix_row: Any, matrix_col: Any, row: Any, col: Any) -> int:
     """Places of all entries, -1 for those that belong nowhere: the diagonal, then by element S, and Phi_q with its
-    transpose in turn."""
+    transpose in turn; how many. `matrix_row`: of each row of Phi; `matrix_col`: of its transpose."""
     n, codes, listed = b.n, ivec(ws.wanted, b.n_contacts), ivec(b.listed, b.n_contacts)
     for i in range(n):
         row[i] = col[i] = i
@@ -74,11 +74,11 @@ def list_entries(ws: Any, b: Any, full: int, matrix_row: Any, row: Any, col: Any
                 at += 1
             for p in range(j_start[x], j_start[x + 1]):
                 i, j = rows[e, j_pattern[p, 0]], coord[j_pattern[p, 1]]
-                i = matrix_row[i if i >= 0 else b.m] if j < n else -1
-                row[at], col[at] = i, j
-                # of rows below the matrix there is no transpose
-                row[at + 1], col[at + 1] = j if 0 <= i < full else -1, i
+                i = i if i >= 0 and j < n else b.m
+                row[at], col[at] = matrix_row[i], j
+                row[at + 1], col[at + 1] = j if matrix_col[i] >= 0 else -1, matrix_col[i]
                 at += 2
+    return at
 
 
 @internal

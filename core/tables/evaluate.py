@@ -9,6 +9,7 @@ from ..compiled.kernels import CONSTRAINTS, ENERGY, POWER, RESIDUAL, TANGENT, ba
 from ..compiled.views import ivec, mat, vec
 from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE
 from ..state.workspace_records import COUNTERS_SIZE, EVALUATIONS, call_evaluate
+from .compatibility import write_compatibility
 
 
 @internal
@@ -72,6 +73,7 @@ def evaluate_tangent(ws: Any, c_q: float, c_v: float) -> None:
     for i in range(ws.n_values):
         values[i] = 0.0
     call_evaluate(ws.evaluate_function, ws, TANGENT)
+    write_compatibility(ws)
 
 
 @compiled

@@ -3,9 +3,13 @@
 import math
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..state.modes import ALONG, MEMORY_SIZE, RATIO, SLIDE, STICKS
+from ..rounding import IMPLIED_MOVES, TURNS
+from ..state.modes import AT_LIMIT, CLOSED, IMPLIED, MEMORY_SIZE, MODE, OF_NORMAL, RATIO, SLIDE, STICKS
+from .levels import position_level
 
 
 @internal
@@ -18,7 +22,27 @@ def in_space(ws: Any, k: int) -> bool:
 def is_held(ws: Any, k: int) -> bool:
     """True if closed contact k sticks along a tangent at least."""
     slide = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE]
-    return slide == STICKS or slide == ALONG
+    return slide == STICKS or slide == AT_LIMIT
+
+
+@internal
+def implied_margin(ws: Any, k: int) -> float:
+    """How far the gap of closed contact k is from what says that others do not imply its constraint: 1 where they do, 0
+    where it has moved by IMPLIED_MOVES; 1 for a contact whose gap is solved for."""
+    memory, row = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(ws.contact_rows, ws.n_contacts)[k]
+    if memory[MODE] != CLOSED or np.int64(memory[IMPLIED]) & OF_NORMAL == 0:
+        return 1.0
+    most = IMPLIED_MOVES * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+    return float(1.0 - abs(vec(ws.phi, ws.m_ext)[row]) / most)
+
+
+@internal
+def friction_limit(ws: Any, k: int, force: float) -> float:
+    """Largest friction of contact k, which sticks with this normal force, N. That of one at its limit turns along the
+    tangent of its circle (`state/modes.py`), and may leave it by a little."""
+    most = vec(ws.contact_sticking, ws.n_contacts)[k] * force
+    at_limit = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == AT_LIMIT
+    return float((1.0 + TURNS) * most if at_limit else most)
 
 
 @internal

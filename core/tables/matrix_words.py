@@ -4,7 +4,8 @@ Structure, partition and pivots follow from the codes of the contacts, the depen
 pivots (`building.py`, `partition_building.py`, `linalg/analyze.py`), so a state holds these and the numbers of the
 factors only. Going back keeps what fits and builds the rest, as `run/restore.py` does in Python.
 
-The words: how many there are; codes of the contacts; how many dependent coordinates, these, and the probe; then of each
+The words: how many there are; codes of the contacts; how many dependent coordinates, these, and the probe; the rows of
+compatibility; then of each
 matrix its kind (`linalg/record.py`; that of all sparse ones is PROGRAM), size, count of numbers, pivots, and numbers.
 """
 
@@ -19,7 +20,7 @@ from ..linalg.record import ANALYZE_SPARSE, DENSE, PROGRAM, UNREADY
 from ..state.workspace_records import OK, WORKSPACE_TYPE, building_at, call_engage, partition_at, structure_at
 from .partition_building import partition_wanted
 from .serials import same_numbers
-from .switch import STUCK_TWICE
+from .switch import CODES
 
 HEAD = 3
 """Words before each matrix."""
@@ -62,7 +63,7 @@ def _matrix(st: Any, k: int) -> int:
 def matrix_words(ws: Any) -> int:
     """How many words `save_matrices` writes now."""
     st = structure_at(ws.structure)
-    count = 2 + ws.n_contacts + 2 * st.m_act
+    count = 2 + ws.n_contacts + 2 * st.m_act + st.n_implied * st.n_sharing
     for k in range(4):
         lu = lu_at(_matrix(st, k))
         count += HEAD + lu.n + _numbers(lu)
@@ -86,6 +87,11 @@ def save_matrices(ws: Any, at: int) -> int:
     for i in range(m_act):
         reals[i] = probe[i]
     at += 8 * m_act
+    sharing = st.n_implied * st.n_sharing
+    reals, rows = vec(at, sharing), vec(st.compatibility, sharing)
+    for i in range(sharing):
+        reals[i] = rows[i]
+    at += 8 * sharing
     for k in range(4):
         lu = lu_at(_matrix(st, k))
         head, count = ivec(at, HEAD), _numbers(lu)
@@ -120,13 +126,14 @@ def restore_matrices(ws: Any, at: int, anew: int) -> int:
         found = BUILT
         wanted = ivec(ws.wanted, n_contacts)
         for k in range(n_contacts):
-            if words[1 + k] < 0 or words[1 + k] > STUCK_TWICE:
+            if words[1 + k] < 0 or words[1 + k] >= CODES:
                 return UNFIT
             wanted[k] = words[1 + k]
         if call_engage(ws.engage, ws) != OK:
             return UNFIT
         st = structure_at(ws.structure)
-    at, left = at + 8 * (2 + n_contacts), left - 2 * m_act
+    sharing = st.n_implied * st.n_sharing
+    at, left = at + 8 * (2 + n_contacts), left - 2 * m_act - sharing
     if m_act != st.m_act or left < 0:
         return UNFIT
     pt = partition_at(st.partition)
@@ -142,6 +149,10 @@ def restore_matrices(ws: Any, at: int, anew: int) -> int:
     for i in range(m_act):
         probe[i] = reals[i]
     at += 16 * m_act
+    rows, reals = vec(st.compatibility, sharing), vec(at, sharing)
+    for i in range(sharing):
+        rows[i] = reals[i]
+    at += 8 * sharing
     for k in range(4):
         lu, head = lu_at(_matrix(st, k)), ivec(at, HEAD)
         left -= HEAD

@@ -7,6 +7,7 @@ from ..errors import ConsistencyError
 from ..linalg import RowPivots, SingularMatrixError, pivot_rows
 from ..rounding import CONTRADICTION, RANK_TOLERANCE
 from ..state.workspace_records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
+from .compatibility import share_load
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level
 from .probe import set_probe
@@ -94,6 +95,10 @@ def prepare(workspace: Workspace) -> None:
                 f"the system matrix is singular in this configuration ({error}): some coordinate has neither mass "
                 "nor a constraint, or a value is not finite"
             ) from error
+    if structure.n_implied and not bool(share_load(workspace.record)):
+        raise ConsistencyError(
+            "the system matrix is singular in this configuration once rows that repeat each other share the load"
+        )
     structure.kkt_query.follow(structure.kkt)
     set_probe(workspace.record)
     workspace.arrays["rate"][FACTOR_AGE] = -1.0

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..compiled.jit import compiled, inlined, internal
 from ..compiled.views import ivec, vec
-from ..linalg import factor, lu_at, solve
 from ..rounding import MET, NEARLY_MET
+from .compatibility import factor_equations, solve_equations
 from .evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
 from .levels import position_level, rate_level
 from .workspace import Workspace
@@ -26,7 +26,7 @@ def correct_least(ws: Any, residual_address: int, x_address: int) -> None:
         rhs[i] = 0.0
     for i in range(ws.m_act):
         rhs[ws.n + i] = -residual[active[i]]
-    solve(lu_at(ws.kkt_query), ws.rhs)
+    solve_equations(ws, ws.kkt_query)
     x = vec(x_address, ws.n_ext)
     for i in range(ws.n):
         x[i] += rhs[i]
@@ -37,7 +37,7 @@ def correct_least(ws: Any, residual_address: int, x_address: int) -> None:
 def _least_correction(ws: Any, residual_address: int, x_address: int) -> bool:
     """The correction with matrices of the current point."""
     evaluate_tangent(ws, 0.0, 0.0)
-    if factor(lu_at(ws.kkt_query), ws.values) != 0:
+    if factor_equations(ws, ws.kkt_query) != 0:
         return False
     correct_least(ws, residual_address, x_address)
     return True

@@ -13,7 +13,7 @@ from ..linalg import Matrix
 from ..linalg.factorization import Grow
 from ..state.workspace_records import PARTITION, STRUCTURE
 from .slots import MATRICES, Slots
-from .switch import key_of
+from .switch import Key, key_of
 
 Array = NDArray[Any]
 _READY, _SERIAL = words_of(PARTITION)["ready"], words_of(PARTITION)["serial"]
@@ -78,8 +78,10 @@ class Structure:
     Attributes
     ----------
     active : rows of Phi that are constraints now, (m_act,): those with a position form first, `m_held` of them.
+    multiplier_rows : rows of Phi that have multipliers: the active ones, and the implied ones behind them.
     two_partitions : whether dependent positions may be others than dependent velocities.
     redundant : rows of joints that repeat active ones: not solved for, but checked.
+    n_implied : rows of closed contacts that others imply: not solved for, but with multipliers.
 
     Parameters
     ----------
@@ -96,6 +98,8 @@ class Structure:
         self.n_values, self.nnz = self._word("n_values"), self._word("nnz")
         # these are asked for while other structures may take the place of this one
         self.active = self._whole("active", self.m_act).copy()
+        self.n_implied = self._word("n_implied")
+        self.multiplier_rows = self._whole("active", self.m_act + self.n_implied).copy()
         self.redundant = self._whole("redundant", self._word("n_redundant")).copy()
         self._codes = self.codes.copy()
         self._partition = slots.words["partitions"][self._number]
@@ -112,8 +116,8 @@ class Structure:
         return self.view(self._word(name), count, np.int64)
 
     @cached_property
-    def key(self) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
-        """Contacts closed, engaged and sticking."""
+    def key(self) -> Key:
+        """Contacts closed, engaged and sticking, and rows that others imply."""
         return key_of(self._codes)
 
     @cached_property
@@ -184,6 +188,16 @@ class Structure:
     def probe(self) -> NDArray[np.float64]:
         """Right-hand side (m_act,) with which the condition of the constraints is measured."""
         return self.view(self._word("probe"), self.m_act, np.float64)
+
+    @property
+    def compatibility(self) -> NDArray[np.float64]:
+        """Rows of compatibility, (n_implied * n_sharing,) (`compatibility.py`)."""
+        return self.view(self._word("compatibility"), self.n_implied * self._word("n_sharing"), np.float64)
+
+    @property
+    def sharing(self) -> NDArray[np.int64]:
+        """Places of the multipliers that rows of compatibility are of, (n_sharing,)."""
+        return self._whole("sharing", self._word("n_sharing"))
 
     def matrix(self, name: str, like: Matrix | None = None) -> Matrix:
         """One of the factorisations."""

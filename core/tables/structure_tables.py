@@ -11,18 +11,22 @@ from .entries import write_tables
 
 @internal
 def write_structure(
-    ws: Any, b: Any, st: Any, pt: Any, m_act: int, m_held: int, left_out: int, nnz: int, total: int, n_mass: int,
-    n_jacobian: int, kept: int, active: Any, row: Any, col: Any, order: Any, slot: Any,
-    table: int,
+    ws: Any, b: Any, st: Any, pt: Any, m_act: int, m_held: int, n_implied: int, n_sharing: int, left_out: int, nnz: int,
+    total: int, n_mass: int, n_jacobian: int, kept: int, active: Any, row: Any, col: Any, order: Any, slot: Any,
+    table: int, sharing: Any, first: int,
 ) -> None:  # fmt: skip
     """Write the structure of the codes that are wanted: `active` are its rows, of the `kept` entries (`row`, `col`)
     each has a number in `order`, ascending, and a `slot`; its slot
-    tables have `table` numbers."""
-    full, at = b.n + m_act, st.words
+    tables have `table` numbers. The multipliers `sharing` have rows of compatibility, whose entries are listed from
+    `first` on."""
+    full, at = b.n + m_act + n_implied, st.words
     st.n_values, st.m_act, st.n_redundant, st.nnz = total + 1, m_act, left_out, nnz
     st.m_held, st.n_mass, st.n_jacobian, st.dropped = m_held, n_mass, n_jacobian, b.dropped
-    st.codes, st.active, st.redundant = at, at + 8 * b.n_contacts, at + 8 * (b.n_contacts + m_act)
-    at += 8 * (b.n_contacts + m_act + left_out)
+    st.n_implied, st.n_sharing = n_implied, n_sharing
+    st.codes, st.active, st.redundant = at, at + 8 * b.n_contacts, at + 8 * (b.n_contacts + m_act + n_implied)
+    at += 8 * (b.n_contacts + m_act + n_implied + left_out)
+    st.sharing, st.sharing_slot = at, at + 8 * n_sharing
+    at += 8 * (n_sharing + n_implied * n_sharing)
     st.entry_row, st.entry_col, everything = at, at + 8 * nnz, at + 16 * nnz
     at += 24 * nnz
     st.gradient_start, st.gradient_col = at, at + 8 * b.m_ext
@@ -36,9 +40,15 @@ def write_structure(
     codes, wanted = ivec(st.codes, b.n_contacts), ivec(ws.wanted, b.n_contacts)
     for k in range(b.n_contacts):
         codes[k] = wanted[k]
-    own, redundant, out, count = ivec(st.active, m_act), ivec(st.redundant, left_out), ivec(b.left_out, b.m_ext), 0
-    for i in range(m_act):
+    own, redundant = ivec(st.active, m_act + n_implied), ivec(st.redundant, left_out)
+    out, count = ivec(b.left_out, b.m_ext), 0
+    for i in range(m_act + n_implied):
         own[i] = active[i]
+    places, slots = ivec(st.sharing, n_sharing), ivec(st.sharing_slot, n_implied * n_sharing)
+    for j in range(n_sharing):
+        places[j] = sharing[j]
+    for e in range(n_implied * n_sharing):
+        slots[e] = slot[first + e]
     for i in range(b.m):
         if out[i] != 0:
             redundant[count] = i
@@ -50,7 +60,8 @@ def write_structure(
     write_tables(ws, b, st, tables, total, row, slot)
     reals, many = st.reals, words_of(full, nnz)
     st.values, st.probe = reals, reals + 8 * (total + 1)
-    reals += 8 * (total + 1 + m_act)
+    st.compatibility = reals + 8 * (total + 1 + m_act)
+    reals += 8 * (total + 1 + m_act + n_implied * n_sharing)
     probe = vec(st.probe, m_act)
     for i in range(m_act):
         probe[i] = 0.0
@@ -107,9 +118,13 @@ def _write_entries(b: Any, st: Any, full: int, kept: int, row: Any, col: Any, or
 
 @internal
 def _give_units(b: Any, st: Any) -> None:
-    n, m_act, units, active = b.n, st.m_act, vec(b.units, b.n + b.m_ext), ivec(st.active, st.m_act)
+    n, size, units = b.n, st.m_act + st.n_implied, vec(b.units, b.n + b.m_ext)
+    active = ivec(st.active, size)
     for address in (st.kkt, st.kkt_query):
         lu = lu_at(address)
-        rows, cols = vec(lu.row_unit, n + m_act), vec(lu.col_unit, n + m_act)
-        for i in range(n + m_act):
+        rows, cols = vec(lu.row_unit, n + size), vec(lu.col_unit, n + size)
+        for i in range(n + size):
             rows[i] = cols[i] = units[i] if i < n else units[n + active[i - n]]
+            if i >= n + st.m_act:
+                # rows of compatibility say something of multipliers, not of motion
+                rows[i] = 1.0 / cols[i]

@@ -13,31 +13,63 @@ from numpy.typing import NDArray
 from ..compiled.jit import internal
 from ..compiled.kernels import batch_at
 from ..compiled.views import ivec, mat, vec
-from ..state.modes import ACTIVE, ALONG, CLOSED, MEMORY_SIZE, MODE, SLIDE, STICKS
+from ..state.modes import (
+    ACTIVE,
+    AT_LIMIT,
+    CLOSED,
+    IMPLIED,
+    MEMORY_SIZE,
+    MODE,
+    OF_FIRST,
+    OF_NORMAL,
+    OF_SECOND,
+    SLIDE,
+    STICKS,
+)
 from ..state.workspace_records import CONDITION, FACTOR_AGE, OK, RATE_SIZE, call_engage, partition_at, structure_at
 
 APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
 """A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too; in
 space its sliding along both tangents."""
+KINDS = 8
+"""A code is one of these, plus KINDS times IMPLIED of the contact's memory."""
+CODES = KINDS * (OF_NORMAL + OF_FIRST + OF_SECOND + 1)
 
 
 def codes_of(
-    count: int, closed: Collection[int], engaged: Collection[int], sticking: Collection[int]
+    count: int,
+    closed: Collection[int],
+    engaged: Collection[int],
+    sticking: Collection[int],
+    implied: Collection[int] = (),
 ) -> NDArray[np.int64]:
-    """Codes of `count` contacts, (max(count, 1),); k + count in `sticking`: k sticks along its second tangent too."""
+    """Codes of `count` contacts, (max(count, 1),); k + count in `sticking`: k sticks along its second tangent too;
+    `implied`: k, k + count, k + 2 count where other constraints imply the row of its normal, first, second tangent."""
     codes = np.full(max(count, 1), APART, dtype=np.int64)
     first, second = [k for k in sticking if k < count], [k - count for k in sticking if k >= count]
     for contacts, code in ((engaged, ENGAGED), (closed, HELD), (first, STUCK), (second, STUCK_TWICE)):
         codes[list(contacts)] = code
+    for row in implied:
+        codes[row % count] += KINDS * (OF_NORMAL, OF_FIRST, OF_SECOND)[row // count]
     return codes
 
 
-def key_of(codes: NDArray[np.int64]) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
-    """Contacts closed, engaged (closed or acting) and sticking, as `codes_of` takes them."""
+Key = tuple[frozenset[int], frozenset[int], frozenset[int], frozenset[int]]
+
+
+def key_of(codes: NDArray[np.int64]) -> Key:
+    """Contacts closed, engaged (closed or acting), sticking, and implied rows, as `codes_of` takes them."""
     closed, engaged, sticking, twice = (
-        frozenset(int(k) for k in np.flatnonzero(codes >= least)) for least in (HELD, ENGAGED, STUCK, STUCK_TWICE)
+        frozenset(int(k) for k in np.flatnonzero(codes % KINDS >= least))
+        for least in (HELD, ENGAGED, STUCK, STUCK_TWICE)
     )
-    return closed, engaged, sticking | {k + len(codes) for k in twice}
+    count = len(codes)
+    implied = {
+        int(k) + of * count
+        for of, bit in enumerate((OF_NORMAL, OF_FIRST, OF_SECOND))
+        for k in np.flatnonzero(codes // KINDS & bit)
+    }
+    return closed, engaged, sticking | {k + count for k in twice}, frozenset(implied)
 
 
 @internal
@@ -52,8 +84,9 @@ def want(ws: Any) -> None:
             wanted[k] = HELD
             if slides[k] >= 0 and memory[k, SLIDE] == STICKS:
                 wanted[k] = STUCK if seconds[k] < 0 else STUCK_TWICE
-            elif memory[k, SLIDE] == ALONG:
+            elif memory[k, SLIDE] == AT_LIMIT:
                 wanted[k] = STUCK
+            wanted[k] += KINDS * np.int64(memory[k, IMPLIED])
 
 
 @internal
@@ -63,7 +96,7 @@ def take_structure(ws: Any, address: int) -> None:
     ws.structure = address
     ws.n_values, ws.values = st.n_values, st.values
     ws.m_act, ws.active, ws.n_redundant, ws.redundant = st.m_act, st.active, st.n_redundant, st.redundant
-    ws.m_held = st.m_held
+    ws.m_held, ws.n_implied = st.m_held, st.n_implied
     ws.probe, ws.entry_row, ws.entry_col = st.probe, st.entry_row, st.entry_col
     ws.gradient_start, ws.gradient_col, ws.gradient_slot = st.gradient_start, st.gradient_col, st.gradient_slot
     ws.n_mass, ws.mass_slot, ws.kkt, ws.kkt_query = st.n_mass, st.mass_slot, st.kkt, st.kkt_query

@@ -39,7 +39,7 @@ from .patterns import FEW, entries_of_few, patterns, shows
 from .slots import MOST_STRUCTURES, Slots
 from .state_fields import STATE, Field, row_length, state_fields
 from .structure import OF_PARTITION, OF_STRUCTURE, Structure
-from .switch import codes_of
+from .switch import Key, codes_of
 
 _SHARED = (
     "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor", "memory",
@@ -167,7 +167,7 @@ class Workspace:
             WORKSPACE,
             record_arrays,
             {
-                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "m_held": 0,
+                "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "m_held": 0, "n_implied": 0,
                 "n_redundant": 0, "n_free": 0, "n_mass": 0, "n_kernels": len(a.batches), "n_values": 1,
                 "n_basis": 1, "n_contacts": contacts, "tangents": a.tangents,
                 "n_work": len(a.work_names), "structure": 0, "kept": 0,
@@ -319,10 +319,16 @@ class Workspace:
         """The record of batch k, as a structured array (1,)."""
         return self._batches[k].table
 
-    def engage(self, closed: frozenset[int], engaged: frozenset[int], sticking: frozenset[int] = frozenset()) -> None:
+    def engage(
+        self,
+        closed: frozenset[int],
+        engaged: frozenset[int],
+        sticking: frozenset[int] = frozenset(),
+        implied: frozenset[int] = frozenset(),
+    ) -> None:
         """Make contacts `closed` constraints, along the tangent too if they are `sticking`, and give all `engaged` ones
-        a place in the matrix."""
-        self.arrays["wanted"][:] = codes_of(len(self.assembly.contacts), closed, closed | engaged, sticking)
+        a place in the matrix; `implied` rows, as `switch.codes_of` takes them, are not solved for."""
+        self.arrays["wanted"][:] = codes_of(len(self.assembly.contacts), closed, closed | engaged, sticking, implied)
         self.engage_wanted()
 
     def engage_wanted(self) -> None:
@@ -370,8 +376,8 @@ class Workspace:
         return self._structure  # type: ignore[return-value]
 
     @property
-    def key(self) -> tuple[frozenset[int], frozenset[int], frozenset[int]]:
-        """Its contacts: closed, engaged, sticking."""
+    def key(self) -> Key:
+        """Its contacts: closed, engaged, sticking; and the rows that others imply."""
         return self.structure.key
 
     def sync(self) -> None:

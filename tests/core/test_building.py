@@ -72,7 +72,7 @@ def test_structures_are_what_they_are_defined_to_be(name):
         s, n = workspace.structure, assembly.n
         assert s.active.tolist() == active
         assert s.m_held == len([row for row in active if row not in assembly.rate_rows])
-        assert assembly.count_active(closed, sticking, workspace.dropped) == (len(active), s.m_held)
+        assert assembly.count_active(closed, sticking, workspace.dropped, frozenset()) == (len(active), s.m_held)
         assert s.redundant.tolist() == sorted(workspace.dropped)
         assert list(zip(s.rows.tolist(), s.cols.tolist(), strict=True)) == sorted(matrix)
         assert s.mass_slot.tolist() == [k for k, (i, j) in enumerate(sorted(matrix)) if i < n and j < n]

@@ -16,7 +16,7 @@ from tlismni.core import (
     Sphere3D,
     SphereOnCable3D,
 )
-from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, AT_LIMIT, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
 
 SPAN = 2e-3
 CLOSE = 1e-7
@@ -99,7 +99,7 @@ def test_tangent_and_rates_of_coulomb_friction(case, slides):
     """Rows of sticking at velocity level: their W is the derivative of phid by v; phidd is the rate of phid."""
     build, place = CASES[case]
     point, slide = Point(build(place, law=HARD, friction=GRIP)), SLIDES[slides]
-    twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
+    twice = {STICKS: {0, 1}, AT_LIMIT: {0}}.get(slide, set())
     point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
     axis = 1 if build is plane else 2
     columns = [MODE, SLIDE, RATIO, WAY, AXIS]

@@ -22,7 +22,7 @@ from tlismni.core import (
     TurningFriction,
 )
 from tlismni.core.shapes.gripping3d import TURNED
-from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, IDLE, LEAN, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, AT_LIMIT, AXIS, CLOSED, IDLE, LEAN, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 
 HARD = NewtonImpact(restitution=0.5)
 TANH = TanhFriction(coefficient=0.6, transition_speed=2.0)
@@ -132,14 +132,14 @@ def test_contact_forces_really_act_in_these_tests(case):
 
 
 GRIP = CoulombFriction(coefficient=0.4)
-SLIDES = {"sliding": 1.0, "sticking": STICKS, "held along one": ALONG, "carrying a share": IDLE, "open": None}
+SLIDES = {"sliding": 1.0, "sticking": STICKS, "held along one": AT_LIMIT, "carrying a share": IDLE, "open": None}
 
 
 def gripping(shape, where, slide, turning=None):
     contact = shape(HARD, *PLACES[where], friction=GRIP, turning=turning)
     point = Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], contacts=[contact]))
     if slide is not None:
-        twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
+        twice = {STICKS: {0, 1}, AT_LIMIT: {0}}.get(slide, set())
         point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
         axis = 1 if shape is on_plane else (3 if where == "a point mass" else 2)
         columns = [MODE, SLIDE, RATIO, WAY, AXIS, LEAN]

@@ -27,7 +27,7 @@ from tlismni.core import (
     SphereOnSmooth3D,
     Torus3D,
 )
-from tlismni.core.state.modes import ACTIVE, ALONG, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, AT_LIMIT, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
 
 SPAN = 1e-3
 """Of the differences: these gaps bend more than those of spheres."""
@@ -125,7 +125,7 @@ def test_tangent_of_regularised_friction(name):
 
 def gripping(name, slide):
     point = Point(system(SHAPES[name](law=HARD, friction=GRIP)))
-    twice = {STICKS: {0, 1}, ALONG: {0}}.get(slide, set())
+    twice = {STICKS: {0, 1}, AT_LIMIT: {0}}.get(slide, set())
     point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
     columns = [MODE, SLIDE, RATIO, WAY, AXIS]
     axis = 1 if name in ("ellipsoid", "torus", "rim") else 2

@@ -9,7 +9,7 @@ from scipy.special import ellipe, ellipk
 from tlismni.core import simulate
 from tlismni.models import load
 
-MASS, ACROSS, ALONG, RADIUS, CENTRE, PATCH, MU, G = 6e-3, 8e-7, 7e-7, 15e-3, 3e-3, 5e-4, 0.3, 9.81
+MASS, ACROSS, AT_LIMIT, RADIUS, CENTRE, PATCH, MU, G = 6e-3, 8e-7, 7e-7, 15e-3, 3e-3, 5e-4, 0.3, 9.81
 TILT, SPIN, STEM = 0.1, 180.0, (5.0 - 15.0) / (16.0 - 3.0)
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -73,8 +73,8 @@ def course(friction, until):
         force, drill = friction(slip[:2], w[2])
         push = UP - MU * np.append(force, 0.0)
         torque = np.cross(arm, push) - MU * drill * UP
-        inertia = ACROSS * np.eye(3) + (ALONG - ACROSS) * np.outer(e, e)
-        free = np.linalg.solve(inertia, -(ALONG - ACROSS) * (w @ e) * turns)
+        inertia = ACROSS * np.eye(3) + (AT_LIMIT - ACROSS) * np.outer(e, e)
+        free = np.linalg.solve(inertia, -(AT_LIMIT - ACROSS) * (w @ e) * turns)
         pushed = np.linalg.solve(inertia, torque)
         # the lowest point stays on the floor: m z'' = N - m g, z = R - c e_z
         falls = -CENTRE * (np.cross(free, e) + np.cross(w, turns))[2]

@@ -1,0 +1,118 @@
+"""Of all forces that contacts may have, those of least norm: the limit of equally compliant contacts.
+
+Where contacts repeat each other, w = b + A P is solved by many P. Contacts that are compliant by the same small part
+eps have w = b + (A + eps C) P, whose solution is unique; with eps -> 0 its part along a null vector n of A,
+n^T C P = -n^T b/eps = 0, is right at any eps, since b is a motion that bodies can have. So eps is brought down from
+where the problem is well conditioned (Tikhonov 1963), and what is left, a power series in eps, is extrapolated to zero
+(Richardson 1911).
+"""
+
+import math
+from typing import Any
+
+from ..compiled.jit import internal
+from ..compiled.views import mat, vec
+from ..linalg.small import solve_square
+from ..rounding import FRICTION_EXACT, FRICTION_GOOD, FRICTION_NEAR
+from .friction_cones import newton_on_cones, sweep_over_cones
+from .projections import motion_left, residual_of_cones
+
+FIRST, LOWER, LAST = 0.1, 0.01, 1e-5
+"""Compliance in parts of the largest inverse mass: at first, factor from one to the next, and at last."""
+NEARER = 1e-2
+"""Of the last one, where what a contact does changes on the way."""
+SWEEPS, ITERATIONS = 100, 40
+
+
+def least_forces_size(n: int) -> int:
+    """Numbers (of 8 bytes) in the scratch of `take_least_forces` for n contacts, beside that of `newton_on_cones`."""
+    m = 3 * n
+    return 2 * m * m + 6 * m
+
+
+@internal
+def _follow(
+    n: int, soft: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, jac: Any, left: Any, best: Any
+) -> bool:
+    """Newton's method on compliant contacts from p, which becomes the best point; True if that solves the problem. It
+    goes on down to rounding: forces that repeat each other count in the residual by their compliance only."""
+    least, size = math.inf, 0.0
+    for _ in range(ITERATIONS):
+        worst = residual_of_cones(n, soft, b, mu, base, known, way, p, left, jac)
+        if worst < least:
+            least, size = worst, 0.0
+            for i in range(3 * n):
+                best[i] = p[i]
+                size = max(size, abs(p[i]))
+        elif least <= FRICTION_NEAR * size:
+            break
+        if solve_square(jac, left) == 0:
+            break
+        for i in range(3 * n):
+            p[i] -= left[i]
+    for i in range(3 * n):
+        p[i] = best[i]
+    return least <= FRICTION_NEAR * size
+
+
+@internal
+def _soften(m: int, a: Any, part: float, largest: float, soft: Any) -> None:
+    for i in range(m):
+        for j in range(m):
+            soft[i, j] = a[i, j]
+        soft[i, i] += part * largest
+
+
+@internal
+def take_least_forces(
+    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
+) -> bool:
+    """Forces of least norm in place of the forces p (3 n,), as of `solve_friction_cones`; False, with p as it was,
+    where the way to them is not found."""
+    m, largest = 3 * n, 0.0
+    soft, jac = mat(work, m, m), mat(work + 8 * m * m, m, m)
+    at = work + 16 * m * m
+    left, best, own = vec(at, m), vec(at + 8 * m, m), vec(at + 16 * m, m)
+    once, twice, last = vec(at + 24 * m, m), vec(at + 32 * m, m), vec(at + 40 * m, m)
+    for i in range(m):
+        largest, own[i] = max(largest, a[i, i]), p[i]
+    part = FIRST
+    while True:
+        for i in range(m):
+            twice[i], once[i] = once[i], own[i]
+        _soften(m, a, part, largest, soft)
+        for _ in range(SWEEPS if part == FIRST else 0):
+            found, change, size = sweep_over_cones(n, soft, b, mu, base, known, way, own, 1.0)
+            if not found:
+                return False
+            if change <= part * size:
+                break
+        if not _follow(n, soft, b, mu, base, known, way, own, jac, left, best):
+            return False
+        if part < 1.5 * LAST:
+            break
+        # the last three are for four times, twice and once the least compliance
+        part = 0.5 * part if part < 5.0 * LAST else max(LOWER * part, 4.0 * LAST)
+    size = 0.0
+    for i in range(m):
+        last[i] = own[i]
+        own[i] = (8.0 * own[i] - 6.0 * once[i] + twice[i]) / 3.0
+    for i in range(n):
+        own[i] = max(own[i], base[i])
+        size = max(size, own[i])
+    if not residual_of_cones(n, a, b, mu, base, known, way, own, left, jac) <= FRICTION_EXACT * size:
+        # what a contact does has changed between the three: nearer to the limit, then the way that is left by the
+        # least increments
+        for i in range(m):
+            own[i] = last[i]
+        _soften(m, a, NEARER * LAST, largest, soft)
+        if not _follow(n, soft, b, mu, base, known, way, own, jac, left, best):
+            return False
+        newton_on_cones(least_norm, n, a, b, mu, base, known, way, own, at + 48 * m)
+        for i in range(n):
+            own[i] = max(own[i], base[i])
+        if not motion_left(n, a, b, mu, base, known, way, own) <= FRICTION_GOOD:
+            return False
+    for i in range(m):
+        p[i] = own[i]
+    return True

@@ -1,0 +1,224 @@
+"""Loads of contacts that repeat each other: the limit of equally compliant contacts, in any order of the list.
+
+Normal forces of a rigid block are the least that carry it, a linear function of the place of each foot. Static friction
+holds as long as some sharing within all cones does, so a block breaks away at mu_s times the whole load.
+"""
+
+import itertools
+
+import numpy as np
+import pytest
+from tlismni.core import (
+    AppliedForce3D,
+    AppliedTorque3D,
+    Axes,
+    Box3D,
+    Constant,
+    ContactGroup3D,
+    CoulombFriction,
+    HalfSpace3D,
+    Marker3D,
+    Model,
+    NewtonImpact,
+    PointMass3D,
+    Polynomial,
+    Prismatic3D,
+    Ramp,
+    RigidBody3D,
+    Simulation,
+    Sphere3D,
+    SphereOnHalfSpace3D,
+    simulate,
+)
+
+G = 9.81
+LAW = NewtonImpact(restitution=0.0)
+
+
+def feet_of(points, friction, body="b"):
+    return [
+        SphereOnHalfSpace3D(
+            name=f"f{i}",
+            plane=HalfSpace3D(),
+            sphere=Sphere3D(marker=Marker3D(body=body, point=point), radius=0.0),
+            law=LAW,
+            friction=friction,
+        )
+        for i, point in points
+    ]
+
+
+def least_loads(points, weight):
+    """Least forces that balance the weight in the middle."""
+    matrix = np.array([[1.0, x, y] for x, y, _ in points]).T
+    return np.linalg.lstsq(matrix, np.array([weight, 0.0, 0.0]), rcond=None)[0]
+
+
+AREAS = {
+    "square": [(-0.2, -0.2), (0.2, -0.2), (-0.2, 0.2), (0.2, 0.2)],
+    "uneven": [(-0.3, -0.1), (0.2, -0.2), (-0.1, 0.25), (0.25, 0.15), (0.05, 0.02)],
+    "rows": [(-0.2, -0.2), (0.0, -0.2), (0.2, -0.2), (-0.2, 0.2), (0.0, 0.2), (0.2, 0.2)],
+    "eight": [(0.2 * np.cos(k), 0.3 * np.sin(k) + 0.05) for k in np.arange(8) * 0.8],
+}
+
+
+@pytest.mark.parametrize("method", ["ebdf", "irk", "hht"])
+@pytest.mark.parametrize("area", AREAS)
+def test_feet_share_the_weight_linearly_in_place(area, method):
+    points = [(x, y, -0.3) for x, y in AREAS[area]]
+    wanted = least_loads(points, 3.0 * G)
+    assert min(wanted) > 0.0
+    orders = [range(len(points)), reversed(range(len(points))), np.random.default_rng(3).permutation(len(points))]
+    for order in orders:
+        body = RigidBody3D(name="b", mass=3.0, inertia=(0.1, 0.1, 0.08), position=(0.0, 0.0, 0.3))
+        feet = feet_of([(int(i), points[int(i)]) for i in order], CoulombFriction(coefficient=0.3))
+        result = simulate(Model(gravity=(0, 0, -G), bodies=[body], contacts=feet), 0.2, method=method)
+        loads = np.array([result[f"f{i}.normal_force"][-1] for i in range(len(points))])
+        np.testing.assert_allclose(loads, wanted, rtol=1e-8)
+        friction = [result[f"f{i}.friction_force"][-1] for i in range(len(points))]
+        assert np.max(np.abs(friction)) < 1e-8
+
+
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_planes_in_one_place_carry_equal_parts(count):
+    ball = PointMass3D(name="b", mass=2.0, position=(0.0, 0.0, 0.1), velocity=(1.0, 0.0, 0.0))
+    contacts = [
+        SphereOnHalfSpace3D(
+            name=f"f{i}", plane=HalfSpace3D(), sphere=Sphere3D(marker=Marker3D(body="b"), radius=0.1), law=LAW,
+            friction=CoulombFriction(coefficient=0.1 * (i + 1)),
+        )
+        for i in range(count)
+    ]  # fmt: skip
+    result = simulate(Model(gravity=(0, 0, -G), bodies=[ball], contacts=contacts), 0.05)
+    loads = [result[f"f{i}.normal_force"][-1] for i in range(count)]
+    np.testing.assert_allclose(loads, 2.0 * G / count, rtol=1e-10)
+    # each brakes with its own coefficient
+    braking = G * sum(0.1 * (i + 1) for i in range(count)) / count
+    assert result["b.vx"][-1] == pytest.approx(1.0 - braking * 0.05, abs=1e-8)
+
+
+CROSS = [(0.2, 0.0, -0.05), (-0.2, 0.0, -0.05), (0.0, 0.05, -0.05), (0.0, -0.05, -0.05)]
+ORDERS = list(itertools.permutations(range(4)))[::5]
+
+
+def cross(order, spin, forces=()):
+    body = RigidBody3D(
+        name="c", mass=1.0, inertia=(0.02,) * 3, position=(0.0, 0.0, 0.05), angular_velocity=(0.0, 0.0, spin)
+    )
+    feet = feet_of([(i, CROSS[i]) for i in order], CoulombFriction(coefficient=0.3), body="c")
+    return Model(gravity=(0, 0, -G), bodies=[body], contacts=feet, forces=list(forces))
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_spinning_cross_stops_as_its_feet_share_the_weight(order):
+    # each foot carries m g/4 at the arms 0.2 and 0.05 m
+    braking = 0.3 * 1.0 * G * 0.125 / 0.02
+    times = np.linspace(0.0, 0.7, 15)
+    result = simulate(cross(order, 10.0), 0.7, t_eval=times, rtol=1e-9)
+    np.testing.assert_allclose(result["c.angular_velocity_z"], np.maximum(10.0 - braking * times, 0.0), atol=1e-6)
+    np.testing.assert_allclose([result[f"f{k}.normal_force"][3] for k in range(4)], G / 4.0, rtol=1e-8)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_cross_breaks_away_once_all_feet_are_at_their_limit(order):
+    torque = AppliedTorque3D(name="t", marker=Marker3D(body="c"), torque_z=Polynomial(coefficients=[0.0, 0.4]))
+    result = simulate(cross(order, 0.0, [torque]), 1.2, rtol=1e-9)
+    slips = [event.t for event in result.events if event.kind == "slip"]
+    starts = 0.3 * G * 0.125 / 0.4
+    np.testing.assert_allclose(slips, [starts] * len(slips), rtol=1e-6)
+    # from there on J w' = 0.4 (t - t0)
+    np.testing.assert_allclose(result["c.angular_velocity_z"][-1], 0.4 * (1.2 - starts) ** 2 / (2.0 * 0.02), rtol=1e-5)
+
+
+FEET = {"three": [(-0.2, -0.2), (0.2, -0.2), (0.0, 0.2)], "four": AREAS["square"], "six": AREAS["rows"]}
+
+
+def pushed_block(feet, static, way):
+    friction = CoulombFriction(coefficient=0.3, static_coefficient=static)
+    inertia = (3.0 * (0.4**2 + 0.6**2) / 12, 3.0 * (0.4**2 + 0.6**2) / 12, 3.0 * 2 * 0.4**2 / 12)
+    body = RigidBody3D(name="b", mass=3.0, inertia=inertia, position=(0.0, 0.0, 0.3))
+    push = AppliedForce3D(
+        name="p",
+        marker=Marker3D(body="b", point=(0.0, 0.0, -0.1)),
+        force_x=Ramp(start=0.1, duration=1.0, after=20.0 * way[0]),
+        force_y=Ramp(start=0.1, duration=1.0, after=20.0 * way[1]),
+    )
+    contacts = feet_of([(i, (x, y, -0.3)) for i, (x, y) in enumerate(FEET[feet])], friction)
+    return Model(bodies=[body], forces=[push], contacts=contacts, gravity=(0, 0, -G))
+
+
+@pytest.mark.parametrize("way", [(1.0, 0.0), (0.6, 0.8)])
+@pytest.mark.parametrize("static", [0.3, 0.45])
+@pytest.mark.parametrize("feet", FEET)
+def test_block_breaks_away_at_the_static_friction_of_its_whole_load(feet, static, way):
+    result = simulate(pushed_block(feet, static, way), 1.0, rtol=1e-9)
+    starts = 0.1 + static * 3.0 * G / 20.0
+    slips = [event.t for event in result.events if event.kind == "slip"]
+    np.testing.assert_allclose(slips, [starts] * len(slips), rtol=1e-6)
+    after = 1.0 - starts
+    wanted = ((static - 0.3) * 3.0 * G * after + 10.0 * after**2) / 3.0
+    along = result["b.vx"][-1] * way[0] + result["b.vy"][-1] * way[1]
+    assert along == pytest.approx(wanted, rel=1e-6)
+
+
+def test_feet_at_their_limit_stay_within_their_cones():
+    result = simulate(pushed_block("four", 0.45, (0.6, 0.8)), 0.75, rtol=1e-9)
+    ratios = np.array([result[f"f{i}.friction_force"] / result[f"f{i}.normal_force"] for i in range(4)])
+    assert ratios.max() <= 0.45 * (1.0 + 2e-6)
+    # some have been at their limits for long before the block breaks away
+    assert np.sum(ratios[:, -1] > 0.45 * (1.0 - 1e-6)) >= 2
+
+
+@pytest.mark.parametrize("wall", ["pad", "half-space"])
+@pytest.mark.parametrize("apart", [0.0, 1e-4])
+def test_box_between_two_pads_is_held(wall, apart):
+    """20 N and mu 0.3 on both sides hold 12 N, and the box weighs 4.9 N."""
+    sideways = Axes(z=(0, 1, 0), x=(1, 0, 0))
+    bodies = [
+        RigidBody3D(name="box", mass=0.5, inertia=(3e-4,) * 3),
+        RigidBody3D(name="pad", mass=0.1, inertia=(1e-4,) * 3, position=(0.0, 0.04 + apart, 0.0)),
+    ]
+    boxes = [
+        Box3D(marker=Marker3D(body="box"), size=(0.06,) * 3, edge_radius=0.001),
+        Box3D(marker=Marker3D(body="pad"), size=(0.04, 0.02, 0.04)),
+    ]
+    spaces = []
+    if wall == "pad":
+        boxes.append(Box3D(marker=Marker3D(point=(0.0, -0.04, 0.0)), size=(0.04, 0.02, 0.04)))
+    else:
+        spaces.append(HalfSpace3D(marker=Marker3D(point=(0.0, -0.03, 0.0), attitude=sideways)))
+    group = ContactGroup3D(
+        name="t",
+        boxes=boxes,
+        half_spaces=spaces,
+        law=LAW,
+        friction=CoulombFriction(coefficient=0.3),
+        except_bodies=[("pad", "ground")],
+    )
+    model = Model(
+        gravity=(0, 0, -G),
+        bodies=bodies,
+        joints=[Prismatic3D(name="s", a=Marker3D(attitude=sideways), b=Marker3D(body="pad", attitude=sideways))],
+        forces=[AppliedForce3D(name="f", marker=Marker3D(body="pad"), force_y=Constant(value=-20.0))],
+        groups=[group],
+    )
+    result = simulate(model, 0.3)
+    # it falls only until the pad has come
+    fall = 0.5 * G * 2.0 * apart * 0.1 / 20.0 * 1.5
+    assert abs(result["box.z"][-1]) <= fall + 1e-9
+    assert abs(result["box.vz"][-1]) < 1e-9
+    assert max(abs(result[f"box.e{k}"][-1]) for k in (1, 2, 3)) < 1e-6
+    forces = [result[name][-1] for name in result.channels if name.endswith("normal_force")]
+    # where it has fallen a little, the pads press beside its middle
+    np.testing.assert_allclose([f for f in forces if f > 1e-6], 5.0, rtol=1e-6 + 10.0 * apart)
+
+
+def test_states_of_feet_at_their_limit_go_on_with_the_same_bits():
+    model = pushed_block("four", 0.45, (0.6, 0.8))
+    one, other = Simulation(model), Simulation(model)
+    one.advance(0.65)
+    other.restore(one.state())
+    for t in (0.7, 0.8, 0.9):
+        one.advance(t)
+        other.advance(t)
+        assert one.state() == other.state()
