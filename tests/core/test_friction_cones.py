@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of
 from tlismni.core.cones.friction_cones import FOUND, friction_cones_size, solve_friction_cones
-from tlismni.core.events.rates_in_space import _spread
+from tlismni.core.cones.least_forces import least_forces_size, take_least_forces
 from tlismni.core.linalg.small import LEAST_NORM_SIGNATURE, least_norm
 
 
@@ -28,22 +28,51 @@ def solve(a, b, mu, base=None, known=None, way=None):
 
 
 @numba.njit
-def _spread_out(address, n, a, b, mu, known, p, work):
-    _spread(address, n, a, b, mu, known, p, work)
+def _least(address, n, a, b, mu, base, known, way, p, work):
+    return take_least_forces(address, n, a, b, mu, base, known, way, p, work)
 
 
-@pytest.mark.parametrize("rest", [0.0, 1e-24])
-def test_shares_of_friction_stay_in_their_cones(rest):
-    """Two contacts hold a body together, both at their limits: of all shares the least ones would be 1.2 and 0.6 of
-    these. A third contact carries nothing but rounding, with friction beyond its cone."""
-    mu, a = np.array([1.0, 0.5, 0.5]), np.eye(9)
-    a[3, 4] = a[4, 3] = 1.0
-    p = np.array([1.0, 1.0, rest, 1.0, 0.5, 0.75 * rest, 0.0, 0.0, 0.0])
-    b, work = -a @ p, np.zeros(friction_cones_size(3))
-    found = p.copy()
-    _spread_out(address_of(least_norm, LEAST_NORM_SIGNATURE), 3, a, b, mu, np.zeros(3), found, work.ctypes.data)
-    assert (a @ found)[:6] == pytest.approx((a @ p)[:6], abs=1e-12)
-    assert np.all(np.hypot(found[3:5], found[6:8]) <= mu[:2] * found[:2] + 1e-12)
+def least(p, a, b, mu):
+    """Forces of least norm, from the forces p."""
+    n = len(mu)
+    found, work = p.copy(), np.zeros(friction_cones_size(n) + least_forces_size(n))
+    nothing, way = np.zeros(n), np.zeros((2, n))
+    address = address_of(least_norm, LEAST_NORM_SIGNATURE)
+    assert _least(address, n, a, b, np.asarray(mu, float), nothing, nothing, way, found, work.ctypes.data)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_least_forces_of_a_box_that_rests_are_the_pseudoinverse(seed):
+    """Loads that hold the box with friction to spare: of all forces the least, whatever the solver began with."""
+    random = np.random.default_rng(seed)
+    g, mu = box(), np.full(4, 0.8)
+    load = np.array([0.0, 0.0, -9.81, 0.0, 0.0, 0.0]) + random.normal(size=6) * [0.3, 0.3, 0.3, 0.02, 0.02, 0.02]
+    a, b = g @ INVERSE @ g.T, g @ load
+    wanted = -np.linalg.pinv(g.T) @ np.linalg.solve(INVERSE, load)
+    assert np.all(np.hypot(wanted[4:8], wanted[8:]) < 0.8 * wanted[:4])
+    p, _ = solve(a, b, mu)
+    np.testing.assert_allclose(least(p, a, b, mu), wanted, atol=1e-9 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_least_forces_are_the_limit_of_compliant_contacts(seed):
+    """Some feet at their limits: null vectors n of the rows that are held leave n^T P = 0 for the rest to share."""
+    random = np.random.default_rng(100 + seed)
+    g, mu = box(), np.full(4, 0.3)
+    push = 2.6 * np.array([np.cos(seed), np.sin(seed)])
+    load = np.array([*push, -9.81, 0.0, 0.0, 0.0]) + random.normal(size=6) * [0, 0, 0, 0.02, 0.02, 0.02]
+    a, b = g @ INVERSE @ g.T, g @ load
+    p, _ = solve(a, b, mu)
+    found = least(p, a, b, mu)
+    assert off(found, b + a @ found, mu) < 1e-8
+    # the same from other forces that give this motion
+    order = np.r_[3, 1, 0, 2]
+    rows = np.concatenate([order, 4 + order, 8 + order])
+    other, _ = solve(a[np.ix_(rows, rows)], b[rows], mu)
+    np.testing.assert_allclose(
+        least(other, a[np.ix_(rows, rows)], b[rows], mu), found[rows], atol=1e-8 * np.abs(found).max()
+    )
 
 
 def off(p, w, mu, base=0.0):

@@ -33,6 +33,17 @@ def test_the_code_runs() -> None:
     )
 
 
+def test_the_page_on_load_sharing_runs() -> None:
+    page = Path(__file__).parents[2] / "docs" / "load-sharing.md"
+    names: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", page.read_text(), re.S):
+        exec(block, names)
+    result = names["result"]
+    assert [result[f"foot{i}.normal_force"][-1] for i in range(4)] == pytest.approx([9.81 / 4] * 4, rel=1e-8)
+    stops = 0.02 * 10.0 / (0.3 * 9.81 * 0.125)
+    assert max(event.t for event in result.events if event.kind == "stick") == pytest.approx(stops, rel=1e-4)
+
+
 def test_every_kind_and_field_of_an_event_stands_in_the_table() -> None:
     table = PAGE.split("## Events")[1].split("##")[0]
     assert Event.__doc__ is not None
