@@ -6,7 +6,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import REACHES_LIMIT, REACHES_LIMIT_NOW, STICKS_STILL
-from .free_tangents import is_free, is_full, list_held
+from .free_tangents import find_sliding, list_held
 from .jams import name_jammed, refuse_jam
 from .loaded import note_loaded
 from .moment_in_space import decide_by_moment, moment_asked, moment_of_wedge, stop_in_space
@@ -28,7 +28,6 @@ from .records import (
     KINETIC,
     KNOWN,
     LEAVES,
-    MOMENT,
     MU,
     NO_FORCES,
     NONE,
@@ -45,6 +44,7 @@ from .records import (
     W_N,
     W_S,
     W_T,
+    clear,
     col,
     real,
     whole,
@@ -66,14 +66,14 @@ def find_forces_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             return status
     if ms.exact != 0 and decide_by_moment(ev, dr, ws, ms, col(ev, AT_REST), moment_asked(ev, dr, ws)):
         return SETTLED
-    part, real(ev)[MOMENT] = col(ev, PART), 0.0
+    part = col(ev, PART)
     for i in range(whole(ev)[COUNT]):
         part[i] = 1.0 if col(ev, AT_REST)[i] != 0.0 and col(ev, LEAVES)[i] == 0.0 else 0.0
-    status = balance_in_space(ev, ws, part, True)
+    status = balance_in_space(ev, ws, part)
     for _ in range(whole(ev)[COUNT]):
         if status != SETTLED or not _falls_back(ev, ws, part):
             break
-        status = balance_in_space(ev, ws, part, True)
+        status = balance_in_space(ev, ws, part)
     if status == SETTLED:
         note_loaded(ev, ws)
         status = refuse_jam(ev, ws)
@@ -99,8 +99,8 @@ def _falls_back(ev: Any, ws: Any, part: Any) -> bool:
 
 
 @internal
-def balance_in_space(ev: Any, ws: Any, part: Any, more: bool) -> int:
-    """Forces of the contacts `part`; `more`: of others at rest too, which these press together again."""
+def balance_in_space(ev: Any, ws: Any, part: Any) -> int:
+    """Forces of the contacts `part`, and of others at rest that these press together again."""
     count, takes = whole(ev)[COUNT], col(ev, TAKES)
     direction, b, p = col(ev, DIRECTION), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
     fastest, any_slips, a = 0.0, False, pressing(ev, count)
@@ -117,14 +117,12 @@ def balance_in_space(ev: Any, ws: Any, part: Any, more: bool) -> int:
         if not solve_cones_in_space(ev, a, count, takes, b, mu, col(ev, BASE), direction, p):
             name_jammed(ev, ws)
             return NO_FORCES
-        again, held = False, 0
+        again = False
         for i in range(count):
             col(ev, F_N)[i], col(ev, F_T)[i], col(ev, F_S)[i] = p[i], p[count + i], p[2 * count + i]
+        clear(free, count)
         if any_slips:
-            held = list_held(ev, ws, direction, REACHES_LIMIT_NOW)
-            for i in range(count):
-                full = direction[i] == 0.0 and mu[i] > 0.0 and is_full(ev, i, REACHES_LIMIT_NOW)
-                free[i] = 1.0 if full and is_free(ev, held, i) else 0.0
+            find_sliding(ev, list_held(ev, ws, takes, REACHES_LIMIT_NOW, free), free)
         for i in range(count):
             w_n, w_t, w_s = b[i], b[count + i], b[2 * count + i]
             for j in range(3 * count):
@@ -137,13 +135,12 @@ def balance_in_space(ev: Any, ws: Any, part: Any, more: bool) -> int:
                 force, limit = math.sqrt(p[count + i] ** 2 + p[2 * count + i] ** 2), mu[i] * p[i]
                 moves = math.sqrt(w_t * w_t + w_s * w_s) > STICKS_STILL * fastest
                 # where a contact has its event at its limit, so have those that nothing else holds
-                now = any_slips and not moves
                 least = limit * (1.0 - (REACHES_LIMIT_NOW if any_slips else REACHES_LIMIT))
-                if force >= least and (moves or (now and free[i] != 0.0)):
+                if force >= least and (moves or free[i] != 0.0):
                     direction[i] = BEGINS
                     col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -p[count + i] / force, -p[2 * count + i] / force
                     again = again or any_slips or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
-            elif more and takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0:
+            elif takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0:
                 if w_n < -1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
                     takes[i], again = 1.0, True
         if not again:

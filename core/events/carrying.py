@@ -86,7 +86,7 @@ def _keep(ev: Any, ws: Any) -> int:
                 at -= 1
             some[at] = count + order[j]
             kept += 1
-    number = independent_of(ev, ws, normals + kept, rank)
+    number = independent_of(ev, ws, 2, normals + kept, rank)
     for j in range(number):
         if chosen[j] < normals:
             i = some[chosen[j]]

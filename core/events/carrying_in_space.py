@@ -9,12 +9,12 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.directions import call_independent
-from ..rounding import REACHES_LIMIT_NOW
+from ..rounding import REACHES_LIMIT_NOW, TURNS
 from ..state.modes import AT_LIMIT, IDLE, OF_FIRST, OF_NORMAL, OF_SECOND
 from ..state.modes import STICKS as STUCK
 from ..tables.held import in_space
-from .free_tangents import add_tangents, inverse_mass, is_free, is_full, turn_to_friction
+from .forces import independent_of
+from .free_tangents import add_tangents, find_sliding, inverse_mass, is_full, list_held, turn_to_friction
 from .records import (
     CLOSES,
     COS_WAY,
@@ -27,6 +27,7 @@ from .records import (
     NEW_IMPLIED,
     NEW_RATIO,
     NEW_SLIDE,
+    OTHER_FLAG,
     RANK,
     SETTLED,
     SIN_WAY,
@@ -36,15 +37,6 @@ from .records import (
     real,
     whole,
 )
-
-
-@internal
-def _independent(ev: Any, ws: Any, number: int, rank: float) -> int:
-    """As `forces.independent_of`, among all three blocks."""
-    count, work = whole(ev)[COUNT], vec(ev.work, ev.work_size)
-    directions, responses = mat(ev.directions, 3 * count, ws.n), mat(ev.responses, 3 * count, ws.n)
-    some, chosen = ivec(ev.some, number), ivec(ev.chosen, 3 * ev.most)
-    return int(call_independent(ev.independent, directions, responses, some, rank, chosen, work))
 
 
 @internal
@@ -69,73 +61,106 @@ def _bit(block: int) -> int:
 
 
 @internal
-def _keep_at_limit(ev: Any, ws: Any, i: int, held: int, total: int) -> int:
-    """Contact i, at the limit of its friction: it keeps that limit if the first `held` rows in `some` hold it, else it
-    sticks as long as nothing moves it. How many rows there are then."""
-    count, some = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most)
-    plane, free = not in_space(ws, ivec(ev.contacts, ev.most)[i]), is_free(ev, held, i)
-    friction = math.hypot(col(ev, F_T)[i], col(ev, F_S)[i])
-    if free:
-        col(ev, NEW_SLIDE)[i] = STUCK
-        some[total] = count + i if plane else 2 * count + i
-    else:
-        col(ev, NEW_SLIDE)[i], col(ev, NEW_RATIO)[i] = IDLE if plane else AT_LIMIT, friction / col(ev, F_N)[i]
-    if plane:
-        # along the one tangent that it has
-        col(ev, COS_WAY)[i] = 1.0 if free else math.copysign(1.0, col(ev, F_T)[i])
-        col(ev, SIN_WAY)[i] = 0.0
-    return total + 1 if free else total
-
-
-@internal
-def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
-    """As `keep`: normals first, those that carry most before others, then tangents of those that stick, those at their
-    limits last."""
-    count, some, flag = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), col(ev, FLAG)
-    f_n, implied, slide, ratio = col(ev, F_N), col(ev, NEW_IMPLIED), col(ev, NEW_SLIDE), col(ev, NEW_RATIO)
-    rank, total, friction = real(ev)[RANK], 0, vec(dr.friction, ws.n_contacts)
-    clear(flag, count)
-    clear(implied, count)
-    for i in range(count):
+def _list_closed(ev: Any) -> int:
+    """Normals of the contacts that stay closed, to `some`, those that carry most before others; how many."""
+    some, f_n, total = ivec(ev.some, 3 * ev.most), col(ev, F_N), 0
+    for i in range(whole(ev)[COUNT]):
         if col(ev, CLOSES)[i] != 0.0:
-            flag[i] = 1.0
             at = total
             while at > 0 and f_n[some[at - 1]] < f_n[i]:
                 some[at] = some[at - 1]
                 at -= 1
             some[at] = i
             total += 1
+    return total
+
+
+@internal
+def _list_at_limit(ev: Any, slides: float, total: int) -> int:
+    """Tangents along the friction of those at their limits, behind the first `total` rows in `some`: of those that
+    could slide (1 in OTHER_FLAG), or of the others. How many rows there are then."""
+    count, some = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most)
+    for i in range(count):
+        at_limit = col(ev, FLAG)[i] != 0.0 and col(ev, NEW_SLIDE)[i] == AT_LIMIT
+        if at_limit and col(ev, OTHER_FLAG)[i] == slides:
+            some[total] = 2 * count + i
+            total += 1
+            if slides != 0.0:
+                col(ev, NEW_SLIDE)[i] = STUCK
+    return total
+
+
+@internal
+def _drop_immovable(ev: Any, total: int) -> int:
+    """Keep those of the first `total` rows in `some` that have an inverse mass; how many. A tangent that joints hold
+    has none, and rounding must not say that it has."""
+    some, moving = ivec(ev.some, 3 * ev.most), 0
+    for j in range(total):
+        if inverse_mass(ev, some[j]) > 0.0:
+            some[moving] = some[j]
+            moving += 1
+    return moving
+
+
+@internal
+def _say_at_limit(ev: Any, ws: Any, i: int, tied: bool) -> None:
+    """What contact i does whose friction has reached its limit, once it is known whether it sticks; `tied`: another one
+    that has reached it is to hold the rest, for which it gets a margin."""
+    plane, sticks = not in_space(ws, ivec(ev.contacts, ev.most)[i]), col(ev, NEW_SLIDE)[i] == STUCK
+    if not sticks:
+        ratio = math.hypot(col(ev, F_T)[i], col(ev, F_S)[i]) / col(ev, F_N)[i]
+        col(ev, NEW_SLIDE)[i] = IDLE if plane else AT_LIMIT
+        col(ev, NEW_RATIO)[i] = (1.0 - TURNS) * ratio if tied else ratio
+    if plane:
+        # along the one tangent that it has
+        bits = int(col(ev, NEW_IMPLIED)[i])
+        col(ev, NEW_IMPLIED)[i] = bits & OF_NORMAL | (OF_FIRST if bits & OF_SECOND != 0 else 0)
+        col(ev, COS_WAY)[i] = 1.0 if sticks else math.copysign(1.0, col(ev, F_T)[i])
+        col(ev, SIN_WAY)[i] = 0.0
+
+
+@internal
+def keep_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """As `keep`: normals first, then tangents of those that stick, those at their limits last. Friction at its limit
+    that other friction at its limit holds (`free_tangents.find_sliding`) stays there, unless nothing else is left to
+    hold that tangent."""
+    count, some, flag, full = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), col(ev, FLAG), col(ev, OTHER_FLAG)
+    implied, slide, ratio = col(ev, NEW_IMPLIED), col(ev, NEW_SLIDE), col(ev, NEW_RATIO)
+    friction, chosen = vec(dr.friction, ws.n_contacts), ivec(ev.chosen, 3 * ev.most)
+    clear(implied, count)
+    for i in range(count):
+        flag[i] = 1.0 if col(ev, CLOSES)[i] != 0.0 else 0.0
+    find_sliding(ev, list_held(ev, ws, flag, REACHES_LIMIT_NOW, full), full)
+    total = _list_closed(ev)
     for at_limit in range(2):
         for i in range(count):
             if flag[i] == 0.0:
                 continue
-            full = is_full(ev, i, REACHES_LIMIT_NOW)
             if col(ev, STATIC)[i] == 0.0 or col(ev, DIRECTION)[i] != 0.0:
                 # (what a spin leaves of it the contact itself says)
                 rubs = col(ev, STATIC)[i] > 0.0
                 slide[i] = 1.0 if rubs else IDLE
                 ratio[i] = -friction[ivec(ev.contacts, ev.most)[i]] if rubs else 0.0
-            elif full == (at_limit == 1):
-                turn_to_friction(ev, i, full)
-                slide[i], ratio[i] = AT_LIMIT if full else STUCK, 0.0
-                total = add_tangents(ev, ws, i, full, total)
-    held = total
-    for i in range(count):
-        if flag[i] != 0.0 and slide[i] == AT_LIMIT:
-            total = _keep_at_limit(ev, ws, i, held, total)
+            elif is_full(ev, i, REACHES_LIMIT_NOW) == (at_limit == 1):
+                turn_to_friction(ev, i, at_limit == 1)
+                slide[i], ratio[i] = AT_LIMIT if at_limit == 1 else STUCK, 0.0
+                total = add_tangents(ev, ws, i, at_limit == 1, total)
+    total = _list_at_limit(ev, 1.0, total)
     for j in range(total):
         implied[some[j] % count] += _bit(some[j] // count)
-    # a tangent that joints hold has no inverse mass, and rounding must not say that it has
-    moving = 0
-    for j in range(total):
-        if inverse_mass(ev, some[j]) > 0.0:
-            some[moving] = some[j]
-            moving += 1
-    total = moving
+    firm = _drop_immovable(ev, total)
+    total = _drop_immovable(ev, _list_at_limit(ev, 0.0, firm))
     _turn(ev, ws, False)
-    kept, chosen = _independent(ev, ws, total, rank), ivec(ev.chosen, 3 * ev.most)
+    kept, tied = independent_of(ev, ws, 3, total, real(ev)[RANK]), False
     _turn(ev, ws, True)
     for j in range(kept):
         row = some[chosen[j]]
-        implied[row % count] -= _bit(row // count)
+        if chosen[j] < firm:
+            implied[row % count] -= _bit(row // count)
+        else:
+            slide[row % count], tied = STUCK, True
+    for i in range(count):
+        rests = flag[i] != 0.0 and col(ev, STATIC)[i] != 0.0 and col(ev, DIRECTION)[i] == 0.0
+        if rests and is_full(ev, i, REACHES_LIMIT_NOW):
+            _say_at_limit(ev, ws, i, tied)
     return SETTLED

@@ -134,13 +134,13 @@ def impulses_among(ev: Any, count: int) -> bool:
 
 
 @internal
-def independent_of(ev: Any, ws: Any, number: int, rank: float) -> int:
+def independent_of(ev: Any, ws: Any, blocks: int, number: int, rank: float) -> int:
     """Positions of those of the first `number` directions in `some` that do not repeat earlier ones, to `chosen`; their
-    number. `rank` 0: that of forces."""
-    count = whole(ev)[COUNT]
-    directions, responses = mat(ev.directions, 2 * count, ws.n), mat(ev.responses, 2 * count, ws.n)
+    number. Directions come in 2 or 3 `blocks` (normals, tangents). `rank` 0: that of forces."""
+    rows = blocks * whole(ev)[COUNT]
+    directions, responses = mat(ev.directions, rows, ws.n), mat(ev.responses, rows, ws.n)
     work, least = vec(ev.work, ev.work_size), rank if rank > 0.0 else DIRECTION_RANK
-    chosen = ivec(ev.chosen, 2 * ev.most)
+    chosen = ivec(ev.chosen, blocks * ev.most)
     return int(call_independent(ev.independent, directions, responses, ivec(ev.some, number), least, chosen, work))
 
 

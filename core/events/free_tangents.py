@@ -9,13 +9,14 @@ import math
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat
+from ..compiled.views import ivec, mat, vec
+from ..cones.nonnegative import nonnegative
 from ..linalg.small import call_least_norm
 from ..rounding import DIRECTION_RANK
 from ..tables.held import in_space
 from .forces import cones_at
 from .rates_in_space import masses
-from .records import COS_WAY, COUNT, F_N, F_S, F_T, SIN_WAY, STATIC, TAKES, col, whole
+from .records import COS_WAY, COUNT, DIRECTION, F_N, F_S, F_T, SIN_WAY, STATIC, col, whole
 
 RANK_OF_FREE = 1e-6
 """Of its inverse mass: a tangent of which no more is left beside other rows is held by these."""
@@ -81,39 +82,74 @@ def inverse_mass(ev: Any, row: int) -> float:
 
 
 @internal
-def is_free(ev: Any, total: int, i: int) -> bool:
-    """True if contact i, whose friction has reached its limit, can slide along it beside the first `total` rows in
-    `some`, which are held."""
-    count, some, most = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), 3 * ev.most
-    row = 2 * count + i
-    matrix, right = mat(ev.space_room, total, total), mat(ev.space_room + 8 * total * total, total, 1)
-    found, work = mat(ev.space_room + 8 * total * (total + 1), total, 1), ev.space_room + 8 * (most * most + 4 * most)
-    for k in range(total):
-        right[k, 0] = _between(ev, count, some[k], row)
-        for j in range(total):
+def find_sliding(ev: Any, held: int, free: Any) -> None:
+    """Which contacts begin to slide: in `free`, in which 1 stands for those whose friction has reached its limit, 0
+    for those of them that cannot slide against it while the first `held` rows in `some` are held.
+
+    Contact i slides if the bodies have a motion with w_i > 0 and w_j >= 0 for all contacts at their limits, w the speed
+    against friction. If they have none, forces z >= 0 with z_i > 0 exist that move nothing (Tucker 1956): friction at
+    the limit with other friction for its counterpart, as of a ball in a groove, of which some can be taken off. Both
+    answers are of one problem: contact i is pushed along by 1, the others resist where it would move them backwards.
+    """
+    count, some, at_limit = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), ivec(ev.chosen, 3 * ev.most)
+    number = 0
+    for i in range(count):
+        if free[i] != 0.0:
+            at_limit[number] = 2 * count + i
+            number += 1
+    if number == 0:
+        return
+    room = ev.space_room
+    matrix, right = mat(room, held, held), mat(room + 8 * held * held, held, number)
+    room += 8 * held * (held + number)
+    found, left = mat(room, held, number), mat(room + 8 * held * number, number, number)
+    room += 8 * number * (held + number)
+    z, w, r, work = (
+        vec(room, number),
+        vec(room + 8 * number, number),
+        vec(room + 16 * number, number),
+        room + 24 * number,
+    )
+    for k in range(held):
+        for j in range(held):
             matrix[k, j] = _between(ev, count, some[k], some[j])
-    left = _between(ev, count, row, row)
-    least = RANK_OF_FREE * left
-    if total > 0:
+        for j in range(number):
+            right[k, j] = _between(ev, count, some[k], at_limit[j])
+    if held > 0:
         call_least_norm(cones_at(ev.cones).least_norm, matrix, right, found, DIRECTION_RANK, work)
-    for k in range(total):
-        left -= _between(ev, count, some[k], row) * found[k, 0]
-    return left > least
+    for j in range(number):
+        for i in range(number):
+            own = _between(ev, count, at_limit[i], at_limit[j])
+            left[i, j] = own
+            for k in range(held):
+                left[i, j] -= _between(ev, count, some[k], at_limit[i]) * found[k, j]
+            if i == j and left[i, i] <= RANK_OF_FREE * own:
+                left[i, i] = 0.0
+    for i in range(number):
+        for j in range(number):
+            r[j] = left[j, i]
+        moves = left[i, i] > 0.0
+        if moves:
+            nonnegative(left, r, i, RANK_OF_FREE, z, w, work)
+            moves = w[i] > RANK_OF_FREE * left[i, i]
+        free[at_limit[i] - 2 * count] = 1.0 if moves else 0.0
 
 
 @internal
-def list_held(ev: Any, ws: Any, direction: Any, near: float) -> int:
-    """Rows that are held, to `some`: normals of the contacts that press, and tangents of those that stick, with their
-    frames; how many."""
+def list_held(ev: Any, ws: Any, among: Any, near: float, free: Any) -> int:
+    """Rows that are held, to `some`, with their frames: normals of the contacts `among` that press, and tangents of
+    those that stick; how many. In `free`: 1 for those whose friction has reached its limit, but for the part `near`."""
     count, some, total = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), 0
+    direction, f_n = col(ev, DIRECTION), col(ev, F_N)
     for i in range(count):
-        if col(ev, TAKES)[i] != 0.0 and col(ev, F_N)[i] > 0.0:
+        free[i] = 0.0
+        if among[i] != 0.0 and f_n[i] > 0.0:
             some[total] = i
             total += 1
     for i in range(count):
-        pressed = col(ev, TAKES)[i] != 0.0 and col(ev, F_N)[i] > 0.0
-        if pressed and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
+        if among[i] != 0.0 and f_n[i] > 0.0 and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
             full = is_full(ev, i, near)
+            free[i] = 1.0 if full else 0.0
             turn_to_friction(ev, i, full)
             total = add_tangents(ev, ws, i, full, total)
     return total

@@ -39,7 +39,6 @@ from .records import (
     LEAVES,
     LOADED,
     LOST_BEFORE,
-    MOMENT,
     MU,
     P_N,
     P_S,
@@ -64,7 +63,6 @@ from .records import (
     W_S,
     W_T,
     col,
-    real,
     whole,
 )
 from .report import report
@@ -161,7 +159,6 @@ def decide_by_moment(ev: Any, dr: Any, ws: Any, ms: Any, part: Any, moment: floa
         col(ev, W_T)[i] = (col(ev, W_T)[i] - of_t[i]) / moment
         col(ev, W_S)[i] = (col(ev, W_S)[i] - of_s[i]) / moment
     note_loaded(ev, ws)
-    real(ev)[MOMENT] = moment
     return True
 
 

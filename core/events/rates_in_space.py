@@ -73,11 +73,10 @@ def _repeat(ev: Any, n: int, a: Any, b: Any, known: Any, p: Any, work: int) -> b
     for block in range(3):
         for i in range(n):
             row = block * n + i
-            sticks = block == 0 or (known[i] == 0.0 and abs(motion_of(a, b, p, row)) <= STICKS_STILL * fastest)
-            if p[i] >= 0.0 and a[row, row] > 0.0 and sticks:
-                if block > 0 or abs(motion_of(a, b, p, row)) <= STICKS_STILL * fastest:
-                    rows[count] = row
-                    count += 1
+            counts = (block == 0 or known[i] == 0.0) and a[row, row] > 0.0
+            if counts and abs(motion_of(a, b, p, row)) <= STICKS_STILL * fastest:
+                rows[count] = row
+                count += 1
     kept, room = ivec(work + 24 * n, 3 * n), vec(work + 48 * n, count * (count + 2))
     return int(call_farthest(ev.farthest, a, rows[:count], kept, room)) < count
 

@@ -99,11 +99,10 @@ COLUMNS = 87
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)
-MOMENT = 6  # that has decided, s; 0: forces have
-SWEPT = 7  # sweeps of the last step of impulses
-MET_LOSS = 8  # energy that bringing the motion onto new constraints has taken, J: in no account
-LARGEST = 9  # rate of a row before its impulse, m/s
-REALS = 10
+SWEPT = 6  # sweeps of the last step of impulses
+MET_LOSS = 7  # energy that bringing the motion onto new constraints has taken, J: in no account
+LARGEST = 8  # rate of a row before its impulse, m/s
+REALS = 9
 # entries of `wholes`
 COUNT = 0  # contacts that touch
 STRUCK = 1

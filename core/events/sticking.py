@@ -155,5 +155,5 @@ def _moves(ev: Any, ws: Any, number: int, i: int) -> bool:
     for j in range(number):
         some[normals + j] = count + order[j]
     some[normals + number] = count + i
-    kept, chosen = independent_of(ev, ws, normals + number + 1, 0.0), ivec(ev.chosen, 2 * ev.most)
+    kept, chosen = independent_of(ev, ws, 2, normals + number + 1, 0.0), ivec(ev.chosen, 2 * ev.most)
     return kept > 0 and chosen[kept - 1] == normals + number

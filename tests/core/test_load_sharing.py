@@ -222,3 +222,79 @@ def test_states_of_feet_at_their_limit_go_on_with_the_same_bits():
         one.advance(t)
         other.advance(t)
         assert one.state() == other.state()
+
+
+STEEP, GROOVE_MU = np.radians(35.0), 0.5
+SIN, COS = np.sin(STEEP), np.cos(STEEP)
+TURNING_LIMIT = GROOVE_MU / (COS * (1.0 + GROOVE_MU**2))
+"""Torque about the groove's axis by weight and radius, with which the ball slides on both of its sides."""
+
+
+def ball_in_groove(torque, swapped=False, along=0.0):
+    """A ball of 1 kg and 0.1 m between two planes that are steeper than their friction."""
+    body = RigidBody3D(
+        name="b", mass=1.0, inertia=(4e-3,) * 3, position=(0, 0, 0.1 / COS),
+        velocity=(along, 0, 0), angular_velocity=(0, along / (0.1 * COS), 0),
+    )  # fmt: skip
+    sides = [
+        SphereOnHalfSpace3D(
+            name=name,
+            plane=HalfSpace3D(marker=Marker3D(attitude=Axes(z=(0, side * SIN, COS), x=(1, 0, 0)))),
+            sphere=Sphere3D(marker=Marker3D(body="b"), radius=0.1),
+            law=LAW,
+            friction=CoulombFriction(coefficient=GROOVE_MU),
+        )
+        for name, side in (("left", 1.0), ("right", -1.0))
+    ]
+    load = AppliedTorque3D(name="t", marker=Marker3D(body="b"), torque_x=torque)
+    return Model(
+        gravity=(0, 0, -G), bodies=[body], forces=[load], contacts=sides[::-1] if swapped else sides
+    )  # fmt: skip
+
+
+def groove_forces(torque):
+    """(normal forces, friction) of least norm: half the sums and differences of both sides, whose one unknown, the sum
+    of friction, is held by the cone of the side that carries more."""
+    less = abs(torque) / 0.1
+    both = (GROOVE_MU * G / COS + less * (GROOVE_MU / np.tan(STEEP) - 1.0)) / (1.0 + GROOVE_MU * np.tan(STEEP))
+    normal = (G - both * SIN) / COS
+    one, other = (normal + less / np.tan(STEEP)) / 2.0, (normal - less / np.tan(STEEP)) / 2.0
+    return (one, other), ((both + less) / 2.0, abs(both - less) / 2.0)
+
+
+@pytest.mark.parametrize("method", ["ebdf", "irk"])
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize("part", [0.0, 0.01, 0.6, -0.6, 0.99])
+def test_ball_is_held_in_a_groove_by_friction_at_its_limit(part, swapped, method):
+    """Sides that are steeper than friction squeeze the ball as far as their cones allow; one side gives what balances
+    the torque. Without torque both are at their limit, and neither may slide."""
+    torque = part * TURNING_LIMIT * G * 0.1
+    result = simulate(ball_in_groove(Constant(value=torque), swapped), 0.3, method=method)
+    normals, friction = groove_forces(torque)
+    names = ("left", "right") if torque >= 0.0 else ("right", "left")
+    tolerance = 3e-6 if part == 0.0 else 1e-8
+    for name, normal, size in zip(names, normals, friction, strict=True):
+        np.testing.assert_allclose(result[f"{name}.normal_force"][1:], normal, rtol=tolerance)
+        np.testing.assert_allclose(result[f"{name}.friction_force"][1:], size, rtol=tolerance)
+    assert np.max(np.abs(result.v)) < 1e-12
+    assert not [event for event in result.events if event.kind in ("slip", "open", "impact")]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_ball_turns_in_a_groove_once_both_sides_slide(sign):
+    torque = Ramp(start=0.1, duration=1.0, after=sign * 2.0 * TURNING_LIMIT * G * 0.1)
+    result = simulate(ball_in_groove(torque), 0.8, rtol=1e-9)
+    slips = [event.t for event in result.events if event.kind == "slip"]
+    np.testing.assert_allclose(slips, [0.6, 0.6], rtol=1e-6)
+    # then the surplus of torque turns it
+    wanted = sign * TURNING_LIMIT * G * 0.1 * 2.0 * 0.2**2 / 2.0 / 4e-3
+    assert result["b.angular_velocity_x"][-1] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_ball_that_rolls_along_a_groove_keeps_its_energy():
+    """It rolls about the line through both contacts, R cos(35 deg) below its middle."""
+    result = simulate(ball_in_groove(Constant(value=0.0), along=0.4), 1.0)
+    assert result["b.x"][-1] == pytest.approx(0.4, abs=1e-6)
+    assert np.max(np.abs(result["energy.kinetic"] / result["energy.kinetic"][0] - 1.0)) < 1e-9
+    assert np.max(np.abs(result["b.angular_velocity_z"])) < 1e-9
+    assert result.stats["partitions"] < 20
