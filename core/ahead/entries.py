@@ -100,7 +100,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
         dot2_3d.dot2_load, twist3d.twist_load, rolling3d.rolling_load,
     ):  # fmt: skip
         yield kernel, derived.DERIVE_SIGNATURE
-    for part in (*instant.PARTS, *instant.IN_SPACE.values()):
+    for part in instant.PARTS.values():
         yield part, instant.PART_SIGNATURE
     for _, function, signature in instant._OTHERS:
         yield function, signature

@@ -19,6 +19,8 @@ from .projections import motion_left, residual_of_cones
 
 FIRST, LOWER, LAST = 0.1, 0.01, 1e-5
 """Compliance in parts of the largest inverse mass: at first, factor from one to the next, and at last."""
+LARGEST_STEPS = 0.9
+"""Of that factor, whose root is taken where Newton's method does not follow: beyond, there is no way."""
 NEARER = 1e-2
 """Of the last one, where what a contact does changes on the way."""
 SWEEPS, ITERATIONS = 100, 40
@@ -76,7 +78,7 @@ def take_least_forces(
     once, twice, last = vec(at + 24 * m, m), vec(at + 32 * m, m), vec(at + 40 * m, m)
     for i in range(m):
         largest, own[i] = max(largest, a[i, i]), p[i]
-    part = FIRST
+    part, good, lower = FIRST, FIRST, LOWER
     while True:
         for i in range(m):
             twice[i], once[i] = once[i], own[i]
@@ -88,11 +90,21 @@ def take_least_forces(
             if change <= part * size:
                 break
         if not _follow(n, soft, b, mu, base, known, way, own, jac, left, best):
-            return False
+            # from the one before in a smaller step
+            for i in range(m):
+                own[i], once[i] = once[i], twice[i]
+            if good < 5.0 * LAST:
+                break
+            lower = math.sqrt(lower)
+            if part == FIRST or lower > LARGEST_STEPS:
+                return False
+            part = max(lower * good, 4.0 * LAST)
+            continue
         if part < 1.5 * LAST:
             break
         # the last three are for four times, twice and once the least compliance
-        part = 0.5 * part if part < 5.0 * LAST else max(LOWER * part, 4.0 * LAST)
+        good = part
+        part = 0.5 * part if part < 5.0 * LAST else max(lower * part, 4.0 * LAST)
     size = 0.0
     for i in range(m):
         last[i] = own[i]
