@@ -93,8 +93,12 @@ NO_SLIDING = 2e-13
 PRESSING = 1e-6
 """Of the accelerations: with more, the gap of shapes that touch begins to close. The forces of many contacts leave less
 of it."""
-IMPLIED_MOVES = 1e-9
+IMPLIED_MOVES = 1e-10
 """Of the level of positions: a closed gap that others imply, and that has moved by more, they do not imply."""
+IMPLIED_TURNS = 0.03
+"""Of the level of accelerations, the same."""
+IMPLIED_SLIDES = 1e-10
+"""Of the level of velocities: what sticks since others imply it, and slides by more, they do not hold."""
 SLIP_EXCESS = 1e-9
 """Of its limit: friction that is beyond it by no more has not passed it. Blocks that ride on one another need exactly
 the limit all along, and rounding must not let them slip."""
@@ -148,6 +152,8 @@ STICKING_MOVES = 1e-9
 """Of the motion that friction is to take away: with more left of it, contacts do not all stick."""
 BEYOND_LIMIT, NO_FRICTION = 1e-12, 1e-14
 """Parts of a limit and of the largest friction by which friction may be beyond its limit."""
+FORCE_AT_EVENT = 1e-6
+"""Of the largest force: what the time of an event leaves open of forces that are zero there."""
 REACHES_LIMIT_NOW = 1e-6
 """Of the limit, in space: friction of a contact whose event is that it reaches it is that near at least."""
 STICKS_STILL = 1e-9

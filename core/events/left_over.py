@@ -5,9 +5,8 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from .rates_in_space import push_in_space
-from .records import COUNT, NOW_N, NOW_T, RATE, clear, col, delassus, whole
-from .touching import push
+from .rates import push
+from .records import COUNT, NOW_N, RATE, clear, col, delassus, whole
 
 SWEEPS, DONE = 200, 1e-6
 
@@ -19,7 +18,6 @@ def take_away_left(ev: Any, ws: Any) -> None:
     rounding, as these rates are."""
     count, rate, p, a = whole(ev)[COUNT], col(ev, RATE), col(ev, NOW_N), delassus(ev, whole(ev)[COUNT])
     clear(p, count)
-    clear(col(ev, NOW_T), count)
     largest = 0.0
     for i in range(count):
         largest = max(largest, -rate[i])
@@ -34,11 +32,8 @@ def take_away_left(ev: Any, ws: Any) -> None:
             change = max(change, abs(step) * a[i, i])
         if change <= DONE * largest:
             break
-    if ws.tangents != 2:
-        push(ev, ws, p, col(ev, NOW_T))
-        return
     all_three = vec(ev.space_p, 3 * count)
     clear(all_three, 3 * count)
     for i in range(count):
         all_three[i] = p[i]
-    push_in_space(ev, ws, all_three)
+    push(ev, ws, all_three)

@@ -14,9 +14,6 @@ from ..state.method_records import METHOD_TYPE
 from ..state.run_records import DRIVE_TYPE
 from ..state.workspace_records import WORKSPACE_TYPE
 
-OF_A_KIND = ("open", "strike", "begin_rest", "find_forces", "keep")
-"""Parts that contacts of the plane have of their own, and those of space."""
-
 INSTANT = np.dtype(
     [
         (name, np.int64)
@@ -25,8 +22,6 @@ INSTANT = np.dtype(
             # addresses of these functions
             "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces", "push_apart",
             "step_through",
-            # those of the first five for contacts of the plane and of space, where a model has both
-            *(f"{part}_{where}" for where in ("in_plane", "in_space") for part in OF_A_KIND),
             "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
@@ -94,8 +89,9 @@ instant_at = record_view(INSTANT_TYPE)
     SPIN, HELD_SPIN,                   # r w_n on a patch, m/s; part of the torque against it at rest
     ZETA, P_SPIN, SPIN_BEFORE,         # impulse M/r against it, N s: of one problem, of a blow; the spin before, m/s
     NEW_IMPLIED,                       # which of its rows others imply: IMPLIED of `state/modes.py`
-) = range(87)  # fmt: skip
-COLUMNS = 87
+    LEFT_OVER,                         # 1: of a part of the mechanism whose problem is still to be solved
+) = range(88)  # fmt: skip
+COLUMNS = 88
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)
@@ -114,7 +110,7 @@ WITHOUT = 6  # 1: impacts are without restitution where `LOW` says so
 TURNS = 7  # 1: forces of contacts have torques against turning with them
 TOUCHED = 8  # contacts that touch, once the instant has been decided
 ALONE = 9  # 1: of the inverse masses of what is opened the diagonal alone is wanted
-TOUCHED_IN_SPACE = 10  # of TOUCHED, those that are decided as in space
+TOUCHED_IN_SPACE = 10  # of TOUCHED, those with two tangents
 IN_ROUNDS = 11  # 1: the impact's contacts were struck one round after another (`impact.py`)
 WHOLES = 12
 

@@ -19,7 +19,7 @@ from tlismni.core import (
 G, MU, RADIUS, HEIGHT, SPEED, EDGE = 9.81, 0.2, 2e-3, 0.1, 2.0, 0.3
 FACES = [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
          (3, 0, 4), (3, 4, 7)]  # fmt: skip
-ROWS = {"three": (0.25, 0.05, -0.15), "two close ones": (0.25, 0.248, -0.15)}
+ROWS = {"three": (0.25, 0.05, -0.15), "two close ones": (0.25, 0.248, -0.15), "close and loaded": (0.05, 0.048, -0.35)}
 """Places along the block, from its centre of mass."""
 AWAY = 0.05
 """How far the first row is from the edge at the start."""
@@ -70,7 +70,7 @@ def test_feet_leave_a_plate_without_a_blow(rows, order, method):
     opened = {event.contact: event.t for event in result.events if event.kind == "open"}
     # what others hold is seen to leave once its gap has moved
     assert opened == {"f0": pytest.approx(leaves, abs=2e-6), "f1": pytest.approx(leaves, abs=2e-6)}
-    assert not [event for event in result.events if event.kind == "impact"]
+    assert not [event for event in result.events if event.kind == "impact" and event.approach_speed > 1e-8]
     carried = [result[f"f{i}.normal_force"][-1] for i in (2, 4)]
     # friction acts below the centre of mass
     lever, turns = rows[1] - rows[2], MU * G * HEIGHT

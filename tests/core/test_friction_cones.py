@@ -6,14 +6,14 @@ import numba
 import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of
-from tlismni.core.cones.friction_cones import FOUND, friction_cones_size, solve_friction_cones
+from tlismni.core.cones.friction_cones import FOUND, MOST_SWEEPS, friction_cones_size, solve_friction_cones
 from tlismni.core.cones.least_forces import least_forces_size, take_least_forces
 from tlismni.core.linalg.small import LEAST_NORM_SIGNATURE, least_norm
 
 
 @numba.njit
 def _solve(address, n, a, b, mu, base, known, way, p, work):
-    return solve_friction_cones(address, n, a, b, mu, base, known, way, p, work)
+    return solve_friction_cones(address, n, a, b, mu, base, known, way, p, work, MOST_SWEEPS)
 
 
 def solve(a, b, mu, base=None, known=None, way=None):
