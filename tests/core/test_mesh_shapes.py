@@ -22,10 +22,10 @@ ON = Marker3D(body="b")
 SIZE = (0.3, 0.2, 0.1)
 
 
-def cube():
+def cube(size=SIZE):
     """A box's corners and triangles: each face as two."""
     corners = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
-    points = [tuple(a * b for a, b in zip(corner, SIZE, strict=True)) for corner in corners]
+    points = [tuple(a * b for a, b in zip(corner, size, strict=True)) for corner in corners]
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return points, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
 
