@@ -88,13 +88,15 @@ NEAR_ZERO = 1e-6
 """Of the forces: one that an event has left with less may be zero."""
 NO_ACCELERATION = 1e-11
 """Of what weights and forces make: a gap's acceleration below this is none."""
-NO_SLIDING = 2e-13
-"""Of its terms: an acceleration along the tangent below this is none."""
 PRESSING = 1e-6
 """Of the accelerations: with more, the gap of shapes that touch begins to close. The forces of many contacts leave less
 of it."""
-IMPLIED_MOVES = 1e-9
+IMPLIED_MOVES = 1e-10
 """Of the level of positions: a closed gap that others imply, and that has moved by more, they do not imply."""
+IMPLIED_TURNS = 0.03
+"""Of the level of accelerations, the same."""
+IMPLIED_SLIDES = 1e-10
+"""Of the level of velocities: what sticks since others imply it, and slides by more, they do not hold."""
 SLIP_EXCESS = 1e-9
 """Of its limit: friction that is beyond it by no more has not passed it. Blocks that ride on one another need exactly
 the limit all along, and rounding must not let them slip."""
@@ -121,8 +123,6 @@ NO_JERK = 1e-9
 """Of its terms: a rate of a gap's acceleration below this is none."""
 ENERGY_GAIN = 1e-12
 """Of the kinetic energy: an impact that gains more is one to report."""
-ADDED = 1e-9
-"""Of the largest impulse of a round: what adds less has not been struck again."""
 SAME_PLACE = 1e-12
 """Of a line's coordinates, a body's size: points that are nearer are one, as cos(2 pi) and cos(0)."""
 SAME_PARAMETER = 1e-16
@@ -148,6 +148,8 @@ STICKING_MOVES = 1e-9
 """Of the motion that friction is to take away: with more left of it, contacts do not all stick."""
 BEYOND_LIMIT, NO_FRICTION = 1e-12, 1e-14
 """Parts of a limit and of the largest friction by which friction may be beyond its limit."""
+FORCE_AT_EVENT = 1e-6
+"""Of the largest force: what the time of an event leaves open of forces that are zero there."""
 REACHES_LIMIT_NOW = 1e-6
 """Of the limit, in space: friction of a contact whose event is that it reaches it is that near at least."""
 STICKS_STILL = 1e-9
@@ -174,8 +176,6 @@ FRICTION_RANK = 1e-13
 """Of the largest singular value in that Newton's method: a smaller one is zero."""
 STILL = 1e-9
 """Of the speed that weight gives over the mechanism's size: there the direction of sliding goes on through zero."""
-TO_SPARE = 1e-6
-"""Of its limit: what a new distribution of sticking friction must leave to each contact."""
 LCP_PIVOT = 1e-11
 """Of the column's largest: a smaller entry is rounding, and no pivot."""
 LCP_TIES = (1e-13, 1e-11, 1e-9)

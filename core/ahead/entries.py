@@ -100,7 +100,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
         dot2_3d.dot2_load, twist3d.twist_load, rolling3d.rolling_load,
     ):  # fmt: skip
         yield kernel, derived.DERIVE_SIGNATURE
-    for part in (*instant.PARTS, *instant.IN_SPACE.values()):
+    for part in instant.PARTS.values():
         yield part, instant.PART_SIGNATURE
     for _, function, signature in instant._OTHERS:
         yield function, signature
@@ -164,7 +164,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield follow, (_LU, _LU)
     yield cones.solve_cones, (cones.CONES_TYPE,)
     yield lcp._find, (_WHOLE, _WHOLE, _MATRIX, _REALS, _REALS, _REALS)
-    yield directions.independent_directions, (_MATRIX, _MATRIX, _WHOLES, _REAL, _WHOLES, _REALS)
+    yield directions.independent_directions, (_MATRIX, _MATRIX, _WHOLES, _WHOLE, _WHOLE, _REAL, _WHOLES, _REALS)
     yield directions.farthest_directions, (_MATRIX, _WHOLES, _WHOLES, _REALS)
     matrix = (_WHOLE, _WHOLE, _WHOLES, _WHOLES, _REALS, _REALS, _REAL)
     factors = (_REALS, _WHOLES, _WHOLES, _REALS, _WHOLES, _WHOLES, _REALS)

@@ -110,7 +110,8 @@ def independent(
     some, count = np.concatenate([normal, len(a.nn) + tangential]).astype(np.int64), len(normal)
     directions, responses = (np.ascontiguousarray(x, dtype=np.float64) for x in a.vectors())
     kept, work = np.empty(len(some), np.int64), np.empty(independent_size(len(some), directions.shape[1]))
-    positions = kept[: independent_directions(directions, responses, some, rank, kept, work)].tolist()
+    found = independent_directions(directions, responses, some, count, len(some), rank, kept, work)
+    positions = sorted(kept[:found].tolist())
     return [i for i in positions if i < count], [i - count for i in positions if i >= count]
 
 

@@ -17,6 +17,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
+from ..linalg.single_rows import take_single_rows
 from ..linalg.small import call_least_norm, least_norm_size
 from ..rounding import (
     FRICTION_ENOUGH,
@@ -42,7 +43,7 @@ LEAST_PART = 0.125
 def friction_cones_size(n: int) -> int:
     """Numbers (of 8 bytes) in the scratch of `solve_friction_cones` for n contacts."""
     m = 3 * n
-    return m + max(m * m + 5 * m + least_norm_size(m, m, 1), giving_way_size(n))
+    return m + max(m * m + 6 * m + least_norm_size(m, m, 1), giving_way_size(n))
 
 
 @internal
@@ -84,25 +85,31 @@ def newton_on_cones(
 ) -> float:
     """Semismooth Newton from p, which becomes the best point found: the residual there."""
     m = 3 * n
-    jac, r, found = mat(work, m, m), mat(work + 8 * m * m, m, 1), mat(work + 8 * (m * m + m), m, 1)
+    jac, right_at = mat(work, m, m), work + 8 * m * m
     best, left = vec(work + 8 * (m * m + 2 * m), m), vec(work + 8 * (m * m + 3 * m), m)
-    space, least = work + 8 * (m * m + 5 * m), math.inf
+    kept, step = vec(work + 8 * (m * m + 4 * m), m), vec(work + 8 * (m * m + 5 * m), m)
+    space, least = work + 8 * (m * m + 6 * m), math.inf
     tried = 0
     for _ in range(NEWTON):
         worst = residual_of_cones(n, a, b, mu, base, known, way, p, left, jac)
         if worst < least:
             least, tried = worst, 0
             for i in range(m):
-                best[i], r[i, 0] = p[i], -left[i]
+                best[i], step[i] = p[i], -left[i]
             if worst == 0.0:
                 break
-            call_least_norm(least_norm, jac, r, found, FRICTION_RANK, space)
+            rest = take_single_rows(work, m, step, vec(right_at, m), kept)
+            if rest > 0:
+                of, right, found = mat(work, rest, rest), mat(right_at, rest, 1), mat(right_at + 8 * m, rest, 1)
+                call_least_norm(least_norm, of, right, found, FRICTION_RANK, space)
+                for i in range(rest):
+                    step[int(kept[i])] = found[i, 0]
         else:
             tried += 1
             if tried > HALVINGS:
                 break
         for i in range(m):
-            p[i] = best[i] + 0.5**tried * found[i, 0]
+            p[i] = best[i] + 0.5**tried * step[i]
     for i in range(m):
         p[i] = best[i]
     return least
@@ -139,7 +146,7 @@ def _give_way(
 
 @internal
 def solve_friction_cones(
-    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
+    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int, most: int
 ) -> int:
     """Forces p (3 n,) of n contacts: normals, first and second tangents; FOUND or FAILED.
 
@@ -151,6 +158,7 @@ def solve_friction_cones(
     mu, base : coefficients and least normal forces (n,).
     known, way : where not 0, the contact slides along the direction `way` (2, n).
     work : address of `friction_cones_size` numbers.
+    most : sweeps, MOST_SWEEPS unless there is another way to the forces.
     """
     for i in range(3 * n):
         p[i] = 0.0
@@ -160,7 +168,7 @@ def solve_friction_cones(
     alone = n == 1 and a[0, 1] == a[1, 0] and a[0, 2] == a[2, 0]
     kept, work = vec(work, 3 * n), work + 24 * n
     sweeps, wait, part, before, change, largest, followed = 0, SWEEPS, 1.0, math.inf, 0.0, 0.0, False
-    while sweeps < MOST_SWEEPS:
+    while sweeps < most:
         for _ in range(wait):
             found, change, largest = sweep_over_cones(n, a, b, mu, base, known, way, p, part)
             sweeps += 1

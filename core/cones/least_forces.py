@@ -12,6 +12,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
+from ..linalg.single_rows import take_single_rows
 from ..linalg.small import solve_square
 from ..rounding import FRICTION_EXACT, FRICTION_GOOD, FRICTION_NEAR
 from .friction_cones import newton_on_cones, sweep_over_cones
@@ -19,24 +20,27 @@ from .projections import motion_left, residual_of_cones
 
 FIRST, LOWER, LAST = 0.1, 0.01, 1e-5
 """Compliance in parts of the largest inverse mass: at first, factor from one to the next, and at last."""
-NEARER = 1e-2
-"""Of the last one, where what a contact does changes on the way."""
+LARGEST_STEPS = 0.9
+"""Of that factor, whose root is taken where Newton's method does not follow: beyond, there is no way."""
+NEARER, NEAREST = 0.1, 1e-10
+"""Factor from the last one to the next where what a contact does changes on the way, and the least of all."""
 SWEEPS, ITERATIONS = 100, 40
 
 
 def least_forces_size(n: int) -> int:
     """Numbers (of 8 bytes) in the scratch of `take_least_forces` for n contacts, beside that of `newton_on_cones`."""
     m = 3 * n
-    return 2 * m * m + 6 * m
+    return 2 * m * m + 8 * m
 
 
 @internal
 def _follow(
-    n: int, soft: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, jac: Any, left: Any, best: Any
+    n: int, soft: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, jac_at: int, left: Any, best: Any
 ) -> bool:
     """Newton's method on compliant contacts from p, which becomes the best point; True if that solves the problem. It
     goes on down to rounding: forces that repeat each other count in the residual by their compliance only."""
-    least, size = math.inf, 0.0
+    m, least, size = 3 * n, math.inf, 0.0
+    jac, right, kept = mat(jac_at, m, m), vec(jac_at + 8 * m * m, m), vec(jac_at + 8 * (m * m + m), m)
     for _ in range(ITERATIONS):
         worst = residual_of_cones(n, soft, b, mu, base, known, way, p, left, jac)
         if worst < least:
@@ -46,8 +50,11 @@ def _follow(
                 size = max(size, abs(p[i]))
         elif least <= FRICTION_NEAR * size:
             break
-        if solve_square(jac, left) == 0:
+        rest = take_single_rows(jac_at, m, left, right, kept)
+        if solve_square(mat(jac_at, rest, rest), vec(jac_at + 8 * m * m, rest)) == 0:
             break
+        for i in range(rest):
+            left[int(kept[i])] = right[i]
         for i in range(3 * n):
             p[i] -= left[i]
     for i in range(3 * n):
@@ -64,19 +71,48 @@ def _soften(m: int, a: Any, part: float, largest: float, soft: Any) -> None:
 
 
 @internal
+def _near_the_limit(
+    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, last: Any, work: int
+) -> bool:
+    """Forces p from those of the least compliance before, `last`: followed with less and less, until what is left of
+    the way, gone by the least increments, solves the problem; False, with p as it was, where that is never so."""
+    m, largest, part = 3 * n, 0.0, NEARER * LAST
+    soft, jac_at = mat(work, m, m), work + 8 * m * m
+    at = jac_at + 8 * (m * m + 2 * m)
+    left, best, own = vec(at, m), vec(at + 8 * m, m), vec(at + 16 * m, m)
+    for i in range(m):
+        largest = max(largest, a[i, i])
+    while part >= 0.5 * NEAREST:
+        _soften(m, a, part, largest, soft)
+        if not _follow(n, soft, b, mu, base, known, way, last, jac_at, left, best):
+            return False
+        for i in range(m):
+            own[i] = last[i]
+        newton_on_cones(least_norm, n, a, b, mu, base, known, way, own, at + 48 * m)
+        for i in range(n):
+            own[i] = max(own[i], base[i])
+        if motion_left(n, a, b, mu, base, known, way, own) <= FRICTION_GOOD:
+            for i in range(m):
+                p[i] = own[i]
+            return True
+        part *= NEARER
+    return False
+
+
+@internal
 def take_least_forces(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
 ) -> bool:
     """Forces of least norm in place of the forces p (3 n,), as of `solve_friction_cones`; False, with p as it was,
     where the way to them is not found."""
     m, largest = 3 * n, 0.0
-    soft, jac = mat(work, m, m), mat(work + 8 * m * m, m, m)
-    at = work + 16 * m * m
+    soft, jac_at = mat(work, m, m), work + 8 * m * m
+    at = jac_at + 8 * (m * m + 2 * m)
     left, best, own = vec(at, m), vec(at + 8 * m, m), vec(at + 16 * m, m)
     once, twice, last = vec(at + 24 * m, m), vec(at + 32 * m, m), vec(at + 40 * m, m)
     for i in range(m):
         largest, own[i] = max(largest, a[i, i]), p[i]
-    part = FIRST
+    part, good, lower = FIRST, FIRST, LOWER
     while True:
         for i in range(m):
             twice[i], once[i] = once[i], own[i]
@@ -87,12 +123,22 @@ def take_least_forces(
                 return False
             if change <= part * size:
                 break
-        if not _follow(n, soft, b, mu, base, known, way, own, jac, left, best):
-            return False
+        if not _follow(n, soft, b, mu, base, known, way, own, jac_at, left, best):
+            # from the one before in a smaller step
+            for i in range(m):
+                own[i], once[i] = once[i], twice[i]
+            if good < 5.0 * LAST:
+                break
+            lower = math.sqrt(lower)
+            if part == FIRST or lower > LARGEST_STEPS:
+                return False
+            part = max(lower * good, 4.0 * LAST)
+            continue
         if part < 1.5 * LAST:
             break
         # the last three are for four times, twice and once the least compliance
-        part = 0.5 * part if part < 5.0 * LAST else max(LOWER * part, 4.0 * LAST)
+        good = part
+        part = 0.5 * part if part < 5.0 * LAST else max(lower * part, 4.0 * LAST)
     size = 0.0
     for i in range(m):
         last[i] = own[i]
@@ -100,19 +146,9 @@ def take_least_forces(
     for i in range(n):
         own[i] = max(own[i], base[i])
         size = max(size, own[i])
-    if not residual_of_cones(n, a, b, mu, base, known, way, own, left, jac) <= FRICTION_EXACT * size:
-        # what a contact does has changed between the three: nearer to the limit, then the way that is left by the
-        # least increments
-        for i in range(m):
-            own[i] = last[i]
-        _soften(m, a, NEARER * LAST, largest, soft)
-        if not _follow(n, soft, b, mu, base, known, way, own, jac, left, best):
-            return False
-        newton_on_cones(least_norm, n, a, b, mu, base, known, way, own, at + 48 * m)
-        for i in range(n):
-            own[i] = max(own[i], base[i])
-        if not motion_left(n, a, b, mu, base, known, way, own) <= FRICTION_GOOD:
-            return False
+    if not residual_of_cones(n, a, b, mu, base, known, way, own, left, mat(jac_at, m, m)) <= FRICTION_EXACT * size:
+        # what a contact does changes nearer to the limit
+        return _near_the_limit(least_norm, n, a, b, mu, base, known, way, p, last, work)
     for i in range(m):
         p[i] = own[i]
     return True

@@ -130,7 +130,7 @@ def one_cone(a: Any, b: Any, mu: float, base: float) -> Any:
     if base == 0.0 and b[0] >= 0.0:
         return True, 0.0, 0.0, 0.0
     # it sticks: the tangents take what is left of the normal
-    det = a[3] * a[5] - a[4] * a[4]
+    det, prescribed = a[3] * a[5] - a[4] * a[4], False
     if det > 1e-14 * a[3] * a[5]:
         n1, n2 = (a[5] * a[1] - a[4] * a[2]) / det, (a[3] * a[2] - a[4] * a[1]) / det
         m1, m2 = (a[5] * b[1] - a[4] * b[2]) / det, (a[3] * b[2] - a[4] * b[1]) / det
@@ -141,10 +141,13 @@ def one_cone(a: Any, b: Any, mu: float, base: float) -> Any:
             n1, m1 = a[1] / a[3], b[1] / a[3]
         else:
             n2, m2 = a[2] / a[5], b[2] / a[5]
+        # what goes on along the other one no friction stops
+        across = b[2] - a[4] * m1 if a[3] >= a[5] else b[1] - a[4] * m2
+        prescribed = abs(across) > SLIDES_BACK * (abs(b[0]) + abs(b[1]) + abs(b[2]))
     grows = a[0] - a[1] * n1 - a[2] * n2
     p = max(base, -(b[0] - a[1] * m1 - a[2] * m2) / grows) if grows > 1e-12 * a[0] else base
     p1, p2 = -m1 - n1 * p, -m2 - n2 * p
-    if p >= base and p1 * p1 + p2 * p2 <= mu * mu * p * p:
+    if p >= base and p1 * p1 + p2 * p2 <= mu * mu * p * p and not prescribed:
         return True, p, p1, p2
     # it slides; most contacts, and all spheres, as they would without friction
     first = math.atan2(b[2], b[1])

@@ -1,203 +1,157 @@
-"""Forces of the contacts at rest: those under which none of them pulls, and friction is within its limits.
+"""Forces of the contacts at rest, by exact friction cones: those under which none pulls, and what friction holds."""
 
-Contacts that reach the limit of their friction together, and bodies that stand on more contacts than they need, leave a
-choice of forces: it is made here. Where there are none, or friction turns what normal forces do round, a jam
-is named.
-"""
-
+import math
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import internal
-from ..compiled.views import ivec
-from ..rounding import PRESSING
-from ..state.modes import CLOSED
-from .forces import NO_SOLUTION, among, farthest_of
+from ..compiled.views import ivec, vec
+from ..rounding import REACHES_LIMIT, REACHES_LIMIT_NOW, STICKS_STILL
+from .free_tangents import find_sliding, list_held
 from .jams import name_jammed, refuse_jam
-from .loaded import is_loaded, note_loaded
+from .loaded import note_loaded
+from .moment import decide_by_moment, moment_asked, moment_of_wedge, stop_rates
+from .rates import pressing, solve_cone_problem
+from .reading import unresolved_speed
 from .records import (
-    APART,
     AT_REST,
+    B_N,
+    B_S,
+    B_T,
+    BASE,
+    COS_WAY,
     COUNT,
     DIRECTION,
     F_N,
+    F_S,
     F_T,
-    FLAG,
-    FULL,
-    KEPT_DIRECTION,
-    KEPT_FULL,
-    KEPT_TAKES,
+    JAMS,
     KINETIC,
     KNOWN,
     LEAVES,
+    MU,
     NO_FORCES,
     NONE,
-    OTHER_N,
-    OTHER_T,
-    OTHER_WN,
-    OTHER_WT,
+    OTHER_FLAG,
+    PART,
+    RATE,
     READY,
     SETTLED,
+    SIN_WAY,
     SIZE,
-    SLIPPING,
     SLIPS,
     STATIC,
-    STICKS,
-    STRUCK,
     TAKES,
     W_N,
+    W_S,
     W_T,
-    WAS,
     clear,
     col,
-    copy,
     real,
     whole,
 )
-from .resting import fastest_free, find_free, hold_back
-from .sticking import find_beginning, held
+from .resting import find_free
+
+BEGINS = 2.0
+"""In DIRECTION: sliding begins here."""
 
 
 @internal
 def find_forces(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
-    """Forces of all touching contacts (zero where they separate), in `F_N` and `F_T`."""
-    count, takes, leaves, at_rest = whole(ev)[COUNT], col(ev, TAKES), col(ev, LEAVES), col(ev, AT_REST)
+    """Forces of all touching contacts (zero where they separate), in `F_N`, `F_T` and `F_S`, with the motion `W_N`,
+    `W_T`, `W_S`; DIRECTION is 1 where the contact slides, 2 where it begins to. Where that has led to the same instant
+    again and again, or to no forces, what would be a moment later decides."""
     if whole(ev)[READY] == 0:
-        status = find_free(ev, dr, ws, ms, 0.0)
+        status = find_free(ev, dr, ws, 0.0)
         if status != SETTLED:
             return status
-    for i in range(count):
-        takes[i] = at_rest[i] != 0.0 and leaves[i] == 0.0
-    status = _balance(ev, ws, ms)
-    if status == SETTLED and _turned(ev):
-        status = _balance(ev, ws, ms)
-    for _ in range(count):
-        # one that opens so slowly that it falls back at once
-        if status != SETTLED or not hold_back(ev, ws, ms, col(ev, W_N)):
+    if ms.exact != 0 and decide_by_moment(ev, dr, ws, ms, col(ev, AT_REST), moment_asked(ev, dr, ws)):
+        return SETTLED
+    part = col(ev, PART)
+    for i in range(whole(ev)[COUNT]):
+        part[i] = 1.0 if col(ev, AT_REST)[i] != 0.0 and col(ev, LEAVES)[i] == 0.0 else 0.0
+    status = balance(ev, ws, ms, part)
+    for _ in range(whole(ev)[COUNT]):
+        if status != SETTLED or not _falls_back(ev, ws, part):
             break
-        for i in range(count):
-            takes[i] = 1.0 if col(ev, FLAG)[i] != 0.0 else takes[i]
-        status = _balance(ev, ws, ms)
-    if status != SETTLED:
-        return status
-    _stand_apart(ev, ws, ms)
-    return refuse_jam(ev, ws)
+        status = balance(ev, ws, ms, part)
+    if status == SETTLED:
+        note_loaded(ev, ws)
+        status = refuse_jam(ev, ws)
+    if status == SETTLED and ms.exact != 0:
+        stop_rates(ev, dr, ws)
+    wedged = (status == NO_FORCES or status == JAMS) and whole(ev)[COUNT] > 1 and ms.exact != 0
+    if wedged and decide_by_moment(ev, dr, ws, ms, col(ev, AT_REST), moment_of_wedge(ev, ws)):
+        return SETTLED
+    return status
 
 
 @internal
-def _turned(ev: Any) -> bool:
-    """True if a contact that has reached the limit of its friction would set off the other way, since others have let
-    go at the same instant: then it is friction that decides."""
-    slips, found, fastest = col(ev, SLIPS), False, fastest_free(ev)
+def _falls_back(ev: Any, ws: Any, part: Any) -> bool:
+    """True if gaps that open would, with these accelerations, open by less than could be told from zero: they are at
+    rest too, and take `part` in the forces."""
+    found = False
     for i in range(whole(ev)[COUNT]):
-        if slips[i] * col(ev, W_T)[i] < -PRESSING * fastest and col(ev, DIRECTION)[i] == slips[i]:
-            slips[i], found = 0.0, True
+        rate, k = col(ev, RATE)[i], ivec(ev.contacts, ev.most)[i]
+        if col(ev, AT_REST)[i] == 0.0 and 0.0 < rate <= unresolved_speed(ws, k, -col(ev, W_N)[i]):
+            col(ev, AT_REST)[i], found = 1.0, True
+            part[i] = 1.0 if col(ev, LEAVES)[i] == 0.0 else 0.0
     return found
 
 
 @internal
-def _stand_apart(ev: Any, ws: Any, ms: Any) -> None:
-    """Of contacts whose normals repeat each other take those that lie farthest apart: on them a body stands firmly."""
-    count, apart = whole(ev)[COUNT], col(ev, APART)
-    if not _spread(ev, ws, apart):
-        return
-    kept = (DIRECTION, KEPT_DIRECTION), (FULL, KEPT_FULL), (TAKES, KEPT_TAKES)
-    for one, other in kept:
-        copy(col(ev, other), col(ev, one), count)
-    slipping, sticks = whole(ev)[SLIPPING], whole(ev)[STICKS]
-    _swap_forces(ev, count)
-    copy(col(ev, TAKES), apart, count)
-    good = _balance(ev, ws, ms) == SETTLED
+def balance(ev: Any, ws: Any, ms: Any, part: Any) -> int:
+    """Forces of the contacts `part`, and of others at rest that these press together again."""
+    count, takes = whole(ev)[COUNT], col(ev, TAKES)
+    direction, b, p = col(ev, DIRECTION), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
+    fastest, any_slips, a = 0.0, False, pressing(ev, count)
     for i in range(count):
-        good = good and (apart[i] == 0.0 or is_loaded(ev, i))
-    if good:
-        return
-    for one, other in kept:
-        copy(col(ev, one), col(ev, other), count)
-    whole(ev)[SLIPPING], whole(ev)[STICKS] = slipping, sticks
-    _swap_forces(ev, count)
-    note_loaded(ev, ws)
-
-
-@internal
-def _swap_forces(ev: Any, count: int) -> None:
-    for one, other in ((F_N, OTHER_N), (F_T, OTHER_T), (W_N, OTHER_WN), (W_T, OTHER_WT)):
+        takes[i] = part[i]
+        any_slips = any_slips or col(ev, SLIPS)[i] != 0.0
+        b[i], b[count + i], b[2 * count + i] = col(ev, B_N)[i], col(ev, B_T)[i], col(ev, B_S)[i]
+        fastest = max(fastest, abs(b[i]), abs(b[count + i]), abs(b[2 * count + i]))
+        direction[i], col(ev, BASE)[i] = col(ev, KNOWN)[i], 0.0
+        immovable = a[count + i, count + i] == 0.0 and a[2 * count + i, 2 * count + i] == 0.0
+        begins = math.sqrt(b[count + i] ** 2 + b[2 * count + i] ** 2)
+        if immovable and begins > 0.0 and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
+            # its motion is prescribed, friction is against it
+            direction[i], col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (
+                BEGINS,
+                b[count + i] / begins,
+                b[2 * count + i] / begins,
+            )
+    mu, free = col(ev, MU), col(ev, OTHER_FLAG)
+    for _ in range(2 * count + 2):
         for i in range(count):
-            x = col(ev, one)[i]
-            col(ev, one)[i] = col(ev, other)[i]
-            col(ev, other)[i] = x
-
-
-@internal
-def _spread(ev: Any, ws: Any, apart: Any) -> bool:
-    """Which contacts that is; False if there are none, or if nothing asks for a new choice."""
-    count, some, asked, still = whole(ev)[COUNT], ivec(ev.some, 2 * ev.most), whole(ev)[STRUCK] != 0, 0
-    for i in range(count):
-        asked = asked or (is_loaded(ev, i) and col(ev, WAS)[i] != CLOSED)
-    if not asked:
-        return False
-    for i in range(count):
-        if col(ev, TAKES)[i] != 0.0 and abs(col(ev, W_N)[i]) <= 1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
-            some[still] = i
-            still += 1
-    number = farthest_of(ev, count, still)
-    chosen, every = ivec(ev.chosen, 2 * ev.most), True
-    for j in range(number):
-        every = every and is_loaded(ev, chosen[j])
-    if number == still or every:
-        return False
-    clear(apart, count)
-    for j in range(number):
-        apart[chosen[j]] = 1.0
-    return True
-
-
-@internal
-def _balance(ev: Any, ws: Any, ms: Any) -> int:
-    """Forces of the contacts `TAKES`."""
-    count, slips, direction, known = whole(ev)[COUNT], col(ev, SLIPS), col(ev, DIRECTION), col(ev, KNOWN)
-    full, any_slips, differ = col(ev, FULL), False, False
-    for i in range(count):
-        direction[i], full[i] = known[i], 0.0
-        any_slips = any_slips or slips[i] != 0.0
-    whole(ev)[SLIPPING] = 0
-    if any_slips:
-        if held(ev, ws):
-            return SETTLED
-        whole(ev)[SLIPPING] = 1
-        for i in range(count):
-            direction[i] = slips[i] if slips[i] != 0.0 else direction[i]
-    for _ in range(count + 1):
-        status = _solve(ev, ws, ms)
-        if status != SETTLED:
-            return status
-        find_beginning(ev, ws)
-        differ = False
-        begins = col(ev, FLAG)
-        for i in range(count):
-            if begins[i] != 0.0:
-                differ = differ or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
-                direction[i] = -np.sign(col(ev, F_T)[i])
-        if not differ:
-            break
-    return SETTLED
-
-
-@internal
-def _solve(ev: Any, ws: Any, ms: Any) -> int:
-    count, takes, none = whole(ev)[COUNT], col(ev, TAKES), real(ev)[NONE]
-    for _ in range(2):
-        if among(ev, count, takes, col(ev, DIRECTION), col(ev, DIRECTION)) == NO_SOLUTION:
+            mu[i] = col(ev, KINETIC)[i] if direction[i] != 0.0 else col(ev, STATIC)[i]
+        if not solve_cone_problem(ev, a, count, takes, b, mu, col(ev, BASE), direction, p):
             name_jammed(ev, ws)
             return NO_FORCES
-        note_loaded(ev, ws)
-        # one that leaves does so unless the others' forces press it together again
         again = False
         for i in range(count):
-            pressed = col(ev, W_N)[i] < -1e3 * none * col(ev, SIZE)[i]
-            if ms.exact != 0 and col(ev, AT_REST)[i] != 0.0 and takes[i] == 0.0 and pressed:
-                takes[i], again = 1.0, True
+            col(ev, F_N)[i], col(ev, F_T)[i], col(ev, F_S)[i] = p[i], p[count + i], p[2 * count + i]
+        clear(free, count)
+        if any_slips:
+            find_sliding(ev, list_held(ev, ws, takes, REACHES_LIMIT_NOW, free), free)
+        for i in range(count):
+            w_n, w_t, w_s = b[i], b[count + i], b[2 * count + i]
+            for j in range(3 * count):
+                w_n += a[i, j] * p[j]
+                w_t += a[count + i, j] * p[j]
+                w_s += a[2 * count + i, j] * p[j]
+            col(ev, W_N)[i], col(ev, W_T)[i], col(ev, W_S)[i] = w_n, w_t, w_s
+            if direction[i] == 0.0 and mu[i] > 0.0 and p[i] > 0.0:
+                # at its limit, and it moves: it begins to slide, against its friction
+                force, limit = math.sqrt(p[count + i] ** 2 + p[2 * count + i] ** 2), mu[i] * p[i]
+                moves = math.sqrt(w_t * w_t + w_s * w_s) > STICKS_STILL * fastest
+                # where a contact has its event at its limit, so have those that nothing else holds
+                least = limit * (1.0 - (REACHES_LIMIT_NOW if any_slips else REACHES_LIMIT))
+                if force >= least and (moves or free[i] != 0.0):
+                    direction[i] = BEGINS
+                    col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -p[count + i] / force, -p[2 * count + i] / force
+                    again = again or any_slips or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
+            elif ms.exact != 0 and takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0:
+                if w_n < -1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
+                    takes[i], again = 1.0, True
         if not again:
             break
     return SETTLED

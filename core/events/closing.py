@@ -3,16 +3,17 @@
 import math
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import internal
 from ..compiled.views import ivec
-from ..rounding import PRESSING
-from ..state.modes import CLOSED
+from ..rounding import FORCE_AT_EVENT, PRESSING
+from ..state.modes import CLOSED, OPEN
 from .loaded import is_loaded
 from .reading import comes_back
 from .records import (
     AT_REST,
+    B_N,
+    B_S,
+    B_T,
     CLOSES,
     COS_WAY,
     COUNT,
@@ -36,7 +37,6 @@ from .records import (
     real,
     whole,
 )
-from .resting import fastest_free
 from .touching import free_jerks, looks_again
 
 CLOSES_FROM, CLOSES_TO = 3, 12
@@ -57,9 +57,10 @@ def choose(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     status = call_part(ev.find_forces, ev, dr, ws, ms)
     if status != SETTLED:
         return status
-    idle, none = False, real(ev)[NONE]
+    idle, none, least = False, real(ev)[NONE], _least_force(ev) if now else 0.0
     for i in range(count):
-        closes[i] = is_loaded(ev, i)
+        unasked = col(ev, WAS)[i] == OPEN and ivec(dr.pending, ws.n_contacts)[ivec(ev.contacts, ev.most)[i]] == 0
+        closes[i] = is_loaded(ev, i) and not (unasked and col(ev, F_N)[i] < least)
         leaves = col(ev, LEAVES)[i] != 0.0
         if now and col(ev, WAS)[i] == CLOSED and not leaves and abs(col(ev, W_N)[i]) <= none * col(ev, SIZE)[i]:
             # touching without force: as it was
@@ -72,15 +73,27 @@ def choose(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 
 @internal
+def _least_force(ev: Any) -> float:
+    """Force from which on contacts close that were open and have no event of their own, N: 0 unless another one opens
+    since its force has come to zero. That event is known as well as its time, and so are forces without it."""
+    leaves, largest = False, 0.0
+    for i in range(whole(ev)[COUNT]):
+        leaves, largest = leaves or col(ev, LEAVES)[i] != 0.0, max(largest, col(ev, F_N)[i])
+    return FORCE_AT_EVENT * largest if leaves else 0.0
+
+
+@internal
 def _slide_unloaded(ev: Any, ws: Any, closes: Any) -> None:
     """Contacts that stay closed without force begin to slide where nothing holds them: no friction does."""
-    least, direction, spatial = PRESSING * fastest_free(ev), col(ev, DIRECTION), ws.tangents == 2
+    fastest, direction = 0.0, col(ev, DIRECTION)
+    for i in range(whole(ev)[COUNT]):
+        fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]), abs(col(ev, B_S)[i]))
     for i in range(whole(ev)[COUNT]):
         free = col(ev, STATIC)[i] > 0.0 and direction[i] == 0.0 and col(ev, F_N)[i] == 0.0
-        x, y = col(ev, W_T)[i], col(ev, W_S)[i] if spatial else 0.0
+        x, y = col(ev, W_T)[i], col(ev, W_S)[i]
         speed = math.sqrt(x * x + y * y)
-        if free and closes[i] != 0.0 and speed > least:
-            direction[i] = 1.0 if spatial else np.sign(x)
+        if free and closes[i] != 0.0 and speed > PRESSING * fastest:
+            direction[i] = 1.0
             col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = x / speed, y / speed
 
 

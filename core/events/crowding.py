@@ -37,6 +37,7 @@ from ..state.run_records import (
     loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
+from ..tables.held import in_space
 from ..tables.levels import position_level
 from .laws import FORCE, MASSLESS
 from .progress import COUNT, GUARD_SIZE, SINCE
@@ -98,11 +99,11 @@ def near_level(ws: Any, h: float) -> float:
 def may_push(dr: Any, ws: Any, ms: Any) -> bool:
     """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, and
     where contacts are at massless ends, or constraints in space that cannot be looked at alone."""
-    law, lc, kinds = ivec(dr.law, ws.n_contacts), loop_at(dr.loop), ivec(ws.contact_tangents, ws.n_contacts)
+    law, lc = ivec(dr.law, ws.n_contacts), loop_at(dr.loop)
     if ms.exact == 0:
         return False
     for k in range(ws.n_contacts):
-        if law[k] == MASSLESS or (law[k] != FORCE and kinds[k] == 2 and not can_look(lc, k)):
+        if law[k] == MASSLESS or (law[k] != FORCE and in_space(ws, k) and not can_look(lc, k)):
             return False
     return True
 

@@ -8,9 +8,10 @@ from ..cones.complementarity import MANY
 from ..rounding import DIRECTION_RANK, UNSOLVED
 from ..state.modes import IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, OPEN
 from ..state.run_records import CLOCK_SIZE, CROWDED
+from ..tables.held import in_space
 from ..tables.levels import rate_size
 from .blow import impact
-from .carrying import LOOSEST_RANK, RANK_OF_MANY, keep_others, pulls
+from .carrying import LOOSEST_RANK, RANK_OF_MANY
 from .closing import choose
 from .left_over import take_away_left
 from .new_modes import report_modes, take_modes
@@ -25,7 +26,6 @@ from .records import (
     LEFT,
     MET_LOSS,
     NO_ACCELERATIONS,
-    NO_FORCES,
     RANK,
     RATE,
     REPEATED_ROWS,
@@ -40,26 +40,28 @@ from .records import (
     STOP_IMPULSE,
     STOP_LOSS,
     TOUCHED,
+    TOUCHED_IN_SPACE,
     WANT_ROOM,
     WAS,
-    WHO,
     call_part,
     col,
     real,
     whole,
 )
 from .touching import find_touching, looks_again, read_rates, read_values
-from .wedging import MOST_WEDGES, wedge
 
 
 @internal
 def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     """Impacts, forces, and what they mean."""
-    if not find_touching(ev, dr, ws, False):
+    if not find_touching(ev, dr, ws):
         return WANT_ROOM
     read_before(ev, dr, ws)
     read_values(ev, ws)
     whole(ev)[TOUCHED], real(ev)[MET_LOSS] = whole(ev)[COUNT], 0.0
+    whole(ev)[TOUCHED_IN_SPACE] = 0
+    for i in range(whole(ev)[COUNT]):
+        whole(ev)[TOUCHED_IN_SPACE] += 1 if in_space(ws, ivec(ev.contacts, ev.most)[i]) else 0
     count, contacts, accelerations = whole(ev)[COUNT], ivec(ev.contacts, ev.most), largest_acceleration(ws)
     crowded = vec(lc.clock, CLOCK_SIZE)[CROWDED] != 0.0
     friction, static = vec(dr.friction, ws.n_contacts), vec(ws.contact_sticking, ws.n_contacts)
@@ -82,14 +84,9 @@ def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
             col(ev, ROUNDING)[i] *= max(1.0, 2.0 * real(ev)[LEFT])
         accelerations = 0.0
     real(ev)[ACCELERATIONS] = accelerations
-    for _ in range(MOST_WEDGES):
-        status = call_part(ev.begin_rest, ev, dr, ws, ms)
-        if status == SETTLED:
-            status = choose(ev, dr, ws, ms)
-        # one contact alone that jams is for the user to hear of
-        given_up = whole(ev)[WHO] >= 0 or ms.exact == 0 or ws.tangents == 2
-        if status != NO_FORCES or given_up or not wedge(ev, dr, ws, ms):
-            break
+    status = call_part(ev.begin_rest, ev, dr, ws, ms)
+    if status == SETTLED:
+        status = choose(ev, dr, ws, ms)
     if status != SETTLED:
         return status
     _account_stops(ev, ws)
@@ -99,10 +96,6 @@ def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     while True:
         status = take_modes(ev, dr, ws, ms)
         repeats = status == REPEATED_ROWS or status == SINGULAR_MATRIX or status == NO_ACCELERATIONS
-        others = ws.tangents == 1 and (repeats or (status == SETTLED and pulls(ev, ws)))
-        if others and keep_others(ev, ws):
-            call_part(ev.keep, ev, dr, ws, ms)
-            continue
         # contacts that each can be told from any other repeat each other together
         if not repeats or real(ev)[RANK] >= LOOSEST_RANK or not _any(ev, FLAG):
             break

@@ -15,7 +15,7 @@ from ..linalg.small import call_least_norm
 from ..rounding import DIRECTION_RANK
 from ..tables.held import in_space
 from .forces import cones_at
-from .rates_in_space import masses
+from .rates import masses
 from .records import COS_WAY, COUNT, DIRECTION, F_N, F_S, F_T, SIN_WAY, STATIC, col, whole
 
 RANK_OF_FREE = 1e-6

@@ -10,7 +10,7 @@ from ..cones.row_sweeps import along, list_columns
 from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
 from ..state.run_records import loop_at
 from .crowding import near_level
-from .rates_in_space import masses
+from .rates import masses
 from .records import (
     ALONE,
     COUNT,
@@ -24,11 +24,9 @@ from .records import (
     call_part,
     clear,
     col,
-    delassus,
     real,
     whole,
 )
-from .touching import read_rates
 from .turning_rows import TURNING_ROWS, find_turning_rows
 
 INVERSE, TAKES, BEFORE, OFF, P, ARM = range(6)
@@ -54,8 +52,8 @@ def room(ev: Any, rows: int, n: int) -> Any:
 @internal
 def rows_of(ev: Any, ws: Any) -> int:
     """How many there are."""
-    turns = TURNING_ROWS if ws.tangents == 2 and whole(ev)[TURNS] != 0 else 0
-    return int((1 + ws.tangents + turns) * whole(ev)[COUNT])
+    turns = TURNING_ROWS if whole(ev)[TURNS] != 0 else 0
+    return int((3 + turns) * whole(ev)[COUNT])
 
 
 @internal
@@ -69,14 +67,12 @@ def open_rows(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         return int(status)
     for i in range(count):
         mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], GAP_START] = 0.0
-    if ws.tangents != 2:
-        read_rates(ev, ws)
     rows = rows_of(ev, ws)
     arms = part(ev, rows, ARM)
-    for r in range(count, (1 + ws.tangents) * count):
+    for r in range(count, 3 * count):
         arms[r] = vec(dr.friction, ws.n_contacts)[contacts[r % count]]
-    if rows > (1 + ws.tangents) * count:
-        find_turning_rows(ev, ws, loop_at(dr.loop), (1 + ws.tangents) * count, arms)
+    if rows > 3 * count:
+        find_turning_rows(ev, ws, loop_at(dr.loop), 3 * count, arms)
     n, directions, responses = ws.n, mat(ev.directions, rows, ws.n), mat(ev.responses, rows, ws.n)
     list_columns(rows, n, directions, responses, ev.columns)
     wholes, reals = blocks_at(ev.block_wholes, ev.block_reals, ev.most, n)
@@ -105,12 +101,12 @@ def prepare_rows(ev: Any, ws: Any, h: float) -> None:
             rate[r] = col(ev, RATE)[i]
         elif block == 1:
             rate[r] = col(ev, SLIDE_RATE)[i]
-        elif block == 2 and ws.tangents == 2:
+        elif block == 2:
             rate[r] = col(ev, SWAY_RATE)[i]
         else:
             rate[r] = along(r, n, rows, ev.columns, directions, v)
         inverse[r] = p[r] = 0.0
-        if block > ws.tangents or _moves(ev, ws, count, r):
+        if block > 2 or _moves(ev, ws, count, r):
             inverse[r] = along(r, n, rows, ev.columns, directions, responses[r])
         # what is near, but does not touch, stands here to be kept from overlapping
         takes[r] = inverse[r] if col(ev, GAP)[i] <= level * scale[contact_rows[k]] else 0.0
@@ -126,4 +122,4 @@ def prepare_rows(ev: Any, ws: Any, h: float) -> None:
 @internal
 def _moves(ev: Any, ws: Any, count: int, r: int) -> bool:
     """False for a tangent without friction, or that joints hold."""
-    return bool((masses(ev, count)[r, r] if ws.tangents == 2 else delassus(ev, count)[r, r]) > 0.0)
+    return bool(masses(ev, count)[r, r] > 0.0)

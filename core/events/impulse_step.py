@@ -72,7 +72,7 @@ def push_apart(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     lc = loop_at(dr.loop)
     clock, t, energy = vec(lc.clock, CLOCK_SIZE), history_time(ms, 0), vec(ws.energy, 3)
     h = t - clock[PUSHED_FROM]
-    if not find_touching(ev, dr, ws, True):
+    if not find_touching(ev, dr, ws):
         return WANT_ROOM
     held = _look(ev, ws)
     status = open_rows(ev, dr, ws, ms)
@@ -166,7 +166,7 @@ def _push(ev: Any, ws: Any, h: float) -> None:
     v, q, changes = vec(ws.v, ws.n_ext), vec(ws.q, ws.n_ext), vec(ev.velocities, n)
     wholes, reals = blocks_at(ev.block_wholes, ev.block_reals, ev.most, n)
     real(ev)[SWEPT] = sweep_rows(
-        count, ws.tangents, rows > (1 + ws.tangents) * count, rows, n, wholes, reals,
+        count, 2, rows > 3 * count, rows, n, wholes, reals,
         part(ev, rows, TAKES), part(ev, rows, OFF), part(ev, rows, ARM), part(ev, rows, P), x, room(ev, rows, n),
         TOLERANCE * real(ev)[LARGEST], SWEEPS,
     )  # fmt: skip

@@ -25,26 +25,24 @@ from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
 from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
 from ..tables.assembly import Assembly
-from ..tables.connection import contact_tangents
 from ..tables.patterns import entries_of_few
 from .balance import find_forces
-from .balance_in_space import find_forces_in_space
 from .carrying import keep
-from .carrying_in_space import keep_in_space
 from .crowding import step_through
 from .force_contact import settle_forces
-from .impact import strike
-from .impact_in_space import strike_in_space
 from .impulse_rows import ROW_ROOM, TURNING_ROWS
 from .impulse_step import push_apart
+from .open_contacts import open_touching
 from .prepare import use_modes
-from .records import COLUMNS, COUNT, INSTANT, OF_A_KIND, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
+from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
 from .resting import begin_rest
-from .resting_in_space import begin_rest_in_space
-from .touching import open_touching
-from .touching_in_space import open_in_space
+from .strike import strike
 
-PARTS = (open_touching, strike, begin_rest, find_forces, keep, use_modes, settle_forces, push_apart, step_through)
+PARTS = {
+    "open_touching": open_touching, "strike": strike, "begin_rest": begin_rest,
+    "find_forces": find_forces, "keep": keep, "use_modes": use_modes,
+    "settle_forces": settle_forces, "push_apart": push_apart, "step_through": step_through,
+}  # fmt: skip
 _OTHERS = (
     ("solve_cones", solve_cones, CONES_SIGNATURE),
     ("independent", independent_directions, INDEPENDENT_SIGNATURE),
@@ -54,31 +52,13 @@ FEW = 8
 """Touching contacts that there is room for at first."""
 
 
-IN_SPACE = {
-    "open_touching": open_in_space, "strike": strike_in_space, "begin_rest": begin_rest_in_space,
-    "find_forces": find_forces_in_space, "keep": keep_in_space,
-}  # fmt: skip
-"""What takes the place of parts where contacts have two tangents."""
-_IN_PLANE = {part.py_func.__name__: part for part in PARTS}
-
-
 def _functions(assembly: Assembly) -> dict[str, int]:
     """Addresses of what the record calls; zeros, and nothing to compile, where it never will."""
-    parts = [(name, part, PART_SIGNATURE) for name, part in _IN_PLANE.items()]
-    if assembly.tangents == 2:
-        parts = [(name, IN_SPACE.get(name, part), signature) for name, part, signature in parts]
+    parts = [(name, part, PART_SIGNATURE) for name, part in PARTS.items()]
     needed = {name: bool(assembly.contacts) for name, _, _ in (*parts, *_OTHERS)}
     needed["settle_forces"] = any(isinstance(contact.law, ForceLaw) for contact in assembly.contacts)
     needed["use_modes"] = True  # runs start with it
-    both = set(contact_tangents(assembly).tolist()) == {1, 2}
-    of_kinds = {
-        f"{short}_{where}": address_of(parts[name], PART_SIGNATURE) if both else 0
-        for where, parts in (("in_plane", _IN_PLANE), ("in_space", IN_SPACE))
-        for short, name in zip(OF_A_KIND, IN_SPACE, strict=True)
-    }
-    return of_kinds | {
-        name: address_of(f, signature) if needed[name] else 0 for name, f, signature in (*parts, *_OTHERS)
-    }
+    return {name: address_of(f, signature) if needed[name] else 0 for name, f, signature in (*parts, *_OTHERS)}
 
 
 class Instant:
@@ -91,11 +71,9 @@ class Instant:
         most = self.most = max(min(most, contacts), 1)
         entries = entries_of_few(assembly, most)[1]
         space = self.rows_space = rows_space or 4 * (entries + n)
-        # normals and tangents of so many contacts
-        blocks = 1 + assembly.tangents
-        every, spatial = blocks * most, 3 * most if blocks == 3 else 0
-        # in space torques against turning too
-        rows = every + (TURNING_ROWS * most if spatial else 0)
+        # normals and tangents of so many contacts, and torques against turning
+        every = 3 * most
+        rows = every + TURNING_ROWS * most
         work = max(independent_size(every, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
         of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS, most)
         self._cones = BlockRecord(
@@ -116,11 +94,9 @@ class Instant:
                 "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
                 "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
-                "space_a": spatial * spatial, "space_b": spatial, "space_p": spatial,
-                "pressing_a": spatial * spatial, "torques": (spatial // 3) * n,
-                "space_room": spatial * spatial + 4 * spatial + friction_cones_size(most) + least_forces_size(most)
-                if spatial
-                else 0,
+                "space_a": every * every, "space_b": every, "space_p": every,
+                "pressing_a": every * every, "torques": most * n,
+                "space_room": every * every + 4 * every + friction_cones_size(most) + least_forces_size(most),
                 "slots_work": min(n * n, n + entries_of_few(assembly, contacts)[0]),
             },
             {
@@ -149,8 +125,6 @@ class Instant:
         """Of the contacts that have been opened last, (2 contacts, 2 contacts), 1/kg: normals first; the tangent of a
         contact in space is that along which it slides, the first one where it does not."""
         count = len(self.touching)
-        if self._assembly.tangents < 2:
-            return self._record.part("a")[: 4 * count * count].reshape(2 * count, 2 * count).copy()
         table = self._record.part("table").reshape(COLUMNS, self.most)[:, :count]
         along = np.stack([table[SLIDE_RATE], table[SWAY_RATE]])
         slides = np.hypot(*along) * [self._assembly.contacts[k].tangents == 2 for k in self.touching]

@@ -7,7 +7,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec
 from ..rounding import NEARLY_JAMMED
 from ..state.modes import CLOSED
-from .rates_in_space import masses
+from .rates import masses
 from .records import (
     COS_WAY,
     COUNT,
@@ -20,7 +20,6 @@ from .records import (
     WAS,
     WHO,
     col,
-    delassus,
     whole,
 )
 
@@ -30,15 +29,10 @@ def _jams(ev: Any, ws: Any, i: int) -> bool:
     """True if sliding friction of contact i leaves next to nothing of its inverse mass along the normal: along the way
     in which it slides, of one that does not whichever way is worst."""
     count, way = whole(ev)[COUNT], col(ev, DIRECTION)[i]
-    if ws.tangents == 2:
-        a = masses(ev, count)
-        own, first, second = a[i, i], a[i, count + i], a[i, 2 * count + i]
-        along = first * col(ev, COS_WAY)[i] + second * col(ev, SIN_WAY)[i]
-        turned = along if way != 0.0 else math.sqrt(first * first + second * second)
-    else:
-        a = delassus(ev, count)
-        own, first = a[i, i], a[i, count + i]
-        turned = way * first if way != 0.0 else abs(first)
+    a = masses(ev, count)
+    own, first, second = a[i, i], a[i, count + i], a[i, 2 * count + i]
+    along = first * col(ev, COS_WAY)[i] + second * col(ev, SIN_WAY)[i]
+    turned = along if way != 0.0 else math.sqrt(first * first + second * second)
     return col(ev, KINETIC)[i] > 0.0 and own - col(ev, KINETIC)[i] * turned <= NEARLY_JAMMED * own
 
 

@@ -32,7 +32,7 @@ from ..state.workspace_records import OK
 from ..tables.evaluate import evaluate_energy
 from ..tables.held import in_space
 from ..tables.levels import position_level
-from .balance_in_space import BEGINS
+from .balance import BEGINS
 from .meeting import meet_constraints
 from .progress import GUARD_SIZE, START
 from .reading import slow_sliding
@@ -50,7 +50,9 @@ from .records import (
     NEW_SLIDE,
     NO_ACCELERATIONS,
     NOT_MET,
+    RATE,
     RESTS,
+    ROUNDING,
     SETTLED,
     SIN_WAY,
     SLID,
@@ -83,20 +85,23 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
         k, was, taken = contacts[i], col(ev, WAS)[i], col(ev, FLAG)[i] != 0.0
         memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
         some = some or taken or was == CLOSED
+        # a gap that others held, and that is now held itself, stays where it is to rounding
+        held_now = was == CLOSED and np.int64(memory[IMPLIED]) & ~np.int64(col(ev, NEW_IMPLIED)[i]) != 0
         memory[MODE] = CLOSED if taken else OPEN
         memory[SLIDE] = col(ev, NEW_SLIDE)[i] if taken else STUCK
         memory[RATIO] = col(ev, NEW_RATIO)[i] if taken else 0.0
         memory[IMPLIED] = col(ev, NEW_IMPLIED)[i] if taken else 0.0
-        if taken and ws.tangents == 2 and not in_space(ws, k):
+        if taken and not in_space(ws, k):
             _take_in_plane(memory, col(ev, COS_WAY)[i])
         if not taken:
             memory[GAP_START] = 0.0
             continue
         gap = col(ev, GAP)[i]
-        if was != CLOSED:
+        if was != CLOSED or held_now:
             memory[GAP_START] = gap if abs(gap) <= level * scale[rows[k]] else 0.0
-        kept = was == CLOSED and col(ev, SLID)[i] == memory[SLIDE]
-        changed = changed or not kept
+        kept = was == CLOSED and not held_now and col(ev, SLID)[i] == memory[SLIDE]
+        # (one that would open by less than can be seen stays, with the rate that an impact has given it)
+        changed = changed or not kept or abs(col(ev, RATE)[i]) > col(ev, ROUNDING)[i]
         if in_space(ws, k):
             memory[WAY], memory[AXIS] = np.arctan2(col(ev, SIN_WAY)[i], col(ev, COS_WAY)[i]), col(ev, AXIS_NOW)[i]
             memory[SLOW_SLIDING] = slow_sliding(ws, k)
@@ -119,8 +124,7 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
 
 @internal
 def _take_in_plane(memory: Any, way: float) -> None:
-    """What has been decided in space, for the memory of a contact of the plane (`each_kind.py`); `way`: cosine of its
-    direction."""
+    """What has been decided with two tangents, for the memory of a contact with one; `way`: cosine of its direction."""
     if memory[SLIDE] == AT_LIMIT:
         memory[SLIDE], memory[RATIO] = STUCK, 0.0
     elif memory[SLIDE] == 1.0:

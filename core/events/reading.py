@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
+from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, PERHAPS_REST, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.workspace_records import CONTROL_SIZE, RTOL
 from ..tables.held import held_friction, in_space, is_held
@@ -86,5 +86,5 @@ def read_before(ev: Any, dr: Any, ws: Any) -> None:
                 leaves[i] = part <= NEAR_ZERO
         elif abs(slid[i]) == 1.0:
             leaves[i] = part <= NEAR_ZERO and part < abs(phid[slide]) / fastest
-            if leaves[i] == 0.0:
+            if leaves[i] == 0.0 and abs(phid[slide]) <= PERHAPS_REST * fastest:
                 stops[i] = 1.0

@@ -14,9 +14,6 @@ from ..state.method_records import METHOD_TYPE
 from ..state.run_records import DRIVE_TYPE
 from ..state.workspace_records import WORKSPACE_TYPE
 
-OF_A_KIND = ("open", "strike", "begin_rest", "find_forces", "keep")
-"""Parts that contacts of the plane have of their own, and those of space."""
-
 INSTANT = np.dtype(
     [
         (name, np.int64)
@@ -25,8 +22,6 @@ INSTANT = np.dtype(
             # addresses of these functions
             "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces", "push_apart",
             "step_through",
-            # those of the first five for contacts of the plane and of space, where a model has both
-            *(f"{part}_{where}" for where in ("in_plane", "in_space") for part in OF_A_KIND),
             "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
@@ -71,17 +66,15 @@ instant_at = record_view(INSTANT_TYPE)
     ROUNDING,                          # rates below it are none, m/s
     RESTITUTION, KINETIC, STATIC,      # coefficients
     RATE, SLIDE_RATE,                  # of gap and sliding distance, m/s
-    KNOWN, AT_REST, TAKES, DIRECTION, FULL,
+    KNOWN, AT_REST, TAKES, DIRECTION,
     B_N, B_T, SIZE,                    # accelerations without contact forces, m/s^2; size of the gap's gradient
     F_N, F_T, W_N, W_T,                # forces and the accelerations with them
-    OTHER_N, OTHER_T, OTHER_WN, OTHER_WT,  # the same of another solution
-    KEPT_DIRECTION, KEPT_FULL, KEPT_TAKES,
     CLOSES, NEW_SLIDE, NEW_RATIO,      # what was chosen
     IMPULSE, FRICTION, LOSS, APPROACH, SEPARATION,  # of the impact
     P_N, P_T, PART, MU, BASE, RESTS, LOW,
     FIRST_IMPULSE, FIRST_FRICTION, FIRST_LOSS, FIRST_APPROACH, FIRST_SEPARATION,  # of the impact with all restitution
-    RATE_BEFORE, SLIDE_BEFORE, WANTED, RIGHT_N, RIGHT_T, NOW_N, NOW_T,
-    FLAG, OTHER_FLAG, SPARE, APART, LOADED,
+    RATE_BEFORE, SLIDE_BEFORE,
+    FLAG, OTHER_FLAG, SPARE, LOADED,
     SLOW,                              # sliding below it counts as none, m/s
     STOP_IMPULSE, STOP_LOSS,           # N s and J of what stopped without a collision
     FIRST,                             # the higher, the earlier its tangent is kept where some repeat others
@@ -90,33 +83,31 @@ instant_at = record_view(INSTANT_TYPE)
     COS_WAY, SIN_WAY,                  # direction of sliding, from the first tangent
     AXIS_NOW,                          # that angles are counted from (`shapes/frame3d.py`)
     LOST_BEFORE,                       # J: of STOP_LOSS, before the last that stopped
-    EARLY,                             # of contacts that stick, the larger, the earlier in their order
     SPIN, HELD_SPIN,                   # r w_n on a patch, m/s; part of the torque against it at rest
     ZETA, P_SPIN, SPIN_BEFORE,         # impulse M/r against it, N s: of one problem, of a blow; the spin before, m/s
     NEW_IMPLIED,                       # which of its rows others imply: IMPLIED of `state/modes.py`
-) = range(87)  # fmt: skip
-COLUMNS = 87
+    LEFT_OVER,                         # 1: of a part of the mechanism whose problem is still to be solved
+) = range(73)  # fmt: skip
+COLUMNS = 73
 
 # entries of `reals`
-NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK, LOST = range(6)
-SWEPT = 6  # sweeps of the last step of impulses
-MET_LOSS = 7  # energy that bringing the motion onto new constraints has taken, J: in no account
-LARGEST = 8  # rate of a row before its impulse, m/s
-REALS = 9
+NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK = range(5)
+SWEPT = 5  # sweeps of the last step of impulses
+MET_LOSS = 6  # energy that bringing the motion onto new constraints has taken, J: in no account
+LARGEST = 7  # rate of a row before its impulse, m/s
+REALS = 8
 # entries of `wholes`
 COUNT = 0  # contacts that touch
 STRUCK = 1
-SLIPPING = 2
-STICKS = 3  # all friction was found below its limit at once
-WHO = 4  # the contact that a failure is of
-READY = 5  # accelerations have been looked at
-WITHOUT = 6  # 1: impacts are without restitution where `LOW` says so
-TURNS = 7  # 1: forces of contacts have torques against turning with them
-TOUCHED = 8  # contacts that touch, once the instant has been decided
-ALONE = 9  # 1: of the inverse masses of what is opened the diagonal alone is wanted
-TOUCHED_IN_SPACE = 10  # of TOUCHED, those that are decided as in space
-IN_ROUNDS = 11  # 1: the impact's contacts were struck one round after another (`impact.py`)
-WHOLES = 12
+WHO = 2  # the contact that a failure is of
+READY = 3  # accelerations have been looked at
+WITHOUT = 4  # 1: impacts are without restitution where `LOW` says so
+TURNS = 5  # 1: forces of contacts have torques against turning with them
+TOUCHED = 6  # contacts that touch, once the instant has been decided
+ALONE = 7  # 1: of the inverse masses of what is opened the diagonal alone is wanted
+TOUCHED_IN_SPACE = 8  # of TOUCHED, those with two tangents
+IN_ROUNDS = 9  # 1: the impact's contacts were struck one round after another (`impact.py`)
+WHOLES = 10
 
 # what settling an instant returns
 SETTLED = 0

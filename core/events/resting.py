@@ -1,9 +1,9 @@
-"""Which of the contacts that touch at one instant are at rest, and which of them slide: their rates tell.
+"""Which of the touching contacts are at rest, and which slide, and where to: their rates tell.
 
-At rest are those that neither separate nor approach. For these the free accelerations are found, and gaps that would
-fall back at once are at rest too.
+What an instant finds out about the direction of sliding is kept as WAY.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -11,167 +11,125 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import NO_ACCELERATION, PERHAPS_REST
-from ..state.modes import CLOSED
+from ..state.modes import CLOSED, IMPLIED, MEMORY_SIZE, OF_NORMAL
+from ..state.modes import SLOW as SLOW_SLIDING
+from ..state.run_records import call_accelerations
+from ..state.workspace_records import OK
+from ..tables.evaluate import evaluate_residuals
+from ..tables.held import in_space
 from ..tables.levels import rate_size
-from .forces import remove_rates
+from .rates import read_all_rates, read_level
 from .reading import largest_acceleration, unresolved_speed
 from .records import (
     ACCELERATIONS,
     AT_REST,
     B_N,
+    B_S,
     B_T,
+    COS_WAY,
     COUNT,
-    FLAG,
     KNOWN,
+    NO_FREE_ACCELERATIONS,
     NONE,
-    OTHER_FLAG,
     RATE,
     READY,
     ROUNDING,
     SETTLED,
+    SIN_WAY,
     SIZE,
     SLID,
     SLIDE_RATE,
     SLOW,
-    SPARE,
+    SPIN,
     STATIC,
     STOPS,
     STRUCK,
+    SWAY_RATE,
     WAS,
     col,
     real,
     whole,
 )
-from .touching import force_noise, free_accelerations, looks_again, push, push_and_account
+from .spins import brake_by_spins, read_spins
+from .touching import force_noise
 
-AHEAD, FARTHEST_AHEAD = 1e-9, 1e-6
-"""How far the mechanism is moved, of its size, to see what holds a moment later: at the second event of an instant, and
-ten times farther at each of the following ones, but not beyond."""
+ENDS_WITH = 2.0
+"""Of the sliding speed that has no direction: with less where sliding ends, the contact has stopped."""
 
 
 @internal
-def look(ev: Any, ms: Any) -> None:
-    """What the rates say: +-1 in `KNOWN` where the contact slides, 0 where friction decides."""
-    slide_rate, known, slid = col(ev, SLIDE_RATE), col(ev, KNOWN), col(ev, SLID)
+def _look(ev: Any, dr: Any, ws: Any) -> None:
+    """Which contacts slide or spin, and where to: 1 in KNOWN, with COS_WAY and SIN_WAY; 0 where friction decides."""
+    read_spins(ev, dr, ws)
+    contacts, stopped = ivec(ev.contacts, ev.most), 0.0
     for i in range(whole(ev)[COUNT]):
-        slow = max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
-        known[i] = np.sign(slide_rate[i]) if abs(slide_rate[i]) > slow else 0.0
-        if whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED:
-            # one that did not slide by itself, since others held it, may already go the other way by a little
-            turned = ms.exact != 0 and slid[i] * slide_rate[i] < -slow
-            # what the forces were before this instant says nothing of one that hardly moves
-            moves = abs(slide_rate[i]) > slow and col(ev, STOPS)[i] == 0.0
-            slides = abs(slid[i]) == 1.0 and (turned or moves)
-            way = np.sign(slide_rate[i]) if turned else slid[i]
-            known[i] = way if slides else 0.0
+        x, y, none = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i], max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
+        speed, z = math.sqrt(x * x + y * y), col(ev, SPIN)[i]
+        stood = z != 0.0 and col(ev, WAS)[i] == CLOSED and abs(col(ev, SLID)[i]) != 1.0
+        if (stood or col(ev, STOPS)[i] != 0.0) and whole(ev)[STRUCK] == 0:
+            # it has gone on in its direction to where error control does not resolve another; or it creeps
+            none = max(none, ENDS_WITH * mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], SLOW_SLIDING])
+            if not in_space(ws, contacts[i]) and col(ev, SLID)[i] * x >= -none:
+                # its sliding velocity has come to zero, as finely as the time of that is known
+                none = max(none, speed)
+        slides = math.sqrt(speed * speed + z * z) > none and col(ev, STATIC)[i] > 0.0
+        col(ev, KNOWN)[i] = 1.0 if slides else 0.0
+        col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (x / speed, y / speed) if slides and speed > 0.0 else (1.0, 0.0)
+        if col(ev, STOPS)[i] != 0.0 and not slides:
+            stopped = max(stopped, speed)
+    # what moves no faster than a contact that stops has stopped with it, as finely as the time of that is known
+    for i in range(whole(ev)[COUNT] if whole(ev)[STRUCK] == 0 else 0):
+        speed = math.hypot(col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i])
+        if col(ev, SPIN)[i] == 0.0 and speed <= ENDS_WITH * stopped:
+            col(ev, KNOWN)[i], col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = 0.0, 1.0, 0.0
+    brake_by_spins(ev, dr, ws)
 
 
 @internal
 def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     """Which contacts neither separate nor approach. `ACCELERATIONS` of the coordinates before, 1/s^2, are given."""
     count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
-    look(ev, ms)
-    rates, slow = col(ev, RATE), whole(ev)[STRUCK] == 0
+    # forces that were found to see whether contacts rest may have stopped some
+    evaluate_residuals(ws)
+    read_all_rates(ev, ws)
+    _look(ev, dr, ws)
+    slow, memory = whole(ev)[STRUCK] == 0, mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
     for i in range(count):
-        at_rest[i] = abs(rates[i]) <= col(ev, ROUNDING)[i]
-        # a constraint that holds does not separate, however much its method drifts
-        if whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED:
-            at_rest[i] = 1.0
-        slow = slow or abs(rates[i]) <= PERHAPS_REST * rate_size(ws, contacts[i])
-    _stop_slow(ev, dr, ws, ms)
+        implied = ms.exact != 0 and np.int64(memory[contacts[i], IMPLIED]) & OF_NORMAL != 0
+        held = whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED and not implied
+        at_rest[i] = 1.0 if held or abs(col(ev, RATE)[i]) <= col(ev, ROUNDING)[i] else 0.0
+        slow = slow or abs(col(ev, RATE)[i]) <= PERHAPS_REST * rate_size(ws, contacts[i])
     whole(ev)[READY] = 0
-    if not slow:
-        return SETTLED
-    return find_free(ev, dr, ws, ms, real(ev)[ACCELERATIONS])
+    return find_free(ev, dr, ws, real(ev)[ACCELERATIONS]) if slow else SETTLED
 
 
 @internal
-def _stop_slow(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
-    """Where instants crowd, take away what is left of sliding that counts as none (`crowding.py`)."""
-    some = False
-    for i in range(whole(ev)[COUNT]):
-        none = col(ev, KNOWN)[i] == 0.0 and col(ev, AT_REST)[i] != 0.0 and col(ev, STATIC)[i] > 0.0
-        some = some or (none and abs(col(ev, SLIDE_RATE)[i]) > col(ev, ROUNDING)[i])
-    if some and ms.exact != 0:
-        stop(ev, dr, ws, ms)
-
-
-@internal
-def stop(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
-    """Take away the rates of the contacts at rest, and of their sliding where friction decides."""
-    normal, along = col(ev, SPARE), col(ev, OTHER_FLAG)
-    remove_rates(ev, normal, along)
-    push_and_account(ev, dr, ws, normal, along)
-    look(ev, ms)
-
-
-@internal
-def _ahead(dr: Any, ws: Any) -> float:
-    """How far ahead accelerations are looked at, s: where a geometry's curvature jumps (a corner is passed), the
-    present point may lie before the jump by rounding, and what holds behind it decides. 0 at first."""
-    again, v, scale, speed = looks_again(dr) - 1, vec(ws.v, ws.n_ext), vec(ws.scale, ws.n), 0.0
-    if again < 1:
-        return 0.0
-    for i in range(ws.n):
-        speed = max(speed, abs(v[i]) / scale[i])
-    return min(AHEAD * 10.0 ** (again - 1), FARTHEST_AHEAD) / speed if speed > 0.0 else 0.0
-
-
-@internal
-def find_free(ev: Any, dr: Any, ws: Any, ms: Any, accelerations: float) -> int:
-    """Free accelerations of gaps and sliding distances, with zero for what is rounding."""
-    count, n, b_n, b_t, size = whole(ev)[COUNT], ws.n, col(ev, B_N), col(ev, B_T), col(ev, SIZE)
-    status = free_accelerations(ev, dr, ws, b_n, b_t, _ahead(dr, ws))
-    if status != SETTLED:
-        return status
+def find_free(ev: Any, dr: Any, ws: Any, accelerations: float) -> int:
+    """Free accelerations, with zero for what is rounding; gaps that open by less than can be seen are at rest."""
+    count, n, scale = whole(ev)[COUNT], ws.n, vec(ws.scale, ws.n)
+    if call_accelerations(dr.accelerations, ws) != OK:
+        return NO_FREE_ACCELERATIONS
+    read_level(ev, ws, vec(ws.phidd, ws.m_ext), col(ev, B_N), col(ev, B_T), col(ev, B_S))
     whole(ev)[READY] = 1
     none = NO_ACCELERATION * max(largest_acceleration(ws), accelerations, 1e-300)
     real(ev)[NONE] = none
-    forces, scale = force_noise(ev, ws), vec(ws.scale, n)
-    directions, responses = mat(ev.directions, 2 * count, n), mat(ev.responses, 2 * count, n)
-    for i in range(2 * count):
-        largest, noise = 0.0, 0.0
+    forces = force_noise(ev, ws)
+    directions, responses = mat(ev.directions, 3 * count, n), mat(ev.responses, 3 * count, n)
+    for i in range(3 * count):
+        largest, noise, of = 0.0, 0.0, col(ev, B_N)
         for j in range(n):
             largest = max(largest, abs(directions[i, j]) * scale[j])
             noise += abs(responses[i, j]) * forces[j]
-        least = max(none * largest, noise)
         if i < count:
-            size[i] = largest
-            b_n[i] = 0.0 if abs(b_n[i]) <= least else b_n[i]
+            col(ev, SIZE)[i] = largest
+        elif i < 2 * count:
+            of = col(ev, B_T)
         else:
-            b_t[i - count] = 0.0 if abs(b_t[i - count]) <= least else b_t[i - count]
-    hold_back(ev, ws, ms, b_n)
-    return SETTLED
-
-
-@internal
-def hold_back(ev: Any, ws: Any, ms: Any, motion: Any) -> bool:
-    """Gaps that open but, with these accelerations, less than could be told from zero, are at rest too: what is left of
-    the rates is taken away. False if there are none."""
-    count, contacts, back, found = whole(ev)[COUNT], ivec(ev.contacts, ev.most), col(ev, FLAG), False
-    at_rest = col(ev, AT_REST)
+            of = col(ev, B_S)
+        k = i % count
+        of[k] = 0.0 if abs(of[k]) <= max(none * largest, noise) else of[k]
     for i in range(count):
         rate = col(ev, RATE)[i]
-        back[i] = at_rest[i] == 0.0 and 0.0 < rate <= unresolved_speed(ws, contacts[i], -motion[i])
-        found = found or back[i] != 0.0
-    if not found:
-        return False
-    for i in range(count):
-        at_rest[i] = 1.0 if back[i] != 0.0 else at_rest[i]
-    if ms.exact == 0:
-        return True
-    # rounding's worth, which no account sees
-    normal, along = col(ev, SPARE), col(ev, OTHER_FLAG)
-    remove_rates(ev, normal, along)
-    push(ev, ws, normal, along)
-    look(ev, ms)
-    return True
-
-
-@internal
-def fastest_free(ev: Any) -> float:
-    """The largest of the free accelerations, m/s^2."""
-    fastest = 0.0
-    for i in range(whole(ev)[COUNT]):
-        fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]))
-    return fastest
+        if 0.0 < rate <= unresolved_speed(ws, ivec(ev.contacts, ev.most)[i], -col(ev, B_N)[i]):
+            col(ev, AT_REST)[i] = 1.0
+    return SETTLED

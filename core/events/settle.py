@@ -30,7 +30,7 @@ from ..tables.evaluate import evaluate_energy, evaluate_power, evaluate_residual
 from ..tables.switch import take_structure
 from .breakpoint import pass_breakpoint
 from .crowding import MANY_TOUCH, count_instant, may_push
-from .each_kind import decide_each_kind
+from .decide import decide
 from .laws import FORCE, MASSLESS
 from .massless import settle_massless
 from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
@@ -118,7 +118,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
         if _any_constraint(dr, ws):
             status = call_part(ev.push_apart, ev, dr, ws, ms)
     elif status == SETTLED and _any_constraint(dr, ws):
-        status = decide_each_kind(ev, dr, ws, ms, lc)
+        status = decide(ev, dr, ws, ms, lc)
     if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms):
         status = NOT_MET
     if status == SETTLED and not pushing:

@@ -17,7 +17,7 @@ from ..model.rotation3d import times
 from ..shapes.normal3d import SIZE, pair_of
 from ..shapes.turning3d import FRICTION_RADIUS, turning_gradient
 from ..tables.compatibility import solve_equations
-from .rates_in_space import masses, solve_cones_in_space
+from .rates import masses, solve_cone_problem
 from .records import (
     BASE,
     COUNT,
@@ -126,14 +126,14 @@ def _inverse_masses(ev: Any, ws: Any) -> Any:
 
 @internal
 def solve_blow(ev: Any, dr: Any, ws: Any, part: Any, b: Any, p: Any) -> bool:
-    """Impulses p (3 count,) of the contacts `part`, as `solve_cones_in_space` finds them, and ZETA of those that
+    """Impulses p (3 count,) of the contacts `part`, as `solve_cone_problem` finds them, and ZETA of those that
     spin."""
     count, mu, zeta = whole(ev)[COUNT], col(ev, MU), col(ev, ZETA)
     contacts, friction = ivec(ev.contacts, ev.most), vec(dr.friction, ws.n_contacts)
     for i in range(count):
         mu[i], zeta[i] = friction[contacts[i]], 0.0
     if not any_spins(ev):
-        return solve_cones_in_space(ev, masses(ev, count), count, part, b, mu, col(ev, BASE), col(ev, KNOWN), p)
+        return solve_cone_problem(ev, masses(ev, count), count, part, b, mu, col(ev, BASE), col(ev, KNOWN), p)
     motion, found = np.empty(4 * count), np.zeros(4 * count)
     for i in range(count):
         motion[3 * count + i], found[i] = col(ev, SPIN)[i], col(ev, BASE)[i] * part[i]

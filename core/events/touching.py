@@ -9,33 +9,22 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..linalg.record import WANT_ROOM
-from ..location.probe import can_look, gradient_alone, tell_gradients
+from ..location.probe import can_look, gradient_alone
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
-from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE, SLIDE_START, STICKS
-from ..state.run_records import COUNTS_SIZE, HERE, call_accelerations, loop_at
-from ..state.workspace_records import OK
-from ..tables.compatibility import analyze_equations, solve_equations
-from ..tables.evaluate import evaluate_energy, evaluate_tangent
+from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, SLIDE, SLIDE_START, STICKS
+from ..state.run_records import COUNTS_SIZE, HERE
+from ..tables.evaluate import evaluate_tangent
 from ..tables.levels import acceleration_level, position_level, rate_level
-from ..tables.switch import engage_modes
 from .laws import FORCE, MASSLESS
 from .records import (
-    ALONE,
     COUNT,
     GAP,
     IMMOVABLE_CONTACT,
-    NO_FREE_ACCELERATIONS,
     RATE,
     SETTLED,
-    SINGULAR_JOINTS,
     SLIDE_RATE,
     SLIDE_VALUE,
-    STOP_IMPULSE,
-    STOP_LOSS,
-    WANT_MEMORY,
     WHO,
-    clear,
     col,
     delassus,
     whole,
@@ -43,17 +32,15 @@ from .records import (
 
 
 @internal
-def find_touching(ev: Any, dr: Any, ws: Any, every: bool) -> bool:
-    """Constraint contacts without a gap at the current point: closed ones, pending ones, and others that touch; `every`
-    one, or those that are decided now. Those at massless ends are left out: they take no impulse. False if there is no
-    room for them."""
+def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
+    """Constraint contacts without a gap at the current point: closed ones, pending ones, and others that touch.
+    Those at massless ends are left out: they take no impulse. False if there is no room for them."""
     memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
     pending, rows = ivec(dr.pending, ws.n_contacts), ivec(ws.contact_rows, ws.n_contacts)
     phi, scale, contacts = vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
-    kinds = ivec(ws.contact_tangents, ws.n_contacts)
     level, count, asleep = GAP_ROUNDING * position_level(ws), 0, ivec(ws.asleep, ws.n_contacts)
     for k in range(ws.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS or asleep[k] != 0 or not (every or kinds[k] == ws.tangents):
+        if law[k] == FORCE or law[k] == MASSLESS or asleep[k] != 0:
             continue
         if pending[k] != 0 or memory[k, MODE] == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == ev.most:
@@ -86,70 +73,6 @@ def find_gradient(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
         out[i] = 0.0
     for e in range(start[row], start[row + 1]):
         out[ivec(ws.gradient_col, e + 1)[e]] = values[ivec(ws.gradient_slot, e + 1)[e]]
-
-
-@internal
-def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
-    """Open the touching contacts, and find how impulses at them move the others."""
-    count, contacts = whole(ev)[COUNT], ivec(ev.contacts, ev.most)
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
-    for i in range(count):
-        k = contacts[i]
-        memory[k, MODE], memory[k, SLIDE], memory[k, RATIO] = OPEN, STICKS, 0.0
-    if engage_modes(ws) != OK:
-        return WANT_MEMORY
-    # as constraints that stick, the contacts say their gradients; no matrix holds them
-    for i in range(count):
-        memory[contacts[i], MODE] = CLOSED
-    lc = loop_at(dr.loop)
-    tell_touching(ev, ws, lc)
-    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    directions = mat(ev.directions, 2 * count, ws.n)
-    for i in range(count):
-        k = contacts[i]
-        if can_look(lc, k):
-            tell_gradients(ws, lc, k)
-        find_gradient(ws, lc, k, rows[k], directions[i])
-        if slides[k] >= 0:
-            find_gradient(ws, lc, k, slides[k], directions[count + i])
-        else:
-            clear(directions[count + i], ws.n)
-        memory[k, MODE] = OPEN
-    evaluate_tangent(ws, 0.0, 0.0)
-    # pivots of an earlier visit to this structure would be a state that no State holds
-    code = analyze_equations(ws, ws.kkt_query)
-    if code != OK:
-        return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
-    _respond(ev, ws, count, slides)
-    return refuse_immovable(ev, ws, count)
-
-
-@internal
-def _respond(ev: Any, ws: Any, count: int, slides: Any) -> None:
-    contacts, n = ivec(ev.contacts, ev.most), ws.n
-    directions, responses, a = mat(ev.directions, 2 * count, n), mat(ev.responses, 2 * count, n), delassus(ev, count)
-    rhs = vec(ws.rhs, n + ws.m_act)
-    for i in range(2 * count):
-        if i >= count and slides[contacts[i - count]] < 0:
-            clear(responses[i], n)
-            continue
-        for j in range(n):
-            rhs[j] = directions[i, j]
-        for j in range(ws.m_act):
-            rhs[n + j] = 0.0
-        solve_equations(ws, ws.kkt_query)
-        for j in range(n):
-            responses[i, j] = rhs[j]
-    alone = whole(ev)[ALONE] != 0
-    for i in range(2 * count):
-        for j in range(i if alone else 0, i + 1 if alone else 2 * count):
-            product = 0.0
-            for e in range(n):
-                product += directions[i, e] * responses[j, e]
-            a[i, j] = product
-    for i in range(0 if alone else 2 * count):
-        for j in range(i):
-            a[i, j] = a[j, i] = 0.5 * (a[i, j] + a[j, i])
 
 
 @internal
@@ -215,69 +138,6 @@ def read_values(ev: Any, ws: Any) -> None:
         if memory[k, MODE] == CLOSED:
             gaps[i] += memory[k, GAP_START]
             distances[i] += memory[k, SLIDE_START] if memory[k, SLIDE] == STICKS else 0.0
-
-
-@internal
-def push(ev: Any, ws: Any, normal: Any, tangential: Any) -> None:
-    """Add the velocities that impulses in N s, one for each contact, cause to the current ones; the rates follow from
-    the inverse masses."""
-    count, v = whole(ev)[COUNT], vec(ws.v, ws.n_ext)
-    responses, a, rate, slide_rate = (
-        mat(ev.responses, 2 * count, ws.n), delassus(ev, count), col(ev, RATE), col(ev, SLIDE_RATE)
-    )  # fmt: skip
-    for i in range(2 * count):
-        impulse = normal[i] if i < count else tangential[i - count]
-        if impulse == 0.0:
-            continue
-        for j in range(ws.n):
-            v[j] += impulse * responses[i, j]
-        for j in range(count):
-            rate[j] += impulse * a[j, i]
-            slide_rate[j] += impulse * a[count + j, i]
-
-
-@internal
-def push_and_account(ev: Any, dr: Any, ws: Any, normal: Any, tangential: Any) -> None:
-    """`push`, of contacts that do not collide: impulses and the energy that they take (half the impulse times the sum
-    of the rates before and after it) are added to STOP_IMPULSE and STOP_LOSS, the rest to the work of inputs."""
-    rate, slide_rate, loss = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, STOP_LOSS)
-    energy, lost = vec(ws.energy, 3), 0.0
-    evaluate_energy(ws)
-    before = energy[0]
-    for i in range(whole(ev)[COUNT]):
-        loss[i] -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
-        lost -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
-    push(ev, ws, normal, tangential)
-    for i in range(whole(ev)[COUNT]):
-        loss[i] -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
-        lost -= 0.5 * (normal[i] * rate[i] + tangential[i] * slide_rate[i])
-        col(ev, STOP_IMPULSE)[i] += normal[i]
-    evaluate_energy(ws)
-    if dr.input_account >= 0:
-        vec(ws.v, ws.n_ext)[dr.input_account] += energy[0] - before + lost
-
-
-@internal
-def free_accelerations(ev: Any, dr: Any, ws: Any, of_gap: Any, of_slide: Any, ahead: float) -> int:
-    """Accelerations of gaps and sliding distances without contact forces; as they are `ahead` seconds later if the
-    velocities stay."""
-    q, v = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext)
-    if ahead > 0.0:
-        here = vec(ev.noise, ws.n)
-        for i in range(ws.n):
-            here[i] = q[i]
-            q[i] += ahead * v[i]
-        status = call_accelerations(dr.accelerations, ws)
-        _read(ev, ws, vec(ws.phidd, ws.m_ext), of_gap, of_slide)
-        for i in range(ws.n):
-            q[i] = here[i]
-        if status != OK or call_accelerations(dr.accelerations, ws) != OK:
-            return NO_FREE_ACCELERATIONS
-        return SETTLED
-    if call_accelerations(dr.accelerations, ws) != OK:
-        return NO_FREE_ACCELERATIONS
-    _read(ev, ws, vec(ws.phidd, ws.m_ext), of_gap, of_slide)
-    return SETTLED
 
 
 @internal

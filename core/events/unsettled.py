@@ -11,10 +11,12 @@ from ..state.workspace_records import OK, structure_at
 from ..tables.held import friction_limit, held_friction, is_held
 from ..tables.levels import force_level
 from .laws import MASSLESS
+from .rates import read_level
 from .reading import comes_back
 from .records import (
     ALONE,
     B_N,
+    B_S,
     B_T,
     COUNT,
     NO_ACCELERATIONS,
@@ -25,7 +27,7 @@ from .records import (
     col,
     whole,
 )
-from .touching import force_noise, free_accelerations, free_jerks
+from .touching import force_noise, free_jerks
 
 NO, YES = -1, -2
 
@@ -86,7 +88,8 @@ def _returns_at_once(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any, k: int) -> int
     whole(ev)[ALONE] = 0
     status = call_part(ev.open_touching, ev, dr, ws, ms)
     if status == SETTLED:
-        status = free_accelerations(ev, dr, ws, motion, col(ev, B_T), 0.0)
+        status = SETTLED if call_accelerations(dr.accelerations, ws) == OK else NO_ACCELERATIONS
+        read_level(ev, ws, vec(ws.phidd, ws.m_ext), motion, col(ev, B_T), col(ev, B_S))
         free_jerks(ev, ws, jerks)
     memory[MODE], memory[SLIDE], memory[RATIO], memory[AXIS] = mode, slide, ratio, axis
     if status == WANT_MEMORY:

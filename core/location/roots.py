@@ -23,10 +23,27 @@ JUMP = 1e-6
 """A function that is this large, relative to its largest value, right beside its root jumps there."""
 SHORT = 1e-6
 """Of a step: the last one before a jump of a force is this long."""
+FINE = 1e-2
+"""Of that length: how finely the place of the jump is known then."""
 CLEARLY = 1e4
 """Of the least time: what is behind a jump by so much is not before it by rounding."""
-NEAREST = 3
-"""Sizes of steps before and beyond the last event that was searched for, and the size that ends there."""
+NEAREST = 4
+"""Sizes of steps before and beyond the last event that was searched for, the size that ends there, and 1.0; or, with
+0.0, that of the step which ends shortly before it."""
+
+
+@internal
+def _keep_nearest(nearest: Any, low: float, high: float, size: float, happens: bool) -> None:
+    """What `find_root` has found, for the other contacts of the same step."""
+    nearest[0], nearest[1] = low * (1.0 - SAME_INSTANT), high * (1.0 + SAME_INSTANT)
+    nearest[2], nearest[3] = size, 1.0 if happens else 0.0
+
+
+@internal
+def _jumps_behind(low: float, width: float, f_low: float, f_high: float, largest: float, full: float) -> bool:
+    """True if a force jumps between steps of size `low` and `width` more, as finely as the step is to end before it."""
+    fine = low > 10.0 * SHORT * full and width <= FINE * SHORT * full
+    return bool(fine and f_low > JUMP * largest and f_high < -JUMP * largest)
 
 
 @internal
@@ -48,7 +65,7 @@ def find_root(
         if nearest[0] > low:
             status, f_low = trial_value(dr, ws, ms, lc, k, what, sign, slack, nearest[0], full)
         if status != OK or nearest[0] == low or f_low > 0.0:
-            return status, nearest[2], True
+            return status, nearest[2], nearest[3] != 0.0
         x_high, f_high, f_low = nearest[0], f_low, np.nan
     resolved = NO_STEP * abs(history_time(ms, 0))
     x, last_x, last_f = 0.5 * (x_low + x_high), np.nan, np.nan
@@ -64,7 +81,7 @@ def find_root(
         else:
             x_high, f_high = x, f
         width, least = x_high - x_low, max(RESOLVED_TIME * abs(x_high), resolved)
-        if width <= least:
+        if width <= least or (what == FORCE and _jumps_behind(x_low, width, f_low, f_high, largest, full)):
             break
         slow = trials >= 3 and width > 0.5 * third
         third, second, first = second, first, width
@@ -91,6 +108,7 @@ def find_root(
         if what == FORCE and x_low > 10.0 * SHORT * full:
             # a step takes what is at its end for a part of all of it: let the one over the jump be short
             x = x_low - SHORT * full
+            _keep_nearest(nearest, x_low, x_high, x, False)
             return make_trial(dr, ws, ms, lc, x, full), x, False
         # clearly behind it: rounding must not take back what has been passed (at the row nothing has been)
         behind = CLEARLY * resolved if at_row else max(0.1 * SHORT * full, CLEARLY * resolved)
@@ -98,7 +116,7 @@ def find_root(
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low
-    nearest[0], nearest[1], nearest[2] = x_low * (1.0 - SAME_INSTANT), x_high * (1.0 + SAME_INSTANT), x
+    _keep_nearest(nearest, x_low, x_high, x, True)
     return make_trial(dr, ws, ms, lc, x, full), x, True
 
 

@@ -4,12 +4,14 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
+from ..methods.history import history_row
+from ..rounding import SLIP_EXCESS
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE
-from ..state.run_records import call_trial
+from ..state.run_records import WATCH, call_trial
 from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
-from ..tables.held import implied_margin
+from ..tables.held import friction_limit, held_friction, implied_margin, is_held
 from ..tables.levels import force_level
-from .watch import friction_margin
+from .watch import friction_margin, no_sliding
 
 # what is searched for a root
 GAP, FORCE, OVERLAP, CLOSING = range(4)
@@ -37,6 +39,20 @@ def make_trial(dr: Any, ws: Any, ms: Any, lc: Any, step: float, full: float) -> 
 
 
 @internal
+def _no_margin(ws: Any, ms: Any, lc: Any, k: int) -> float:
+    """What counts as none of the margin of friction of closed contact k, which has begun the step with no more than
+    that: blocks that ride on one another at exactly the limit, or slide with no speed. 0 of any other contact, whose
+    margin has a root."""
+    if not is_held(ws, k):
+        none, start = no_sliding(ws, k), mat(lc.watch, ws.n_contacts, WATCH)[k, 3]
+        return none if mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] * start <= none else 0.0
+    lam = history_row(ws, ms, 0)[4 * ws.n_ext :]
+    limit = friction_limit(ws, k, -lam[ivec(ws.contact_rows, ws.n_contacts)[k]])
+    held = limit - held_friction(ws, k, lam) <= SLIP_EXCESS * limit
+    return SLIP_EXCESS * friction_limit(ws, k, vec(ws.monitor, ws.n_contacts)[k]) if held else 0.0
+
+
+@internal
 def trial_value(
     dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack: float, step: float, full: float
 ) -> Any:
@@ -52,8 +68,9 @@ def trial_value(
     memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
     force = sign * vec(ws.monitor, ws.n_contacts)[k]
     if memory[MODE] == CLOSED and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0 and memory[SLIDE] != IDLE:
-        force = min(force, friction_margin(ws, k))
-    margin = implied_margin(ws, k) if ms.exact != 0 else 1.0
+        force = min(force, friction_margin(ws, k) + _no_margin(ws, ms, lc, k))
+    before = mat(lc.watch, ws.n_contacts, WATCH)[k, 2]
+    margin = implied_margin(ws, k, before) if ms.exact != 0 else 1.0
     if margin < 1.0:
         force = min(force, force_level(ws) / vec(ws.row_scale, ws.m_ext)[row] * margin)
     return OK, force

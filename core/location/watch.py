@@ -53,7 +53,7 @@ def friction_margin(ws: Any, k: int) -> float:
 
 
 @internal
-def _no_sliding(ws: Any, k: int) -> float:
+def no_sliding(ws: Any, k: int) -> float:
     """Rounding of the sliding velocity of contact k, m/s: what decides at events (`reading.py`) takes the same for
     none, or a contact that this sees turn, and that does not, has its event for ever."""
     return RATE_ROUNDING * rate_size(ws, k)
@@ -88,7 +88,7 @@ def _ends_beyond(ws: Any, lc: Any, k: int, none: float) -> bool:
         if is_held(ws, k):
             limit = vec(ws.contact_sticking, ws.n_contacts)[k] * force
             return friction_margin(ws, k) < -max(no_force, SLIP_EXCESS * limit)
-        return friction_margin(ws, k) < -_no_sliding(ws, k)
+        return friction_margin(ws, k) < -no_sliding(ws, k)
     if mode == ACTIVE:
         return g > 0.0 or (release >= AT_ZERO_FORCE and force < 0.0)
     if mode == RELEASED:
@@ -106,10 +106,10 @@ def _event_inside(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
     mode = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
     row = ivec(ws.contact_rows, ws.n_contacts)[k]
     g = vec(ws.phi, ws.m_ext)[row]
-    if mode == CLOSED and not ended and ms.exact != 0 and implied_margin(ws, k) <= 0.0:
+    if mode == CLOSED and not ended and ms.exact != 0 and implied_margin(ws, k, start[2]) <= 0.0:
         return True
     if mode == CLOSED and not ended and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0:
-        return sliding_turns(ws, ms, lc, k, h, _no_sliding(ws, k))
+        return sliding_turns(ws, ms, lc, k, h, no_sliding(ws, k))
     if mode != OPEN and mode != ACTIVE:
         return ended
     sign = 1.0 if mode == OPEN else -1.0

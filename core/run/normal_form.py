@@ -200,7 +200,7 @@ def _forget_in_memories(dr: Any, ws: Any, lc: Any, shift: int) -> None:
         memory = memories[k]
         for block in range(0 if pushing else BLOCKS):
             memory[PUSHED + block] = 0.0
-        if law[k] == FORCE or memory[MODE] != CLOSED or ws.tangents == 1:
+        if law[k] == FORCE or memory[MODE] != CLOSED:
             memory[IMPLIED] = 0.0
         if law[k] == FORCE:
             memory[LARGEST_APPROACH] = 0.0

@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.history import recall
+from ..rounding import DIRECTION_RANK
 from ..stage.joints import factor_joints, solve_joints
 from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE, RATIO, SLIDE
 
@@ -83,7 +84,10 @@ def jam(sim: "Engine") -> str | None:
         return None
     of_normals = a[:count, :count]
     with_friction = of_normals + a[:count, count:] * ratio
-    if np.linalg.det(with_friction) > JAMS * np.linalg.det(of_normals):
+    # contacts that repeat each other share their load: their forces have no part along what A_NN does not see
+    sizes, forces = np.linalg.eigh(of_normals)
+    forces = forces[:, sizes > DIRECTION_RANK * sizes[-1]]
+    if np.linalg.det(forces.T @ with_friction @ forces) > JAMS * np.linalg.det(forces.T @ of_normals @ forces):
         return None
     worst = int(np.argmin(np.diag(with_friction) / np.diag(of_normals)))
     return painleve(sim.assembly.contacts[sliding[worst]].name, sim.t_internal, abs(float(ratio[worst])))

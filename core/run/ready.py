@@ -106,7 +106,7 @@ def _compile_for_contacts(many_entries: bool) -> None:
     # its record holds the addresses of all that it calls
     Cones(1)
     solve_cones.compile((CONES_TYPE,))
-    independent_directions.compile((_MATRIX, _MATRIX, _NUMBERS, _REAL, _NUMBERS, _VECTOR))
+    independent_directions.compile((_MATRIX, _MATRIX, _NUMBERS, _WHOLE, _WHOLE, _REAL, _NUMBERS, _VECTOR))
     farthest_directions.compile((_MATRIX, _NUMBERS, _NUMBERS, _VECTOR))
     if many_entries:
         make_elimination_ready()

@@ -18,7 +18,7 @@ from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D
 from .groups import ContactGroup
-from .pairs3d import SpatialPart, SpatialShape, body_of, contact_in_space, no_contact, touching_in_space
+from .pairs3d import SpatialPart, SpatialShape, body_of, contact_in_space, no_contact, open_contacts
 from .polygon2d import DiskOnPolygon2D, Polygon2D
 from .ring2d import DiskInRing2D, Ring2D
 from .segment2d import DiskOnSegment2D, Segment2D
@@ -145,7 +145,7 @@ def _kinds_apart(name: str, pairs: Iterable[tuple[str, str]], shapes: Iterable[G
 def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | SpatialPart]]:
     """Pairs (what, disk or sphere, or place on a cable) that say the contact of two shapes."""
     if isinstance(a, SpatialShape) and isinstance(b, SpatialShape):
-        return touching_in_space(a, b)
+        return open_contacts(a, b)
     if isinstance(a, SpatialShape) or isinstance(b, SpatialShape):
         raise no_contact(a, b, "one is of the plane and one of space; make a group of each")
     if isinstance(b, Disk2D):

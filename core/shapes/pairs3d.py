@@ -36,7 +36,7 @@ def no_contact(a: Any, b: Any, remedy: str) -> ModelError:
     return ModelError(f"{one} and {other} have no contact: {remedy}")
 
 
-def touching_in_space(a: SpatialShape, b: SpatialShape) -> Sequence[SpatialPair]:
+def open_contacts(a: SpatialShape, b: SpatialShape) -> Sequence[SpatialPair]:
     """Pairs of shapes and parts of them, each of which is one contact.
 
     Raises
@@ -91,7 +91,7 @@ def contact_in_space(
     name: str, a: SpatialShape, other: SpatialShape | SpatialPart, law: ContactLaw, friction: Friction | None,
     turning: TurningFriction | None,
 ) -> Contact3D:  # fmt: skip
-    """The contact of a pair that `touching_in_space` found."""
+    """The contact of a pair that `open_contacts` found."""
     more: Any = {"name": name, "law": law, "friction": friction, "turning": turning}
     if isinstance(other, MeshPart) and isinstance(a, Sphere3D):
         return SphereOnMesh3D(mesh=other.mesh, part=other.part, rounding=other.rounding, sphere=a, **more)

@@ -12,14 +12,12 @@ WORKSPACE = np.dtype(
             # sizes
             "n", "n_ext", "m_ext", "m_act", "m_held", "n_implied", "n_kernels", "n_values", "n_contacts", "n_work",
             "row_length",
-            "tangents",  # with which instants are decided now: 1 in the plane, 2 in space
             # the current point
             "t", "q", "v", "a", "aux", "lam", "r", "phi", "phid", "phidd",
             "values", "coef", "energy", "monitor", "memory", "inputs",
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_second_rows", "contact_sticking",
-            "contact_tangents",  # (contacts,) int64: with how many tangents the instants of each are decided
             "asleep",  # (contacts,) int64: 1 where a contact is not evaluated (`location/asleep.py`)
             # (contacts,) codes of `switch.py`; the present structure, and one that is not to be given up (0: none)
             "wanted", "structure", "kept",

@@ -135,11 +135,6 @@ class Assembly:
     """An exception that a user's function raised inside the compiled loop."""
 
     @property
-    def tangents(self) -> int:
-        """The most tangents that a contact with Coulomb friction has."""
-        return max((contact.tangents for contact in self.contacts if contact.coulomb), default=1)
-
-    @property
     def massless_contacts(self) -> frozenset[int]:
         """Contacts at massless ends."""
         return frozenset().union(*self.replaced_rows.values())

@@ -7,9 +7,9 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..rounding import IMPLIED_MOVES, TURNS
+from ..rounding import IMPLIED_MOVES, IMPLIED_SLIDES, IMPLIED_TURNS, TURNS
 from ..state.modes import AT_LIMIT, CLOSED, IMPLIED, MEMORY_SIZE, MODE, OF_NORMAL, RATIO, SLIDE, STICKS
-from .levels import position_level
+from .levels import acceleration_level, position_level, rate_size
 
 
 @internal
@@ -26,14 +26,27 @@ def is_held(ws: Any, k: int) -> bool:
 
 
 @internal
-def implied_margin(ws: Any, k: int) -> float:
-    """How far the gap of closed contact k is from what says that others do not imply its constraint: 1 where they do, 0
-    where it has moved by IMPLIED_MOVES; 1 for a contact whose gap is solved for."""
+def implied_margin(ws: Any, k: int, before: float) -> float:
+    """How far closed contact k is from what says that others do not imply its constraints: 1 where they do, 0 where its
+    gap has moved by IMPLIED_MOVES, one that sticks slides by IMPLIED_SLIDES, or the gap's acceleration, which was
+    `before` at the newest row, has jumped by IMPLIED_TURNS: a corner has come to the end of a face, and the rows that
+    are solved for follow its round edge. 1 for a contact that is solved for."""
     memory, row = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(ws.contact_rows, ws.n_contacts)[k]
-    if memory[MODE] != CLOSED or np.int64(memory[IMPLIED]) & OF_NORMAL == 0:
+    bits, moved = np.int64(memory[IMPLIED]), 0.0
+    if memory[MODE] != CLOSED or bits == 0:
         return 1.0
-    most = IMPLIED_MOVES * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
-    return float(1.0 - abs(vec(ws.phi, ws.m_ext)[row]) / most)
+    if bits & OF_NORMAL != 0:
+        moved = abs(vec(ws.phi, ws.m_ext)[row]) / (
+            IMPLIED_MOVES * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        )
+        turns = IMPLIED_TURNS * acceleration_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        if abs(before) <= 0.5 * turns:
+            moved = max(moved, abs(vec(ws.phidd, ws.m_ext)[row]) / turns)
+    if bits != OF_NORMAL and memory[SLIDE] == STICKS:
+        phid, slide = vec(ws.phid, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+        speed = math.hypot(phid[slide], phid[slide + 1] if in_space(ws, k) else 0.0)
+        moved = max(moved, speed / (IMPLIED_SLIDES * rate_size(ws, k)))
+    return float(1.0 - moved)
 
 
 @internal

@@ -31,7 +31,6 @@ from ..state.workspace_records import (
 )
 from .assembly import Assembly
 from .building import engage_wanted
-from .connection import contact_tangents
 from .evaluate import all_kernels
 from .numbers import constraints_are_cheap, level_scale, release, sticking
 from .partition_building import partition_wanted
@@ -48,7 +47,7 @@ _SHARED = (
 
 _OF_NOW = (*OF_STRUCTURE, *OF_PARTITION)
 """Arrays of the present structure and partition."""
-_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows", "contact_second_rows", "contact_tangents")
+_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows", "contact_second_rows")
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
 _STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["serial"]
@@ -115,7 +114,6 @@ class Workspace:
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
             "contact_second_rows": np.array([c.second_row for c in a.contacts], dtype=np.int64),
-            "contact_tangents": contact_tangents(a),
             "contact_sticking": sticking(a),
             "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
             "asleep": np.zeros(max(contacts, 1), dtype=np.int64),
@@ -169,7 +167,7 @@ class Workspace:
             {
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "m_held": 0, "n_implied": 0,
                 "n_redundant": 0, "n_free": 0, "n_mass": 0, "n_kernels": len(a.batches), "n_values": 1,
-                "n_basis": 1, "n_contacts": contacts, "tangents": a.tangents,
+                "n_basis": 1, "n_contacts": contacts,
                 "n_work": len(a.work_names), "structure": 0, "kept": 0,
                 "building": self._building.address, "engage": address_of(engage_wanted, ENGAGE_SIGNATURE),
                 "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),

@@ -20,7 +20,7 @@ from tlismni.core import (
 
 MU, RADIUS, HEIGHT, SPEED, EDGE = 0.2, 2e-3, 0.1, 2.0, 0.3
 PLATE = (2.0, 2.0, 1.0)
-ROWS = {"three": (0.25, 0.05, -0.15), "two close ones": (0.25, 0.248, -0.15)}
+ROWS = {"three": (0.25, 0.05, -0.15), "two close ones": (0.25, 0.248, -0.15), "close and loaded": (0.05, 0.048, -0.35)}
 """Places along the block, from its centre of mass."""
 AWAY = 0.05
 """How far the first row is from the edge at the start."""
@@ -69,9 +69,8 @@ def test_feet_leave_a_plate_without_a_blow(rows, order, method):
     np.testing.assert_allclose(result["b.z"], HEIGHT, atol=1e-9)
     assert np.max(result["residual.position"]) < 1e-9
     opened = {event.contact: event.t for event in events(result, "open")}
-    # what others hold is seen to leave once its gap has moved
-    assert opened == {"f0": pytest.approx(leaves, abs=2e-6), "f1": pytest.approx(leaves, abs=2e-6)}
-    assert not events(result, "impact")
+    assert opened == {"f0": pytest.approx(leaves, abs=1e-6), "f1": pytest.approx(leaves, abs=1e-6)}
+    assert all(event.approach_speed <= 1e-8 for event in events(result, "impact"))
     carried = [result[f"f{i}.normal_force"][-1] for i in (2, 4)]
     # friction acts below the centre of mass
     lever, turns = rows[1] - rows[2], MU * G * HEIGHT

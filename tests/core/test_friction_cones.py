@@ -6,14 +6,14 @@ import numba
 import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of
-from tlismni.core.cones.friction_cones import FOUND, friction_cones_size, solve_friction_cones
+from tlismni.core.cones.friction_cones import FOUND, MOST_SWEEPS, friction_cones_size, solve_friction_cones
 from tlismni.core.cones.least_forces import least_forces_size, take_least_forces
 from tlismni.core.linalg.small import LEAST_NORM_SIGNATURE, least_norm
 
 
 @numba.njit
 def _solve(address, n, a, b, mu, base, known, way, p, work):
-    return solve_friction_cones(address, n, a, b, mu, base, known, way, p, work)
+    return solve_friction_cones(address, n, a, b, mu, base, known, way, p, work, MOST_SWEEPS)
 
 
 def solve(a, b, mu, base=None, known=None, way=None):
@@ -73,6 +73,23 @@ def test_least_forces_are_the_limit_of_compliant_contacts(seed):
     np.testing.assert_allclose(
         least(other, a[np.ix_(rows, rows)], b[rows], mu), found[rows], atol=1e-8 * np.abs(found).max()
     )
+
+
+@pytest.mark.parametrize("part", [1e-4, 1e-6, 5e-8])
+def test_least_forces_where_a_contact_opens_next_to_nothing(part):
+    """A corner with two feet, of which one accelerates away by a small part of the weight: it carries nothing, however
+    near the limit of no compliance that shows."""
+    g, mu = box(), np.full(5, 0.8)
+    g = g[[0, 1, 2, 3, 3, 4, 5, 6, 7, 7, 8, 9, 10, 11, 11]]
+    load = np.array([0.3, -0.2, -9.81, 0.0, 0.0, 0.0])
+    a, b = g @ INVERSE @ g.T, g @ load
+    b[4] += part * 9.81
+    p, _ = solve(a, b, mu)
+    rest = [0, 1, 2, 3, 5, 6, 7, 8, 10, 11, 12, 13]
+    wanted = -np.linalg.pinv(g[rest].T) @ np.linalg.solve(INVERSE, load)
+    found = least(p, a, b, mu)
+    np.testing.assert_allclose(found[rest], wanted, atol=1e-6 * np.abs(wanted).max())
+    assert np.all(found[[4, 9, 14]] == 0.0)
 
 
 def off(p, w, mu, base=0.0):

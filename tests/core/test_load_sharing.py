@@ -9,21 +9,32 @@ import itertools
 import numpy as np
 import pytest
 from tlismni.core import (
+    AppliedForce2D,
     AppliedForce3D,
     AppliedTorque3D,
     Axes,
+    Box2D,
     Box3D,
     Constant,
+    ContactGroup2D,
     ContactGroup3D,
     CoulombFriction,
+    Disk2D,
+    DiskOnHalfPlane2D,
+    Distance2D,
+    HalfPlane2D,
     HalfSpace3D,
+    Marker2D,
     Marker3D,
     Model,
     NewtonImpact,
+    PointMass2D,
     PointMass3D,
     Polynomial,
+    Prismatic2D,
     Prismatic3D,
     Ramp,
+    RigidBody2D,
     RigidBody3D,
     Simulation,
     Sphere3D,
@@ -298,3 +309,126 @@ def test_ball_that_rolls_along_a_groove_keeps_its_energy():
     assert np.max(np.abs(result["energy.kinetic"] / result["energy.kinetic"][0] - 1.0)) < 1e-9
     assert np.max(np.abs(result["b.angular_velocity_z"])) < 1e-9
     assert result.stats["partitions"] < 20
+
+
+# ---- in the plane ---------------------------------------------------------------------------------------------------
+
+LINES = {"three": (-0.3, 0.0, 0.3), "four uneven": (-0.3, -0.1, 0.05, 0.25), "eight": tuple(np.linspace(-0.4, 0.3, 8))}
+
+
+def planar_block(places, order, friction, force=None, at=0.0, speed=0.0):
+    """A block of 3 kg whose centre is 0.3 m above feet at `places`."""
+    feet = [
+        DiskOnHalfPlane2D(
+            name=f"f{i}",
+            plane=HalfPlane2D(),
+            disk=Disk2D(marker=Marker2D(body="b", point=(places[i], -0.3))),
+            law=LAW,
+            friction=friction,
+        )
+        for i in order
+    ]
+    body = RigidBody2D(name="b", mass=3.0, inertia=0.1, position=(0.0, 0.3), velocity=(speed, 0.0))
+    push = AppliedForce2D(name="p", marker=Marker2D(body="b", point=(0.0, at)), force_x=force) if force else None
+    return Model(bodies=[body], contacts=feet, forces=[push] if push else [])
+
+
+def orders_of(count):
+    return [list(range(count)), list(range(count))[::-1], [int(i) for i in np.random.default_rng(5).permutation(count)]]
+
+
+@pytest.mark.parametrize("method", ["ebdf", "irk", "hht"])
+@pytest.mark.parametrize("places", LINES.values(), ids=LINES)
+def test_feet_in_a_line_share_the_weight_linearly(places, method):
+    wanted = np.linalg.lstsq(np.array([np.ones(len(places)), places]), np.array([3.0 * G, 0.0]), rcond=None)[0]
+    for order in orders_of(len(places)):
+        result = simulate(planar_block(places, order, CoulombFriction(coefficient=0.3)), 0.2, method=method)
+        loads = [result[f"f{i}.normal_force"][-1] for i in range(len(places))]
+        np.testing.assert_allclose(loads, wanted, rtol=1e-8)
+        assert np.max(np.abs(result.v)) < 1e-12
+
+
+@pytest.mark.parametrize("static", [0.3, 0.45])
+@pytest.mark.parametrize("at", [0.0, -0.2, 0.1])
+@pytest.mark.parametrize("places", LINES.values(), ids=LINES)
+def test_block_in_the_plane_breaks_away_at_the_static_friction_of_its_whole_load(places, at, static):
+    friction = CoulombFriction(coefficient=0.3, static_coefficient=static)
+    force, starts = Ramp(start=0.1, duration=1.0, after=20.0), 0.1 + static * 3.0 * G / 20.0
+    for order in orders_of(len(places)):
+        result = simulate(planar_block(places, order, friction, force, at), 1.0, rtol=1e-9)
+        slips = {event.contact: event.t for event in result.events if event.kind == "slip"}
+        np.testing.assert_allclose(list(slips.values()), starts, rtol=1e-6)
+        after = 1.0 - starts
+        wanted = ((static - 0.3) * 3.0 * G * after + 10.0 * after**2) / 3.0
+        assert result["b.vx"][-1] == pytest.approx(wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize("places", LINES.values(), ids=LINES)
+def test_friction_of_feet_that_slide_follows_their_loads(places):
+    """Braked by mu N on each foot, the load shifts forwards, linearly in place."""
+    moment = 0.3 * 0.3 * 3.0 * G
+    wanted = np.linalg.lstsq(np.array([np.ones(len(places)), places]), np.array([3.0 * G, moment]), rcond=None)[0]
+    assert wanted.min() > 0.0
+    for order in orders_of(len(places)):
+        model = planar_block(places, order, CoulombFriction(coefficient=0.3), speed=2.0)
+        result = simulate(model, 0.3, t_eval=[0.0, 0.1, 0.2, 0.3])
+        for i, load in enumerate(wanted):
+            np.testing.assert_allclose(result[f"f{i}.normal_force"][1:], load, rtol=1e-8)
+            np.testing.assert_allclose(result[f"f{i}.friction_force"][1:], -0.3 * load, rtol=1e-8)
+
+
+def test_blocks_on_a_roof_stick_until_the_pull_is_that_of_a_rope_over_both_slopes():
+    """Two blocks joined by a rod over the ridge; where both pulls are equal, no friction is needed, and it may not be
+    decided in turns for ever. They slide at 10 ((1 + mu)/(1 - mu))^2 N (slopes of 45 degrees)."""
+    mu, half = 0.3, 0.5 * np.sqrt(0.5)
+    down = {"l": (-1e-16, -1.0), "r": (1e-16, -1.0)}
+    bodies = [PointMass2D(name=name, mass=0.02, position=(x, half)) for name, x in (("l", -half), ("r", half))]
+    slopes = [
+        DiskOnHalfPlane2D(
+            name=f"c{name}",
+            plane=HalfPlane2D(marker=Marker2D(point=(x, half), angle=angle)),
+            disk=Disk2D(marker=Marker2D(body=name)),
+            law=LAW,
+            friction=CoulombFriction(coefficient=mu),
+        )
+        for name, x, angle in (("l", -half, np.pi / 4), ("r", half, -np.pi / 4))
+    ]
+    rod = Distance2D(name="rod", a=Marker2D(body="l"), b=Marker2D(body="r"), length=2.0 * half)
+    pulls = [
+        AppliedForce2D(
+            name=f"p{name}",
+            marker=Marker2D(body=name),
+            force_x=Polynomial(coefficients=[10.0 * x, rate * x]),
+            force_y=Polynomial(coefficients=[10.0 * y, rate * y]),
+        )
+        for (name, (x, y)), rate in zip(down.items(), (0.0, 1.0), strict=True)
+    ]
+    slides = 10.0 * ((1.0 + mu) / (1.0 - mu)) ** 2 - 10.0
+    result = simulate(Model(gravity=(0, 0), bodies=bodies, joints=[rod], forces=pulls, contacts=slopes), 1.001 * slides)
+    assert [event.t for event in result.events if event.kind == "slip"] == pytest.approx([slides] * 2, rel=1e-6)
+
+
+def test_box_between_two_pads_in_the_plane_is_held():
+    """20 N and mu 0.3 on both sides hold 12 N, and the box weighs 4.9 N."""
+    bodies = [
+        RigidBody2D(name="box", mass=0.5, inertia=3e-4),
+        RigidBody2D(name="pad", mass=0.1, inertia=1e-4, position=(0.04, 0.0)),
+    ]
+    boxes = [
+        Box2D(marker=Marker2D(body="box"), width=0.06, height=0.06),
+        Box2D(marker=Marker2D(body="pad"), width=0.02, height=0.04),
+        Box2D(marker=Marker2D(point=(-0.04, 0.0)), width=0.02, height=0.04),
+    ]
+    group = ContactGroup2D(
+        name="t", boxes=boxes, law=LAW, friction=CoulombFriction(coefficient=0.3), except_bodies=[("pad", "ground")]
+    )
+    model = Model(
+        bodies=bodies,
+        joints=[Prismatic2D(name="s", a=Marker2D(), b=Marker2D(body="pad"))],
+        forces=[AppliedForce2D(name="f", marker=Marker2D(body="pad"), force_x=Constant(value=-20.0))],
+        groups=[group],
+    )
+    result = simulate(model, 0.3)
+    assert max(abs(result["box.y"][-1]), abs(result["box.angle"][-1])) < 1e-9
+    forces = np.array([result[name][-1] for name in result.channels if name.endswith("normal_force")])
+    np.testing.assert_allclose(forces[forces > 1e-6], 10.0, rtol=1e-8)

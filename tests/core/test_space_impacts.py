@@ -134,13 +134,18 @@ class Strike:
         def room(x):
             return bound + x[-1] - np.hypot(*(held + free @ x[:-1]).reshape(-1, 2).T)
 
-        start = np.append(np.zeros(free.shape[1]), 0.0)
-        start[-1] = -room(start).min()
-        found = minimize(
-            lambda x: x[-1], start, method="SLSQP", constraints={"type": "ineq", "fun": room},
-            options={"ftol": 1e-12, "maxiter": 500},
-        )  # fmt: skip
-        assert -room(np.append(found.x[:-1], 0.0)).min() < 1e-7 * (1.0 + bound.max())
+        best, found = np.inf, np.zeros(free.shape[1] + 1)
+        for _ in range(10):
+            # the search may end early where many cones touch
+            found[-1] += max(-room(found).min(), 0.0)
+            found = minimize(
+                lambda x: x[-1], found, method="SLSQP", constraints={"type": "ineq", "fun": room},
+                options={"ftol": 1e-12, "maxiter": 500},
+            ).x  # fmt: skip
+            best = min(best, -room(np.append(found[:-1], 0.0)).min())
+            if best < 1e-7 * (1.0 + bound.max()):
+                return
+        pytest.fail(f"friction is {best} N s outside its cones")
 
     def check(self, poisson=False):
         """The blow at t = 0 is one that the laws allow; gives how many contacts slide, stick and are open behind it."""

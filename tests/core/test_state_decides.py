@@ -17,6 +17,7 @@ RARE = {
     "method_weights": "tableau of the formula, or coefficients that are made anew for other nodes",
     "of old rows": "further back than the formula looks: the passage over a singular position may",
     **dict.fromkeys(("clock 7", "clock 8", "clock 10", "clock 13", "clock 14", "clock 15"), "a setting"),
+    "memory 17": "which rows of a contact others imply: none of these models has redundant contacts",
     "method_choice 0": "a setting, unless the order is chosen",
     "clock 11": "whether the next step of one-step formulas has a past, by rounding only",
     "clock 12": "the same",

@@ -13,7 +13,8 @@ from ..shapes.gripping3d import TURNS_HARD
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE, OPEN
 from ..tables.compatibility import solve_equations
 from ..tables.evaluate import evaluate_residuals
-from .rates_in_space import masses
+from ..tables.held import in_space
+from .rates import masses
 from .records import AXIS_NOW, FLAG, TURNS, clear, col, whole
 
 
@@ -27,7 +28,7 @@ def find_torques(ev: Any, ws: Any, lc: Any, count: int) -> None:
     whole(ev)[TURNS] = 0
     for i in range(count):
         # (`shapes/gripping3d.py`: what an open contact says of its tangents)
-        says = monitor[ws.n_contacts + contacts[i]]
+        says = monitor[ws.n_contacts + contacts[i]] if in_space(ws, contacts[i]) else 0.0
         turns[i] = 1.0 if says >= TURNS_HARD else 0.0
         col(ev, AXIS_NOW)[i] = says - TURNS_HARD * turns[i]
         if turns[i] != 0.0:

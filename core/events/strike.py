@@ -11,7 +11,7 @@ from ..tables.evaluate import evaluate_residuals
 from ..tables.held import in_space
 from .impact import FIRST, MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, OF_ALL, restitution, strikes_anew
 from .laws import POISSON, SEQUENTIAL
-from .rates_in_space import masses, push_in_space, read_rates_in_space
+from .rates import masses, push, read_all_rates
 from .records import (
     APPROACH,
     BASE,
@@ -63,14 +63,15 @@ _WORKS = (
 
 
 @internal
-def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
-    """As `strike`: Newton's law of restitution speaks of end velocities, and so does the friction with both laws."""
+def strike(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Change the current velocities by the laws of the touching contacts. Newton's law of restitution speaks of end
+    velocities, and so does the friction with both laws."""
     count, phid = whole(ev)[COUNT], vec(ws.phid, ws.m_ext)
     rate, slide, sway, rounding = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE), col(ev, ROUNDING)
     active, joint_rates = ivec(ws.active, ws.m_act), vec(ev.joint_rates, ws.m_act)
     before_n, before_t, before_s = col(ev, RATE_BEFORE), col(ev, SLIDE_BEFORE), col(ev, SWAY_BEFORE)
     loss, p_n, p_t, p_s = col(ev, LOSS), col(ev, P_N), col(ev, P_T), col(ev, P_S)
-    read_rates_in_space(ev, ws)
+    read_all_rates(ev, ws)
     if any_spins(ev):
         find_spins(ev, ws, loop_at(dr.loop))
     for i in range(ws.m_act):
@@ -115,7 +116,7 @@ def strike_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             rubs = math.sqrt(p_t[i] * p_t[i] + p_s[i] * p_s[i])
             col(ev, FRICTION)[i] += rubs if in_space(ws, ivec(ev.contacts, ev.most)[i]) else p_t[i]
     evaluate_residuals(ws)
-    read_rates_in_space(ev, ws)
+    read_all_rates(ev, ws)
     for i in range(ws.m_act):
         real(ev)[RESIDUAL] = max(real(ev)[RESIDUAL], abs(phid[active[i]] - joint_rates[i]))
     copy(col(ev, SEPARATION), rate, count)
@@ -161,7 +162,7 @@ def _blow(ev: Any, dr: Any, ws: Any, last: bool, every: bool) -> int:
             col(ev, KNOWN)[i] = 0.0
         if not solve_blow(ev, dr, ws, part, b, p):
             return NO_IMPACT
-        push_in_space(ev, ws, p)
+        push(ev, ws, p)
         push_spins(ev, ws)
         for i in range(count):
             p_n[i] += p[i]
@@ -185,7 +186,7 @@ def _sequence(ev: Any, dr: Any, ws: Any) -> int:
         for k in range(count):
             i = k if v[k] < v[i] else i
         if v[i] >= -rounding[i]:
-            push_in_space(ev, ws, p)
+            push(ev, ws, p)
             push_spins(ev, ws)
             for r in range(count):
                 col(ev, P_N)[r], col(ev, P_T)[r], col(ev, P_S)[r] = p[r], p[count + r], p[2 * count + r]

@@ -8,6 +8,7 @@ sliding given (Moreau 1988; Jean 1999). That problem always has a solution. What
 stopped, what would slide slides as it would at the moment's end; divided by the moment, impulses are forces.
 """
 
+import math
 from typing import Any
 
 from ..compiled.jit import internal
@@ -20,7 +21,7 @@ from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
 from ..tables.evaluate import evaluate_energy
 from .forces import cones_at
 from .loaded import note_loaded
-from .rates_in_space import masses, pressing, push_in_space, solve_cones_in_space
+from .rates import masses, pressing, push, solve_cone_problem
 from .records import (
     AT_REST,
     B_N,
@@ -119,7 +120,7 @@ def moment_of_wedge(ev: Any, ws: Any) -> float:
 
 @internal
 def decide_by_moment(ev: Any, dr: Any, ws: Any, ms: Any, part: Any, moment: float) -> bool:
-    """Forces of the contacts `part`, which are at rest, as `find_forces_in_space` gives them, from what this moment (s)
+    """Forces of the contacts `part`, which are at rest, as `find_forces` gives them, from what this moment (s)
     would do; what it stops is stopped. Rates and free accelerations are given. False, and nothing is done: no moment,
     or nothing moves by itself, or no impulses are found."""
     count, least = whole(ev)[COUNT], moment * _fastest(ev)
@@ -134,7 +135,7 @@ def decide_by_moment(ev: Any, dr: Any, ws: Any, ms: Any, part: Any, moment: floa
         b[i] = (0.0 if abs(of_n[i]) <= col(ev, ROUNDING)[i] else of_n[i]) + moment * col(ev, B_N)[i]
         b[count + i] = of_t[i] + moment * col(ev, B_T)[i]
         b[2 * count + i] = of_s[i] + moment * col(ev, B_S)[i]
-    if not solve_cones_in_space(ev, a, count, takes, b, mu, base, none, p):
+    if not solve_cone_problem(ev, a, count, takes, b, mu, base, none, p):
         return False
     for i in range(count):
         col(ev, P_N)[i], col(ev, P_T)[i], col(ev, P_S)[i] = p[i], p[count + i], p[2 * count + i]
@@ -152,7 +153,7 @@ def decide_by_moment(ev: Any, dr: Any, ws: Any, ms: Any, part: Any, moment: floa
     for i in range(count):
         pressed[i] = 1.0 if col(ev, P_N)[i] > 0.0 else 0.0
         slow[i] = 1.0 if abs(col(ev, W_T)[i]) + abs(col(ev, W_S)[i]) <= FAST * least else 0.0
-    _move(ev, dr, ws, pressed, slow, True)
+    _move(ev, dr, ws, pressed, slow, True, True)
     _report(ev, dr, ms, least)
     for i in range(count):
         col(ev, W_N)[i] = (col(ev, W_N)[i] - of_n[i]) / moment
@@ -189,22 +190,29 @@ def _say_what_slides(ev: Any, least: float) -> None:
 
 
 @internal
-def stop_in_space(ev: Any, dr: Any, ws: Any) -> None:
-    """Take away what is left of the rates of contacts that press, along their tangents where friction decides: what
-    begins to slide there begins at rest. With accounts."""
-    still, some = col(ev, SPARE), False
+def stop_rates(ev: Any, dr: Any, ws: Any) -> None:
+    """Take away what is left of the rates of contacts that press, along the normals and, where friction decides, along
+    the tangents: what begins to slide there begins at rest. With accounts."""
+    still, slips, opens = col(ev, SPARE), False, False
     for i in range(whole(ev)[COUNT]):
         still[i] = 1.0 if col(ev, KNOWN)[i] == 0.0 and col(ev, STATIC)[i] > 0.0 else 0.0
-        moves = col(ev, SLIDE_RATE)[i] != 0.0 or col(ev, SWAY_RATE)[i] != 0.0
-        some = some or (still[i] != 0.0 and moves and col(ev, LOADED)[i] != 0.0 and col(ev, DIRECTION)[i] != 0.0)
-    if some:
-        _move(ev, dr, ws, col(ev, LOADED), still, False)
+        speed = math.hypot(col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i])
+        if col(ev, LOADED)[i] != 0.0:
+            begins = col(ev, DIRECTION)[i] != 0.0
+            slips = slips or (still[i] != 0.0 and speed > (0.0 if begins else col(ev, ROUNDING)[i]))
+            opens = opens or abs(col(ev, RATE)[i]) > col(ev, ROUNDING)[i]
+    if slips:
+        _move(ev, dr, ws, col(ev, LOADED), still, False, True)
+    # what would open by less than can be seen: rounding's worth, which no account sees
+    if opens:
+        _move(ev, dr, ws, col(ev, LOADED), still, False, False)
 
 
 @internal
-def _move(ev: Any, dr: Any, ws: Any, pressed: Any, slow: Any, slides: bool) -> None:
+def _move(ev: Any, dr: Any, ws: Any, pressed: Any, slow: Any, slides: bool, accounts: bool) -> None:
     """Take away the rates of the contacts that press, and along the tangents of those that are slow; or, with `slides`,
-    leave these the motion W_T and W_S if they slide. By the least impulses at the contacts, with accounts."""
+    leave these the motion W_T and W_S if they slide. By the least impulses at the contacts. `accounts`: they count,
+    and the energy that they take."""
     count, some, size = whole(ev)[COUNT], ivec(ev.some, 3 * ev.most), 0
     a, p = masses(ev, count), vec(ev.space_p, 3 * count)
     rate, slide, sway, loss = col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE), col(ev, STOP_LOSS)
@@ -220,7 +228,8 @@ def _move(ev: Any, dr: Any, ws: Any, pressed: Any, slow: Any, slides: bool) -> N
         row, i, target = some[k], some[k] % count, 0.0
         sticks = not slides or col(ev, DIRECTION)[i] == 0.0
         if row < count:
-            now = rate[i]
+            # (sliding that stops lets what opens go on)
+            now, target = rate[i], max(rate[i], 0.0) if accounts and not slides else 0.0
         elif row < 2 * count:
             now, target = slide[i], 0.0 if sticks else col(ev, W_T)[i]
         else:
@@ -235,6 +244,9 @@ def _move(ev: Any, dr: Any, ws: Any, pressed: Any, slow: Any, slides: bool) -> N
         p[i] = 0.0
     for k in range(size):
         p[some[k]] = found[k, 0]
+    if not accounts:
+        push(ev, ws, p)
+        return
     energy, lost = vec(ws.energy, 3), 0.0
     evaluate_energy(ws)
     before = energy[0]
@@ -242,7 +254,7 @@ def _move(ev: Any, dr: Any, ws: Any, pressed: Any, slow: Any, slides: bool) -> N
         col(ev, SLIDE_BEFORE)[i], col(ev, SWAY_BEFORE)[i], col(ev, LOST_BEFORE)[i] = slide[i], sway[i], loss[i]
     for turn in range(2):
         if turn == 1:
-            push_in_space(ev, ws, p)
+            push(ev, ws, p)
         for i in range(count):
             work_done = p[i] * rate[i] + p[count + i] * slide[i] + p[2 * count + i] * sway[i]
             loss[i] -= 0.5 * work_done

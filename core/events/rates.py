@@ -5,13 +5,14 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..cones.directions import call_farthest
-from ..cones.friction_cones import FOUND, solve_friction_cones
+from ..cones.friction_cones import FOUND, MOST_SWEEPS, SWEEPS, solve_friction_cones
 from ..cones.least_forces import take_least_forces
 from ..cones.projections import motion_of
 from ..rounding import STICKS_STILL
 from ..tables.held import in_space
 from .forces import cones_at
-from .records import COS_WAY, COUNT, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, col, whole
+from .pivot_in_plane import has_one_tangent, pivot_in_plane
+from .records import COS_WAY, COUNT, LEFT_OVER, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, col, whole
 
 
 @internal
@@ -27,7 +28,7 @@ def pressing(ev: Any, count: int) -> Any:
 
 
 @internal
-def read_in_space(ev: Any, ws: Any, level: Any, of_gap: Any, of_slide: Any, of_sway: Any) -> None:
+def read_level(ev: Any, ws: Any, level: Any, of_gap: Any, of_slide: Any, of_sway: Any) -> None:
     """Normals' and tangents' rows of a level of the touching contacts; zeros along tangents without friction."""
     contacts = ivec(ev.contacts, ev.most)
     rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
@@ -41,13 +42,13 @@ def read_in_space(ev: Any, ws: Any, level: Any, of_gap: Any, of_slide: Any, of_s
 
 
 @internal
-def read_rates_in_space(ev: Any, ws: Any) -> None:
+def read_all_rates(ev: Any, ws: Any) -> None:
     """Rates of gaps and of sliding, as the residuals have been evaluated last."""
-    read_in_space(ev, ws, vec(ws.phid, ws.m_ext), col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
+    read_level(ev, ws, vec(ws.phid, ws.m_ext), col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
 
 
 @internal
-def push_in_space(ev: Any, ws: Any, p: Any) -> None:
+def push(ev: Any, ws: Any, p: Any) -> None:
     """Add the velocities that impulses p (3 count,) cause; rates follow."""
     count, v = whole(ev)[COUNT], vec(ws.v, ws.n_ext)
     responses, a = mat(ev.responses, 3 * count, ws.n), masses(ev, count)
@@ -82,16 +83,56 @@ def _repeat(ev: Any, n: int, a: Any, b: Any, known: Any, p: Any, work: int) -> b
 
 
 @internal
-def solve_cones_in_space(
-    ev: Any, a: Any, count: int, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any
-) -> bool:
-    """Forces p (3 count,) of the contacts `part` from inverse masses a and the motion b (3 count,); the others get
-    none."""
-    n, some = 0, ivec(ev.some, 3 * ev.most)
+def _connected(ev: Any, a: Any, count: int, left: Any) -> int:
+    """The first contact that is `left`, and those that it moves, one by one, go to `some`; they are no more left. How
+    many there are."""
+    some, n = ivec(ev.some, 3 * ev.most), 0
     for i in range(count):
-        if part[i] != 0.0:
-            some[n] = i
-            n += 1
+        if left[i] != 0.0:
+            some[0], left[i], n = i, 0.0, 1
+            break
+    at = 0
+    while at < n:
+        p = some[at]
+        for i in range(count):
+            if left[i] != 0.0:
+                for row in range(9):
+                    if a[(row // 3) * count + p, (row % 3) * count + i] != 0.0:
+                        some[n], left[i] = i, 0.0
+                        n += 1
+                        break
+        at += 1
+    # in the order of their numbers
+    for k in range(1, n):
+        i, at = some[k], k
+        while at > 0 and some[at - 1] > i:
+            some[at] = some[at - 1]
+            at -= 1
+        some[at] = i
+    return n
+
+
+@internal
+def solve_cone_problem(ev: Any, a: Any, count: int, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
+    """Forces p (3 count,) of the contacts `part` from inverse masses a and the motion b (3 count,); the others get
+    none. Contacts that do not move each other are problems of their own."""
+    left = col(ev, LEFT_OVER)
+    for i in range(count):
+        left[i] = part[i]
+    for i in range(3 * count):
+        p[i] = 0.0
+    while True:
+        n = _connected(ev, a, count, left)
+        if n == 0:
+            return True
+        if not _solve_connected(ev, a, count, n, b, mu, base, known, p):
+            return False
+
+
+@internal
+def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
+    """`solve_cone_problem` of the first n contacts in `some`."""
+    some = ivec(ev.some, 3 * ev.most)
     # room: matrix, motion, coefficients, forces, directions
     own = mat(ev.space_room, 3 * n, 3 * n)
     room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
@@ -107,17 +148,22 @@ def solve_cones_in_space(
             for j in range(n):
                 for other in range(3):
                     own[block * n + i, other * n + j] = a[block * count + p_i, other * count + some[j]]
-    status = solve_friction_cones(
-        cones_at(ev.cones).least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p,
-        ev.space_room + 8 * (9 * n * n + 11 * n),
-    )  # fmt: skip
-    for i in range(3 * count):
-        p[i] = 0.0
-    if status != FOUND:
+    work, least_norm = ev.space_room + 8 * (9 * n * n + 11 * n), cones_at(ev.cones).least_norm
+    found, plane = False, n > 1 and has_one_tangent(n, own)
+    for most in (SWEEPS, MOST_SWEEPS):
+        if found or (most == SWEEPS and not plane):
+            continue
+        found = (
+            solve_friction_cones(least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work, most)
+            == FOUND
+        )
+        if not found and most == SWEEPS:
+            # pivoting, which sweeps over many contacts in a row take longer than
+            found = pivot_in_plane(ev, n, own, own_b, own_mu, own_base, own_known, way, own_p)
+    if not found:
         return False
-    work = ev.space_room + 8 * (9 * n * n + 11 * n)
     if n > 1 and _repeat(ev, n, own, own_b, own_known, own_p, work):
-        take_least_forces(cones_at(ev.cones).least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work)
+        take_least_forces(least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work)
     for i in range(n):
         for block in range(3):
             p[block * count + some[i]] = own_p[block * n + i]

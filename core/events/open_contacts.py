@@ -1,6 +1,6 @@
 """Contacts with two tangents that touch at one instant: their directions, and how an impulse at one moves the others.
 
-As `touching.py`, in its place. The room for directions and responses holds a third block, the second tangents' behind
+The room for directions and responses holds a third block, the second tangents' behind
 the first ones'; inverse masses of all three are in `masses`. The tangents of a contact are those of
 `shapes/frame3d.py`. A contact of the plane has a second tangent without a gradient: as joints may hold one, it takes no
 friction.
@@ -21,16 +21,16 @@ from ..tables.compatibility import analyze_equations, solve_equations
 from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 from ..tables.held import in_space
 from ..tables.switch import engage_modes
-from .rates_in_space import masses, read_rates_in_space
+from .rates import masses, read_all_rates
 from .records import ALONE, COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
-from .spins_in_space import read_spins
-from .torques_in_space import find_torques, press_with_torques
+from .spins import read_spins
+from .torques import find_torques, press_with_torques
 from .touching import entries_of, find_gradient, refuse_immovable, tell_touching
 
 
 @internal
-def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
-    """As `open_touching`, with both tangents."""
+def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+    """Open the touching contacts, and find how impulses at them, along normals and both tangents, move the others."""
     count, contacts, n = whole(ev)[COUNT], ivec(ev.contacts, ev.most), ws.n
     memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
     for i in range(count):
@@ -68,7 +68,7 @@ def open_in_space(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     if code != OK:
         return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
     _respond(ev, ws, count)
-    read_rates_in_space(ev, ws)
+    read_all_rates(ev, ws)
     return refuse_immovable(ev, ws, count)
 
 

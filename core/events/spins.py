@@ -11,6 +11,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..shapes.patch3d import CREEPS
+from ..tables.held import in_space
 from .reading import slow_sliding
 from .records import (
     COUNT,
@@ -30,12 +31,12 @@ from .records import (
 def read_spins(ev: Any, dr: Any, ws: Any) -> None:
     """Spins of the touching contacts, which are open and whose residuals have been evaluated last, and their
     coefficients of friction as if they were at rest."""
-    contacts, slides = ivec(ev.contacts, ev.most), ivec(ws.contact_slide_rows, ws.n_contacts)
+    contacts = ivec(ev.contacts, ev.most)
     monitor, friction = vec(ws.monitor, 3 * ws.n_contacts), vec(dr.friction, ws.n_contacts)
     static = vec(ws.contact_sticking, ws.n_contacts)
     for i in range(whole(ev)[COUNT]):
         k = contacts[i]
-        z = monitor[2 * ws.n_contacts + k] if slides[k] >= 0 and static[k] > 0.0 else 0.0
+        z = monitor[2 * ws.n_contacts + k] if in_space(ws, k) and static[k] > 0.0 else 0.0
         slow = CREEPS * slow_sliding(ws, k)
         size = math.hypot(z, slow)
         left = slow / size if z != 0.0 else 1.0
