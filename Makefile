@@ -45,7 +45,7 @@ $(VENV)/.library: | $(VENV)/.installed-dev
 library: $(VENV)/.installed-dev
 	$(call install,-e ".[cross]")
 	@echo "The solver's machine code, where machine_code has none of these sources, is made: minutes of two cores"
-	TLISMNI_LIBRARY=none $(BIN)/python -m tlismni.core.ahead --take machine_code
+	TLISMNI_LIBRARY=none $(BIN)/python -m tlismni.core.aot --take machine_code
 	@touch $(VENV)/.library
 
 lint: $(VENV)/.installed-dev
@@ -66,7 +66,7 @@ TARGETS := linux-x86_64 linux-aarch64 musl-x86_64 musl-aarch64 windows-x86_64 wi
 dist: $(VENV)/.installed-dev
 	$(call install,-e ".[cross]" "setuptools>=77")
 	rm -rf build/dist
-	$(BIN)/python -m tlismni.core.ahead $(TARGETS:%=--target %) --output build/dist
+	$(BIN)/python -m tlismni.core.aot $(TARGETS:%=--target %) --output build/dist
 	for target in $(TARGETS); do \
 		rm -rf build/lib* build/bdist.* build/temp.*; \
 		TLISMNI_AHEAD=build/dist TLISMNI_TARGET=$$target $(BIN)/pip wheel --disable-pip-version-check --quiet \

@@ -2,14 +2,14 @@
 asked for; everything else stands in pyproject.toml.
 
 An installation from the sources unpacks the library that the repository has for this machine, if it is of these very
-sources (`core/ahead/packed.py`).
+sources (`core/aot/packed.py`).
 
 The shim is a plain shared library, no extension module: it is not tied to a Python version. It is compiled with
 $CC, or cc, gcc, clang, or where there is none with `python -m ziglang cc`, which is then a build requirement.
 
 The machine code takes minutes and needs the core's own packages and numba, so it is made only with TLISMNI_AHEAD=1
 (`TLISMNI_AHEAD=1 pip wheel . --no-build-isolation --no-deps`). A wheel that has it does not depend on numba. With
-TLISMNI_AHEAD=FOLDER it is taken from there, as `python -m tlismni.core.ahead --output FOLDER` has made it, and with
+TLISMNI_AHEAD=FOLDER it is taken from there, as `python -m tlismni.core.aot --output FOLDER` has made it, and with
 TLISMNI_TARGET=NAME the wheel is for another platform, which takes ziglang (`make dist` makes all).
 """
 
@@ -95,7 +95,7 @@ class BuildShim(build_ext):
         """Put the library of the repository, if it is of these sources, beside them."""
         sys.path.insert(0, str(Path(__file__).parent))
         try:
-            from core.ahead.packed import take
+            from core.aot.packed import take
         finally:
             del sys.path[0]
         folder.mkdir(parents=True, exist_ok=True)
@@ -122,7 +122,7 @@ class BuildShim(build_ext):
     def make_machine_code(self, root: Path) -> None:
         """Let the copied sources make their library, and put it beside them."""
         with tempfile.TemporaryDirectory() as folder:
-            command = [sys.executable, "-m", "tlismni.core.ahead", "--output", folder]
+            command = [sys.executable, "-m", "tlismni.core.aot", "--output", folder]
             environment = {**os.environ, "PYTHONPATH": str(root)}
             # the package has no __init__.py: its parts could come from an installation
             ask = [sys.executable, "-c", "import tlismni.core; print(tlismni.core.__file__)"]

@@ -4,7 +4,7 @@
 
 One group for all spheres and the walls of the box (`heap3d.py`), no weight, speeds of 5 mm/s, steps of 1 ms: nothing
 touches. Memory is what the process has grown by. "margins": no sweep, each pair has a margin that is looked at in every
-step (`location/asleep.py`).
+step (`event_detection/contact_sleeping.py`).
 """
 
 import argparse

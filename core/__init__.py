@@ -5,11 +5,36 @@ A name is imported when it is first asked for: what type checkers read, and the 
 
 from typing import TYPE_CHECKING
 
-from .late import late_names
+from .lazy_import import late_names
 
 if TYPE_CHECKING:
+    from .assembly.redundancy import RedundantRow
     from .compiled_model import CompiledModel, compile_model
-    from .courses import Courses
+    from .contacts.angle_stop2d import AngleStop2D
+    from .contacts.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
+    from .contacts.box2d import Box2D, DiskOnBox2D
+    from .contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+    from .contacts.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
+    from .contacts.coordinate_contact import CoordinateContact, CoordinateTerm
+    from .contacts.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
+    from .contacts.disk_on_cable import DiskOnCable2D
+    from .contacts.disk_on_line import DiskOnLine2D, Line2D
+    from .contacts.edges3d import EdgesOnEdges3D
+    from .contacts.group2d import ContactGroup2D, contacts_between
+    from .contacts.group3d import ContactGroup3D
+    from .contacts.mesh3d import TriangleMesh3D, read_mesh
+    from .contacts.on_cable3d import CableLine3D, CableOnHalfSpace3D, SphereOnCable3D
+    from .contacts.on_mesh3d import SphereOnMesh3D, mesh_parts
+    from .contacts.polygon2d import DiskOnPolygon2D, Polygon2D
+    from .contacts.ring2d import DiskInRing2D, Ring2D
+    from .contacts.rings3d import Rim3D, Torus3D
+    from .contacts.rope2d import Rope2D
+    from .contacts.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
+    from .contacts.rounds3d import Ellipsoid3D
+    from .contacts.scalar_contact2d import ScalarContact2D, scalar_contact
+    from .contacts.segment2d import DiskOnSegment2D, Segment2D
+    from .contacts.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
+    from .contacts.support3d import SmoothShape3D, support_formula
     from .description import Model
     from .elements import (
         AngleDriver3D,
@@ -111,6 +136,7 @@ if TYPE_CHECKING:
         section,
         stress,
     )
+    from .input_signals import Courses
     from .laws import (
         CarvalhoMartins,
         Flores,
@@ -152,35 +178,9 @@ if TYPE_CHECKING:
     from .one_run import simulate
     from .results.result import Result
     from .results.stored import load_result
-    from .run.simulation import Simulation
-    from .run.state import State
     from .runs import Runs
-    from .shapes.angle_stop2d import AngleStop2D
-    from .shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
-    from .shapes.box2d import Box2D, DiskOnBox2D
-    from .shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-    from .shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
-    from .shapes.coordinate_contact import CoordinateContact, CoordinateTerm
-    from .shapes.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
-    from .shapes.disk_on_cable import DiskOnCable2D
-    from .shapes.disk_on_line import DiskOnLine2D, Line2D
-    from .shapes.edges3d import EdgesOnEdges3D
-    from .shapes.group2d import ContactGroup2D, contacts_between
-    from .shapes.group3d import ContactGroup3D
-    from .shapes.mesh3d import TriangleMesh3D, read_mesh
-    from .shapes.on_cable3d import CableLine3D, CableOnHalfSpace3D, SphereOnCable3D
-    from .shapes.on_mesh3d import SphereOnMesh3D, mesh_parts
-    from .shapes.polygon2d import DiskOnPolygon2D, Polygon2D
-    from .shapes.ring2d import DiskInRing2D, Ring2D
-    from .shapes.rings3d import Rim3D, Torus3D
-    from .shapes.rope2d import Rope2D
-    from .shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
-    from .shapes.rounds3d import Ellipsoid3D
-    from .shapes.scalar_contact2d import ScalarContact2D, scalar_contact
-    from .shapes.segment2d import DiskOnSegment2D, Segment2D
-    from .shapes.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
-    from .shapes.support3d import SmoothShape3D, support_formula
-    from .tables.redundancy import RedundantRow
+    from .simulation.simulation import Simulation
+    from .simulation.state import State
     from .tolerances import OfScales
 
 __all__ = [
@@ -407,7 +407,7 @@ __getattr__, __dir__ = late_names(
     __name__,
     {
         ".compiled_model": "CompiledModel compile_model",
-        ".courses": "Courses",
+        ".input_signals": "Courses",
         ".description": "Model",
         ".elements": (
             "AngleDriver3D AppliedForce2D AppliedForce3D AppliedTorque2D AppliedTorque3D Attachment AxialRod "
@@ -449,35 +449,35 @@ __getattr__, __dir__ = late_names(
         ".one_run": "simulate",
         ".results.result": "Result",
         ".results.stored": "load_result",
-        ".run.simulation": "Simulation",
-        ".run.state": "State",
+        ".simulation.simulation": "Simulation",
+        ".simulation.state": "State",
         ".runs": "Runs",
-        ".shapes.angle_stop2d": "AngleStop2D",
-        ".shapes.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
-        ".shapes.box2d": "Box2D DiskOnBox2D",
-        ".shapes.contact2d": "Disk2D DiskOnDisk2D DiskOnHalfPlane2D HalfPlane2D",
-        ".shapes.contact3d": "HalfSpace3D Sphere3D SphereOnHalfSpace3D SphereOnSphere3D",
-        ".shapes.coordinate_contact": "CoordinateContact CoordinateTerm",
-        ".shapes.cornered3d": "Box3D Capsule3D ConvexPolyhedron3D Cylinder3D",
-        ".shapes.disk_on_cable": "DiskOnCable2D",
-        ".shapes.disk_on_line": "DiskOnLine2D Line2D",
-        ".shapes.edges3d": "EdgesOnEdges3D",
-        ".shapes.group2d": "ContactGroup2D contacts_between",
-        ".shapes.group3d": "ContactGroup3D",
-        ".shapes.mesh3d": "TriangleMesh3D read_mesh",
-        ".shapes.on_cable3d": "CableLine3D CableOnHalfSpace3D SphereOnCable3D",
-        ".shapes.on_mesh3d": "SphereOnMesh3D mesh_parts",
-        ".shapes.polygon2d": "DiskOnPolygon2D Polygon2D",
-        ".shapes.ring2d": "DiskInRing2D Ring2D",
-        ".shapes.rings3d": "Rim3D Torus3D",
-        ".shapes.rope2d": "Rope2D",
-        ".shapes.round3d": "CapsuleOnCapsule3D SmoothOnHalfSpace3D SphereInSphere3D",
-        ".shapes.rounds3d": "Ellipsoid3D",
-        ".shapes.scalar_contact2d": "ScalarContact2D scalar_contact",
-        ".shapes.segment2d": "DiskOnSegment2D Segment2D",
-        ".shapes.stop3d": "AngleStop3D DistanceStop3D Rope3D SlideStop3D",
-        ".shapes.support3d": "SmoothShape3D support_formula",
-        ".tables.redundancy": "RedundantRow",
+        ".contacts.angle_stop2d": "AngleStop2D",
+        ".contacts.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
+        ".contacts.box2d": "Box2D DiskOnBox2D",
+        ".contacts.contact2d": "Disk2D DiskOnDisk2D DiskOnHalfPlane2D HalfPlane2D",
+        ".contacts.contact3d": "HalfSpace3D Sphere3D SphereOnHalfSpace3D SphereOnSphere3D",
+        ".contacts.coordinate_contact": "CoordinateContact CoordinateTerm",
+        ".contacts.cornered3d": "Box3D Capsule3D ConvexPolyhedron3D Cylinder3D",
+        ".contacts.disk_on_cable": "DiskOnCable2D",
+        ".contacts.disk_on_line": "DiskOnLine2D Line2D",
+        ".contacts.edges3d": "EdgesOnEdges3D",
+        ".contacts.group2d": "ContactGroup2D contacts_between",
+        ".contacts.group3d": "ContactGroup3D",
+        ".contacts.mesh3d": "TriangleMesh3D read_mesh",
+        ".contacts.on_cable3d": "CableLine3D CableOnHalfSpace3D SphereOnCable3D",
+        ".contacts.on_mesh3d": "SphereOnMesh3D mesh_parts",
+        ".contacts.polygon2d": "DiskOnPolygon2D Polygon2D",
+        ".contacts.ring2d": "DiskInRing2D Ring2D",
+        ".contacts.rings3d": "Rim3D Torus3D",
+        ".contacts.rope2d": "Rope2D",
+        ".contacts.round3d": "CapsuleOnCapsule3D SmoothOnHalfSpace3D SphereInSphere3D",
+        ".contacts.rounds3d": "Ellipsoid3D",
+        ".contacts.scalar_contact2d": "ScalarContact2D scalar_contact",
+        ".contacts.segment2d": "DiskOnSegment2D Segment2D",
+        ".contacts.stop3d": "AngleStop3D DistanceStop3D Rope3D SlideStop3D",
+        ".contacts.support3d": "SmoothShape3D support_formula",
+        ".assembly.redundancy": "RedundantRow",
         ".tolerances": "OfScales",
     },
 )

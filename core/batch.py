@@ -14,7 +14,7 @@ from .errors import ModelError, SimulationError
 from .runs import Runs
 
 if TYPE_CHECKING:
-    from .run.simulation import Simulation
+    from .simulation.simulation import Simulation
 
 
 def run_into(

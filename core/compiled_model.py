@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .assembly.assembly import Assembly
 from .compiled.image import twin
 from .compiled.notices import compile_notices
 from .description import Model
 from .errors import ModelError
 from .model.said_angle import CountsTurns
-from .run.blueprint import Blueprint, Unstarted, can_be_copied, take_numbers, what_differs
-from .run.simulation import Simulation
-from .tables.assembly import Assembly
+from .simulation.blueprint import Blueprint, Unstarted, can_be_copied, take_numbers, what_differs
+from .simulation.simulation import Simulation
 
 Numbers = Mapping[str, float]
 

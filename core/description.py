@@ -9,6 +9,8 @@ from typing import Any, Literal
 
 from pydantic import ConfigDict, model_validator
 
+from .contacts import Contact
+from .contacts.groups import Group, with_groups
 from .elements import Body, BodyElement, Element, Force, Joint
 from .errors import ModelError
 from .model.array_files import beside
@@ -23,8 +25,6 @@ from .model.own_types import find_classes, import_paths, own_classes
 from .model.places import inside
 from .model.signals import InputSignal
 from .model.words import an
-from .shapes import Contact
-from .shapes.groups import Group, with_groups
 
 
 def _with_imports(schema: dict[str, Any]) -> None:
@@ -292,7 +292,7 @@ class Model(Record):
 
     def assemble(self, start: Mapping[str, float] | None = None, t0: float = 0.0) -> Any:
         """The model as flat tables (`Assembly`); `start` are other values at the start t0, s, see there."""
-        from .tables.assembly import assemble
+        from .assembly.assembly import assemble
 
         return assemble(self, start or {}, t0)
 
@@ -302,6 +302,6 @@ class Model(Record):
 
     def coordinate_channels(self, assembly: Any, layout: Any) -> Any:
         """Channels of the bodies' coordinates."""
-        from .tables.sample_layout import body_coordinate_channels
+        from .assembly.sample_layout import body_coordinate_channels
 
         return body_coordinate_channels(assembly, layout)

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .compiled.watch import RunWatch
+from .compiled.stopwatch import RunWatch
 from .compiled_model import compile_model
-from .course_run import CourseRun
-from .courses import Courses, Given, courses
 from .errors import ModelError, SimulationError, TlismniError
+from .input_schedule import CourseRun
+from .input_signals import Courses, Given, courses
 from .results.result import Result
-from .run.simulation import Simulation
+from .simulation.simulation import Simulation
 from .tolerances import DEFAULT_ATOL
 
 MOST_STEPS = 1e12

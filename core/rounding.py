@@ -3,8 +3,8 @@
 Double precision carries 1.1e-16 of a number. None of the parts below is of 1 m, 1 N or 1 s: each is a part of what the
 model itself is made of, so that a mechanism of a nanometre and one of a thousand kilometres are judged alike. Positions
 are compared with coordinate_scale times `position_level`, rows of constraints and gaps with row_scale times that,
-rates and accelerations likewise (`tables/levels.py`), forces with `force_level` over row_scale; `tables/scales.py` says
-where these scales come from.
+rates and accelerations likewise (`assembly/levels.py`), forces with `force_level` over row_scale; `assembly/scales.py`
+says where these scales come from.
 """
 
 # ---- constraints ----------------------------------------------------------------------------------------------------

@@ -30,7 +30,7 @@ def package_archive() -> tuple[bytes, str]:
         if LIBRARY is None:
             logger.warning(
                 "the FMU carries no machine code, since this process has none: what it needs is compiled when it is "
-                "first used on a machine, which takes a minute or two and numba; `python -m tlismni.core.ahead` makes "
+                "first used on a machine, which takes a minute or two and numba; `python -m tlismni.core.aot` makes "
                 "machine code of these sources"
             )
         else:

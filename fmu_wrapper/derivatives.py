@@ -1,6 +1,6 @@
 """Derivatives of outputs with respect to inputs at the present time: what can be asked.
 
-The simulation gives them through its augmented system (`tlismni.core.run.sensitivity`). A position or velocity
+The simulation gives them through its augmented system (`tlismni.core.simulation.sensitivity`). A position or velocity
 that an input leads goes on as it was when the input changes, and is met at the end of the next step, so that outputs
 at the present time do not depend on it: its derivatives are zero. In initialization mode the start itself follows it;
 these derivatives are refused.

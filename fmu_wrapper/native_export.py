@@ -27,7 +27,7 @@ from .values import Values
 from .variables import Variable, VariableTable
 
 LIBRARIES = "TLISMNI_LIBRARIES"
-"""Environment variable: folder of libraries of other platforms, as `python -m tlismni.core.ahead --output` fills it."""
+"""Environment variable: folder of libraries of other platforms, as `python -m tlismni.core.aot --output` fills it."""
 _TARGETS = {
     "x86_64-linux": "linux-x86_64", "aarch64-linux": "linux-aarch64", "x86_64-darwin": "macos-x86_64",
     "aarch64-darwin": "macos-aarch64", "x86_64-windows": "windows-x86_64",
@@ -170,7 +170,7 @@ def native_binaries(folder: str, identifier: str, fmi_version: str, platforms: S
     """
     if LIBRARY is None:
         raise ExportError(
-            "an FMU without Python needs the library of machine code: `python -m tlismni.core.ahead` makes it, or use "
+            "an FMU without Python needs the library of machine code: `python -m tlismni.core.aot` makes it, or use "
             "a wheel that carries it"
         )
     files = {f"binaries/{folder}/{identifier}{LIBRARY.path.suffix}": LIBRARY.path.read_bytes()}
@@ -189,7 +189,7 @@ def _other_library(name: str) -> bytes:
     if core_digest().encode() not in content or c_digest().encode() not in content:
         what = "is of other sources" if content else "is not there"
         raise ExportError(
-            f"the library of machine code for {name}, '{path}', {what}: make it with `python -m tlismni.core.ahead "
+            f"the library of machine code for {name}, '{path}', {what}: make it with `python -m tlismni.core.aot "
             f"--target {target} --output FOLDER`, and set {LIBRARIES} to the folder"
         )
     return content

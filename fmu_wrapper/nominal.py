@@ -21,7 +21,7 @@ from ..core.elements.floating_body2d import FloatingBody2D
 from ..core.elements.linear_system import LinearSystem
 from ..core.errors import SimulationError, TlismniError
 from ..core.one_run import simulate
-from ..core.run.simulation import Simulation
+from ..core.simulation.simulation import Simulation
 from .scales import Scales, round_number
 from .settings import Settings
 from .variables import Variable, VariableTable

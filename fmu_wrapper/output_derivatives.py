@@ -1,6 +1,6 @@
 """First time derivatives of outputs at the present time: what can be asked, and which are known.
 
-The simulation gives them (`tlismni.core.run.output_rates`): positions, velocities, gaps and their rates,
+The simulation gives them (`tlismni.core.simulation.output_rates`): positions, velocities, gaps and their rates,
 impulses, work and dissipation have one that is known exactly; accelerations, forces of joints and contacts, energies
 and residuals have none.
 """

@@ -1,13 +1,13 @@
 """A box is dropped on a floor, corner first, and comes to rest on a face."""
 
+from ..core.contacts.contact3d import HalfSpace3D
+from ..core.contacts.cornered3d import Box3D
+from ..core.contacts.group2d import contacts_between
 from ..core.description import Model
 from ..core.elements import RigidBody3D
 from ..core.model.attitude import RotationVector
 from ..core.model.channels import Parameter
 from ..core.model.markers import Marker3D
-from ..core.shapes.contact3d import HalfSpace3D
-from ..core.shapes.cornered3d import Box3D
-from ..core.shapes.group2d import contacts_between
 from .frictions import contact_friction, friction_parameters
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioParameter

@@ -2,6 +2,7 @@
 
 import math
 
+from ..core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from ..core.description import Model
 from ..core.elements import (
     Attachment,
@@ -15,7 +16,6 @@ from ..core.elements import (
 )
 from ..core.laws import ContactLaw, Hertz, NewtonImpact
 from ..core.model.markers import Marker2D
-from ..core.shapes.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .laws import law_model_parameters
 from .parameters import ScenarioParameter
 from .registry import scenario

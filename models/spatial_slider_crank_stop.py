@@ -2,9 +2,9 @@
 
 from typing import Any
 
+from ..core.contacts.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D
 from ..core.model.attitude import Axes
 from ..core.model.markers import Marker3D
-from ..core.shapes.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import scenario

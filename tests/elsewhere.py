@@ -2,7 +2,7 @@ r"""What runs programs of other processors, systems and C libraries here, and th
 
 dpkg --add-architecture arm64; apt-get update
 apt-get install qemu-user libc6-arm64-cross wine64 musl musl:arm64
-python -m tlismni.core.ahead --target linux-aarch64 --target musl-x86_64 --target musl-aarch64 --target windows-x86_64 \
+python -m tlismni.core.aot --target linux-aarch64 --target musl-x86_64 --target musl-aarch64 --target windows-x86_64 \
     --output build
 """
 

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from ..core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.contacts.coordinate_contact import CoordinateContact
+from ..core.contacts.disk_on_cable import DiskOnCable2D
+from ..core.contacts.disk_on_line import DiskOnLine2D
+from ..core.contacts.segment2d import DiskOnSegment2D
 from ..core.elements import AxialRod, Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
 from ..core.model.markers import GROUND, Marker2D
-from ..core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
-from ..core.shapes.coordinate_contact import CoordinateContact
-from ..core.shapes.disk_on_cable import DiskOnCable2D
-from ..core.shapes.disk_on_line import DiskOnLine2D
-from ..core.shapes.segment2d import DiskOnSegment2D
 from .bodies import Stage, has_place
 from .coordinates import coordinate_place
 from .drawing import symbols

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from ..core.compiled.jit import interpreted
+from ..core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.contacts.coordinate_contact import CoordinateContact
+from ..core.contacts.disk_on_cable import DiskOnCable2D
+from ..core.contacts.disk_on_line import DiskOnLine2D
+from ..core.contacts.segment2d import DiskOnSegment2D
 from ..core.elements import AppliedForce2D, Distance2D, Revolute2D
 from ..core.model.signals import INPUT_SIZE, Signal, evaluate_signal
-from ..core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
-from ..core.shapes.coordinate_contact import CoordinateContact
-from ..core.shapes.disk_on_cable import DiskOnCable2D
-from ..core.shapes.disk_on_line import DiskOnLine2D
-from ..core.shapes.segment2d import DiskOnSegment2D
 from .bodies import Stage
 from .coordinates import coordinate_place
 from .scene import Arrow, Floats

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ..core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
 from ..core.elements import AxialRod
-from ..core.shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from .motion import Motion
 from .scene import Floats
 

@@ -4,6 +4,11 @@ import math
 
 import numpy as np
 
+from ..core.contacts.angle_stop2d import AngleStop2D
+from ..core.contacts.box2d import DiskOnBox2D
+from ..core.contacts.polygon2d import DiskOnPolygon2D
+from ..core.contacts.ring2d import DiskInRing2D
+from ..core.contacts.rope2d import Rope2D
 from ..core.elements import (
     Belt2D,
     PIDController2D,
@@ -16,11 +21,6 @@ from ..core.elements import (
     TorsionSpring2D,
 )
 from ..core.model.markers import Marker2D
-from ..core.shapes.angle_stop2d import AngleStop2D
-from ..core.shapes.box2d import DiskOnBox2D
-from ..core.shapes.polygon2d import DiskOnPolygon2D
-from ..core.shapes.ring2d import DiskInRing2D
-from ..core.shapes.rope2d import Rope2D
 from .bodies import Stage
 from .drawing import symbols
 from .drawing.shapes import INK, TOUCH, Circle, Drawing, Path, turned

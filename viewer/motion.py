@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.between import Between
 from ..core.description import Model
 from ..core.elements import BodyElement, FlexibleBody, PlanarFrame
 from ..core.elements.flexible_body import Section
 from ..core.flexible.section_loads import places
+from ..core.interpolation import Between
 from ..core.model.markers import GROUND, Marker2D
 from .drawing.places import Places
 

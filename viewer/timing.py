@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.between import Between
+from ..core.interpolation import Between
 
 EVEN = 400
 """Frames at equal intervals."""

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.assembly import Assembly
+from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
+from ..assembly.partition import choose_dependent
 from ..errors import ModelError
-from ..loop.sample import write_sample
-from ..run.simulation import Simulation
-from ..tables.assembly import Assembly
-from ..tables.evaluate import evaluate_residuals, evaluate_tangent
-from ..tables.partition import choose_dependent
+from ..simulation.simulation import Simulation
+from ..time_loop.sample import write_sample
 
 Floats = NDArray[np.float64]
 

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from ..compiled_model import compile_model
 from ..description import Model
-from ..run.simulation import Simulation
+from ..simulation.simulation import Simulation
 from ..state.modes import ACTIVE, CLOSED, MODE
 from .at_rest import channel_values, run_of
-from .creep import Creep
+from .pseudo_transient import Creep
 
 Floats = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class Equilibrium:
     def model(self) -> Model:
         """The model that starts at rest here. Raises ModelError for bodies whose record has no place for that: use
         `start_values`."""
-        from ..results.going_on import model_from
+        from ..results.restart import model_from
 
         return model_from(self.system, self.start_values)
 

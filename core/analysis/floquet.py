@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..errors import ModelError, SimulationError
 from ..rounding import NO_STEP
-from ..run.simulation import Simulation
+from ..simulation.simulation import Simulation
 from ..tolerances import OfScales
 from .variation import Variation
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..equations.system import EquationSystem
-from ..run.simulation import Simulation
+from ..simulation.simulation import Simulation
 from .at_rest import refuse_rate_rows
-from .flight import VARYING
 from .linearise import colour_columns, matrix_at, tangent_rate
+from .tangent_steps import VARYING
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.numbering import ModelNumbering
+from ..contacts.disk_on_line import DiskOnLine2D
 from ..description import Model
-from ..shapes.disk_on_line import DiskOnLine2D
-from ..tables.numbering import ModelNumbering
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..compiled.jit import compiled, internal
 from ..compiled.kernels import RESIDUAL
 from ..compiled.views import ivec, vec
-from ..location.dense_output import query
+from ..event_detection.dense_output import query
 from ..state.workspace_records import OK, call_evaluate
-from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 
 @internal

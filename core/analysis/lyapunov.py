@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..errors import ModelError
 from ..events import Event
-from ..run.simulation import Simulation
+from ..simulation.simulation import Simulation
 from ..tolerances import DEFAULT_ATOL
 from .variation import Variation
 

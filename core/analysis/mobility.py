@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..run.simulation import Simulation
-from ..tables.projection import bring_to_rest
-from ..tables.redundancy import RedundantRow
-from ..tables.singular_values import singular_directions
+from ..assembly.projection import bring_to_rest
+from ..assembly.redundancy import RedundantRow
+from ..assembly.singular_values import singular_directions
+from ..simulation.simulation import Simulation
 from .at_rest import Matrices, matrices, place, run_of
 
 STUCK = 1e-8

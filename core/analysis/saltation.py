@@ -21,16 +21,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.levels import rate_level
 from ..errors import SimulationError
+from ..event_detection.dense_output import query
 from ..events import Event
 from ..laws import ImpactLaw
-from ..location.dense_output import query
 from ..rounding import CONTINUOUS
-from ..run.simulation import Simulation
+from ..simulation.simulation import Simulation
 from ..stage.accelerations import solve_accelerations
 from ..state.modes import CLOSED, MODE
 from ..state.workspace_records import OK
-from ..tables.levels import rate_level
 from .layout import Layout, Layouts, mass_by_time
 from .linearise import all_rows, gap_hessian
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError
-from ..run.simulation import Simulation
+from ..simulation.simulation import Simulation
 from ..state.modes import ACTIVE, MODE
 from .at_rest import Matrices, channel_values, loads, matrices
 from .eigenmodes import resting
@@ -186,7 +186,7 @@ class _Directions:
 
     def _put(self, k: int, x: float) -> None:
         """The point at x along direction k."""
-        from ..tables.evaluate import evaluate_residuals
+        from ..assembly.evaluate import evaluate_residuals
 
         sim, n = self.sim, self.sim.assembly.n
         arrays = sim.workspace.arrays

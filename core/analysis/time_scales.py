@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..errors import TlismniError
 from ..laws import ForceLaw
-from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 COMPLIANCE = 0.95
 """Part of the compliance at each input that the vibrations looked at must have together."""

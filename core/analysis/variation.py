@@ -10,15 +10,15 @@ from ..errors import ModelError, SimulationError
 from ..laws import ImpactLaw
 from ..linalg import SingularMatrixError
 from ..rounding import NO_STEP
-from ..run.engine import user_errors
-from ..run.simulation import Simulation
+from ..simulation.engine import user_errors
+from ..simulation.simulation import Simulation
 from ..state.run_records import CHUNK, EVENT, REACHED
 from .at_rest import null_basis
-from .flight import STEP_LEFT, SUBSTEP, fly
-from .flow import NODES, STAGES, Work, carry, make_work
 from .layout import Layout, Layouts, mass_rates
 from .linearise import linearise
 from .saltation import cross, look
+from .tangent_steps import STEP_LEFT, SUBSTEP, fly
+from .variational_equation import NODES, STAGES, Work, carry, make_work
 
 Floats = NDArray[np.float64]
 

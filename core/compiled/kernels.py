@@ -42,7 +42,7 @@ BATCH = np.dtype(
             "q", "v", "a", "lam", "r", "phi", "phid", "phidd", "values", "coef", "inputs", "energy", "monitor",
             "signals",   # float64 pool of the time functions' parameters
             "memory",    # float64 contact memories (approach speed, mode)
-            "asleep",    # (contacts,) int64: 1 for contacts that are too far from touching to be evaluated
+            "sleeping",    # (contacts,) int64: 1 for contacts that are too far from touching to be evaluated
             "n_extended", "m_extended", "n_values", "n_inputs", "n_signals", "n_monitor", "n_memory",
         )
     ]

@@ -1,6 +1,6 @@
 """The library of machine code that was made ahead of time: found, held against the sources, asked for addresses.
 
-`python -m tlismni.core.ahead` makes it. It holds a digest of all sources of the core; with any other digest it is left
+`python -m tlismni.core.aot` makes it. It holds a digest of all sources of the core; with any other digest it is left
 alone, and functions are compiled when they are first used, as where there is no library.
 """
 
@@ -119,7 +119,7 @@ def _find() -> tuple[Library | None, str]:
 def _said(why: str) -> str:
     text = (
         f"the machine code in {why}: functions are compiled when they are first used, which takes a minute or two on a "
-        "machine's first run; where the sources are, `python -m tlismni.core.ahead` makes it"
+        "machine's first run; where the sources are, `python -m tlismni.core.aot` makes it"
     )
     logger.warning("%s", text)
     return text

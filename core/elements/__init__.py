@@ -5,7 +5,7 @@ A user's own needs neither: subclasses of BodyElement, JointElement and ForceEle
 
 from typing import TYPE_CHECKING, Annotated
 
-from ..late import LateClasses, late_names
+from ..lazy_import import LateClasses, late_names
 from ..model.open_union import OpenUnion
 from .base import BodyElement, Element, ForceElement, JointElement
 

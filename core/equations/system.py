@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..assembly.assembly import AT_REST, Assembly, Batch, ContactInfo
 from ..compiled.kernels import kernel_address
 from ..laws import ContactLaw
 from ..model.channels import Channel
 from ..model.signals import Step
-from ..tables.assembly import AT_REST, Assembly, Batch, ContactInfo
 from .binding import EquationBinding
 from .constraints import ConstraintFunctions
 from .errors import EquationError, NotDifferentiableError

@@ -6,15 +6,15 @@ change of kinetic energy is the driver's work.
 
 from typing import Any
 
+from ..assembly.evaluate import evaluate_energy, evaluate_residuals
+from ..assembly.levels import rate_level
+from ..assembly.projection import meet
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..methods.history import recall
 from ..rounding import CONTINUOUS
 from ..state.run_records import COUNTS_SIZE, EVENTS, GOALS_SIZE, JUMPS, PASSED, call_accelerations
 from ..state.workspace_records import OK
-from ..tables.evaluate import evaluate_energy, evaluate_residuals
-from ..tables.levels import rate_level
-from ..tables.projection import meet
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report, room_for
 

@@ -2,19 +2,18 @@
 
 from typing import Any
 
+from ..assembly.levels import rate_size
+from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.complementarity import MANY
+from ..contact_solvers.complementarity import MANY
 from ..rounding import DIRECTION_RANK, UNSOLVED
 from ..state.modes import IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, OPEN
 from ..state.run_records import CLOCK_SIZE, CROWDED
-from ..tables.held import in_space
-from ..tables.levels import rate_size
-from .blow import impact
-from .carrying import LOOSEST_RANK, RANK_OF_MANY
+from .active_set import LOOSEST_RANK, RANK_OF_MANY
 from .closing import choose
-from .left_over import take_away_left
-from .new_modes import report_modes, take_modes
+from .impact import impact
+from .mode_switch import report_modes, take_modes
 from .reading import largest_acceleration, read_before
 from .records import (
     ACCELERATIONS,
@@ -48,6 +47,7 @@ from .records import (
     real,
     whole,
 )
+from .residual_approach import take_away_left
 from .touching import find_touching, looks_again, read_rates, read_values
 
 

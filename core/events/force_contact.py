@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_residuals
+from ..assembly.levels import position_level
 from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
 from ..laws import call_law
@@ -32,8 +34,6 @@ from ..state.run_records import (
     loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
-from ..tables.evaluate import evaluate_residuals
-from ..tables.levels import position_level
 from .laws import FORCE
 from .records import COUNT, NO_ACCELERATIONS, SETTLED, call_part, delassus, whole
 from .report import report

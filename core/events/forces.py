@@ -1,11 +1,12 @@
-"""Cones and independent directions of an instant, as those of `cones/cones.py` and `cones/directions.py`."""
+"""Cones and independent directions of an instant, as those of `contact_solvers/planar_contacts.py` and
+`contact_solvers/directions.py`."""
 
 from typing import Any
 
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, mat, vec
-from ..cones.cones import CONES_TYPE
-from ..cones.directions import call_independent
+from ..contact_solvers.directions import call_independent
+from ..contact_solvers.planar_contacts import CONES_TYPE
 from .records import (
     COUNT,
     whole,

@@ -8,12 +8,12 @@ and the first one, across, is held: friction can turn, but not grow.
 import math
 from typing import Any
 
+from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.nonnegative import nonnegative
+from ..contact_solvers.nonnegative import nonnegative
 from ..linalg.small import call_least_norm
 from ..rounding import DIRECTION_RANK
-from ..tables.held import in_space
 from .forces import cones_at
 from .rates import masses
 from .records import COS_WAY, COUNT, DIRECTION, F_N, F_S, F_T, SIN_WAY, STATIC, col, whole

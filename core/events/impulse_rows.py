@@ -5,11 +5,10 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
-from ..cones.contact_blocks import blocks_at, pack_contacts
-from ..cones.row_sweeps import along, list_columns
+from ..contact_solvers.contact_blocks import blocks_at, pack_contacts
+from ..contact_solvers.row_sweeps import along, list_columns
 from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
 from ..state.run_records import loop_at
-from .crowding import near_level
 from .rates import masses
 from .records import (
     ALONE,
@@ -28,6 +27,7 @@ from .records import (
     whole,
 )
 from .turning_rows import TURNING_ROWS, find_turning_rows
+from .zeno import near_level
 
 INVERSE, TAKES, BEFORE, OFF, P, ARM = range(6)
 """Of each row: its inverse mass, the same or 0 where it takes no impulse, its rate before, that without impulses less

@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_energy
+from ..assembly.levels import position_level
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.contact_blocks import blocks_at
-from ..cones.row_sweeps import along, press_apart, sweep_rows
+from ..contact_solvers.contact_blocks import blocks_at
+from ..contact_solvers.row_sweeps import along, press_apart, sweep_rows
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, IMPULSE_JUMP, LARGEST_APPROACH, LOSS_JUMP, MEMORY_SIZE, MODE, PUSHED
@@ -28,11 +30,8 @@ from ..state.run_records import (
     loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
-from ..tables.evaluate import evaluate_energy
-from ..tables.levels import position_level
-from .crowding import end_pushing
+from .constraint_projection import meet_constraints
 from .impulse_rows import ARM, BEFORE, INVERSE, OFF, TAKES, P, open_rows, part, prepare_rows, room, rows_of
-from .meeting import meet_constraints
 from .records import (
     APPROACH,
     COUNT,
@@ -54,6 +53,7 @@ from .records import (
 )
 from .report import report
 from .touching import find_touching
+from .zeno import end_pushing
 
 TOLERANCE, SWEEPS = 1e-7, 1000
 """Sweeps end when no rate changes by more than this part of the largest there was, or after so many."""

@@ -5,12 +5,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.assembly import Assembly
+from ..assembly.patterns import entries_of_few
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.records import BlockRecord
-from ..cones.cones import CALLED, CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
-from ..cones.contact_blocks import block_reals, block_wholes
-from ..cones.directions import (
+from ..contact_solvers.contact_blocks import block_reals, block_wholes
+from ..contact_solvers.directions import (
     FARTHEST_SIGNATURE,
     INDEPENDENT_SIGNATURE,
     farthest_directions,
@@ -18,25 +19,24 @@ from ..cones.directions import (
     independent_directions,
     independent_size,
 )
-from ..cones.friction_cones import friction_cones_size
-from ..cones.least_forces import least_forces_size
+from ..contact_solvers.friction_cones import friction_cones_size
+from ..contact_solvers.least_forces import least_forces_size
+from ..contact_solvers.planar_contacts import CALLED, CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
 from ..laws import ForceLaw
 from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
 from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
-from ..tables.assembly import Assembly
-from ..tables.patterns import entries_of_few
-from .balance import find_forces
-from .carrying import keep
-from .crowding import step_through
+from .active_set import keep
+from .contact_forces import find_forces
+from .delassus import open_touching
 from .force_contact import settle_forces
+from .impact_law import strike
 from .impulse_rows import ROW_ROOM, TURNING_ROWS
 from .impulse_step import push_apart
-from .open_contacts import open_touching
 from .prepare import use_modes
 from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
 from .resting import begin_rest
-from .strike import strike
+from .zeno import step_through
 
 PARTS = {
     "open_touching": open_touching, "strike": strike, "begin_rest": begin_rest,

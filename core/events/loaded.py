@@ -2,11 +2,11 @@
 
 from typing import Any
 
+from ..assembly.levels import position_level
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import FORCE_ROUNDING
 from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE
-from ..tables.levels import position_level
 from .records import COUNT, F_N, LOADED, col, whole
 
 

@@ -9,6 +9,7 @@ correction.
 
 from typing import Any
 
+from ..assembly.levels import rate_size
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time
@@ -16,9 +17,8 @@ from ..rounding import RATE_ROUNDING
 from ..state.modes import APPROACH_SPEED, CLOSED, LARGEST_APPROACH, MEMORY_SIZE, MODE, OPEN
 from ..state.run_records import CLOSE, GRAZE, OPENS, call_accelerations
 from ..state.workspace_records import OK
-from ..tables.levels import rate_size
+from .constraint_projection import meet_constraints
 from .laws import MASSLESS
-from .meeting import meet_constraints
 from .progress import GUARD_SIZE, START
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report

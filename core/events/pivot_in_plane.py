@@ -1,7 +1,7 @@
 """Contacts whose friction has one tangent, where a few sweeps and Newton's method find no forces: pivoting.
 
 With one tangent a friction cone is a polyhedron, and the problem one of linear complementarity, which Lemke's method
-solves with a limit to the normal forces (`cones/pivoting.py`).
+solves with a limit to the normal forces (`contact_solvers/pivoting.py`).
 """
 
 import math
@@ -9,7 +9,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
-from ..cones.cones import NONE, call_cones
+from ..contact_solvers.planar_contacts import NONE, call_cones
 from .forces import cones_at
 
 

@@ -5,6 +5,11 @@ What it does is `tables/partition.prepare`; the elimination is that of `linalg/r
 
 from typing import Any
 
+from ..assembly.compatibility import analyze_equations
+from ..assembly.condition_probe import set_probe
+from ..assembly.evaluate import evaluate_tangent
+from ..assembly.partition_building import partition_wanted
+from ..assembly.structure_switch import engage_modes
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import follow, lu_at
@@ -23,11 +28,6 @@ from ..state.workspace_records import (
     SENSITIVITY,
     structure_at,
 )
-from ..tables.compatibility import analyze_equations
-from ..tables.evaluate import evaluate_tangent
-from ..tables.partition_building import partition_wanted
-from ..tables.probe import set_probe
-from ..tables.switch import engage_modes
 from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANT_ROOM
 
 

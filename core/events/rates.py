@@ -2,14 +2,14 @@
 
 from typing import Any
 
+from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.directions import call_farthest
-from ..cones.friction_cones import FOUND, MOST_SWEEPS, SWEEPS, solve_friction_cones
-from ..cones.least_forces import take_least_forces
-from ..cones.projections import motion_of
+from ..contact_solvers.directions import call_farthest
+from ..contact_solvers.friction_cones import FOUND, MOST_SWEEPS, SWEEPS, solve_friction_cones
+from ..contact_solvers.least_forces import take_least_forces
+from ..contact_solvers.projections import motion_of
 from ..rounding import STICKS_STILL
-from ..tables.held import in_space
 from .forces import cones_at
 from .pivot_in_plane import has_one_tangent, pivot_in_plane
 from .records import COS_WAY, COUNT, LEFT_OVER, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, col, whole

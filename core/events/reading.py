@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.levels import force_level, position_level, rate_size
+from ..assembly.sticking_force import held_friction, in_space, is_held
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, PERHAPS_REST, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
 from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, RATIO, SLIDE
 from ..state.workspace_records import CONTROL_SIZE, RTOL
-from ..tables.held import held_friction, in_space, is_held
-from ..tables.levels import force_level, position_level, rate_size
 from .records import COUNT, FALLS, LEAVES, OLD_RATIO, ROUNDING, SLID, SLIPS, STOPS, STRUCK, WAS, col, whole
 
 

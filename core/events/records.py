@@ -22,7 +22,8 @@ INSTANT = np.dtype(
             # addresses of these functions
             "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces", "push_apart",
             "step_through",
-            "cones", "solve_cones", "independent", "farthest",  # record of `cones/cones.py`; addresses of functions
+            # record of `contact_solvers/planar_contacts.py`; addresses of functions
+            "cones", "solve_cones", "independent", "farthest",
             "contacts",                  # (most,) int64: which touch
             "table",                     # (COLUMNS, most) float64: of each of them
             "reals", "wholes",           # (REALS,) float64, (WHOLES,) int64
@@ -46,7 +47,7 @@ INSTANT = np.dtype(
             # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
             "space_a", "space_b", "space_p", "space_room", "pressing_a", "torques",
             "sweeps", "columns",         # room for `impulse_step.py`: float64 and int64
-            "block_wholes", "block_reals",  # and for `cones/contact_blocks.py`
+            "block_wholes", "block_reals",  # and for `contact_solvers/contact_blocks.py`
         )
     ]
 )  # fmt: skip
@@ -81,7 +82,7 @@ instant_at = record_view(INSTANT_TYPE)
     # in space, along the second tangent: rate, free acceleration, force and acceleration with it, impulse, rate before
     SWAY_RATE, B_S, F_S, W_S, P_S, SWAY_BEFORE,
     COS_WAY, SIN_WAY,                  # direction of sliding, from the first tangent
-    AXIS_NOW,                          # that angles are counted from (`shapes/frame3d.py`)
+    AXIS_NOW,                          # that angles are counted from (`contacts/frame3d.py`)
     LOST_BEFORE,                       # J: of STOP_LOSS, before the last that stopped
     SPIN, HELD_SPIN,                   # r w_n on a patch, m/s; part of the torque against it at rest
     ZETA, P_SPIN, SPIN_BEFORE,         # impulse M/r against it, N s: of one problem, of a blow; the spin before, m/s
@@ -106,7 +107,7 @@ TURNS = 5  # 1: forces of contacts have torques against turning with them
 TOUCHED = 6  # contacts that touch, once the instant has been decided
 ALONE = 7  # 1: of the inverse masses of what is opened the diagonal alone is wanted
 TOUCHED_IN_SPACE = 8  # of TOUCHED, those with two tangents
-IN_ROUNDS = 9  # 1: the impact's contacts were struck one round after another (`impact.py`)
+IN_ROUNDS = 9  # 1: the impact's contacts were struck one round after another (`impact_rounds.py`)
 WHOLES = 10
 
 # what settling an instant returns

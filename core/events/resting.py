@@ -8,6 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_residuals
+from ..assembly.levels import rate_size
+from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import NO_ACCELERATION, PERHAPS_REST
@@ -15,9 +18,6 @@ from ..state.modes import CLOSED, IMPLIED, MEMORY_SIZE, OF_NORMAL
 from ..state.modes import SLOW as SLOW_SLIDING
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
-from ..tables.evaluate import evaluate_residuals
-from ..tables.held import in_space
-from ..tables.levels import rate_size
 from .rates import read_all_rates, read_level
 from .reading import largest_acceleration, unresolved_speed
 from .records import (

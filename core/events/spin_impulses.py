@@ -1,22 +1,22 @@
 """Impacts on a patch: impulses along the tangents, and against the spin, as one friction.
 
-Beside the rows of the tangents stand those of z = r w_n, whose impulses are zeta = M/r; `cones/patches.py` has the
-problem. The same with several contacts, those that do not spin too.
+Beside the rows of the tangents stand those of z = r w_n, whose impulses are zeta = M/r;
+`contact_solvers/patch_friction.py` has the problem. The same with several contacts, those that do not spin too.
 """
 
 from typing import Any
 
 import numpy as np
 
+from ..assembly.compatibility import solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..cones.one_cone import one_cone
-from ..cones.patches import one_patch, sweep_patches
-from ..location.probe import probe_of
+from ..contact_solvers.patch_friction import one_patch, sweep_patches
+from ..contact_solvers.single_contact import solve_single_contact
+from ..contacts.normal3d import SIZE, pair_of
+from ..contacts.turning3d import FRICTION_RADIUS, turning_gradient
+from ..event_detection.contact_evaluation import probe_of
 from ..model.rotation3d import times
-from ..shapes.normal3d import SIZE, pair_of
-from ..shapes.turning3d import FRICTION_RADIUS, turning_gradient
-from ..tables.compatibility import solve_equations
 from .rates import masses, solve_cone_problem
 from .records import (
     BASE,
@@ -156,7 +156,7 @@ def strike_spinning(ev: Any, dr: Any, ws: Any, i: int, v: Any, wanted: float) ->
     a, full = masses(ev, count), vec(dr.friction, ws.n_contacts)[ivec(ev.contacts, ev.most)[i]]
     if col(ev, SPIN)[i] == 0.0 or full == 0.0:
         own = (a[i, i], a[i, j], a[i, k], a[j, j], a[j, k], a[k, k])
-        return one_cone(own, (wanted, v[j], v[k]), full, 0.0)
+        return solve_single_contact(own, (wanted, v[j], v[k]), full, 0.0)
     every, rates, p = _inverse_masses(ev, ws), np.empty(4), np.empty(4)
     square = np.empty((4, 4))
     rows = (i, j, k, 3 * count + i)

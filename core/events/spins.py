@@ -2,16 +2,16 @@
 
 Friction on a patch (`laws/friction/turning.py`) is Coulomb's with a coefficient that the motion says: mu |v_T|/s of
 what slides or spins, s^2 = |v_T|^2 + z^2; of what is at rest what the torque at its present part leaves on the
-ellipsoid (`shapes/patch3d.py`). Of impacts `spin_impulses.py` says it.
+ellipsoid (`contacts/patch3d.py`). Of impacts `spin_impulses.py` says it.
 """
 
 import math
 from typing import Any
 
+from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..shapes.patch3d import CREEPS
-from ..tables.held import in_space
+from ..contacts.patch3d import CREEPS
 from .reading import slow_sliding
 from .records import (
     COUNT,

@@ -6,14 +6,14 @@ the present turning. Impacts take no torque: so there is another matrix of inver
 
 from typing import Any
 
+from ..assembly.compatibility import solve_equations
+from ..assembly.evaluate import evaluate_residuals
+from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..location.probe import can_look, pull_alone
-from ..shapes.gripping3d import TURNS_HARD
+from ..contacts.coulomb3d import TURNS_HARD
+from ..event_detection.contact_evaluation import can_look, pull_alone
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE, OPEN
-from ..tables.compatibility import solve_equations
-from ..tables.evaluate import evaluate_residuals
-from ..tables.held import in_space
 from .rates import masses
 from .records import AXIS_NOW, FLAG, TURNS, clear, col, whole
 
@@ -27,7 +27,7 @@ def find_torques(ev: Any, ws: Any, lc: Any, count: int) -> None:
     rows, torques, r = ivec(ws.contact_rows, ws.n_contacts), mat(ev.torques, count, ws.n), vec(ws.r, ws.n_ext)
     whole(ev)[TURNS] = 0
     for i in range(count):
-        # (`shapes/gripping3d.py`: what an open contact says of its tangents)
+        # (`contacts/coulomb3d.py`: what an open contact says of its tangents)
         says = monitor[ws.n_contacts + contacts[i]] if in_space(ws, contacts[i]) else 0.0
         turns[i] = 1.0 if says >= TURNS_HARD else 0.0
         col(ev, AXIS_NOW)[i] = says - TURNS_HARD * turns[i]

@@ -7,14 +7,14 @@ chapter 5; Pfeiffer and Glocker 1996, chapter 5.
 
 from typing import Any
 
+from ..assembly.evaluate import evaluate_tangent
+from ..assembly.levels import acceleration_level, position_level, rate_level
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..location.probe import can_look, gradient_alone
+from ..event_detection.contact_evaluation import can_look, gradient_alone
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, SLIDE, SLIDE_START, STICKS
 from ..state.run_records import COUNTS_SIZE, HERE
-from ..tables.evaluate import evaluate_tangent
-from ..tables.levels import acceleration_level, position_level, rate_level
 from .laws import FORCE, MASSLESS
 from .records import (
     COUNT,
@@ -38,9 +38,9 @@ def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
     memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
     pending, rows = ivec(dr.pending, ws.n_contacts), ivec(ws.contact_rows, ws.n_contacts)
     phi, scale, contacts = vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
-    level, count, asleep = GAP_ROUNDING * position_level(ws), 0, ivec(ws.asleep, ws.n_contacts)
+    level, count, sleeping = GAP_ROUNDING * position_level(ws), 0, ivec(ws.sleeping, ws.n_contacts)
     for k in range(ws.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS or asleep[k] != 0:
+        if law[k] == FORCE or law[k] == MASSLESS or sleeping[k] != 0:
             continue
         if pending[k] != 0 or memory[k, MODE] == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == ev.most:

@@ -9,13 +9,13 @@ shape is held against turning within the step, whichever way its load would turn
 import math
 from typing import Any
 
+from ..assembly.compatibility import solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..location.probe import probe_of
+from ..contacts.normal3d import SIZE, pair_of
+from ..contacts.turning3d import FRICTION_RADIUS, ROLLING, SPINNING, turning_gradient
+from ..event_detection.contact_evaluation import probe_of
 from ..model.rotation3d import cross, times
-from ..shapes.normal3d import SIZE, pair_of
-from ..shapes.turning3d import FRICTION_RADIUS, ROLLING, SPINNING, turning_gradient
-from ..tables.compatibility import solve_equations
 from .records import COUNT, FLAG, clear, col, whole
 
 TURNING_ROWS = 3

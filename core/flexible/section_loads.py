@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..between import Between
 from ..elements.flexible_body import FlexibleBody, Section
 from ..errors import ModelError
+from ..interpolation import Between
 from ..model.words import an
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ A user's own law needs neither: a subclass of ForceLaw can stand in a contact as
 
 from typing import TYPE_CHECKING, Annotated
 
-from ..late import LateClasses, late_names
+from ..lazy_import import LateClasses, late_names
 from ..model.open_union import OpenUnion
 from .base import LAW_SIGNATURE, ForceLaw, call_law, law_address
 from .restitution import ImpactLaw, NewtonImpact, PoissonImpact

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
 from ..state.workspace_records import CONTROL_SIZE, OK, STAGE_ALPHA, STAGE_BETA, call_stage
-from ..tables.evaluate import evaluate_power
 from .explicit import explicit_step
 from .history import history_row, history_time
 from .multistep import rows_available

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.inner import inner_loop
@@ -39,7 +40,6 @@ from ..state.workspace_records import (
     RTOL,
     STAGES,
 )
-from ..tables.evaluate import evaluate_residuals
 from .guess import AT_REST, best_guess, guess_stages
 from .multistep import weight_rows
 from .stages import (

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DOP853, RK23, RK45
 
+from ..assembly.evaluate import evaluate_power, evaluate_residuals
+from ..assembly.workspace import MOST_STAGES
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..state.workspace_records import OK, call_stage
-from ..tables.evaluate import evaluate_power, evaluate_residuals
-from ..tables.workspace import MOST_STAGES
 from .history import history_row, history_time
 from .schemes import EXPLICIT_SCHEMES
 

@@ -20,14 +20,14 @@ h^3 a' [(am - af)/2 + beta], the solution h^3 a'/6. Beside it that of the veloci
 
 from typing import Any
 
+from ..assembly.compatibility import solve_equations
+from ..assembly.evaluate import evaluate_power, evaluate_residuals
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..stage.accelerations import solve_accelerations
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
 from ..state.workspace_records import OK, call_stage
-from ..tables.compatibility import solve_equations
-from ..tables.evaluate import evaluate_power, evaluate_residuals
 from .history import history_row, history_time
 from .multistep import rows_available
 from .one_stage import MOST_GROWTH, finish_work, predict_linearly

@@ -25,12 +25,12 @@ of all methods: the larger counts.
 
 from typing import Any
 
+from ..assembly.evaluate import evaluate_power, evaluate_residuals
 from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
 from ..state.workspace_records import OK, call_stage
-from ..tables.evaluate import evaluate_power, evaluate_residuals
 from .history import history_row, history_time, recall
 from .multistep import rows_available
 from .one_stage import MOST_GROWTH, finish_work, predict_linearly

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_power, evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.accelerations import solve_accelerations
@@ -19,7 +20,6 @@ from ..stage.inner import inner_loop
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
 from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, LAST_INNER, LAST_OUTER, OK, RATE_SIZE
-from ..tables.evaluate import evaluate_power, evaluate_residuals
 from .coupled import solve_coupled
 from .history import history_row, history_time
 from .multistep import finish_stage, weight_rows

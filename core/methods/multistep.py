@@ -6,12 +6,12 @@ c_v = h b, c_q = (h b)^2, q* = P_q + h b P_v, v* = P_v.
 
 from typing import Any
 
+from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..stage.solver import weighted_norm
 from ..state.method_records import MAX_NODES
 from ..state.workspace_records import call_stage
-from ..tables.evaluate import evaluate_power
 from .history import history_row, history_time
 
 

@@ -10,12 +10,12 @@ work accounts: `velocity_error.py`. The larger of both norms counts, as with the
 
 from typing import Any
 
+from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
 from ..state.workspace_records import OK, call_stage
-from ..tables.evaluate import evaluate_power
 from .history import history_row, history_time
 from .multistep import rows_available
 from .newmark_guess import (

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..stage.solver import weighted_norm
 from ..state.workspace_records import OK, call_stage
-from ..tables.evaluate import evaluate_power
 from .history import history_row, history_time
 
 A = np.array(

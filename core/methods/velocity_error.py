@@ -16,13 +16,13 @@ tolerance sees, and velocities e w that it does.
 
 from typing import Any
 
+from ..assembly.compatibility import factor_equations, solve_equations
+from ..assembly.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.corotating import enter_frame, leave_frame
 from ..stage.solver import weighted_norm
 from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
-from ..tables.compatibility import factor_equations, solve_equations
-from ..tables.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
 from .history import history_row, history_time
 from .multistep import rows_available
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..run.blueprint import Unstarted
+from ..simulation.blueprint import Unstarted
 from .turning import let_turn
 
 

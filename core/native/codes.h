@@ -33,7 +33,7 @@ enum {
     NOT_RESTORED, DONE
 };
 
-/* what `restore_matrices` returns (tables/matrix_words.py) */
+/* what `restore_matrices` returns (assembly/matrix_state.py) */
 enum { KEPT, BUILT };
 
 #endif

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..compiled.library import Library
 from ..description import Model
 from ..errors import SimulationError
-from ..run.simulation import Simulation
+from ..simulation.simulation import Simulation
 from .beginning import let_begin
 from .beginnings import as_far_as_it_begins, prove_beginning, prove_together
 from .errors import NativeError

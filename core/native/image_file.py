@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.slots import Slots
 from ..compiled.library import LIBRARY, Library
-from ..run.exchange import possible
+from ..simulation.exchange import possible
 from ..source_digests import c_digest
-from ..tables.slots import Slots
 from .errors import NativeError
 from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
 from .parameters import Parameter
@@ -27,7 +27,7 @@ def own_library() -> Library:
     if LIBRARY is None:
         raise NativeError(
             "a run without Python needs the library of machine code, and this process has none: make it with "
-            "`python -m tlismni.core.ahead`, or use a wheel that carries it"
+            "`python -m tlismni.core.aot`, or use a wheel that carries it"
         )
     function = getattr(ctypes.CDLL(str(LIBRARY.path)), "tlismni_c_digest", None)
     if function is not None:
@@ -36,7 +36,7 @@ def own_library() -> Library:
     if found != c_digest():
         raise NativeError(
             f"the C code in the library of machine code, '{LIBRARY.path}', is of other sources ({found}) than these "
-            f"({c_digest()}): make it anew with `python -m tlismni.core.ahead`"
+            f"({c_digest()}): make it anew with `python -m tlismni.core.aot`"
         )
     return LIBRARY
 

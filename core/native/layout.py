@@ -5,11 +5,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from ..assembly.matrix_state import HEAD as MATRIX_HEAD
 from ..compiled.library import Library
 from ..linalg.record import VALUES
 from ..rounding import PUNCTUAL, SHORTEST
 from ..state.workspace_records import OF_D, OF_KKT
-from ..tables.matrix_words import HEAD as MATRIX_HEAD
 
 MAGIC = b"TLISMNI\x01"
 VERSION = 1
@@ -29,13 +29,12 @@ CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "
           "want", "normalise")  # fmt: skip
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
-    "exchange": "run.exchange", "tell": "run.exchange", "read": "run.exchange", "drive": "loop.drive",
-    "settle_pending": "loop.drive", "repair_now": "repair.mend",
-    "go_by_impulses": "repair.mend", "locate_now": "loop.drive",
-    "along_inputs": "run.slopes", "in_time": "run.slopes",
-    "begin_now": "run.begin_now", "want": "run.read_channels",
-    "normalise": "run.normal_form",
-    **dict.fromkeys(("matrix_words", "save_matrices", "restore_matrices"), "tables.matrix_words"),
+    **dict.fromkeys(("exchange", "tell", "read"), "simulation.exchange"),
+    **dict.fromkeys(("drive", "settle_pending", "locate_now"), "time_loop.drive"),
+    **dict.fromkeys(("repair_now", "go_by_impulses"), "recovery.compiled_repartition"),
+    **dict.fromkeys(("along_inputs", "in_time"), "simulation.slopes"),
+    "begin_now": "simulation.begin_now", "want": "simulation.read_channels", "normalise": "simulation.normal_form",
+    **dict.fromkeys(("matrix_words", "save_matrices", "restore_matrices"), "assembly.matrix_state"),
 }  # fmt: skip
 
 NUMBERS = (
@@ -76,7 +75,7 @@ def numbers_of(sim: Any, most_steps: int, begins: bool) -> bytes:
 
 
 def most_matrix_words(workspace: Any) -> int:
-    """Words that a state has of the matrices at most (`tables/matrix_words.py`)."""
+    """Words that a state has of the matrices at most (`assembly/matrix_state.py`)."""
     a, rooms = workspace.assembly, workspace.slots.rooms
     size, factors = a.n + a.m, 2 * int(rooms[OF_KKT + VALUES] + rooms[OF_D + VALUES])
     return 2 + len(a.contacts) + 2 * a.m + 4 * (MATRIX_HEAD + size) + factors

@@ -3,8 +3,8 @@
 Nobody lists where a parameter goes. The model is built with other values of it, the run's memory takes the numbers of
 each, and the words that change are those that follow from it (`forms.py`). Where a run with the other value starts with
 no other difference, setting these words is all that there is to do. Where more follows (masses, lengths, what the start
-is), the run begins anew from these words (`run/begin_now.py`). Either gives the run of the model with that value, bit
-for bit if all words have a form that is exact.
+is), the run begins anew from these words (`simulation/begin_now.py`). Either gives the run of the model with that
+value, bit for bit if all words have a form that is exact.
 """
 
 import math

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.partition import prepare
+from ..assembly.workspace import all_tangents
 from ..description import Model
 from ..errors import ConsistencyError
 from ..events.instant import Instant
 from ..laws import ForceLaw
 from ..linalg import SingularMatrixError
-from ..run.drive_record import Drive
-from ..tables.partition import prepare
-from ..tables.workspace import all_tangents
+from ..simulation.drive_record import Drive
 from .errors import NativeError
 
 POINTS = 32

@@ -1,4 +1,4 @@
-/* Derivatives of channels at the present time: along inputs, and in time (`run/slopes.py`). */
+/* Derivatives of channels at the present time: along inputs, and in time (`simulation/slopes.py`). */
 
 #include "codes.h"
 #include "image.h"

@@ -1,7 +1,7 @@
 /* States: copies of what decides the future of a run, and the same for other runs and processes.
  *
- * A state is Beside, the numbers of the run's memory in normal form (`run/normal_form.py`), and what of the matrices decides
- * (`tables/matrix_words.py`). It has no addresses: records and structures stay as they are in the run, or are built again.
+ * A state is Beside, the numbers of the run's memory in normal form (`simulation/normal_form.py`), and what of the matrices decides
+ * (`assembly/matrix_state.py`). It has no addresses: records and structures stay as they are in the run, or are built again.
  * In front goes what has been counted so far, which decides nothing: behind it, bytes of two states are equal exactly if the
  * futures are. */
 

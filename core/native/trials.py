@@ -1,7 +1,7 @@
 """Runs of a model with other numbers, from one compiled model: what parameters are tried with.
 
-All of them are copies of the memory of one run that has not begun (`run/blueprint.py`). So two of them are the same
-where their bytes are, but for addresses within each, and what is scratch.
+All of them are copies of the memory of one run that has not begun (`simulation/blueprint.py`). So two of them are the
+same where their bytes are, but for addresses within each, and what is scratch.
 """
 
 from typing import Any
@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.assembly import Assembly, assemble
+from ..assembly.start_turns import Watched
 from ..description import Model
-from ..run.blueprint import Blueprint, Unstarted, take_numbers, what_differs
-from ..tables.assembly import Assembly, assemble
-from ..tables.start_turns import Watched
+from ..simulation.blueprint import Blueprint, Unstarted, take_numbers, what_differs
 from .errors import NativeError
 from .reach import begin_of
 from .scratch import OF_EXCHANGE, scratch_of

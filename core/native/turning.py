@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..tables.assembly import assemble
-from ..tables.start_turns import Watched
+from ..assembly.assembly import assemble
+from ..assembly.start_turns import Watched
 from .errors import NativeError
 from .reach import begin_of, held_by, reached, without_parts
 from .trials import take

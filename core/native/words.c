@@ -5,7 +5,7 @@
 
 #define WITH_PYTHON "; use the FMU that runs with Python, or simulate it there"
 
-/* Those of settling: see `run/failures.py`, which knows the contact's name. */
+/* Those of settling: see `simulation/failures.py`, which knows the contact's name. */
 static const char *of_settling(int status) {
     switch (status) {
     case 2:

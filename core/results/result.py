@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.redundancy import RedundantRow
 from ..description import Model
 from ..errors import ModelError, UnknownNameError
 from ..events import Event, Fallback
 from ..model.channels import Channel
 from ..state.run_records import LOG_COLUMNS
-from ..tables.redundancy import RedundantRow
 
 if TYPE_CHECKING:
     from ...viewer import Animation
@@ -255,7 +255,7 @@ class Result:
 
     def start_at(self, t: float | None = None) -> dict[str, float]:
         """Coordinates and rates at a recorded time (left out: the last), for `simulate(..., start_values=...)`."""
-        from .going_on import start_at
+        from .restart import start_at
 
         return start_at(self, t)
 
@@ -266,6 +266,6 @@ class Result:
         ------
         ModelError : for a body whose record cannot say it, such as a cable that swings: `start_at` can.
         """
-        from .going_on import model_at
+        from .restart import model_at
 
         return model_at(self, t)

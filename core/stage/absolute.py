@@ -13,6 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.compatibility import factor_equations, left_of_sharing, solve_equations
+from ..assembly.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
+from ..assembly.levels import position_level, rate_level
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
@@ -41,9 +44,6 @@ from ..state.workspace_records import (
     STAGE_BETA,
     VELOCITY_TOLERANCE,
 )
-from ..tables.compatibility import factor_equations, left_of_sharing, solve_equations
-from ..tables.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
-from ..tables.levels import position_level, rate_level
 from .solver import (
     LEAST_RATE,
     MOST_OUTER,

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.compatibility import factor_equations
+from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
+from ..assembly.levels import acceleration_level
 from ..compiled.jit import compiled_unlocked, internal
 from ..compiled.views import ivec, vec
 from ..rounding import ACCELERATIONS_LOST, ACCELERATIONS_SOLVED, COORDINATE_NOISE
 from ..state.workspace_records import CONTROL_SIZE, OK, OUTER_SLOW, REANALYZE, STIFFNESS_SCALE
-from ..tables.compatibility import factor_equations
-from ..tables.evaluate import evaluate_residuals, evaluate_tangent
-from ..tables.levels import acceleration_level
 from .solver import solve_increment
 
 

@@ -27,10 +27,10 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..state.workspace_records import OK, SPIN_SIZE, call_stage
-from ..tables.evaluate import evaluate_power
 
 # columns of `spin`: e, f, w+ and w-, the time at which R = 1, c_q (D - 1), (c_v + c_q W) D - c_v (two complex numbers
 # each), and what was in q* and v* and at the last point in space

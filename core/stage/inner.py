@@ -9,6 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import constraint_norm, evaluate_constraints, evaluate_residuals
+from ..assembly.levels import acceleration_level, position_level, rate_level
+from ..assembly.row_rounding import row_rounding
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
@@ -27,9 +30,6 @@ from ..state.workspace_records import (
     RATE_SIZE,
     VELOCITY_TOLERANCE,
 )
-from ..tables.evaluate import constraint_norm, evaluate_constraints, evaluate_residuals
-from ..tables.levels import acceleration_level, position_level, rate_level
-from ..tables.row_rounding import row_rounding
 
 STRAINED = 8.0  # growth of the condition beyond which the constraints are solved more exactly
 
@@ -56,7 +56,7 @@ def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float
     `acceleration_slack` is that of a_d: infinite while the outer loop still moves the accelerations.
 
     Expects the residuals of the current point, or if `part` only what `evaluate_constraints` leaves; leaves the
-    residuals of the corrected one. The tolerances are parts of the levels of q, v, a (`tables/levels.py`).
+    residuals of the corrected one. The tolerances are parts of the levels of q, v, a (`assembly/levels.py`).
     """
     before = ivec(ws.counters, COUNTERS_SIZE)[INNER]
     status = OK if ws.m_act == 0 else _meet(ws, lu_address, slack, acceleration_slack)

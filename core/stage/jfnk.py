@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.compatibility import solve_equations
+from ..assembly.evaluate import evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..state.workspace_records import (
@@ -33,8 +35,6 @@ from ..state.workspace_records import (
     OUTER_SLOW,
     RATE_SIZE,
 )
-from ..tables.compatibility import solve_equations
-from ..tables.evaluate import evaluate_residuals
 from .inner import inner_loop
 from .solver import (
     LEAST_RATE,

@@ -2,9 +2,9 @@
 
 from typing import Any
 
+from ..assembly.compatibility import factor_equations, solve_equations
+from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..compiled.jit import compiled
-from ..tables.compatibility import factor_equations, solve_equations
-from ..tables.evaluate import evaluate_residuals, evaluate_tangent
 
 
 @compiled

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.compatibility import factor_equations, solve_equations
+from ..assembly.evaluate import evaluate_tangent
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
@@ -27,8 +29,6 @@ from ..state.workspace_records import (
     SINGULAR,
     WORST_CONDITION,
 )
-from ..tables.compatibility import factor_equations, solve_equations
-from ..tables.evaluate import evaluate_tangent
 
 # Growth of the condition after which other redundant rows may be the better ones to leave out.
 CHOICE_GROWTH = 3.0

@@ -4,6 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.compatibility import factor_equations
+from ..assembly.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
+from ..assembly.levels import position_level, rate_level
+from ..assembly.projection import correct_least
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..state.workspace_records import (
@@ -14,10 +18,6 @@ from ..state.workspace_records import (
     REANALYZE,
     VELOCITY_TOLERANCE,
 )
-from ..tables.compatibility import factor_equations
-from ..tables.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
-from ..tables.levels import position_level, rate_level
-from ..tables.projection import correct_least
 from .accelerations import solve_accelerations
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..state.workspace_records import (
@@ -32,7 +33,6 @@ from ..state.workspace_records import (
     OUTER_SLOW,
     RATE_SIZE,
 )
-from ..tables.evaluate import evaluate_residuals
 from .inner import inner_loop
 from .matrices import refactor
 from .solver import add_increment, begin_stage, increment_norm, inner_slack, solve_increment

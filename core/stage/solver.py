@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.compatibility import left_of_sharing
+from ..assembly.evaluate import evaluate_constraints, evaluate_residuals
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
@@ -41,8 +43,6 @@ from ..state.workspace_records import (
     RTOL,
     STAGES,
 )
-from ..tables.compatibility import left_of_sharing
-from ..tables.evaluate import evaluate_constraints, evaluate_residuals
 from .corotating import add_in_frame
 from .inner import inner_loop
 from .matrices import refactor

@@ -39,7 +39,7 @@ OF_NORMAL, OF_FIRST, OF_SECOND = 1, 2, 4
 MEMORY_SIZE = IMPLIED + 1
 # of force contacts, in a column that these have no other use for:
 LAID_MASS = GAP_START  # effective mass of shapes that met without an approach, kg; else 0
-# of constraint contacts with friction in space, in columns that these have no other use for (`shapes/frame3d.py`):
+# of constraint contacts with friction in space, in columns that these have no other use for (`contacts/frame3d.py`):
 WAY = SLIDE_START  # angle of the first tangent, rad
 AXIS = BEGUN_IMPULSE  # which axis of the first marker angles are counted from: 1, 2, 3; 0: not chosen
 LEAN = APPROACH_SPEED  # angle of the direction of sliding and spinning out of the tangent plane, rad

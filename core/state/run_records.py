@@ -19,9 +19,9 @@ LOOP = np.dtype(
             "leap",                             # (n,) float64: how far a step may move each coordinate
             "watch",                            # (n_contacts, WATCH) float64: what `remember` says of the newest row
             "near", "probes",                   # (n_contacts, NEAR_SIZE) int64, and a BATCH for each contact
-            *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor", "asleep")),
+            *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor", "sleeping")),
             "probe_values", "probe_places", "probe_nowhere",  # and where the entries of a contact's tangent go
-            "may_sleep",                        # 1: contacts may fall asleep (`asleep.py`)
+            "may_sleep",                        # 1: contacts may fall asleep (`contact_sleeping.py`)
             "margin",                           # (n_contacts,) float64: of those that do
             "travel",                           # (2, n_ext) float64: bounds of the coordinates' ways within a step
             "brackets",                         # (n_contacts, BRACKET) float64: where in a step events are
@@ -76,8 +76,8 @@ PREVIOUS_RATIO = 12  # and by how much the step changed after it
 B1, B2, A2 = 13, 14, 15  # coefficients of the step-size controller
 REJECTED_HERE = 16  # trials that failed since the last accepted step
 WINDOW_START, WINDOW_COUNT = 17, 18  # since when instants with events are counted, and how many there were
-CROWDED = 19  # 1: the last of these windows was next to no time (`events/crowding.py`)
-# while instants crowd (`events/crowding.py`): the size of the steps of impulses, 0: none; those that are left and how
+CROWDED = 19  # 1: the last of these windows was next to no time (`events/zeno.py`)
+# while instants crowd (`events/zeno.py`): the size of the steps of impulses, 0: none; those that are left and how
 # many there were to be at first, since when no contact has come or gone; where the last began, and where the last of a
 # row of them ended
 PUSH_STEP, PUSHES_LEFT, PUSHES, CALM, PUSHED_FROM, PUSHED_UNTIL = range(20, 26)
@@ -161,4 +161,4 @@ IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS, JUMPS, ROUNDS = range(10)
 EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
 """Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the
 energy; nor is JUMPS: the rate of a driver, with its row of Phi in place of a contact, has jumped; nor ROUNDS: a contact
-of an impact in rounds (`events/impact.py`)."""
+of an impact in rounds (`events/impact_rounds.py`)."""

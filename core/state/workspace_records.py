@@ -18,11 +18,12 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_second_rows", "contact_sticking",
-            "asleep",  # (contacts,) int64: 1 where a contact is not evaluated (`location/asleep.py`)
-            # (contacts,) codes of `switch.py`; the present structure, and one that is not to be given up (0: none)
+            # (contacts,) int64: 1 where a contact is not evaluated (`event_detection/contact_sleeping.py`)
+            "sleeping",
+            # (contacts,) codes of `structure_switch.py`; the present structure, and one not to be given up (0: none)
             "wanted", "structure", "kept",
             "wanted_dependent",  # (m_act,) int64: the partition that has been chosen
-            # the BUILDING record of `tables/building.py`, and the function that takes the wanted structure
+            # the BUILDING record of `assembly/building.py`, and the function that takes the wanted structure
             "building", "engage",
             # structure (changes with the set of engaged contacts)
             "active", "redundant", "n_redundant", "probe",
@@ -34,12 +35,13 @@ WORKSPACE = np.dtype(
             "weight_q", "weight_v", "control", "counters", "rate", "scale", "scratch", "atol_q", "atol_v",
             # sizes of rows of Phi, of work accounts, and of coordinates for levels: (m_ext,), (n_ext,), (n,)
             "row_scale", "work_scale", "level_scale",
-            "query_kept",  # (2 n + 2 m_ext,) pivots that a query puts back (`location/other_pivots.py`)
+            "query_kept",  # (2 n + 2 m_ext,) pivots that a query puts back (`event_detection/repivoting.py`)
             # vectors of an accelerated fixed point or of a Krylov method: (n_basis, n_ext)
             "basis", "n_basis",
             # 1: the constraints are so much cheaper to evaluate than the residuals that it is done without these
             "part_first",
-            # (n_contacts + 1,) int64: how many contacts do not sleep deeply, and which (`location/broad_phase.py`)
+            # (n_contacts + 1,) int64: how many contacts do not sleep deeply, and which
+            # (`event_detection/broad_phase.py`)
             "looked",
             # the first of the Euler parameters of each body that may be in a turning frame (`stage/corotating.py`),
             # (n_attitudes,) int64; for the time of a step those which are, (n_spins,) int64, their frames,
@@ -60,7 +62,7 @@ STRUCTURE = np.dtype(
             "n_values", "values", "m_act", "m_held", "n_implied", "active", "n_redundant", "redundant", "probe",
             "gradient_start", "gradient_col", "gradient_slot", "entry_row", "entry_col", "n_mass", "mass_slot",
             "kkt", "kkt_query",
-            "codes",                                  # (contacts,) int64: which it is for (`switch.py`)
+            "codes",                                  # (contacts,) int64: which it is for (`structure_switch.py`)
             "dropped",                                # and for which set of rows that are left out (a number)
             "slots",                                  # (4 n_kernels,) int64: addresses of the batches' slot tables
             "nnz",                                    # entries of the matrix
@@ -177,7 +179,7 @@ RATE_SIZE = 14
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)
 OF_IMPULSES = 10  # steps of impulses, which are among the steps
-IMPACTS_IN_ROUNDS = 11  # see `events/impact.py`
+IMPACTS_IN_ROUNDS = 11  # see `events/impact_rounds.py`
 COUNTERS_SIZE = 12
 
 # status of stages, steps and of the loop

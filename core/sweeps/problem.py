@@ -14,8 +14,8 @@ from ..compiled_model import CompiledModel, compile_model
 from ..description import Model
 from ..errors import ModelError, TlismniError
 from ..one_run import check_end, check_times
-from ..run.simulation import Simulation
 from ..runs import Runs
+from ..simulation.simulation import Simulation
 from ..tolerances import OfScales
 
 Columns = dict[str, NDArray[Any]]

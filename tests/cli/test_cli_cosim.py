@@ -94,7 +94,7 @@ def test_a_bundled_fmu_says_so(tlismni: Command, tmp_path: Path) -> None:
     assert "inside" in shown and "numba>=" in shown and "terminals" in shown and "constants" in shown
 
 
-@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 def test_an_fmu_without_python_says_so(tlismni: Command, tmp_path: Path) -> None:
     path = tmp_path / "p.fmu"
     assert tlismni("export", "pendulum_stop", "-o", path, "--native", "--json").json["native"] is True

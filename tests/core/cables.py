@@ -4,8 +4,8 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
-from tlismni.core.tables.evaluate import evaluate_residuals, evaluate_tangent
-from tlismni.core.tables.workspace import Workspace
+from tlismni.core.assembly.evaluate import evaluate_residuals, evaluate_tangent
+from tlismni.core.assembly.workspace import Workspace
 
 EA, EI, LINE, LENGTH = 500.0, 0.7, 1.3, 2.0
 

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.optimize import nnls
 from tlismni.core import Box3D, Capsule3D, ConvexPolyhedron3D, Marker3D, RigidBody3D, RotationVector
+from tlismni.core.contacts.edges3d import ROUND
 from tlismni.core.model.attitude import rotation_matrix
-from tlismni.core.shapes.edges3d import ROUND
 
 EULER = ("e0", "e1", "e2", "e3")
 

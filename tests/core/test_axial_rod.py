@@ -26,9 +26,9 @@ from tlismni.core import (
     deformed_shape,
     simulate,
 )
+from tlismni.core.assembly.evaluate import evaluate_residuals, evaluate_tangent
+from tlismni.core.assembly.workspace import Workspace
 from tlismni.core.flexible import rod_fields
-from tlismni.core.tables.evaluate import evaluate_residuals, evaluate_tangent
-from tlismni.core.tables.workspace import Workspace
 
 STEEL = {"length": 2.0, "axial_stiffness": 6.0e3, "mass_per_length": 1.5}
 

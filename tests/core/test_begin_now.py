@@ -1,15 +1,15 @@
-"""A run that begins anew without Python (`core/run/begin_now.py`) is a new run, bit for bit: with other numbers and at
-other times too."""
+"""A run that begins anew without Python (`core/simulation/begin_now.py`) is a new run, bit for bit: with other numbers
+and at other times too."""
 
 import numpy as np
 import pytest
 from tlismni.core import Simulation
 from tlismni.core.events.records import DECLINED, SETTLED, SINGULAR_JOINTS
 from tlismni.core.native.beginning import let_begin
-from tlismni.core.run.begin import NO_POSITIONS, NO_VELOCITIES, OVERLAPS
-from tlismni.core.run.begin_now import begin_now
-from tlismni.core.run.blueprint import take_numbers
-from tlismni.core.run.exchange_record import INITIAL_ENERGY
+from tlismni.core.simulation.begin import NO_POSITIONS, NO_VELOCITIES, OVERLAPS
+from tlismni.core.simulation.begin_now import begin_now
+from tlismni.core.simulation.blueprint import take_numbers
+from tlismni.core.simulation.exchange_record import INITIAL_ENERGY
 from tlismni.models import load
 
 NOT_IN_STATE = ("control", "row_scale", "work_scale", "atol_q", "atol_v")

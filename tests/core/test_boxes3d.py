@@ -21,8 +21,8 @@ from tlismni.core import (
     TanhFriction,
     simulate,
 )
+from tlismni.core.contacts.edges3d import ROUND
 from tlismni.core.model.attitude import rotation_matrix
-from tlismni.core.shapes.edges3d import ROUND
 
 G = 9.81
 DOWN = (0.0, 0.0, -G)

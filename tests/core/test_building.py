@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_heap import heap
 from tlismni.core import Simulation
-from tlismni.core.tables.patterns import contacts_alone
+from tlismni.core.assembly.patterns import contacts_alone
 from tlismni.models import load
 
 MODELS = {

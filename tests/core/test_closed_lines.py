@@ -24,7 +24,7 @@ from tlismni.core import (
     TanhFriction,
     simulate,
 )
-from tlismni.core.shapes.disk_on_line import make_pieces
+from tlismni.core.contacts.disk_on_line import make_pieces
 
 CORNERS = (on("a", -0.2, 0.1), on("p"), on("b", -0.2, 0.3), on("b", 0.3, 1.9), Marker2D(point=(0.4, 2.1)))
 """Of a ring whose nodes are on bodies that move against each other."""

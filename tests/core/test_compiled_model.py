@@ -20,7 +20,7 @@ from tlismni.core import (
     Step,
     compile_model,
 )
-from tlismni.core.run.blueprint import Blueprint, Unstarted
+from tlismni.core.simulation.blueprint import Blueprint, Unstarted
 from tlismni.models import load
 
 

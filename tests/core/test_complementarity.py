@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tlismni.core.cones.complementarity import Delassus, independent, solve_contacts
-from tlismni.core.cones.lcp import NoComplementarySolution, solve_lcp
+from tlismni.core.contact_solvers.complementarity import Delassus, independent, solve_contacts
+from tlismni.core.contact_solvers.lcp import NoComplementarySolution, solve_lcp
 
 
 def largest_violation(m, q, z):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of, compiled
-from tlismni.core.cones.cones import (
+from tlismni.core.contact_solvers.planar_contacts import (
     CONES_SIGNATURE,
     NONE,
     SOLVED,

@@ -22,8 +22,8 @@ from tlismni.core import (
     TanhFriction,
     simulate,
 )
+from tlismni.core.contacts.contact2d import DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.core.laws import Hertz
-from tlismni.core.shapes.contact2d import DiskOnHalfPlane2D, HalfPlane2D
 
 
 def rod(angle, velocity=(0.0, 0.0), rate=0.0, mu=0.4, law=PLASTIC, name="tip", gravity=G, contact=None):

@@ -21,7 +21,7 @@ from tlismni.core import (
     TanhFriction,
     TurningFriction,
 )
-from tlismni.core.shapes.gripping3d import TURNED
+from tlismni.core.contacts.coulomb3d import TURNED
 from tlismni.core.state.modes import ACTIVE, AT_LIMIT, AXIS, CLOSED, IDLE, LEAN, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 
 HARD = NewtonImpact(restitution=0.5)

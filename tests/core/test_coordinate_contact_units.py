@@ -18,7 +18,7 @@ from tlismni.core import (
     simulate,
 )
 from tlismni.core.model.units import conjugate, parse_unit, per_second, product, times_second
-from tlismni.core.run.simulation import Simulation
+from tlismni.core.simulation.simulation import Simulation
 from tlismni.fmu_wrapper import Slave
 
 LINEAR = {"gap": "m", "gap_rate": "m/s", "normal_force": "N", "impulse": "N.s", "dissipation": "J"}

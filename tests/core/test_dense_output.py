@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
-from tlismni.core.location.dense_output import _hermite
+from tlismni.core.event_detection.dense_output import _hermite
 
 NODES = [(0.0, -1.0), (0.0, -1.0, -2.0), (0.0, -1.0, -1.1), (0.0, -1.0, -37.0)]
 

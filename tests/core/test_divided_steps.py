@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from tlismni.core import EquationSystem, Simulation, SimulationError, simulate
-from tlismni.core.run.state import State
+from tlismni.core.simulation.state import State
 from tlismni.core.state.run_records import FIXED_STEP
 
 H = 1e-3

@@ -19,9 +19,9 @@ from tlismni.core import (
     Simulation,
     SimulationError,
 )
+from tlismni.core.assembly import workspace
 from tlismni.core.events.records import SETTLED, WANT_MEMORY
 from tlismni.core.state.workspace_records import FACTOR_AGE
-from tlismni.core.tables import workspace
 from tlismni.models import load
 
 SCRATCH = ("found", "last_trial")

@@ -23,8 +23,8 @@ from tlismni.core import (
     compile_model,
     contacts_between,
 )
-from tlismni.core.shapes.edge_parts import edge_sorts, edges_of
-from tlismni.core.shapes.overlap3d import apart
+from tlismni.core.contacts.edge_parts import edge_sorts, edges_of
+from tlismni.core.contacts.overlap3d import apart
 
 TETRAHEDRON = ConvexPolyhedron3D(marker=Marker3D(body="b"), vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tlismni.core import ModelError, Simulation, TlismniError
-from tlismni.core.run.state import State
+from tlismni.core.simulation.state import State
 from tlismni.models import load
 
 CASES = {

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from linkages import four_bar
 from tlismni.core import EquationSystem, Simulation, simulate
+from tlismni.core.assembly.structure import Structure
+from tlismni.core.assembly.workspace import Workspace
 from tlismni.core.compiled.weakly import Weakly
-from tlismni.core.tables.structure import Structure
-from tlismni.core.tables.workspace import Workspace
 from tlismni.models import load
 
 

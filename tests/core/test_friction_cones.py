@@ -6,8 +6,8 @@ import numba
 import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of
-from tlismni.core.cones.friction_cones import FOUND, MOST_SWEEPS, friction_cones_size, solve_friction_cones
-from tlismni.core.cones.least_forces import least_forces_size, take_least_forces
+from tlismni.core.contact_solvers.friction_cones import FOUND, MOST_SWEEPS, friction_cones_size, solve_friction_cones
+from tlismni.core.contact_solvers.least_forces import least_forces_size, take_least_forces
 from tlismni.core.linalg.small import LEAST_NORM_SIGNATURE, least_norm
 
 

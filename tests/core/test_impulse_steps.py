@@ -28,9 +28,9 @@ from tlismni.core import (
     TurningFriction,
     simulate,
 )
-from tlismni.core.cones.contact_blocks import pack_contacts
-from tlismni.core.cones.row_sweeps import list_columns, press_apart, sweep_rows
-from tlismni.core.events.crowding import SIZE
+from tlismni.core.contact_solvers.contact_blocks import pack_contacts
+from tlismni.core.contact_solvers.row_sweeps import list_columns, press_apart, sweep_rows
+from tlismni.core.events.zeno import SIZE
 from tlismni.core.state.modes import CLOSED, MODE, PUSHED
 from tlismni.core.state.modes import PUSHES as PUSHES_OF_A_CONTACT
 from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT

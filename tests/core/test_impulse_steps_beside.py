@@ -27,7 +27,7 @@ from tlismni.core import (
     TurningFriction,
     contacts_between,
 )
-from tlismni.core.events.crowding import SIZE
+from tlismni.core.events.zeno import SIZE
 from tlismni.core.state.modes import CLOSED, IMPULSE_JUMP, MODE
 from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT, STEP_SIZE
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tlismni.core.cones.complementarity import Delassus, independent
+from tlismni.core.contact_solvers.complementarity import Delassus, independent
 from tlismni.core.linalg.single_rows import take_single_rows
 
 

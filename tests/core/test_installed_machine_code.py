@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from tlismni.core.ahead.targets import own_name
+from tlismni.core.aot.targets import own_name
 from tlismni.core.source_digests import c_digest, core_digest
 
 ROOT = Path(__file__).parents[2]

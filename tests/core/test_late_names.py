@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 CORE = Path(__file__).parents[2] / "core"
-PACKAGES = ("", ".elements", ".laws", ".laws.friction", ".shapes")
+PACKAGES = ("", ".elements", ".laws", ".laws.friction", ".contacts")
 FIRST = """
 import json, sys
 from tlismni.core import Model, PointMass2D
@@ -37,7 +37,7 @@ def test_every_name_is_there(name: str) -> None:
         assert getattr(here, each) is not None and each in dir(here)
 
 
-@pytest.mark.parametrize("name", [name for name in PACKAGES if name != ".shapes"])
+@pytest.mark.parametrize("name", [name for name in PACKAGES if name != ".contacts"])
 def test_type_checkers_read_the_same(name: str) -> None:
     here, read = package(name), for_type_checkers(name)
     assert set(read) <= set(here.__all__)
@@ -57,8 +57,8 @@ def test_a_name_that_is_none(name: str) -> None:
     ("of", "kinds"),
     [
         (".elements", ("BODIES", "JOINTS", "FORCES")),
-        (".shapes", ("CONTACTS",)),
-        (".shapes.groups", ("GROUPS",)),
+        (".contacts", ("CONTACTS",)),
+        (".contacts.groups", ("GROUPS",)),
         (".laws", ("LAWS", "FORCE_LAWS")),
         (".laws.friction", ("FRICTION_LAWS",)),
     ],
@@ -75,5 +75,5 @@ def test_a_model_imports_what_is_in_it() -> None:
     done = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, check=True, timeout=1200)
     found = json.loads(done.stdout.splitlines()[-1])
     assert "tlismni.core.elements.planar_body" in found
-    others = ("tlismni.core.elements.spatial_body", "tlismni.core.shapes.group2d", "tlismni.core.run", "scipy")
+    others = ("tlismni.core.elements.spatial_body", "tlismni.core.contacts.group2d", "tlismni.core.simulation", "scipy")
     assert not [name for name in found if name.startswith(others)]

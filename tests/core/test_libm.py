@@ -1,4 +1,4 @@
-"""The libm that libraries of machine code carry (`core/ahead/libm.py`): how exact it is, the same for all targets."""
+"""The libm that libraries of machine code carry (`core/aot/libm.py`): how exact it is, the same for all targets."""
 
 import ctypes
 import math
@@ -101,9 +101,9 @@ def taken_from_elsewhere(machine_code):
 @pytest.mark.slow
 @pytest.mark.skipif(find_spec("ziglang") is None, reason="needs ziglang")
 def test_its_sources_need_nothing_and_are_of_no_machine():
-    from tlismni.core.ahead.libm import FUNCTIONS, PREFIX, libm_texts
-    from tlismni.core.ahead.module import link, optimised, undefined
-    from tlismni.core.ahead.targets import TARGETS
+    from tlismni.core.aot.libm import FUNCTIONS, PREFIX, libm_texts
+    from tlismni.core.aot.module import link, optimised, undefined
+    from tlismni.core.aot.targets import TARGETS
 
     texts = libm_texts()
     assert not any(word in text for text in texts for word in ("target-cpu", "target-features", "target triple", "x86"))

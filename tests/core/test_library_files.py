@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from elsewhere import LIBRARIES, is_of_these_sources, library_for
-from tlismni.core.ahead.targets import TARGETS
+from tlismni.core.aot.targets import TARGETS
 from tlismni.core.source_digests import c_sources
 
 lief = pytest.importorskip("lief")
@@ -70,7 +70,7 @@ def check(path, target, besides=()):
 @pytest.mark.parametrize("name", ["windows-x86_64", "macos-aarch64"])
 def test_all_functions_for_others_are_shown(name, tmp_path):
     import llvmlite.binding as llvm
-    from tlismni.core.ahead.shared import link_shared
+    from tlismni.core.aot.shared import link_shared
 
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()

@@ -30,7 +30,7 @@ from tlismni.core import (
     TanhFriction,
     simulate,
 )
-from tlismni.core.shapes.disk_on_line import make_pieces
+from tlismni.core.contacts.disk_on_line import make_pieces
 from tlismni.core.state.modes import ACTIVE, CLOSED, OPEN
 
 TIGHT = {"rtol": 1e-10, "atol": 1e-12}

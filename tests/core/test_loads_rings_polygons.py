@@ -35,10 +35,10 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
+from tlismni.core.contacts.box2d import box_gap, box_slide
+from tlismni.core.contacts.polygon2d import polygon_gap, polygon_slide
+from tlismni.core.contacts.ring2d import ring_slide
 from tlismni.core.elements import Frame2D
-from tlismni.core.shapes.box2d import box_gap, box_slide
-from tlismni.core.shapes.polygon2d import polygon_gap, polygon_slide
-from tlismni.core.shapes.ring2d import ring_slide
 
 TIGHT = {"rtol": 1e-10, "atol": 1e-12}
 DEAD = NewtonImpact(restitution=0.0)

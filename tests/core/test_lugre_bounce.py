@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from tlismni.core import Model, simulate
+from tlismni.core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.core.elements import RigidBody2D
 from tlismni.core.laws import KelvinVoigt
 from tlismni.core.laws.friction import LuGreFriction
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.rounding import LEAST_DEFLECTION
-from tlismni.core.shapes.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 
 MASS, INERTIA, RADIUS, FALL, GRAVITY = 1.0, 0.004, 0.1, 0.05, 9.81
 STIFFNESS, DAMPING = 1e5, 100.0

@@ -23,7 +23,7 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
-from tlismni.core.shapes.rings3d import EDGE, FLAT_TILT, WITHIN
+from tlismni.core.contacts.rings3d import EDGE, FLAT_TILT, WITHIN
 
 G, R, H = 9.81, 0.15, 0.02
 ON = Marker3D(body="b")

@@ -251,7 +251,7 @@ def test_steps_of_impulses():
     assert mixed["rubbing.friction_force"] != 0.0
 
 
-@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 def test_without_python():
     """The bits of Python's run."""
     from tlismni.core.native.in_process import NativeModel, NativeRun

@@ -11,7 +11,7 @@ from tlismni.core.native import NativeError, image_of
 from tlismni.core.native import layout as layouts
 from tlismni.models import load
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 NATIVE = Path(layouts.__file__).parent
 
 
@@ -26,13 +26,13 @@ def build(name, t_end=None, **parameters):
 
 def jumping_model():
     """A pendulum with a marker at its end, pushed from 0.2 to 0.6 s, above a floor."""
+    from tlismni.core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
     from tlismni.core.description import Model
     from tlismni.core.elements import AppliedForce2D, Revolute2D, RigidBody2D
     from tlismni.core.laws import NewtonImpact
     from tlismni.core.model.markers import Marker2D
     from tlismni.core.model.outputs import MarkerOutput2D
     from tlismni.core.model.signals import Step
-    from tlismni.core.shapes.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 
     end = Marker2D(body="bar", point=(0.5, 0.0), angle=0.3)
     return Model(
@@ -293,7 +293,7 @@ def test_wrong_times_and_inputs_and_too_many_steps():
 
 def test_numbers_of_c_are_those_of_python():
     from tlismni.core.events import records as events
-    from tlismni.core.run import begin_record, exchange, exchange_record
+    from tlismni.core.simulation import begin_record, exchange, exchange_record
     from tlismni.core.state import run_records as records
     from tlismni.core.state import workspace_records as system
 

@@ -9,7 +9,7 @@ from tlismni.core.compiled.library import LIBRARY
 from tlismni.core.native.forms import BINARY, SUM, SUMS, UNARY, form_of
 from tlismni.models import load
 
-needs_library = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+needs_library = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 VALUES = np.random.default_rng(1).uniform(0.2, 11.0, 75)
 
 

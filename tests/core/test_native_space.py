@@ -35,7 +35,7 @@ from tlismni.core import (
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.core.native import image_of
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 
 ENDS = {"a": Marker3D(), "b": Marker3D(body="body", point=(-0.5, 0.0, 0.0))}
 HINGE = Revolute3D(name="joint", **ENDS)

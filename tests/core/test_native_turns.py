@@ -24,7 +24,7 @@ from tlismni.core.compiled.library import LIBRARY
 from tlismni.core.events.records import DECLINED, SETTLED, SINGULAR_JOINTS
 from tlismni.core.native import image_of
 from tlismni.core.native.beginning import let_begin
-from tlismni.core.run.begin_now import begin_now
+from tlismni.core.simulation.begin_now import begin_now
 
 TURN = 2.0 * math.pi
 ANGLE = 0.5
@@ -93,7 +93,7 @@ def test_a_run_that_begins_anew_is_one_that_begins_there(driver):
         assert values["hinge.angle"] == pytest.approx(said, abs=1e-9)
 
 
-@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 @pytest.mark.parametrize("case", [*DRIVERS, "flipped", "said by the hinge", "faster than in the image"])
 def test_the_same_bits_from_other_times(case):
     from tlismni.core.native.in_process import NativeModel, NativeRun

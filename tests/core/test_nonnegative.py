@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 from tlismni.core.compiled.jit import compiled
-from tlismni.core.cones.nonnegative import nonnegative, nonnegative_size
+from tlismni.core.contact_solvers.nonnegative import nonnegative, nonnegative_size
 
 
 @compiled

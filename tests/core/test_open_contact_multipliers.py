@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from tlismni.core import Model, NewtonImpact
+from tlismni.core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.core.elements import AppliedForce2D, PointMass2D, SpringDamper2D
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.signals import Ramp
-from tlismni.core.run.simulation import Simulation
-from tlismni.core.shapes.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.simulation.simulation import Simulation
 
 GRAVITY, RATE, FREQUENCY, AMPLITUDE = 9.81, 40.0, 1500.0, 1e-3
 

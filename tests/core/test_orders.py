@@ -7,7 +7,7 @@ import pytest
 from helpers import G, circle_pendulum, order, pendulum_angles, point_pendulum
 from linkages import slider_crank
 from tlismni.core import Simulation, simulate
-from tlismni.core.repair.repair import repair
+from tlismni.core.recovery.repartition import repair
 
 ANGLE, RATE = -0.4, 1.5
 

@@ -16,8 +16,8 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
-from tlismni.core.shapes.crossing3d import BACK
-from tlismni.core.shapes.round3d import SHORTER
+from tlismni.core.contacts.crossing3d import BACK
+from tlismni.core.contacts.round3d import SHORTER
 
 L, R, G = 0.6, 0.1, 9.81
 SOFT = NewtonImpact(restitution=0.2, rest_ratio=1e-3)

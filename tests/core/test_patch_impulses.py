@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tlismni.core.cones.patches import one_patch
+from tlismni.core.contact_solvers.patch_friction import one_patch
 
 
 @numba.njit

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_heap import heap
 from tlismni.core import Simulation
-from tlismni.core.tables import workspace
+from tlismni.core.assembly import workspace
 from tlismni.models import load
 
 

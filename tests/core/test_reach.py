@@ -35,7 +35,9 @@ def test_every_import_is_followed() -> None:
 
 
 def test_code_depends_on_what_it_reaches_alone() -> None:
-    kernel, solver, shape = (CORE / name for name in ("elements/planar_body.py", "stage/solver.py", "shapes/line2d.py"))
+    kernel, solver, shape = (
+        CORE / name for name in ("elements/planar_body.py", "stage/solver.py", "contacts/line2d.py")
+    )
     jit = CORE / "compiled" / "jit.py"
     assert all(jit in reach.reached(path) for path in (kernel, solver, shape))
     assert shape not in reach.reached(solver) and kernel not in reach.reached(solver)

@@ -25,7 +25,7 @@ from tlismni.core import (
     simulate,
 )
 from tlismni.core.analysis import mobility, state_space, static_equilibrium
-from tlismni.core.run.state import State
+from tlismni.core.simulation.state import State
 from tlismni.models import load
 
 MASS, INERTIA, AHEAD = 2.0, 0.3, 0.5

@@ -22,7 +22,7 @@ from tlismni.core import (
     simulate,
 )
 from tlismni.core.compiled.jit import compiled
-from tlismni.core.location.other_pivots import orientation
+from tlismni.core.event_detection.repivoting import orientation
 from tlismni.core.stage.joints import evaluate_joints
 from tlismni.core.state.modes import CLOSED, IDLE, MODE, RATIO, SLIDE
 

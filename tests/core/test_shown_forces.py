@@ -22,7 +22,7 @@ from tlismni.core import (
     Segment2D,
     simulate,
 )
-from tlismni.core.tables.redundancy import RedundantRow
+from tlismni.core.assembly.redundancy import RedundantRow
 
 G = 9.81
 LAW = NewtonImpact(restitution=0.0)

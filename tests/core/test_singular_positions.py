@@ -209,7 +209,7 @@ def test_long_chain_that_bends_is_not_looked_at(monkeypatch):
     def looked(*_):
         raise AssertionError("a singular position was looked for")
 
-    monkeypatch.setattr("tlismni.core.repair.passage.find_singular", looked)
+    monkeypatch.setattr("tlismni.core.recovery.singular_passage.find_singular", looked)
     bodies, joints = [], []
     for k in range(1000):
         body = RigidBody3D(name=f"rod{k}", mass=1.0, inertia=(0.00125, 0.084, 0.084), position=(k + 0.5, 0.0, 0.0))

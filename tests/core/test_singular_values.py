@@ -5,10 +5,10 @@ import pytest
 from linkages import four_bar
 from scipy.sparse import csr_array
 from tlismni.core import Simulation
+from tlismni.core.assembly import singular_values
+from tlismni.core.assembly.singular_values import ScaledJacobian, least_singular_value, singular_directions
 from tlismni.core.linalg.smallest_singular import most_values, smallest_singular
-from tlismni.core.repair.singular_position import find_singular, natural_step
-from tlismni.core.tables import singular_values
-from tlismni.core.tables.singular_values import ScaledJacobian, least_singular_value, singular_directions
+from tlismni.core.recovery.singular_position import find_singular, natural_step
 from tlismni.models import load
 
 NOISE = 1e-14

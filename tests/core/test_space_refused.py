@@ -52,7 +52,7 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
-from tlismni.core.shapes import ContactElement
+from tlismni.core.contacts import ContactElement
 
 
 @pytest.mark.parametrize(

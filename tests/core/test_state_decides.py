@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tlismni.core import Simulation, SimulationError, State, TlismniError
 from tlismni.core.events.progress import COUNT, IN_A_ROW, SINCE
-from tlismni.core.run.setup import HISTORY_ROWS
+from tlismni.core.simulation.setup import HISTORY_ROWS
 from tlismni.models import load
 
 RARE = {

@@ -44,9 +44,9 @@ from tlismni.core import (
     Table,
     Tsuji,
 )
+from tlismni.core.assembly.evaluate import evaluate_residuals, evaluate_tangent
+from tlismni.core.assembly.workspace import Workspace
 from tlismni.core.state.modes import ACTIVE, APPROACH_SPEED, CLOSED, LAID_MASS, MODE
-from tlismni.core.tables.evaluate import evaluate_residuals, evaluate_tangent
-from tlismni.core.tables.workspace import Workspace
 
 quick = settings(deadline=None, max_examples=8, derandomize=True)
 H = 1e-2

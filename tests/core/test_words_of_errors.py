@@ -126,11 +126,11 @@ def test_a_force_that_does_not_follow_keeps_the_inertial_axes():
 def test_wall_time_is_that_of_the_run_alone(monkeypatch):
     """By a clock that building the simulation puts on by 1000 s, and compiling on the way by 100 s."""
     from numba.core import event
-    from tlismni.core.compiled import watch
-    from tlismni.core.run.engine import Engine
+    from tlismni.core.compiled import stopwatch
+    from tlismni.core.simulation.engine import Engine
 
     now = [0.0]
-    monkeypatch.setattr(watch.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(stopwatch.time, "perf_counter", lambda: now[0])
     monkeypatch.setattr(event, "timer", lambda: now[0])
     built, compiled = Engine.__init__, []
 
@@ -139,7 +139,7 @@ def test_wall_time_is_that_of_the_run_alone(monkeypatch):
         now[0] += 1000.0
 
     def progress(t):
-        with event.trigger_event(watch.KIND):
+        with event.trigger_event(stopwatch.KIND):
             now[0] += 100.0
         compiled.append(t)
         now[0] += 2.0

@@ -83,7 +83,7 @@ def test_the_page_on_embedding_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     from tlismni.core.compiled.library import LIBRARY
 
     if LIBRARY is None:
-        pytest.skip("needs the library of machine code (tlismni.core.ahead)")
+        pytest.skip("needs the library of machine code (tlismni.core.aot)")
     monkeypatch.chdir(tmp_path)
     (code,) = [text for language, _, text in blocks(DOCS / "embedding.md") if language == "python"]
     exec(code, {"Path": Path})
@@ -94,7 +94,7 @@ def test_the_page_on_fmus_without_python_runs(tmp_path: Path, monkeypatch: pytes
     from tlismni.core.compiled.library import LIBRARY
 
     if LIBRARY is None:
-        pytest.skip("needs the library of machine code (tlismni.core.ahead)")
+        pytest.skip("needs the library of machine code (tlismni.core.aot)")
     monkeypatch.chdir(tmp_path)
     from tlismni.fmu_wrapper import export_fmu
     from tlismni.models import load

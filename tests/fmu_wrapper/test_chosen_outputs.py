@@ -45,7 +45,7 @@ def test_a_protected_table_tells_neither_numbers_nor_laws():
     assert [v.reference for v in table.variables] == [1, 2, 3, 4] and not table.by_name["ball.y"].description
 
 
-@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_a_protected_fmu_runs_and_holds_no_words_of_the_model(version, tmp_path):
     path = export_fmu(

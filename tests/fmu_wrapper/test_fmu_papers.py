@@ -8,7 +8,7 @@ from tlismni.fmu_wrapper import export_fmu
 from tlismni.models import load
 
 NATIVE = pytest.param(
-    True, marks=pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+    True, marks=pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 )
 LICENCE = "documentation/licenses/license.txt"
 
@@ -28,7 +28,7 @@ def test_papers(native, version, tmp_path):
     assert "MIT License" in licence and "Copyright" in licence
 
 
-@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+@pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 def test_a_protected_one_has_the_page_of_its_variables_and_the_licence(tmp_path):
     path = export_fmu(load("pendulum_stop"), tmp_path / "x.fmu", "3.0", native=True, protect=True, outputs=["stop.gap"])
     with zipfile.ZipFile(path) as archive:

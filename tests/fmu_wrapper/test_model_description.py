@@ -10,6 +10,7 @@ from fmpy.validation import validate_fmu
 from fmu_helpers import ball_model
 from lxml import etree
 from tlismni.core import Simulation, simulate
+from tlismni.core.contacts.contact2d import Disk2D, DiskOnDisk2D
 from tlismni.core.description import Model
 from tlismni.core.elements import (
     AppliedForce2D,
@@ -27,7 +28,6 @@ from tlismni.core.model.channels import Input, Parameter
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
-from tlismni.core.shapes.contact2d import Disk2D, DiskOnDisk2D
 from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.dependencies import Dependencies
 from tlismni.fmu_wrapper.nominal import estimates

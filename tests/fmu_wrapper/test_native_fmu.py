@@ -24,7 +24,7 @@ from tlismni.fmu_wrapper.errors import ExportError
 from tlismni.fmu_wrapper.export import fmi2_platform, fmi3_platform
 from tlismni.models import load, names
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 HERE = Path(__file__).parent
 CC = shutil.which("cc")
 WAYS = [(False, False), (False, True), (True, False), (True, True)]

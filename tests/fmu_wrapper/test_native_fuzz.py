@@ -7,7 +7,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from tlismni.core.ahead.shared import symbol_table
+from tlismni.core.aot.shared import symbol_table
 from tlismni.core.compiled.library import LIBRARY
 from tlismni.core.source_digests import c_sources
 from tlismni.fmu_wrapper import export_fmu

@@ -6,7 +6,7 @@ import pytest
 from native_pair import scenario_pair
 from tlismni.core.compiled.library import LIBRARY
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 STEPS = 40
 
 

@@ -13,7 +13,7 @@ from tlismni.fmu_wrapper import export_fmu
 from tlismni.models import load
 from typer.testing import CliRunner
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 
 
 @pytest.fixture(scope="module")

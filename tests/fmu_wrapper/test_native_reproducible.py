@@ -12,7 +12,7 @@ from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.models import load
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 EXPORT = """
 import sys
 from tlismni.fmu_wrapper import export_fmu

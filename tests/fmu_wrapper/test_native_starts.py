@@ -18,7 +18,7 @@ from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D, Marker3D
 from tlismni.core.model.signals import InputSignal, Polynomial, Step
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 
 
 @pytest.fixture(scope="module", params=["2.0", "3.0"])

@@ -18,7 +18,7 @@ from tlismni.core import (
 )
 from tlismni.core.compiled.library import LIBRARY
 
-pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.ahead)")
+pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 HARD = {"law": NewtonImpact(restitution=0.4), "friction": CoulombFriction(coefficient=0.5)}
 SOFT = {
     "law": HuntCrossley(stiffness=1e6, restitution=0.5),

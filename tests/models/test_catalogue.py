@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tlismni.core.assembly.evaluate import evaluate_residuals
+from tlismni.core.assembly.workspace import Workspace
 from tlismni.core.description import Model
 from tlismni.core.elements import (
     Clamp2D,
@@ -17,8 +19,6 @@ from tlismni.core.elements import (
 )
 from tlismni.core.laws import KelvinVoigt
 from tlismni.core.laws.damping_ratio import restitution_without_pull
-from tlismni.core.tables.evaluate import evaluate_residuals
-from tlismni.core.tables.workspace import Workspace
 from tlismni.models import ScenarioError, catalogue, load, names
 from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio
 from tlismni.models.parameters import ScenarioParameter

@@ -8,6 +8,9 @@ import pytest
 from momentum import momentum_drift
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from tlismni.core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.contacts.disk_on_line import DiskOnLine2D, Line2D
+from tlismni.core.contacts.segment2d import DiskOnSegment2D, Segment2D
 from tlismni.core.description import Model
 from tlismni.core.elements import AxialRod, FloatingBeam2D, PointMass2D, Prismatic2D, RigidBody2D
 from tlismni.core.laws import (
@@ -21,9 +24,6 @@ from tlismni.core.laws import (
 )
 from tlismni.core.laws.damping_ratio import restitution_without_pull
 from tlismni.core.model.markers import Marker2D
-from tlismni.core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.shapes.disk_on_line import DiskOnLine2D, Line2D
-from tlismni.core.shapes.segment2d import DiskOnSegment2D, Segment2D
 from tlismni.validation.errors import ExudynUnavailable, NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available, import_exudyn
 from tlismni.validation.exudyn_model import build_exudyn_model

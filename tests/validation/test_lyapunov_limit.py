@@ -4,9 +4,9 @@ import math
 
 import pytest
 from tlismni.core import Model, NewtonImpact, simulate
+from tlismni.core.contacts.contact2d import Disk2D, DiskOnDisk2D
 from tlismni.core.elements import PointMass2D
 from tlismni.core.model.markers import Marker2D
-from tlismni.core.shapes.contact2d import Disk2D, DiskOnDisk2D
 from tlismni.models import load
 from tlismni.validation import crosscheck
 from tlismni.validation.comparisons.toggled import plastic_impulse

@@ -7,6 +7,11 @@ import numpy as np
 import pytest
 from momentum import momentum_drift
 from tlismni.core import AxisAngles, Model, simulate
+from tlismni.core.contacts import CONTACTS, AngleStop2D, DiskInRing2D, DiskOnBox2D, DiskOnPolygon2D, Rope2D
+from tlismni.core.contacts.box2d import Box2D
+from tlismni.core.contacts.contact2d import Disk2D
+from tlismni.core.contacts.polygon2d import Polygon2D
+from tlismni.core.contacts.ring2d import Ring2D
 from tlismni.core.elements import (
     BODIES,
     FORCES,
@@ -40,11 +45,6 @@ from tlismni.core.laws import Gonthier, Hertz, NewtonImpact
 from tlismni.core.laws.friction import TanhFriction
 from tlismni.core.model.markers import Marker2D, Marker3D
 from tlismni.core.model.signals import Polynomial, Sine
-from tlismni.core.shapes import CONTACTS, AngleStop2D, DiskInRing2D, DiskOnBox2D, DiskOnPolygon2D, Rope2D
-from tlismni.core.shapes.box2d import Box2D
-from tlismni.core.shapes.contact2d import Disk2D
-from tlismni.core.shapes.polygon2d import Polygon2D
-from tlismni.core.shapes.ring2d import Ring2D
 from tlismni.validation import crosscheck, run_exudyn
 from tlismni.validation.errors import NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available

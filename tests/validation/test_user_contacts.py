@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from momentum import momentum_drift
 from tlismni.core import Model, simulate
+from tlismni.core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from tlismni.core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
 from tlismni.core.elements import Cable2D, LinearSystem, MaterialPoint2D, PointMass2D, RigidBody2D
 from tlismni.core.laws import Flores, Hertz, KelvinVoigt, KuwabaraKono, Tsuji
 from tlismni.core.laws.friction import (
@@ -17,8 +19,6 @@ from tlismni.core.laws.friction import (
     ThrelfallFriction,
 )
 from tlismni.core.model.markers import Marker2D
-from tlismni.core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from tlismni.validation import ExudynSettings, run_exudyn
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.validation.translation.formulas import friction_force, normal_force

@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from ...core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from ...core.contacts.coordinate_contact import CoordinateContact
+from ...core.contacts.disk_on_cable import DiskOnCable2D
+from ...core.contacts.disk_on_line import DiskOnLine2D
+from ...core.contacts.segment2d import DiskOnSegment2D
 from ...core.elements import PlanarBody
 from ...core.laws import KelvinVoigt
 from ...core.model.markers import GROUND, Marker2D
-from ...core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-from ...core.shapes.coordinate_contact import CoordinateContact
-from ...core.shapes.disk_on_cable import DiskOnCable2D
-from ...core.shapes.disk_on_line import DiskOnLine2D
-from ...core.shapes.segment2d import DiskOnSegment2D
 from .contact_laws import contact_parameters, is_native
 from .coordinate_contacts import add_coordinate_contact
 from .kinematics import BodyStates, States, gap_motion

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ...core.contacts.coordinate_contact import CoordinateContact
 from ...core.laws import ForceLaw, Hertz, KelvinVoigt
-from ...core.shapes.coordinate_contact import CoordinateContact
 from .contact_laws import contact_parameters
 from .formulas import normal_force
 from .registry import Build, CoordinateColumns

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...core.contacts.contact2d import Disk2D, HalfPlane2D
 from ...core.model.markers import Marker2D
-from ...core.shapes.contact2d import Disk2D, HalfPlane2D
 
 Pair = tuple[np.ndarray, np.ndarray]
 

@@ -11,8 +11,8 @@ from typing import Any
 
 from ...core.description import Model
 from ...core.laws import ForceLaw
-from ...core.run import start
-from ...core.run.simulation import Simulation
+from ...core.simulation import start
+from ...core.simulation.simulation import Simulation
 from ...core.state.modes import ACTIVE, APPROACH_SPEED, LAID_MASS, MODE
 from .formulas import StickingCoulomb
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ...core.description import Model
 from ...core.elements import Joint3D, Spherical3D
 from ...core.elements.dot1_3d import Dot1
@@ -19,8 +20,7 @@ from ...core.elements.point3d import Point
 from ...core.elements.primitive3d import AXIS
 from ...core.elements.spatial_body import start_of_marker
 from ...core.errors import TlismniError
-from ...core.run.simulation import Simulation
-from ...core.tables.evaluate import evaluate_residuals, evaluate_tangent
+from ...core.simulation.simulation import Simulation
 from ..errors import NotTranslatable
 from .registry import can_free
 

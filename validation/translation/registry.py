@@ -6,10 +6,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ...core.contacts.contact2d import Disk2D, HalfPlane2D
+from ...core.contacts.coordinate_contact import CoordinateContact
 from ...core.description import Model
 from ...core.model.markers import GROUND, Marker2D
-from ...core.shapes.contact2d import Disk2D, HalfPlane2D
-from ...core.shapes.coordinate_contact import CoordinateContact
 from ..errors import NotTranslatable
 from ..exudyn_import import Exudyn
 from .laid_contacts import Laid

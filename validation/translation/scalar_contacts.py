@@ -6,12 +6,12 @@ exudyn has none of them: each is a user function (`user_contacts.py`) with a gap
 import math
 from collections.abc import Sequence
 
-from ...core.shapes.angle_stop2d import AngleStop2D
-from ...core.shapes.box2d import DiskOnBox2D
-from ...core.shapes.contact2d import Contact2D
-from ...core.shapes.polygon2d import DiskOnPolygon2D
-from ...core.shapes.ring2d import DiskInRing2D
-from ...core.shapes.rope2d import Rope2D
+from ...core.contacts.angle_stop2d import AngleStop2D
+from ...core.contacts.box2d import DiskOnBox2D
+from ...core.contacts.contact2d import Contact2D
+from ...core.contacts.polygon2d import DiskOnPolygon2D
+from ...core.contacts.ring2d import DiskInRing2D
+from ...core.contacts.rope2d import Rope2D
 from .contact_laws import contact_parameters
 from .measures import Measure, angle, direction, distance, place_of, scalar
 from .registry import Build, translates

@@ -11,6 +11,7 @@ from operator import add, mul
 
 from scipy.interpolate import CubicSpline
 
+from ...core.assembly.numbering import ModelNumbering
 from ...core.elements import (
     PIDController2D,
     PIDController3D,
@@ -29,7 +30,6 @@ from ...core.elements import (
 )
 from ...core.elements.base import PairElement2D
 from ...core.elements.measured_force3d import CountingForce3D, MeasuredForce3D
-from ...core.tables.numbering import ModelNumbering
 from .measures import MEASURES, Scalar, scalar
 from .measures3d import MEASURES3D, angle_from
 from .registry import Build, no_equal, translates

@@ -4,6 +4,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ...core.assembly.numbering import ModelNumbering
+from ...core.contacts.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
+from ...core.contacts.edges3d import EdgesOnEdges3D
+from ...core.contacts.on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
+from ...core.contacts.on_mesh3d import SphereOnMesh3D
+from ...core.contacts.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
 from ...core.elements import (
     Cylindrical3D,
     Fixed3D,
@@ -28,12 +34,6 @@ from ...core.model.derived import Columns
 from ...core.model.derived import Derived as Group
 from ...core.model.frame3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
-from ...core.shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
-from ...core.shapes.edges3d import EdgesOnEdges3D
-from ...core.shapes.on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
-from ...core.shapes.on_mesh3d import SphereOnMesh3D
-from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
-from ...core.tables.numbering import ModelNumbering
 from ..errors import NotTranslatable
 from .bodies import node_columns
 from .redundant import less

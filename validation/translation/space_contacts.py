@@ -8,9 +8,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from ...core.contacts.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from ...core.laws.friction import LuGreFriction
 from ...core.model.markers import GROUND, Marker3D
-from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from ..errors import NotTranslatable
 from .contact_laws import is_native
 from .formulas import StickingCoulomb

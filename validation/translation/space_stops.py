@@ -2,7 +2,7 @@
 
 import math
 
-from ...core.shapes.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
+from ...core.contacts.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
 from ..errors import NotTranslatable
 from .contact_laws import is_native
 from .registry import Build, translates

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...core.assembly.numbering import ModelNumbering
 from ...core.elements import (
     AxialSpring3D,
     Cylindrical3D,
@@ -11,7 +12,6 @@ from ...core.elements import (
     TorsionSpring3D,
 )
 from ...core.model.markers import GROUND, Marker3D
-from ...core.tables.numbering import ModelNumbering
 from ..errors import NotTranslatable
 from .registry import Build, translates
 from .scalar_forces import add_effort

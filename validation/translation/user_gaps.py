@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from ...core.contacts.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
+from ...core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
 from ...core.elements import Cable2D, MaterialPoint2D
 from ...core.model.markers import GROUND, Marker2D
-from ...core.shapes.contact2d import DiskOnDisk2D, DiskOnHalfPlane2D
-from ...core.shapes.coordinate_contact import CoordinateContact, CoordinateTerm
 from ..errors import NotTranslatable
 from .registry import Build
 

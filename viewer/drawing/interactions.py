@@ -5,6 +5,11 @@ import re
 from functools import singledispatch
 from typing import Any
 
+from ...core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ...core.contacts.coordinate_contact import CoordinateContact
+from ...core.contacts.disk_on_cable import DiskOnCable2D
+from ...core.contacts.disk_on_line import DiskOnLine2D
+from ...core.contacts.segment2d import DiskOnSegment2D
 from ...core.elements import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -24,11 +29,6 @@ from ...core.elements import (
 )
 from ...core.model.markers import GROUND
 from ...core.model.signals import Constant, InputSignal
-from ...core.shapes.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
-from ...core.shapes.coordinate_contact import CoordinateContact
-from ...core.shapes.disk_on_cable import DiskOnCable2D
-from ...core.shapes.disk_on_line import DiskOnLine2D
-from ...core.shapes.segment2d import DiskOnSegment2D
 from . import symbols
 from .places import Places
 from .shapes import GROUND as GROUND_COLOUR

@@ -5,6 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from ...core.contacts.contact3d import HalfSpace3D, SphereOnHalfSpace3D
+from ...core.contacts.on_cable3d import CableOnHalfSpace3D
+from ...core.contacts.round3d import SmoothOnHalfSpace3D
+from ...core.contacts.stop3d import DistanceStop3D, Rope3D
 from ...core.elements import (
     AngleDriver3D,
     AxialSpring3D,
@@ -35,10 +39,6 @@ from ...core.elements import (
 )
 from ...core.elements.cable_clamp3d import CableClamp3D
 from ...core.model.markers import GROUND, Marker3D
-from ...core.shapes.contact3d import HalfSpace3D, SphereOnHalfSpace3D
-from ...core.shapes.on_cable3d import CableOnHalfSpace3D
-from ...core.shapes.round3d import SmoothOnHalfSpace3D
-from ...core.shapes.stop3d import DistanceStop3D, Rope3D
 from ..scene import Floats
 from . import meshes
 from .colours import BASE, FLOOR, JOINT, WIRE

@@ -4,11 +4,11 @@ from collections.abc import Callable, Collection
 
 import numpy as np
 
+from ...core.contacts.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
+from ...core.contacts.round3d import SmoothOnHalfSpace3D, SphereInSphere3D
+from ...core.contacts.stop3d import Rope3D
 from ...core.elements import AppliedForce3D, Distance3D, Joint3D
 from ...core.model.signals import INPUT_SIZE
-from ...core.shapes.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
-from ...core.shapes.round3d import SmoothOnHalfSpace3D, SphereInSphere3D
-from ...core.shapes.stop3d import Rope3D
 from ..forces import signal_values
 from ..scene import Floats
 from .rounds import lowest

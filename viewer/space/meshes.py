@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.shapes.mesh_parts import normals_of
+from ...core.contacts.mesh_parts import normals_of
 
 Floats = NDArray[np.float64]
 AROUND = 24

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ...core.shapes.support3d import SmoothShape3D
+from ...core.contacts.support3d import SmoothShape3D
 from ..scene import Floats
 from .meshes import Mesh, grid_mesh
 

@@ -5,19 +5,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...core.contacts.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
+from ...core.contacts.contact3d import Contact3D, Sphere3D
+from ...core.contacts.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
+from ...core.contacts.edges3d import EdgesOnEdges3D
+from ...core.contacts.group3d import ContactGroup3D
+from ...core.contacts.mesh3d import TriangleMesh3D
+from ...core.contacts.on_mesh3d import SphereOnMesh3D
+from ...core.contacts.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
+from ...core.contacts.support3d import SmoothShape3D
 from ...core.description import Model
 from ...core.elements import RigidBody3D, SpatialFrame
 from ...core.model.attitude import parameters_of_matrix
 from ...core.model.markers import Marker3D
-from ...core.shapes.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
-from ...core.shapes.contact3d import Contact3D, Sphere3D
-from ...core.shapes.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
-from ...core.shapes.edges3d import EdgesOnEdges3D
-from ...core.shapes.group3d import ContactGroup3D
-from ...core.shapes.mesh3d import TriangleMesh3D
-from ...core.shapes.on_mesh3d import SphereOnMesh3D
-from ...core.shapes.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
-from ...core.shapes.support3d import SmoothShape3D
 from ..scene import Floats, Solid
 from . import meshes
 from .rounds import smooth_mesh

@@ -1,11 +1,11 @@
 """Friction laws. A new one is a file with its parameters and formula, and its name in FRICTION_LAWS.
 
-LuGre friction has a state and therefore a signature and kernels of its own: `lugre.py`, `shapes/bristle2d.py`.
+LuGre friction has a state and therefore a signature and kernels of its own: `lugre.py`, `contacts/bristle2d.py`.
 """
 
 from typing import TYPE_CHECKING, Annotated
 
-from ...late import LateClasses, late_names
+from ...lazy_import import LateClasses, late_names
 from ...model.open_union import OpenUnion
 from .base import FRICTION_SIGNATURE, FrictionLaw, call_friction, friction_address
 from .coulomb import CoulombFriction

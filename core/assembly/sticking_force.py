@@ -1,0 +1,73 @@
+"""Friction of contacts that stick, from the multipliers of their tangents, and on a patch from their torque too."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import ivec, mat, vec
+from ..rounding import IMPLIED_MOVES, IMPLIED_SLIDES, IMPLIED_TURNS, TURNS
+from ..state.modes import AT_LIMIT, CLOSED, IMPLIED, MEMORY_SIZE, MODE, OF_NORMAL, RATIO, SLIDE, STICKS
+from .levels import acceleration_level, position_level, rate_size
+
+
+@internal
+def in_space(ws: Any, k: int) -> bool:
+    """True if contact k has two tangents."""
+    return bool(ivec(ws.contact_second_rows, ws.n_contacts)[k] >= 0)
+
+
+@internal
+def is_held(ws: Any, k: int) -> bool:
+    """True if closed contact k sticks along a tangent at least."""
+    slide = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE]
+    return slide == STICKS or slide == AT_LIMIT
+
+
+@internal
+def implied_margin(ws: Any, k: int, before: float) -> float:
+    """How far closed contact k is from what says that others do not imply its constraints: 1 where they do, 0 where its
+    gap has moved by IMPLIED_MOVES, one that sticks slides by IMPLIED_SLIDES, or the gap's acceleration, which was
+    `before` at the newest row, has jumped by IMPLIED_TURNS: a corner has come to the end of a face, and the rows that
+    are solved for follow its round edge. 1 for a contact that is solved for."""
+    memory, row = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(ws.contact_rows, ws.n_contacts)[k]
+    bits, moved = np.int64(memory[IMPLIED]), 0.0
+    if memory[MODE] != CLOSED or bits == 0:
+        return 1.0
+    if bits & OF_NORMAL != 0:
+        moved = abs(vec(ws.phi, ws.m_ext)[row]) / (
+            IMPLIED_MOVES * position_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        )
+        turns = IMPLIED_TURNS * acceleration_level(ws) * vec(ws.row_scale, ws.m_ext)[row]
+        if abs(before) <= 0.5 * turns:
+            moved = max(moved, abs(vec(ws.phidd, ws.m_ext)[row]) / turns)
+    if bits != OF_NORMAL and memory[SLIDE] == STICKS:
+        phid, slide = vec(ws.phid, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+        speed = math.hypot(phid[slide], phid[slide + 1] if in_space(ws, k) else 0.0)
+        moved = max(moved, speed / (IMPLIED_SLIDES * rate_size(ws, k)))
+    return float(1.0 - moved)
+
+
+@internal
+def friction_limit(ws: Any, k: int, force: float) -> float:
+    """Largest friction of contact k, which sticks with this normal force, N. That of one at its limit turns along the
+    tangent of its circle (`state/modes.py`), and may leave it by a little."""
+    most = vec(ws.contact_sticking, ws.n_contacts)[k] * force
+    at_limit = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE] == AT_LIMIT
+    return float((1.0 + TURNS) * most if at_limit else most)
+
+
+@internal
+def held_friction(ws: Any, k: int, lam: Any) -> float:
+    """Size of the friction of contact k, which sticks, N, from multipliers `lam` (m_ext,); on a patch that of forces
+    and torque on the ellipsoid, the torque at its present part of the full one (`contacts/patch3d.py`)."""
+    row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    if in_space(ws, k):
+        memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+        normal = lam[ivec(ws.contact_rows, ws.n_contacts)[k]]
+        across = lam[row + 1] if memory[SLIDE] == STICKS else memory[RATIO] * normal
+        part = vec(ws.monitor, 3 * ws.n_contacts)[2 * ws.n_contacts + k]
+        drills = part * vec(ws.contact_sticking, ws.n_contacts)[k] * normal
+        return math.sqrt(lam[row] * lam[row] + across * across + drills * drills)
+    return abs(lam[row])

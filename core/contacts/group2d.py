@@ -1,0 +1,191 @@
+"""Contacts between groups of shapes, instead of pairs listed by hand.
+
+Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box, a polygon, a segment or a ring
+around it; a box or polygon with a half-plane and with others by the corners; in space see `pairs3d.py`. Pairs on one
+body are left out. Pairs that are far from touching cost nothing during a run: contacts sleep until their margin is used
+up (`event_detection/contact_sleeping.py`).
+"""
+
+from collections.abc import Iterable, Sequence
+from itertools import combinations, product
+from typing import Literal
+
+from ..errors import ModelError
+from ..laws import ContactLaw
+from ..laws.friction import Friction, TurningFriction
+from ..model.markers import GROUND
+from .box2d import Box2D, DiskOnBox2D
+from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from .contact3d import Contact3D
+from .groups import ContactGroup
+from .pairs3d import SpatialPart, SpatialShape, body_of, contact_in_space, no_contact, open_contacts
+from .polygon2d import DiskOnPolygon2D, Polygon2D
+from .ring2d import DiskInRing2D, Ring2D
+from .segment2d import DiskOnSegment2D, Segment2D
+
+PlanarShape = Disk2D | HalfPlane2D | Box2D | Polygon2D | Segment2D | Ring2D
+ANGULAR = (Box2D, Polygon2D)
+"""What has corners in the plane."""
+GroupShape = PlanarShape | SpatialShape
+
+MOST_PAIRS = 200_000
+ROUND = 1e-3
+"""Of the shortest side of both: radius of corners where shapes with corners touch each other. A point that comes along
+a side to a corner of the same height would touch neither of the sides that strike."""
+
+
+def contacts_between(
+    name: str,
+    shapes: Iterable[GroupShape],
+    others: Iterable[GroupShape] | None = None,
+    *,
+    law: ContactLaw,
+    friction: Friction | None = None,
+    turning: TurningFriction | None = None,
+    except_bodies: Iterable[tuple[str, str]] = (),
+    pass_through: Iterable[tuple[str, str]] = (),
+) -> tuple[Contact2D | Contact3D, ...]:
+    """Contacts of all pairs of `shapes` with each other, or of `shapes` with `others`, for a model's `contacts`.
+
+    Parameters
+    ----------
+    name : the contacts are called name_body1_body2, with a number behind where two bodies have several.
+    law, friction : of all of them.
+    turning : friction against rolling and spinning, of those in space.
+    except_bodies : pairs of bodies that do not touch, such as those that a joint holds together.
+    pass_through : pairs of kinds of shapes that have no contact, and pass through each other: ("Box3D", "Cylinder3D").
+
+    Raises
+    ------
+    ModelError : for more than MOST_PAIRS pairs, shapes of which no pair can touch, two that have no contact and are not
+        said to pass through each other, and kinds of `pass_through` that are not among the shapes.
+    """
+    first = tuple(shapes)
+    second = None if others is None else tuple(others)
+    count = len(first) * (len(first) - 1) // 2 if second is None else len(first) * len(second)
+    if count > MOST_PAIRS:
+        raise ModelError(f"group '{name}' has {count} pairs of shapes, more than {MOST_PAIRS}: make smaller groups")
+    pairs = combinations(first, 2) if second is None else product(first, second)
+    apart = {frozenset(pair) for pair in except_bodies}
+    through = _kinds_apart(name, pass_through, (*first, *(second or ())))
+    named: dict[str, list[tuple[GroupShape, GroupShape | SpatialPart]]] = {}
+    for a, b in pairs:
+        bodies = body_of(a), body_of(b)
+        if bodies[0] == bodies[1] or frozenset(bodies) in apart:
+            continue
+        if frozenset((type(a).__name__, type(b).__name__)) in through:
+            continue
+        found = [*_touching(a, b)]
+        named.setdefault(f"{name}_{bodies[0]}_{bodies[1]}", []).extend(found)
+    made = []
+    for label, touching in named.items():
+        for k, (one, other) in enumerate(touching):
+            own = label if len(touching) == 1 else f"{label}_{k + 1}"
+            made.append(_contact(own, one, other, law, friction, turning))
+    if not made:
+        raise ModelError(
+            f"group '{name}' has no two shapes that can touch: disks touch all shapes, boxes touch boxes and "
+            "half-planes, and shapes of one body never touch each other"
+        )
+    return tuple(made)
+
+
+class ContactGroup2D(ContactGroup):
+    """Shapes of which each may touch each other: one record for all their contacts.
+
+    A model makes the contacts of all pairs that can touch, as `contacts_between` does, and calls them
+    name_body1_body2. They sleep while they are far apart. Law and friction are changed here, for all of them.
+    """
+
+    type: Literal["ContactGroup2D"] = "ContactGroup2D"
+    disks: tuple[Disk2D, ...] = ()
+    """They touch all shapes."""
+    boxes: tuple[Box2D, ...] = ()
+    """They touch boxes, polygons and half-planes by their corners, and disks."""
+    polygons: tuple[Polygon2D, ...] = ()
+    """They touch what boxes touch."""
+    segments: tuple[Segment2D, ...] = ()
+    """They touch disks."""
+    half_planes: tuple[HalfPlane2D, ...] = ()
+    """They touch disks, boxes and polygons."""
+    rings: tuple[Ring2D, ...] = ()
+    """They hold disks in them, every one of the group."""
+    law: ContactLaw
+    """What happens when a gap closes."""
+    friction: Friction | None = None
+    """What resists sliding; left out: nothing."""
+    except_bodies: tuple[tuple[str, str], ...] = ()
+    """Pairs of bodies that do not touch, such as those that a joint holds together."""
+    pass_through: tuple[tuple[str, str], ...] = ()
+    """Pairs of kinds of shapes that pass through each other, such as "Box2D" and "Segment2D", which have no contact."""
+
+    def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
+        """Its contacts. Raises ModelError as `contacts_between` does."""
+        shapes: tuple[GroupShape, ...] = (
+            *self.disks, *self.boxes, *self.polygons, *self.segments, *self.half_planes, *self.rings,
+        )  # fmt: skip
+        return contacts_between(
+            self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies,
+            pass_through=self.pass_through,
+        )  # fmt: skip
+
+
+def _kinds_apart(name: str, pairs: Iterable[tuple[str, str]], shapes: Iterable[GroupShape]) -> set[frozenset[str]]:
+    """The pairs of kinds that pass through each other. Raises ModelError for a kind that is not there."""
+    there, found = sorted({type(shape).__name__ for shape in shapes}), [tuple(pair) for pair in pairs]
+    missing = next((kind for pair in found for kind in pair if kind not in there), None)
+    if missing is not None:
+        raise ModelError(
+            f"group '{name}' lets '{missing}' pass through others, but has no such shape: it has "
+            f"{', '.join(there) or 'none'}; mend the name in pass_through or leave the pair out"
+        )
+    return {frozenset(pair) for pair in found}
+
+
+def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | SpatialPart]]:
+    """Pairs (what, disk or sphere, or place on a cable) that say the contact of two shapes."""
+    if isinstance(a, SpatialShape) and isinstance(b, SpatialShape):
+        return open_contacts(a, b)
+    if isinstance(a, SpatialShape) or isinstance(b, SpatialShape):
+        raise no_contact(a, b, "one is of the plane and one of space; make a group of each")
+    if isinstance(b, Disk2D):
+        return ((a, b),)
+    if isinstance(a, Disk2D):
+        return ((b, a),)
+    if isinstance(a, ANGULAR) and isinstance(b, ANGULAR):
+        radius = ROUND * min(a.shortest_side(), b.shortest_side())
+        return (*((a, corner) for corner in b.corners(radius)), *((b, corner) for corner in a.corners(radius)))
+    if isinstance(a, ANGULAR):
+        a, b = b, a
+    if isinstance(b, ANGULAR):
+        if isinstance(a, HalfPlane2D):
+            return tuple((a, corner) for corner in b.corners())
+        remedy = "make the segment a thin box" if isinstance(a, Segment2D) else "put disks at its corners"
+        raise no_contact(b, a, f"{remedy}, or let them pass through each other (pass_through)")
+    if body_of(a) == body_of(b) == GROUND:
+        return ()
+    raise no_contact(a, b, "give one of them disks at its corners, or let them pass through each other (pass_through)")
+
+
+def _contact(
+    name: str, a: GroupShape, other: GroupShape | SpatialPart, law: ContactLaw, friction: Friction | None,
+    turning: TurningFriction | None,
+) -> Contact2D | Contact3D:  # fmt: skip
+    if isinstance(a, SpatialShape):
+        assert isinstance(other, SpatialShape | SpatialPart)
+        return contact_in_space(name, a, other, law, friction, turning)
+    if not isinstance(other, Disk2D):
+        raise TypeError("the second shape of a pair is a disk")
+    if isinstance(a, HalfPlane2D):
+        return DiskOnHalfPlane2D(name=name, plane=a, disk=other, law=law, friction=friction)
+    if isinstance(a, Disk2D):
+        return DiskOnDisk2D(name=name, a=a, b=other, law=law, friction=friction)
+    if isinstance(a, Box2D):
+        return DiskOnBox2D(name=name, shape=a, disk=other, law=law, friction=friction)
+    if isinstance(a, Polygon2D):
+        return DiskOnPolygon2D(name=name, shape=a, disk=other, law=law, friction=friction)
+    if isinstance(a, Ring2D):
+        return DiskInRing2D(name=name, shape=a, disk=other, law=law, friction=friction)
+    if isinstance(a, Segment2D):
+        return DiskOnSegment2D(name=name, segment=a, disk=other, law=law, friction=friction)
+    raise TypeError("a disk touches no shapes of space")

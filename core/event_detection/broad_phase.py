@@ -1,0 +1,223 @@
+"""The broad phase: sweep and prune over balls around the shapes, for pairs that are far from each other.
+
+Each shape that may touch many others lies in a ball about a point of its body. A sweep along the axis on which the
+centres differ most finds the balls that come near within a *skin*, a way that is allowed to each (Verlet 1967 keeps
+lists of neighbours like this; sweep and prune: Cohen, Lin, Manocha, Ponamgi 1995). Pairs that are not found sleep
+deeply: nothing of them is looked at until a ball has gone as far as its skin, and the next sweep begins. What is found
+is looked at by `contact_sleeping.py`, pair by pair. Balls and skins bound the motion within every step, so whether a
+pair sleeps changes no bit of it, and nothing here is part of the state.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.views import imat, ivec, mat, vec
+from ..contacts.travel3d import TURN
+from ..methods.history import history_row
+from ..state.modes import MEMORY_SIZE, MODE, OPEN
+from .balls import (
+    BALL_INTEGERS,
+    BALL_NUMBERS,
+    FOUND,
+    IN_SPACE,
+    MARKS,
+    ORDERED,
+    POINT,
+    RADIUS,
+    REST,
+    SIDE,
+    VALID,
+    WHO,
+    tell_ball,
+)
+from .contact_evaluation import BRACKET, HAPPENS
+from .contact_sleeping import DEEPLY, PLAINLY, show_elements, wake
+
+SKIN_WAYS = 16.0
+"""A skin is as thick as so many ways that the ball goes in the present step,"""
+SKIN_SIZE = 0.05
+"""and at least this share of its radius."""
+TOO_THICK = 8.0
+"""So many times as thick as it would be now: where that are the skins of half the balls, as behind a long step, it is
+time for a sweep."""
+CENTRE, SKIN, GONE = 0, 3, 4
+"""Columns of `ball_moves`: where the centre was at the last sweep, the skin, and the way since then, m."""
+
+
+@internal
+def _way_of_ball(lc: Any, i: int, way: Any) -> float:
+    """An upper bound of how far the centre of ball i goes within the step, m."""
+    c, x = imat(lc.ball_coords, lc.n_balls, BALL_INTEGERS)[i], mat(lc.balls, lc.n_balls, BALL_NUMBERS)[i]
+    arm = math.sqrt(x[POINT] ** 2 + x[POINT + 1] ** 2 + x[POINT + 2] ** 2)
+    if c[IN_SPACE] == 0:
+        return float(way[c[0]] + way[c[1]] + arm * way[c[2]])
+    moves = math.sqrt(way[c[0]] ** 2 + way[c[1]] ** 2 + way[c[2]] ** 2)
+    turns = math.sqrt(way[c[3]] ** 2 + way[c[4]] ** 2 + way[c[5]] ** 2 + way[c[6]] ** 2)
+    return float(moves + TURN * arm * turns)
+
+
+@internal
+def _skin(lc: Any, i: int, way: float) -> float:
+    """How thick the skin of ball i is, m, that goes this way in a step."""
+    return float(max(SKIN_WAYS * way, SKIN_SIZE * mat(lc.balls, lc.n_balls, BALL_NUMBERS)[i, RADIUS]))
+
+
+@internal
+def _place(lc: Any, i: int, q: Any, centre: Any) -> None:
+    """Where the centre of ball i is, (3,), m."""
+    c, x = imat(lc.ball_coords, lc.n_balls, BALL_INTEGERS)[i], mat(lc.balls, lc.n_balls, BALL_NUMBERS)[i]
+    u, v, w = x[POINT], x[POINT + 1], x[POINT + 2]
+    centre[0], centre[1], centre[2] = q[c[0]], q[c[1]], 0.0
+    if c[IN_SPACE] == 0:
+        cos, sin = math.cos(q[c[2]]), math.sin(q[c[2]])
+        centre[0] += cos * u - sin * v
+        centre[1] += sin * u + cos * v
+        return
+    centre[2] = q[c[2]]
+    a, b, d, e = x[REST] + q[c[3]], q[c[4]], q[c[5]], q[c[6]]
+    # u + 2 a (p x u) + 2 p x (p x u), p = (b, d, e)
+    x1, x2, x3 = d * w - e * v, e * u - b * w, b * v - d * u
+    centre[0] += u + 2.0 * (a * x1 + d * x3 - e * x2)
+    centre[1] += v + 2.0 * (a * x2 + e * x1 - b * x3)
+    centre[2] += w + 2.0 * (a * x3 + b * x2 - d * x1)
+
+
+@internal
+def keep_watch(ws: Any, ms: Any, lc: Any) -> None:
+    """Have the pairs looked at that could close within the step that ends at the current point, for which `set_travel`
+    has been called: where a ball goes beyond its skin there, sweep at the newest row."""
+    if lc.n_balls == 0 or lc.may_sleep == 0:
+        return
+    way, moves = mat(lc.travel, 2, ws.n_ext)[0], mat(lc.ball_moves, lc.n_balls, 5)
+    fits = ivec(lc.broad, MARKS)[VALID] != 0
+    for i in range(lc.n_balls):
+        if not fits:
+            break
+        fits = moves[i, GONE] + _way_of_ball(lc, i, way) <= moves[i, SKIN]
+    if not fits:
+        _sweep(ws, ms, lc)
+
+
+@internal
+def go_on(ws: Any, lc: Any) -> None:
+    """The step that ends at the current point has been accepted."""
+    if lc.n_balls == 0 or lc.may_sleep == 0 or ivec(lc.broad, MARKS)[VALID] == 0:
+        return
+    way, moves = mat(lc.travel, 2, ws.n_ext)[0], mat(lc.ball_moves, lc.n_balls, 5)
+    thick = 0
+    for i in range(lc.n_balls):
+        goes = _way_of_ball(lc, i, way)
+        moves[i, GONE] += goes
+        thick += 1 if moves[i, SKIN] > TOO_THICK * _skin(lc, i, goes) else 0
+    if 2 * thick > lc.n_balls:
+        moves[0, GONE] = np.inf
+
+
+@internal
+def _measure(lc: Any) -> None:
+    """Balls as the contacts' parameters are now: each about the point of one of its contacts, and so large that the
+    shapes of all lie in it."""
+    n = lc.n_balls
+    coords, balls = imat(lc.ball_coords, n, BALL_INTEGERS), mat(lc.balls, n, BALL_NUMBERS)
+    for i in range(n):
+        tell_ball(lc, coords[i, WHO], coords[i, SIDE], coords[i, IN_SPACE], balls[i])
+    start = ivec(lc.pair_start, n + 1)
+    others, contacts = ivec(lc.pair_other, start[n]), ivec(lc.pair_contact, start[n])
+    turned, other = ivec(lc.pair_turned, start[n]), np.empty(BALL_NUMBERS)
+    for i in range(n):
+        for p in range(start[i], start[i + 1]):
+            for side in range(2):
+                ball = balls[i if side == turned[p] else others[p]]
+                tell_ball(lc, contacts[p], side, coords[i, IN_SPACE], other)
+                u, v, w = other[0] - ball[0], other[1] - ball[1], other[2] - ball[2]
+                ball[RADIUS] = max(ball[RADIUS], other[RADIUS] + math.sqrt(u * u + v * v + w * w))
+
+
+@internal
+def _sweep(ws: Any, ms: Any, lc: Any) -> None:
+    if ivec(lc.broad, MARKS)[VALID] == 0:
+        _measure(lc)
+    n, start = lc.n_balls, history_row(ws, ms, 0)
+    way, moves, balls = mat(lc.travel, 2, ws.n_ext)[0], mat(lc.ball_moves, n, 5), mat(lc.balls, n, BALL_NUMBERS)
+    marks, order, reach = ivec(lc.broad, MARKS), ivec(lc.ball_order, n), vec(lc.ball_reach, n)
+    mean, spread = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for i in range(n):
+        _place(lc, i, start, moves[i])
+        radius = balls[i, RADIUS]
+        moves[i, SKIN] = _skin(lc, i, _way_of_ball(lc, i, way))
+        moves[i, GONE] = 0.0
+        reach[i] = (1.0 + PLAINLY) * radius + moves[i, SKIN]
+        x, y, z = moves[i, 0], moves[i, 1], moves[i, 2]
+        mean = (mean[0] + x / n, mean[1] + y / n, mean[2] + z / n)
+        spread = (spread[0] + x * x / n, spread[1] + y * y / n, spread[2] + z * z / n)
+    widest, axis = -1.0, 0
+    for j in range(3):
+        if spread[j] - mean[j] * mean[j] > widest:
+            widest, axis = spread[j] - mean[j] * mean[j], j
+    if marks[ORDERED] == 0:
+        for i in range(n):
+            order[i] = i
+        marks[ORDERED] = 1
+    # nearly in order since the last time
+    for p in range(1, n):
+        i, at = order[p], p
+        low = moves[i, axis] - reach[i]
+        while at > 0 and moves[order[at - 1], axis] - reach[order[at - 1]] > low:
+            order[at] = order[at - 1]
+            at -= 1
+        order[at] = i
+    marks[FOUND] += 1
+    for p in range(n):
+        i = order[p]
+        high = moves[i, axis] + reach[i]
+        for other in range(p + 1, n):
+            j = order[other]
+            if moves[j, axis] - reach[j] > high:
+                break
+            both = reach[i] + reach[j]
+            dx, dy, dz = moves[i, 0] - moves[j, 0], moves[i, 1] - moves[j, 1], moves[i, 2] - moves[j, 2]
+            if dx * dx + dy * dy + dz * dz <= both * both:
+                _find(lc, i, j, marks[FOUND], ws)
+    _choose(ws, ms, lc, marks)
+    marks[VALID] = 1
+
+
+@internal
+def _find(lc: Any, i: int, j: int, number: int, ws: Any) -> None:
+    """Mark the contacts of balls i and j."""
+    first, last = min(i, j), max(i, j)
+    start = ivec(lc.pair_start, lc.n_balls + 1)
+    low, high = start[first], start[first + 1]
+    others, contacts = ivec(lc.pair_other, start[lc.n_balls]), ivec(lc.pair_contact, start[lc.n_balls])
+    found, end = ivec(lc.pair_found, ws.n_contacts), high
+    while low < high:
+        middle = (low + high) // 2
+        if others[middle] < last:
+            low = middle + 1
+        else:
+            high = middle
+    while low < end and others[low] == last:
+        found[contacts[low]] = number
+        low += 1
+
+
+@internal
+def _choose(ws: Any, ms: Any, lc: Any, marks: Any) -> None:
+    """Wake the pairs that were found, and let those sleep deeply that were not and are open."""
+    n = ws.n_contacts
+    looked, found, sleeping = ivec(ws.looked, n + 1), ivec(lc.pair_found, n), ivec(ws.sleeping, n)
+    memory, brackets, count = mat(ws.memory, n, MEMORY_SIZE), mat(lc.brackets, n, BRACKET), 0
+    for k in range(n):
+        near = found[k] < 0 or found[k] == marks[FOUND]
+        if near and sleeping[k] == DEEPLY:
+            wake(ws, ms, lc, k)
+        elif not near and sleeping[k] != DEEPLY and memory[k, MODE] == OPEN:
+            sleeping[k], brackets[k, HAPPENS] = DEEPLY, 0.0
+        if sleeping[k] != DEEPLY:
+            count += 1
+            looked[count] = k
+    looked[0] = count
+    show_elements(ws)

@@ -1,0 +1,141 @@
+"""Contacts that are far from touching are not evaluated.
+
+An open contact adds nothing to the motion; all that is asked of it is whether its gap closes. Once that is large
+against how far it can go in a step, the contact falls asleep with a margin: its gap, less an upper bound of its way in
+every step from then on. It wakes before a step is accepted in which the margin would be used up. So whether a contact
+sleeps changes no bit of the motion, and nothing of it is part of the state: whoever leaves the compiled run wakes all.
+"""
+
+from typing import Any
+
+from ..assembly.sticking_force import in_space
+from ..compiled.jit import internal
+from ..compiled.kernels import RESIDUAL, batch_at, call_kernel
+from ..compiled.views import imat, ivec, mat, vec
+from ..methods.history import history_row, history_time
+from ..state.modes import MEMORY_SIZE, MODE, OPEN
+from ..state.run_records import WATCH
+from .balls import MARKS, VALID
+from .contact_evaluation import KERNEL, NEAR_SIZE, SLEEPS, probe_of
+from .root_bounds import way_of_gap
+
+AWAKE, ASLEEP, DEEPLY = 0, 1, 2
+"""A contact is evaluated; its margin is looked at; it is one of a pair that the broad phase looks after."""
+FAR = 8.0
+"""A contact falls asleep with a gap of this many ways that it can go in a step like the last one."""
+PLAINLY = 1e-6
+"""Of its row's scale: a smaller gap is never far. What an instant moves to meet the constraints is much less."""
+
+
+@internal
+def _evaluate_alone(ws: Any, lc: Any, k: int, t: float, q: Any, v: Any, a: Any) -> None:
+    """The rows of contact k at (q, v, a), to the probes' arrays."""
+    batch = probe_of(lc, k)
+    coord = ivec(batch.coord, batch.count * batch.ncoord)
+    to_q, to_v, to_a = vec(lc.probe_q, ws.n_ext), vec(lc.probe_v, ws.n_ext), vec(lc.probe_a, ws.n_ext)
+    for j in range(batch.count * batch.ncoord):
+        i = coord[j]
+        to_q[i], to_v[i], to_a[i] = q[i], v[i], a[i]
+    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
+
+
+@internal
+def look_now(ws: Any, lc: Any, k: int) -> None:
+    """The rows of contact k at the current point."""
+    row, slide = ivec(ws.contact_rows, ws.n_contacts)[k], ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    _evaluate_alone(ws, lc, k, vec(ws.t, 1)[0], vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext))
+    for to, come_from in ((ws.phi, lc.probe_phi), (ws.phid, lc.probe_phid), (ws.phidd, lc.probe_phidd)):
+        values, looked = vec(to, ws.m_ext), vec(come_from, ws.m_ext)
+        values[row] = looked[row]
+        if slide >= 0:
+            values[slide] = looked[slide]
+            if in_space(ws, k):
+                values[slide + 1] = looked[slide + 1]
+
+
+@internal
+def wake(ws: Any, ms: Any, lc: Any, k: int) -> None:
+    """Contact k is looked at again, from the newest row on."""
+    ivec(ws.sleeping, ws.n_contacts)[k] = AWAKE
+    row, slide = ivec(ws.contact_rows, ws.n_contacts)[k], ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    start, n = history_row(ws, ms, 0), ws.n_ext
+    _evaluate_alone(ws, lc, k, history_time(ms, 0), start, start[n:], start[2 * n :])
+    watch = mat(lc.watch, ws.n_contacts, WATCH)
+    rates, accelerations = vec(lc.probe_phid, ws.m_ext), vec(lc.probe_phidd, ws.m_ext)
+    watch[k, 0], watch[k, 1], watch[k, 2] = vec(lc.probe_phi, ws.m_ext)[row], rates[row], accelerations[row]
+    if slide >= 0:
+        watch[k, 3], watch[k, 4] = rates[slide], accelerations[slide]
+    look_now(ws, lc, k)
+
+
+@internal
+def show_elements(ws: Any) -> None:
+    """Let kernels go through the elements of those contacts alone that do not sleep deeply."""
+    sleeping, batches = ivec(ws.sleeping, ws.n_contacts), ivec(ws.batches, ws.n_kernels)
+    for x in range(ws.n_kernels):
+        batch = batch_at(batches[x])
+        if batch.shown == 0:
+            continue
+        shown, extra, count = ivec(batch.shown, batch.count + 1), imat(batch.extra, batch.count, batch.nextra), 0
+        for e in range(batch.count):
+            if sleeping[extra[e, 0]] != DEEPLY:
+                count += 1
+                shown[count] = e
+        shown[0] = count
+
+
+@internal
+def wake_all(ws: Any, ms: Any, lc: Any) -> None:
+    """No contact sleeps any more, and the broad phase begins again."""
+    sleeping, looked = ivec(ws.sleeping, ws.n_contacts), ivec(ws.looked, ws.n_contacts + 1)
+    for k in range(ws.n_contacts):
+        looked[k + 1] = k
+        if sleeping[k] != AWAKE:
+            wake(ws, ms, lc, k)
+    looked[0], ivec(lc.broad, MARKS)[VALID] = ws.n_contacts, 0
+    show_elements(ws)
+
+
+@internal
+def look_at_all(ws: Any, lc: Any) -> None:
+    """The rows of sleeping contacts at the current point, for those who record them."""
+    sleeping = ivec(ws.sleeping, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if sleeping[k] != AWAKE:
+            look_now(ws, lc, k)
+
+
+@internal
+def sleeps_on(ws: Any, ms: Any, lc: Any, k: int) -> bool:
+    """True if contact k sleeps and its gap cannot close within the step that ends at the current point, for which
+    `set_travel` and `broad_phase.keep_watch` have been called; else it is awake."""
+    sleeping = ivec(ws.sleeping, ws.n_contacts)[k]
+    if sleeping == AWAKE:
+        return False
+    if sleeping == DEEPLY or vec(lc.margin, ws.n_contacts)[k] > way_of_gap(ws, lc, k, 0):
+        return True
+    wake(ws, ms, lc, k)
+    return False
+
+
+@internal
+def doze(ws: Any, lc: Any) -> None:
+    """The step that ends at the current point has been accepted: margins become smaller, and contacts that are far
+    from touching fall asleep."""
+    if lc.may_sleep == 0:
+        return
+    sleeping, margin = ivec(ws.sleeping, ws.n_contacts), vec(lc.margin, ws.n_contacts)
+    rows, scale, watch = (
+        ivec(ws.contact_rows, ws.n_contacts),
+        vec(ws.row_scale, ws.m_ext),
+        mat(lc.watch, ws.n_contacts, WATCH),
+    )
+    memory, near = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), imat(lc.near, ws.n_contacts, NEAR_SIZE)
+    looked = ivec(ws.looked, ws.n_contacts + 1)
+    for p in range(looked[0]):
+        k = looked[p + 1]
+        if sleeping[k] != AWAKE:
+            margin[k] -= way_of_gap(ws, lc, k, 0)
+        elif memory[k, MODE] == OPEN and near[k, SLEEPS] != 0 and watch[k, 0] > PLAINLY * scale[rows[k]]:
+            if watch[k, 0] > FAR * way_of_gap(ws, lc, k, 0):
+                sleeping[k], margin[k] = ASLEEP, watch[k, 0]

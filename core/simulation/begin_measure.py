@@ -1,0 +1,196 @@
+"""What a run measures before it starts: scales of the model (`assembly/scales.py`), units for pivots, tolerances."""
+
+from typing import Any
+
+import numpy as np
+
+from ..assembly.evaluate import evaluate_residuals
+from ..assembly.measure import HEAVIEST, MEASURED, SQUARE, STIFFEST, measure_motion, measure_rows
+from ..assembly.measure import WORK as FOUND_WORK
+from ..assembly.scales import MOST_TIMES, WORK
+from ..compiled.jit import internal
+from ..compiled.views import imat, ivec, vec
+from ..events.records import SETTLED, WANT_MEMORY
+from ..rounding import CONSTRAINT_TOLERANCES
+from ..state.workspace_records import (
+    ATOL,
+    CONTROL_SIZE,
+    COUNTERS_SIZE,
+    ENERGY_SCALE,
+    EXACTNESS,
+    OK,
+    RATE_SCALE,
+    STIFFNESS_SCALE,
+    building_at,
+    call_engage,
+    structure_at,
+)
+from .begin_record import (
+    ANGLES,
+    ANGULAR_SPEEDS,
+    BEGIN_SIZE,
+    LATER,
+    LENGTH,
+    LENGTHS,
+    LONGEST_STEP,
+    NEWTON_TOLERANCE,
+    OF_SCALES,
+    SPEEDS,
+    STEP,
+    T0,
+)
+from .settings import CONSTRAINT_SHARE, DEFAULT_NEWTON_TOLERANCE, LEAST_EXACTNESS
+from .settings import SPEEDS as SPEED_SHARE
+
+
+@internal
+def place(bg: Any, ws: Any) -> None:
+    """The start as it is given, at rest in accelerations; coordinates with a driver where that says."""
+    q, v, a, lam = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext)
+    q0, v0 = vec(bg.q0, ws.n), vec(bg.v0, ws.n)
+    for i in range(ws.n_ext):
+        q[i] = q0[i] if i < ws.n else 0.0
+        v[i] = v0[i] if i < ws.n else 0.0
+        a[i] = 0.0
+    for i in range(ws.m_ext):
+        lam[i] = 0.0
+    vec(ws.t, 1)[0] = vec(bg.numbers, BEGIN_SIZE)[T0]
+    if bg.n_placed > 0:
+        evaluate_residuals(ws)
+        placed, phi, phid = imat(bg.placed, bg.n_placed, 2), vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
+        for k in range(bg.n_placed):
+            q[placed[k, 0]] -= phi[placed[k, 1]]
+            v[placed[k, 0]] -= phid[placed[k, 1]]
+
+
+@internal
+def measure(bg: Any, dr: Any, ws: Any) -> int:
+    """Scales of the model at the start as it is given, tolerances that are parts of them, and the structure of open
+    contacts with pivots in these units: SETTLED, or what memory it takes."""
+    place(bg, ws)
+    counters = ivec(ws.counters, COUNTERS_SIZE)
+    before = counters.copy()
+    root = _measure_scales(bg, dr, ws)
+    counters[:] = before
+    _set_tolerances(bg, ws)
+    return _use_units(ws, root)
+
+
+@internal
+def _measure_scales(bg: Any, dr: Any, ws: Any) -> float:
+    """The scales into `control`, those of rows and of work accounts into their arrays; returns the root of the largest
+    mass, kg^0.5 m."""
+    n, m, scale, row_scale = ws.n, ws.m_ext - 1, vec(ws.scale, ws.n), vec(ws.row_scale, ws.m_ext)
+    sizes, own, internal, found = vec(bg.sizes, m), vec(bg.scale, n), ivec(bg.internal, n), np.zeros(MEASURED)
+    if bg.n_row_sizes > 0:
+        given = vec(bg.row_sizes, m)
+        for i in range(m):
+            sizes[i] = given[i]
+    else:
+        measure_rows(ws, scale, sizes)
+    for i in range(m):
+        row_scale[i] = sizes[i]
+    for i in range(n):
+        # the rate of an internal state is no acceleration, its unit mass no mass
+        own[i] = 0.0 if internal[i] != 0 else scale[i]
+    mass, later = vec(bg.mass, n), vec(bg.later, _later_times(bg, dr))
+    for i in range(n):
+        mass[i] = 0.0
+    measure_motion(ws, own, vec(bg.usual_v0, n), later, bg.m_joints, mass, found)
+    # all at rest without loads: what vibrates gives the time
+    square = found[SQUARE] if found[SQUARE] != 0.0 else found[STIFFEST]
+    rate = np.sqrt(square) if square != 0.0 else 1.0
+    heaviest = found[HEAVIEST] if found[HEAVIEST] != 0.0 else 1.0
+    energy = found[FOUND_WORK] if found[FOUND_WORK] != 0.0 else heaviest * (rate * rate)
+    control = vec(ws.control, CONTROL_SIZE)
+    control[RATE_SCALE], control[ENERGY_SCALE], control[STIFFNESS_SCALE] = rate, energy, found[STIFFEST]
+    work, given = vec(ws.work_scale, ws.n_ext), vec(bg.work_sizes, ws.n_ext)
+    for i in range(ws.n_ext):
+        work[i] = WORK * energy
+    rows, accounts = ivec(ws.contact_rows, ws.n_contacts), ivec(dr.impulse_account, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        work[accounts[k]] = WORK * energy / (rate * row_scale[rows[k]])
+    for i in range(ws.n_ext):
+        if given[i] > 0.0:
+            work[i] = given[i]
+    return float(np.sqrt(heaviest))
+
+
+@internal
+def _use_units(ws: Any, root: float) -> int:
+    """Units that make M and Phi_q numbers of about 1, and a structure with them."""
+    b = building_at(ws.building)
+    units, scale, row_scale = vec(b.units, ws.n + ws.m_ext), vec(ws.scale, ws.n), vec(ws.row_scale, ws.m_ext)
+    for i in range(ws.n):
+        units[i] = scale[i] / root
+    for i in range(ws.m_ext):
+        units[ws.n + i] = root / row_scale[i]
+    places, wanted = ivec(b.structures, b.n_slots), ivec(ws.wanted, ws.n_contacts)
+    for i in range(b.n_slots):
+        structure_at(places[i]).built = 0
+    for k in range(ws.n_contacts):
+        wanted[k] = 0
+    return SETTLED if call_engage(ws.engage, ws) == OK else WANT_MEMORY
+
+
+@internal
+def _later_times(bg: Any, dr: Any) -> int:
+    """Times after the start at which forces and drivers that rest at first have begun; how many."""
+    numbers, later, breakpoints = (
+        vec(bg.numbers, BEGIN_SIZE),
+        vec(bg.later, LATER),
+        vec(dr.breakpoints, dr.n_breakpoints),
+    )
+    t, longest, ahead = numbers[T0], numbers[LONGEST_STEP], 0
+    for i in range(dr.n_breakpoints):
+        ahead += 1 if breakpoints[i] > t else 0
+    stride = max(1, (ahead + MOST_TIMES - 1) // MOST_TIMES)
+    later[0], count, seen = 0.0, 1, 0
+    for i in range(dr.n_breakpoints):
+        if breakpoints[i] > t:
+            if seen % stride == 0:
+                later[count] = breakpoints[i] - t
+                count += 1
+            seen += 1
+    if np.isfinite(longest):
+        later[count], later[count + 1] = 0.5 * longest, longest
+        count += 2
+    return count
+
+
+@internal
+def _tolerance(numbers: Any, kind: int, size: float) -> float:
+    return float(numbers[kind] * (size if numbers[kind + OF_SCALES] != 0.0 else 1.0))
+
+
+@internal
+def _set_tolerances(bg: Any, ws: Any) -> None:
+    """Absolute tolerances, in parts of the scales or as they are given, and how exactly constraints are to be met."""
+    numbers, control, scale = vec(bg.numbers, BEGIN_SIZE), vec(ws.control, CONTROL_SIZE), vec(ws.scale, ws.n)
+    internal, angle = ivec(bg.internal, ws.n), ivec(bg.angle, ws.n)
+    atol_q, atol_v = vec(ws.atol_q, ws.n), vec(ws.atol_v, ws.n)
+    rate, length, given = control[RATE_SCALE], numbers[LENGTH], numbers[NEWTON_TOLERANCE]
+    fixed, finest = numbers[STEP] > 0.0, 1.0
+    for i in range(ws.n):
+        # the state is the velocity of an internal coordinate, and a length; a tolerance as large as what it is for
+        # would let all pass
+        size_q = length / rate if internal[i] != 0 else scale[i]
+        size_v = length if internal[i] != 0 else SPEED_SHARE * scale[i] * rate
+        if fixed:
+            # without error weights the outer loop's tolerance takes their place, with weight 1
+            tolerance = given if given > 0.0 else DEFAULT_NEWTON_TOLERANCE
+            speed = size_v if internal[i] != 0 else size_v / SPEED_SHARE
+            atol_q[i] = tolerance * (1.0 if given > 0.0 else size_q)
+            atol_v[i] = tolerance * (1.0 if given > 0.0 else speed)
+        else:
+            atol_q[i] = _tolerance(numbers, ANGLES if angle[i] != 0 else LENGTHS, size_q)
+            atol_v[i] = _tolerance(numbers, ANGULAR_SPEEDS if angle[i] != 0 else SPEEDS, size_v)
+            if internal[i] != 0:
+                atol_v[i] = _tolerance(numbers, LENGTHS, size_v)
+            finest = min(finest, atol_q[i] / size_q)
+    if fixed:
+        finest = given if given > 0.0 else 1.0
+    else:
+        control[ATOL] = finest
+    # differences over several steps see what the constraints leave open: it has to be small against the tolerances
+    control[EXACTNESS] = min(1.0, max(LEAST_EXACTNESS, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))

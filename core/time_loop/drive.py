@@ -1,0 +1,246 @@
+"""The run as one compiled function: steps, event location and what is settled at events, until it reaches its goal or
+something comes up that Python has to do.
+
+`run` makes steps; `drive` goes on where these end at events. What it leaves to Python it leaves untouched, with a code
+of `state/run_records` that says what it is.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..compiled.jit import compiled, compiled_unlocked, internal, record_view
+from ..compiled.views import ivec, vec
+from ..event_detection.contact_sleeping import wake_all
+from ..event_detection.event_search import locate
+from ..event_detection.repivoting import orientation
+from ..events.event_handling import go_on_behind, settle
+from ..events.inconsistent_modes import find_unsettled
+from ..events.records import ALONE, DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at, whole
+from ..methods.history import history_time, recall
+from ..rounding import NO_STEP
+from ..state.method_records import METHOD_TYPE
+from ..state.run_records import (
+    BREAK_TIME,
+    BUDGET,
+    CHUNK,
+    CLOCK_SIZE,
+    COUNTS_SIZE,
+    DRIVE_TYPE,
+    DUE,
+    EVENT,
+    FAILED,
+    FULL,
+    GOAL,
+    GOALS_SIZE,
+    HANDLED,
+    JAM,
+    LAST_STOP,
+    LOOP_TYPE,
+    PASSED,
+    PUSH_STEP,
+    REACHED,
+    REPARTITION,
+    SETTLE,
+    STATUS,
+    STOP_TIME,
+    TARGET_TIME,
+    TRIAL_STEP,
+    UNLOCATED,
+    WANTED,
+    call_find_events,
+    call_locate,
+    call_run,
+    call_settle,
+    call_trial,
+)
+from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, STEPS, WORKSPACE_TYPE
+from .sliding import any_slides
+from .time_stepping import make_push_step
+
+MANY = 6
+"""Contacts from which on it pays to let those sleep that are far from touching."""
+
+workspace_at, method_at, loop_at, drive_at = map(record_view, (WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, DRIVE_TYPE))
+
+
+@internal
+def _aim(dr: Any, ms: Any, lc: Any) -> int:
+    """Set the clock of the loop for the way to the goal; REACHED or DUE where there is no way to go."""
+    goals, clock = vec(dr.goals, GOALS_SIZE), vec(lc.clock, CLOCK_SIZE)
+    breakpoints = vec(dr.breakpoints, dr.n_breakpoints)
+    now, goal, ahead = history_time(ms, 0), goals[GOAL], np.inf
+    if now >= goal:
+        return REACHED
+    for i in range(dr.n_breakpoints):
+        if now < breakpoints[i] < ahead:
+            ahead = breakpoints[i]
+    # steps end just before a breakpoint, so that they see what holds to the left of it
+    last, goals[PASSED] = np.nextafter(ahead, -np.inf), ahead
+    if last - now <= NO_STEP * abs(now):
+        return DUE
+    if goal - now <= NO_STEP * abs(goal):
+        return REACHED
+    clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(goals[LAST_STOP], last), goal
+    return REACHED if clock[STOP_TIME] - now <= NO_STEP * abs(now) else OK
+
+
+@internal
+def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
+    """Steps and events up to the goal; `hold`: only up to where events are pending."""
+    lc.may_sleep = 1 if ws.n_contacts >= MANY else 0
+    code = _drive_on(dr, ws, ms, lc, hold)
+    lc.may_sleep = 0
+    # whoever builds what is wanted does not look at gaps, and comes back at once
+    if code != WANTED:
+        wake_all(ws, ms, lc)
+    return code
+
+
+@internal
+def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
+    counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
+    last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
+    side = 0.0  # the sign of a determinant at the newest row, while contacts slide; 0: not looked at yet
+    while True:
+        if is_due(dr, ws):
+            side = 0.0
+            # which redundant rows are left out is for Python to look at, at every instant; steps of impulses take those
+            # that a new partition leaves out
+            beyond = history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]
+            if (ws.n_redundant > 0 or hold or beyond) and vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
+                return SETTLE
+            status = call_settle(dr.settle, dr)
+            if status != SETTLED:
+                counts[STATUS] = status
+                return SETTLE if status == DECLINED else (WANTED if status <= WANT_MEMORY else FAILED)
+            continue
+        code = _aim(dr, ms, lc)
+        side = 0.0 if code == DUE else side
+        if code == DUE and ws.n_redundant == 0:
+            if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+                return FULL
+            status = call_settle(dr.pass_breakpoint, dr)
+            if status != SETTLED:
+                counts[STATUS] = status
+                return WANTED if status <= WANT_MEMORY else FAILED
+            continue
+        if code != OK:
+            return code
+        left = last - steps[STEPS] - counts[HANDLED]
+        if left <= 0:
+            return CHUNK
+        if vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0:
+            side, code = 0.0, call_settle(dr.push_step, dr)
+            if code != OK:
+                return code
+            continue
+        # while a contact slides, each step is looked at: on the way to where it jams the forces grow without bound, and
+        # behind it the determinant has the other sign
+        sliding, before = any_slides(ws), history_time(ms, 0)
+        if sliding and side == 0.0:
+            recall(ws, ms, 0)
+            side = _known(orientation(ws))
+        code = call_run(dr.run, ws, ms, lc, 1 if sliding else left)
+        if (code == CHUNK or code == REPARTITION) and sliding:
+            if history_time(ms, 0) > before:
+                now = orientation(ws)
+                if now == now and now != side and side != 0.0:
+                    return JAM
+                side = _known(now)
+            if code == CHUNK:
+                continue
+        if code == REACHED:
+            continue
+        if code != EVENT:
+            return code
+        if call_locate(dr.locate, dr, False) != OK:
+            return UNLOCATED
+
+
+@internal
+def _known(side: float) -> float:
+    """0 for NaN."""
+    return side if side == side else 0.0
+
+
+@internal
+def is_due(dr: Any, ws: Any) -> bool:
+    """True if events are pending."""
+    pending = ivec(dr.pending, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if pending[k] != 0:
+            return True
+    return False
+
+
+@compiled_unlocked
+def drive(dr: Any, hold: bool) -> int:
+    """Go to the goal; a code of `records` or the status of a step that cannot be made."""
+    return drive_on(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop), hold)
+
+
+@compiled
+def aim_now(dr: Any) -> int:
+    """`_aim`, for Python."""
+    return _aim(dr, method_at(dr.method), loop_at(dr.loop))
+
+
+@compiled
+def wake_now(dr: Any) -> None:
+    """`wake_all`, for Python."""
+    wake_all(workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
+
+
+@compiled
+def settle_pending(dr: Any) -> int:
+    """Let the pending events happen at the newest row: a status of `events/records.py`."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return settle(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
+def push_step(dr: Any) -> int:
+    """One step of impulses, as `make_push_step` says."""
+    return make_push_step(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
+
+
+@compiled
+def pass_breakpoint(dr: Any) -> int:
+    """Go on behind the breakpoint `PASSED` of the goals: a status of `events/records.py`."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    return go_on_behind(dr, instant_at(dr.instant), ws, ms, lc)
+
+
+@compiled
+def unsettled_now(dr: Any) -> bool:
+    """`find_unsettled` at the current point, for Python."""
+    ws, ev = workspace_at(dr.workspace), instant_at(dr.instant)
+    return find_unsettled(ev, ws, ivec(ev.unsettled, ws.n_contacts))
+
+
+@compiled
+def open_now(dr: Any) -> int:
+    """`open_touching` at the current point, for Python."""
+    ev = instant_at(dr.instant)
+    whole(ev)[ALONE] = 0
+    return call_part(ev.open_touching, ev, dr, workspace_at(dr.workspace), method_at(dr.method))
+
+
+@compiled
+def locate_now(dr: Any, again: bool) -> int:
+    """`locate`, after `drive` has returned. `again`: the step of size TRIAL_STEP is made again first; UNLOCATED: it has
+    no event any more. With any other code than OK nothing is accepted, and the newest row is the current point."""
+    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
+    status, h = OK, vec(lc.clock, CLOCK_SIZE)[TRIAL_STEP]
+    if again:
+        recall(ws, ms, 0)
+        status = call_trial(dr.trial, ws, ms, lc, h)
+        if status == OK and not call_find_events(lc.find_events, ws, ms, lc, h, False):
+            status = UNLOCATED
+    if status == OK:
+        status = locate(dr, ws, ms, lc)
+    if status != OK:
+        recall(ws, ms, 0)
+        vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    return status

@@ -1,0 +1,100 @@
+"""A sample: one recorded row of numbers at the current point of the workspace.
+
+Columns: t; q, v, a (n each); lam (m); force, gap, gap rate, mode, impact impulse, impact loss, friction force and
+sliding velocity of each contact; kinetic, potential, strain energy; work accounts; residuals at position, velocity and
+acceleration level.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..assembly.evaluate import evaluate_energy, recorded_norm
+from ..assembly.sticking_force import in_space
+from ..compiled.jit import compiled, internal
+from ..compiled.views import ivec, mat, vec
+from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, OPEN, PUSHED, SLIDE
+
+
+def sample_length(n: int, m: int, contacts: int, work: int) -> int:
+    """Number of columns."""
+    return 1 + 3 * n + m + 8 * contacts + 3 + work + 3
+
+
+@compiled
+def write_sample(ws: Any, out: Any) -> None:
+    """Fill one row; the residuals of the current point must have been evaluated."""
+    write_row(ws, out, True)
+
+
+@internal
+def write_row(ws: Any, out: Any, energies: bool) -> None:
+    """The same; with the `energies`, or with what was known of them."""
+    n, m, contacts = ws.n, ws.m_ext - 1, ws.n_contacts
+    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
+    out[0] = vec(ws.t, 1)[0]
+    for i in range(n):
+        out[1 + i] = q[i]
+        out[1 + n + i] = v[i]
+        out[1 + 2 * n + i] = a[i]
+    at = 1 + 3 * n
+    lam = vec(ws.lam, ws.m_ext)
+    active = ivec(ws.active, ws.m_act + ws.n_implied)
+    for i in range(m):
+        out[at + i] = 0.0
+    for i in range(ws.m_act + ws.n_implied):
+        out[at + active[i]] = lam[active[i]]
+    at += m
+    if contacts:
+        monitor = vec(ws.monitor, 2 * contacts)
+        slide_rows = ivec(ws.contact_slide_rows, contacts)
+        memory = mat(ws.memory, contacts, MEMORY_SIZE)
+        rows, release = ivec(ws.contact_rows, contacts), ivec(ws.contact_release, contacts)
+        phi, phid = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
+        for k in range(contacts):
+            mode = memory[k, MODE]
+            # of an open one the mean force while instants are stepped through, else 0; where a force jumps, the point
+            # at which it is to end lies behind the jump, and what its equations say there would pull
+            force = monitor[k] if mode == ACTIVE or mode == CLOSED else memory[k, PUSHED]
+            pushes = mode == CLOSED or (mode == ACTIVE and release[k] >= AT_ZERO_FORCE)
+            out[at + k] = max(force, 0.0) if pushes else force
+            out[at + contacts + k] = phi[rows[k]]
+            out[at + 2 * contacts + k] = phid[rows[k]]
+            out[at + 3 * contacts + k] = CLOSED if mode == OPEN and memory[k, PUSHED] > 0.0 else mode
+            out[at + 4 * contacts + k] = memory[k, IMPULSE_JUMP]
+            out[at + 5 * contacts + k] = memory[k, LOSS_JUMP]
+            with_friction = slide_rows[k] >= 0
+            acts = with_friction and (mode == ACTIVE or mode == CLOSED)
+            out[at + 6 * contacts + k] = monitor[contacts + k] if acts else _pushed_along(ws, k)
+            out[at + 7 * contacts + k] = phid[slide_rows[k]] if with_friction else 0.0
+            if vec(ws.contact_sticking, contacts)[k] > 0.0 and in_space(ws, k):
+                # in space: how fast it slides
+                x, y = phid[slide_rows[k]], phid[slide_rows[k] + 1]
+                slides = mode == CLOSED and abs(memory[k, SLIDE]) == 1.0
+                out[at + 7 * contacts + k] = y if slides else np.sqrt(x * x + y * y)
+        at += 8 * contacts
+    if energies:
+        evaluate_energy(ws)
+    energy = vec(ws.energy, 3)
+    for i in range(3):
+        out[at + i] = energy[i]
+    at += 3
+    for i in range(ws.n_work):
+        out[at + i] = v[ws.n_ext - ws.n_work + i]
+    at += ws.n_work
+    out[at] = recorded_norm(ws, ws.phi)
+    out[at + 1] = recorded_norm(ws, ws.phid)
+    out[at + 2] = recorded_norm(ws, ws.phidd)
+
+
+@internal
+def _pushed_along(ws: Any, k: int) -> float:
+    """Mean force along the tangents of contact k in the last step of impulses, N."""
+    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+    first, second = memory[PUSHED + 1], memory[PUSHED + 2]
+    return float(np.sqrt(first * first + second * second) if in_space(ws, k) else first)
+
+
+def empty_buffer(capacity: int, length: int) -> np.ndarray:
+    """Room for `capacity` samples."""
+    return np.zeros((capacity, length))
