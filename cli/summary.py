@@ -44,7 +44,10 @@ def summarise(scenario: Scenario, result: Result) -> dict[str, Any]:
 def event_units(result: Result) -> dict[str, tuple[str, str]]:
     """Units of impulses and speeds in the events of each contact."""
     units = {channel.name: channel.unit for channel in result.channel_records}
-    return {e.contact: (units[f"{e.contact}.impulse"], units[f"{e.contact}.gap_rate"]) for e in result.events}
+    return {
+        e.contact: (units.get(f"{e.contact}.impulse", ""), units.get(f"{e.contact}.gap_rate", ""))
+        for e in result.events
+    }
 
 
 def print_summary(figures: dict[str, Any]) -> None:

@@ -95,6 +95,8 @@ class Model(Record):
             element.check_in(bodies)
             for marker in element.markers():
                 self._check_marker(element.name, marker, bodies)
+            for name in element.felt_joints():
+                self._check_joint(element, name)
             for name, coordinate in element.moved_coordinates():
                 self._check_coordinate(element, self._find(element.name, name, bodies), coordinate)
             for signal in element.signals():
@@ -133,6 +135,19 @@ class Model(Record):
         body = cls._find(user, marker.body, bodies)
         if body is not None:
             body.check_marker(user, marker)
+
+    def _check_joint(self, element: Element, name: str) -> None:
+        joint = next((joint for joint in self.joints if joint.name == name), None)
+        if joint is None:
+            raise ValueError(
+                f"'{element.name}' feels the force of joint '{name}', which does not exist; joints are "
+                f"{sorted(joint.name for joint in self.joints)}"
+            )
+        if not joint.force_rows():
+            raise ValueError(
+                f"'{element.name}' feels the force of '{name}', but {an(type(joint).__name__)} says no force between "
+                "its bodies: name a revolute, spherical, cylindrical or prismatic joint"
+            )
 
     @staticmethod
     def _find(user: str, name: str, bodies: Mapping[str, BodyElement]) -> BodyElement | None:

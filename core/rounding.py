@@ -154,6 +154,8 @@ REACHES_LIMIT_NOW = 1e-6
 """Of the limit, in space: friction of a contact whose event is that it reaches it is that near at least."""
 STICKS_STILL = 1e-9
 """Of the largest acceleration, in space: what sticks moves less along its tangents."""
+LOADS_SETTLED = 1e-13
+"""Of the load of a joint's friction that follows the force of the joint."""
 NEARLY_JAMMED = 1e-6
 """Of a contact's inverse effective mass: with less left of it by friction, it jams."""
 FRICTION_ENOUGH = 1e-14

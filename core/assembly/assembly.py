@@ -17,7 +17,7 @@ from ..elements.internal import internal_coordinates_kernel
 from ..elements.spatial_body import EULER
 from ..errors import ModelError
 from ..laws import ForceLaw, ImpactLaw
-from ..laws.friction import CoulombFriction, Friction
+from ..laws.friction import CoulombFriction, Friction, LuGreFriction
 from ..model.channels import Channel
 from ..model.derived import Derived
 from ..model.motion import InputMotion
@@ -67,6 +67,8 @@ class ContactInfo:
     """What is known of its geometry."""
     units: tuple[str, str] = ("m", "m")
     """Of gap and sliding distance."""
+    has_shapes: bool = True
+    """False: the friction of a joint, whose gap and normal force mean nothing."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -201,6 +203,8 @@ class Assembly:
 
 
 def _bristles_of(contact: ContactElement, numbering: ModelNumbering) -> tuple[tuple[int, str], ...]:
+    if not isinstance(contact.friction, LuGreFriction):
+        return ()
     return tuple(zip(numbering.internal(contact.name), contact.internal_coordinates(), strict=True))
 
 
@@ -214,16 +218,17 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
     contact of a body with itself."""
     if not model.bodies:
         raise ModelError(f"model '{model.name}' has no bodies, so nothing can move: give it at least one in `bodies`")
-    for contact in model.contacts:
+    numbering = ModelNumbering(model, start, t0)
+    contacts = numbering.tabulated.contacts
+    for contact in contacts:
         bodies = [marker.body for marker in contact.markers()]
         if len(bodies) > 1 and len(set(bodies)) == 1:
             raise ModelError(
-                f"both shapes of contact '{contact.name}' are on '{bodies[0]}': their gap never changes; "
-                "give it shapes on two bodies"
+                f"both sides of contact '{contact.name}' are on '{bodies[0]}': nothing moves there; "
+                "put them on two bodies"
             )
-    numbering = ModelNumbering(model, start, t0)
-    grouped: dict[tuple[int, int], list[tuple[Element, Row, tuple[int, ...]]]] = {}
-    forms: dict[tuple[int, int], Form] = {}
+    grouped: dict[tuple[int, int, int], list[tuple[Element, Row, tuple[int, ...]]]] = {}
+    forms: dict[tuple[int, int, int], Form] = {}
     row_names: list[str] = []
     multipliers: dict[int, Channel] = {}
     derived: list[Derived] = []
@@ -232,7 +237,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
     placed: list[tuple[int, int]] = []
     rate_rows: set[int] = set()
     contact_names = set(numbering.contact_numbers)
-    for element in model.elements():
+    for element in numbering.tabulated.all:
         own_rows = len(row_names)
         for part in element.parts(numbering):
             form = part.form
@@ -246,10 +251,10 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
             placed += zip(element.placed(numbering), rows, strict=False)
             address = kernel_address(form.kernel)
             for row in part.rows:
-                key = (address, len(row.coordinates))
+                key = (address, len(row.coordinates), len(part.felt_rows))
                 forms[key] = form
-                grouped.setdefault(key, []).append((element, row, rows))
-        own = range(own_rows, len(row_names))
+                grouped.setdefault(key, []).append((element, row, (*rows, *part.felt_rows)))
+        own = numbering.rows[element.name] = range(own_rows, len(row_names))
         multipliers |= dict(zip(own, element.multiplier_channels(), strict=False))
         derived += element.derived_channels(numbering, own)
     derived += _of_outputs(model.outputs, numbering)
@@ -301,12 +306,13 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 c.extent(),
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 max(len(contact_rows[c.name]) - 1, 1),
-                c.friction,
+                c.friction_in(numbering.length),
                 _bristles_of(c, numbering),
                 kind=kind_of(c.geometry()),
                 units=c.units_in(numbering.bodies),
+                has_shapes=c.has_shapes,
             )
-            for c in model.contacts
+            for c in contacts
         ],
         work_names=list(numbering.work_numbers),
         work_sizes=numbering.work_sizes,
@@ -319,7 +325,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
         coordinate_scale=_coordinate_scale(numbering.length, columns, len(internal)),
         length=numbering.length,
         rate_rows=frozenset(rate_rows),
-        replaced_rows=_replaced_rows(model, massless, batches),
+        replaced_rows=_replaced_rows(contacts, massless, batches),
         derived=tuple(derived),
         motions=tuple(numbering.motions),
         placed=tuple(placed),
@@ -335,15 +341,17 @@ def _of_outputs(outputs: Sequence[MarkerOutput], numbering: ModelNumbering) -> l
     return [k.derived([o for o in outputs if type(o) is k], numbering.own_frame) for k in kinds]
 
 
-def _replaced_rows(model: Parts, massless: Mapping[int, int], batches: Sequence[Batch]) -> dict[int, frozenset[int]]:
+def _replaced_rows(
+    contacts: Sequence[ContactElement], massless: Mapping[int, int], batches: Sequence[Batch]
+) -> dict[int, frozenset[int]]:
     """Each massless end's row with the contacts that move its coordinate. Raises ModelError for contacts that need a
     mass there."""
     found = {}
     for row, coordinate in massless.items():
         moving = [b.contact[np.any(b.coord == coordinate, axis=1)] for b in batches if np.any(b.contact >= 0)]
         found[row] = frozenset(int(k) for k in np.concatenate([*moving, np.zeros(0, np.int64)]) if k >= 0)
-    for k, contact in enumerate(model.contacts):
-        ends = [row for row, contacts in found.items() if k in contacts]
+    for k, contact in enumerate(contacts):
+        ends = [row for row, moving in found.items() if k in moving]
         if not ends:
             continue
         restitution = getattr(contact.law, "restitution", 0.0)

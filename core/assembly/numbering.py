@@ -1,9 +1,9 @@
 """Numbers of coordinates, signals and work accounts while a model's tables are built."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from ..elements.base import BodyElement
+from ..elements.base import BodyElement, JointElement
 from ..laws import ForceLaw, law_address
 from ..laws.friction import FrictionLaw, friction_address
 from ..model.base import Vector3, in_space
@@ -12,7 +12,7 @@ from ..model.motion import InputMotion
 from ..model.said_angle import CountsTurns, SaidAngle, SaysAngle
 from ..model.signals import InputSignal, Signal
 from ..rounding import AT_ORIGIN
-from .parts import Parts
+from .parts import Parts, TabulatedElements
 from .start_turns import Watched
 
 NO_START: Mapping[str, float] = MappingProxyType({})
@@ -24,24 +24,27 @@ class ModelNumbering:
     """Numbers coordinates, rows, signals and work accounts while the elements' tables are built."""
 
     def __init__(self, model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.0) -> None:
+        self.tabulated = TabulatedElements(model)
         self.gravity: Vector3 = in_space(model.gravity)
         self.length = _length(model)
         self.bodies: dict[str, BodyElement] = {body.name: body for body in model.bodies}
+        self.joints = {e.name: e for e in self.tabulated.all if isinstance(e, JointElement)}
         self.index: dict[str, tuple[int, ...]] = {}
         self.starts: dict[str, tuple[float, ...]] = {GROUND: ()}
         self.inputs = {record.name: k for k, record in enumerate(model.inputs)}
         self.input_start = {record.name: record.start for record in model.inputs}
         self.motions: list[InputMotion] = []
+        self.rows: dict[str, Sequence[int]] = {}
         self.pool: list[float] = []
         self.work_numbers: dict[str, int] = {}
         self.work_sizes: dict[str, float] = {}
-        self.contact_numbers = {record.name: k for k, record in enumerate(model.contacts)}
+        self.contact_numbers = {record.name: k for k, record in enumerate(self.tabulated.contacts)}
         self.names = {body.name: body.coordinate_names for body in model.bodies}
         n_bodies = sum(len(names) for names in self.names.values())
         self.places: dict[str, dict[str, int]] = {}
         self.internals: dict[str, tuple[int, ...]] = {}
         self.internal_names: list[str] = []
-        for element in model.elements():
+        for element in self.tabulated.all:
             states = element.internal_coordinates()
             first = n_bodies + len(self.internal_names)
             self.internals[element.name] = tuple(range(first, first + len(states)))
@@ -150,6 +153,9 @@ class ModelNumbering:
 
     def contact(self, name: str) -> int:
         return self.contact_numbers[name]
+
+    def constraint_rows(self, name: str) -> Sequence[int]:
+        return self.rows[name]
 
     def law_address(self, law: ForceLaw) -> int:
         return law_address(law)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import model_validator
 
@@ -14,6 +14,9 @@ from ..model.markers import GROUND
 
 class ContactElement(Element):
     """What may stand in a model's `contacts`, in the plane or in space."""
+
+    has_shapes: ClassVar[bool] = True
+    """False: the friction of a joint."""
 
     law: ContactLaw
     """What happens when the gap closes."""
@@ -36,6 +39,13 @@ class ContactElement(Element):
                 f"a contact with {type(self.law).__name__} is a constraint: give it Coulomb friction"
             )
         return self
+
+    def as_contact(self) -> "ContactElement":
+        return self
+
+    def friction_in(self, length: float) -> Friction | None:
+        """Its law of friction in a model of this length, m."""
+        return self.friction
 
     def reach(self) -> Sequence[tuple[float, ...]]:
         """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""

@@ -4,12 +4,12 @@ from typing import Any
 
 (
     OWN, DISKS, PLANE, SEGMENT, LINEAR, LINE, CABLE, EQUATIONS, SPHERE,
-    OUTLINE, RING, ROPE, TURN, STOP, CABLE_IN_SPACE,
-) = range(15)  # fmt: skip
+    OUTLINE, RING, ROPE, TURN, STOP, CABLE_IN_SPACE, JOINT,
+) = range(16)  # fmt: skip
 """OWN: a gap of which nothing is known; LINEAR: a gap that is linear in the coordinates; EQUATIONS: a gap function
 of an `EquationSystem`, which is asked for through the whole system; SPHERE: two shapes in space, such as a sphere and a
 half-space; OUTLINE: a disk on a convex outline in the plane; RING: a disk in a round hole; TURN: an end stop of an
-angle in the plane; STOP: an end stop or a rope in space."""
+angle in the plane; STOP: an end stop or a rope in space; JOINT: the friction of a joint, whose gap is always zero."""
 NOT_BOUND = (OWN, EQUATIONS)
 """Kinds of which nothing bounds how far the gap can go within a step."""
 

@@ -37,6 +37,11 @@ class Numbering(Protocol):
         """The model's bodies by name."""
         ...
 
+    @property
+    def joints(self) -> "Mapping[str, JointElement]":
+        """The model's joints by name."""
+        ...
+
     def coordinates(self, body: str) -> tuple[int, ...]:
         """Indices of the coordinates of a body. Of one that carries markers: of those that place its frame; for those
         that it lacks (the angle of a point mass) a place that stays zero. Of the ground: as if it were planar."""
@@ -89,6 +94,10 @@ class Numbering(Protocol):
         """Number of the contact `name`."""
         ...
 
+    def constraint_rows(self, name: str) -> Sequence[int]:
+        """Constraint rows of the joint `name`; known once the tables of joints are built."""
+        ...
+
     def law_address(self, law: Any) -> int:
         """Machine address of a force law's formula."""
         ...
@@ -136,6 +145,9 @@ class Part:
 
     form: Form
     rows: Sequence[Row]
+    felt_rows: Sequence[int] = ()
+    """Constraint rows of other elements whose multipliers its kernel takes: they stand behind its own in the table of
+    rows, and in the pattern of its Jacobian."""
     massless: int = -1
     """Coordinate without mass that the constraint row holds; a closed contact that moves it takes the row's place."""
 
@@ -185,6 +197,11 @@ class Element(OpenRecord):
         """All that it brings into the tables, for elements with rows of several kernels."""
         return (Part(self.form_in(numbering.bodies), self.rows(numbering)),)
 
+    def as_contact(self) -> Any | None:
+        """The contact that stands for it in the tables, a `ContactElement`: itself if it is one, that of a force whose
+        law is set-valued; None for all others."""
+        return None
+
     def internal_coordinates(self) -> Sequence[str]:
         """Names of its internal coordinates: states z of its own, each the velocity of a coordinate of unit mass,
         1 a = z'. They come after those of the bodies; their positions mean nothing."""
@@ -200,6 +217,10 @@ class Element(OpenRecord):
 
     def lengths(self) -> Sequence[float]:
         """Its lengths that tell the size of a mechanism whose points do not, m."""
+        return ()
+
+    def felt_joints(self) -> Sequence[str]:
+        """Names of the joints whose forces it feels (they must exist, and have forces)."""
         return ()
 
     def moved_coordinates(self) -> Sequence[tuple[str, str]]:
@@ -234,6 +255,11 @@ class Element(OpenRecord):
 
 class JointElement(Element):
     """Base of what may stand in a model's `joints`: a user's own needs no more than to inherit from it."""
+
+    def force_rows(self) -> Sequence[int]:
+        """Which of its constraint rows have the force between its bodies as their multipliers, by components along
+        directions at right angles, N."""
+        return ()
 
 
 class ForceElement(Element):

@@ -104,6 +104,7 @@ class Dot2(Primitive):
 
     axis: Axis
     distance: Signal = AT_POINT
+    carries_force: ClassVar[bool] = True
     load: ClassVar[Any] = dot2_load
     form: ClassVar[Form] = Form(
         dot2_3d_kernel,

@@ -82,6 +82,14 @@ class Joint3D(JointElement):
         turning = [turn_part(c.account, c.a, c.b, numbering) for c in self.coordinates() if c.kind == "angle"]
         return [*parts, *turning]
 
+    def force_rows(self) -> Sequence[int]:
+        first, found = 0, []
+        for primitive in self.primitives():
+            count = primitive.form.constraint_rows
+            found += range(first, first + count) if primitive.carries_force else ()
+            first += count
+        return found
+
     def signals(self) -> Sequence[Signal]:
         return [s for primitive in self.primitives() for s in primitive.signals() if not isinstance(s, Constant)]
 

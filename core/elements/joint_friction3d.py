@@ -1,47 +1,85 @@
-"""Dry friction of a joint in space that is preloaded: a torque or force of given size against the motion.
+"""Dry friction of a joint in space: a torque or force against the motion.
 
-As `joint_friction2d`: below the transition rate it falls to zero as tanh does, so that the joint creeps where it should
-hold.
+As `joint_friction2d`: Coulomb's, or regularised by choice.
 """
 
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
+
+from pydantic import model_validator
 
 from ..model.base import NonNegative, Positive
+from .joint_friction import JointFrictionForce, check_radius
 from .measure3d import ANGLE, PLACE
 from .measured_force3d import FRICTION, MeasuredForce3D
 
 
-class RevoluteFriction3D(MeasuredForce3D):
-    """Dry friction of a Revolute3D or Cylindrical3D with the same markers, about the z axis of marker `a`."""
+class _Friction3D(JointFrictionForce, MeasuredForce3D):
+    """Base of both."""
+
+    law: ClassVar[int] = FRICTION
+
+    def kind(self) -> int:
+        return ANGLE if type(self).measured == "angle" else PLACE
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        return (self.preload, self.transition or 0.0, 0.0, 0.0)
+
+    def as_contact(self) -> Any | None:
+        if self.transition is not None or not self.rubs:
+            return None
+        from ..contacts.joint_friction import JointFriction3D
+
+        return JointFriction3D(a=self.a, b=self.b, **self.contact_fields())
+
+
+class RevoluteFriction3D(_Friction3D):
+    """Dry friction of a Revolute3D or Cylindrical3D with the same markers, about the z axis of marker `a`: `torque`,
+    and `coefficient` times `radius` times the force of the `joint`."""
 
     type: Literal["RevoluteFriction3D"] = "RevoluteFriction3D"
-    law: ClassVar[int] = FRICTION
+    measured: ClassVar[Literal["angle", "slide"]] = "angle"
 
-    torque: NonNegative
-    """While it turns, N m."""
-    transition_rate: Positive
-    """Rate at which 76 % of the torque act, rad/s."""
+    torque: NonNegative = 0.0
+    """While it turns, N m, whatever the joint carries."""
+    radius: Positive | None = None
+    """Of the bearing, m; needed with a coefficient."""
+    transition_rate: Positive | None = None
+    """Of a regularised law, the rate at which 76 % of the torque act, rad/s; none: the law is Coulomb's."""
 
-    def kind(self) -> int:
-        return ANGLE
+    @model_validator(mode="after")
+    def _has_radius(self) -> "RevoluteFriction3D":
+        check_radius(self, self.radius)
+        return self
 
-    def numbers(self) -> tuple[float, float, float, float]:
-        return (self.torque, self.transition_rate, 0.0, 0.0)
+    @property
+    def preload(self) -> float:
+        return self.torque
+
+    @property
+    def transition(self) -> float | None:
+        return self.transition_rate
+
+    @property
+    def arm(self) -> float:
+        return self.coefficient * (self.radius or 0.0)
 
 
-class SlideFriction3D(MeasuredForce3D):
-    """Dry friction of a Prismatic3D or Cylindrical3D with the same markers, along the z axis of marker `a`."""
+class SlideFriction3D(_Friction3D):
+    """Dry friction of a Prismatic3D or Cylindrical3D with the same markers, along the z axis of marker `a`: `force`,
+    and `coefficient` times the force of the `joint` across that axis."""
 
     type: Literal["SlideFriction3D"] = "SlideFriction3D"
-    law: ClassVar[int] = FRICTION
+    measured: ClassVar[Literal["angle", "slide"]] = "slide"
 
-    force: NonNegative
-    """While it slides, N."""
-    transition_speed: Positive
-    """Speed at which 76 % of the force act, m/s."""
+    force: NonNegative = 0.0
+    """While it slides, N, whatever the joint carries."""
+    transition_speed: Positive | None = None
+    """Of a regularised law, the speed at which 76 % of the force act, m/s; none: the law is Coulomb's."""
 
-    def kind(self) -> int:
-        return PLACE
+    @property
+    def preload(self) -> float:
+        return self.force
 
-    def numbers(self) -> tuple[float, float, float, float]:
-        return (self.force, self.transition_speed, 0.0, 0.0)
+    @property
+    def transition(self) -> float | None:
+        return self.transition_speed

@@ -61,6 +61,7 @@ def point_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
 class Point(Primitive):
     """The points of both markers are one; 3 rows."""
 
+    carries_force: ClassVar[bool] = True
     load: ClassVar[Any] = point_load
     form: ClassVar[Form] = Form(
         point3d_kernel,

@@ -35,6 +35,8 @@ class Primitive:
     form: ClassVar[Form]
     holds_axes: ClassVar[bool] = False
     """Whether it keeps bodies from turning, by a torque."""
+    carries_force: ClassVar[bool] = False
+    """Whether its multipliers are components of the force between both bodies, N."""
     load: ClassVar[Any]
     """numba function of DERIVE_SIGNATURE: adds the force on body b at the point of its marker (N) and the torque (N m),
     in the directions of space, to `out` (6,). Its places are those of both frames, `model/frame3d.FRAME` each, and of

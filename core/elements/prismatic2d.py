@@ -63,6 +63,9 @@ class Prismatic2D(PairElement2D, JointElement):
     relative_angle: float | None = None
     """theta_b - theta_a, rad; left out: as in the start configuration."""
 
+    def force_rows(self) -> Sequence[int]:
+        return (0,)
+
     def row(self, numbering: Numbering) -> Row:
         relative = self.relative_angle
         if relative is None:

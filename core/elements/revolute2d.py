@@ -84,6 +84,9 @@ class Revolute2D(PairElement2D, JointElement):
         (0, 0), (0, 2), (0, 3), (0, 5), (1, 1), (1, 2), (1, 4), (1, 5),
     )  # fmt: skip
 
+    def force_rows(self) -> Sequence[int]:
+        return (0, 1)
+
     def row(self, numbering: Numbering) -> Row:
         return Row(
             (*self.a.point, *self.b.point),

@@ -24,7 +24,7 @@ from ..contacts.cable_line import BOTH as CABLE_BOTH
 from ..contacts.cable_line import LENGTH as CABLE_LENGTH
 from ..contacts.cable_line import POINT as CABLE_POINT
 from ..contacts.cable_line import VECTORS
-from ..contacts.geometry_kinds import CABLE, CABLE_IN_SPACE, EQUATIONS, LINE, LINEAR, OWN, SPHERE, STOP, TURN
+from ..contacts.geometry_kinds import CABLE, CABLE_IN_SPACE, EQUATIONS, JOINT, LINE, LINEAR, OWN, SPHERE, STOP, TURN
 from ..contacts.line2d import BOTH as LINE_BOTH
 from ..contacts.line2d import NODES, POINTS
 from ..contacts.mesh_nearest3d import OPEN
@@ -58,6 +58,8 @@ def way_of_gap(ws: Any, lc: Any, k: int, fastest: int) -> float:
     batch, way = probe_of(lc, k), mat(lc.travel, 2, ws.n_ext)[fastest]
     par, coord = mat(batch.par, batch.count, batch.npar), imat(batch.coord, batch.count, batch.ncoord)
     total = 0.0
+    if kind == JOINT:
+        return 0.0
     if kind == LINEAR:
         for i in range(6):
             total += abs(par[0, 16 + i]) * way[coord[0, i]]
@@ -150,7 +152,7 @@ def _excluded(
             return True, False, False
     _coefficients(left, right, tau, sign, c)
     lowest = min(c[0], c[1], c[2], c[3], c[4], c[5], c[6])
-    lowered = 0.0 if kind == LINEAR or kind == TURN else 3.2 * rest
+    lowered = 0.0 if kind == LINEAR or kind == TURN or kind == JOINT else 3.2 * rest
     if way > thick:
         return False, False, lowest < -slack
     touching = g0 <= slack and g1 <= slack

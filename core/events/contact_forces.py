@@ -6,11 +6,13 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import REACHES_LIMIT, REACHES_LIMIT_NOW, STICKS_STILL
+from ..state.run_records import loop_at
+from .following_loads import solve_with_loads
 from .free_tangents import find_sliding, list_held
 from .loaded import note_loaded
 from .moreau import decide_by_moment, moment_asked, moment_of_wedge, stop_rates
 from .painleve import name_jammed, refuse_jam
-from .rates import pressing, solve_cone_problem
+from .rates import pressing
 from .reading import unresolved_speed
 from .records import (
     AT_REST,
@@ -66,14 +68,14 @@ def find_forces(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             return status
     if ms.exact != 0 and decide_by_moment(ev, dr, ws, ms, col(ev, AT_REST), moment_asked(ev, dr, ws)):
         return SETTLED
-    part = col(ev, PART)
+    part, lc = col(ev, PART), loop_at(dr.loop)
     for i in range(whole(ev)[COUNT]):
         part[i] = 1.0 if col(ev, AT_REST)[i] != 0.0 and col(ev, LEAVES)[i] == 0.0 else 0.0
-    status = balance(ev, ws, ms, part)
+    status = balance(ev, ws, ms, lc, part)
     for _ in range(whole(ev)[COUNT]):
         if status != SETTLED or not _falls_back(ev, ws, part):
             break
-        status = balance(ev, ws, ms, part)
+        status = balance(ev, ws, ms, lc, part)
     if status == SETTLED:
         note_loaded(ev, ws)
         status = refuse_jam(ev, ws)
@@ -99,7 +101,7 @@ def _falls_back(ev: Any, ws: Any, part: Any) -> bool:
 
 
 @internal
-def balance(ev: Any, ws: Any, ms: Any, part: Any) -> int:
+def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
     """Forces of the contacts `part`, and of others at rest that these press together again."""
     count, takes = whole(ev)[COUNT], col(ev, TAKES)
     direction, b, p = col(ev, DIRECTION), vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
@@ -123,7 +125,7 @@ def balance(ev: Any, ws: Any, ms: Any, part: Any) -> int:
     for _ in range(2 * count + 2):
         for i in range(count):
             mu[i] = col(ev, KINETIC)[i] if direction[i] != 0.0 else col(ev, STATIC)[i]
-        if not solve_cone_problem(ev, a, count, takes, b, mu, col(ev, BASE), direction, p):
+        if not solve_with_loads(ev, ws, lc, a, takes, b, mu, col(ev, BASE), direction, p):
             name_jammed(ev, ws)
             return NO_FORCES
         again = False

@@ -189,38 +189,38 @@ class ChannelTable:
         layout, name, (gap, slide) = self.layout, contact.name, contact.units
         force = conjugate(gap)
         impulse, dissipation = layout.work[f"{name}.impulse"], layout.work[f"{name}.dissipation"]
+        if contact.has_shapes:
+            self._formulas += [
+                (Channel(f"{name}.gap", gap, "gap, negative where the shapes overlap"), layout.gap + k),
+                (Channel(f"{name}.gap_rate", per_second(gap), "rate of the gap"), layout.gap_rate + k),
+                (Channel(f"{name}.normal_force", force, "normal force, compression positive"), layout.force + k),
+                (
+                    Channel(f"{name}.impulse", times_second(force), "normal impulse since the start, impacts included"),
+                    Sum((impulse, layout.impulse_jump + k)),
+                ),
+            ]
         self._formulas += [
-            (Channel(f"{name}.gap", gap, "gap, negative where the shapes overlap"), layout.gap + k),
-            (Channel(f"{name}.gap_rate", per_second(gap), "rate of the gap"), layout.gap_rate + k),
-            (Channel(f"{name}.normal_force", force, "normal force, compression positive"), layout.force + k),
-            (
-                Channel(f"{name}.impulse", times_second(force), "normal impulse since the start, impacts included"),
-                Sum((impulse, layout.impulse_jump + k)),
-            ),
             (
                 Channel(f"{name}.dissipation", "J", "energy lost in the contact since the start"),
                 Sum((dissipation, layout.loss_jump + k)),
-            ),
-            (
-                Channel(f"{name}.in_contact", "1", "true while the contact carries force", "boolean"),
-                InContact(layout.mode + k),
             ),
             (
                 Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer", CONTACT_STATE),
                 layout.mode + k,
             ),
         ]
-
+        if contact.has_shapes:
+            carries = Channel(f"{name}.in_contact", "1", "true while the contact carries force", "boolean")
+            self._formulas.insert(-1, (carries, InContact(layout.mode + k)))
         if contact.slide_row >= 0:
+            what = "along the tangent, against the sliding velocity" if contact.has_shapes else "on body b"
+            of = "shape on the first" if contact.has_shapes else "body against the first"
+            turns = not contact.has_shapes and slide == "rad"
+            friction = f"{name}.{'friction_torque' if turns else 'friction_force'}"
             self._formulas += [
+                (Channel(friction, conjugate(slide), what), layout.friction + k),
                 (
-                    Channel(
-                        f"{name}.friction_force", conjugate(slide), "along the tangent, against the sliding velocity"
-                    ),
-                    layout.friction + k,
-                ),
-                (
-                    Channel(f"{name}.sliding_velocity", per_second(slide), "of the second shape on the first"),
+                    Channel(f"{name}.sliding_velocity", per_second(slide), f"of the second {of}"),
                     layout.sliding + k,
                 ),
             ]

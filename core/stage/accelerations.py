@@ -13,6 +13,10 @@ from ..rounding import ACCELERATIONS_LOST, ACCELERATIONS_SOLVED, COORDINATE_NOIS
 from ..state.workspace_records import CONTROL_SIZE, OK, OUTER_SLOW, REANALYZE, STIFFNESS_SCALE
 from .solver import solve_increment
 
+LOADS_KNOWN = 2
+"""From this iteration on. The first one finds the multipliers of the joints, the second one what depends on them
+(`contacts/joint_friction.py`); where that is not all, its derivatives are evaluated anew."""
+
 
 @internal
 def _largest(ws: Any, x: Any) -> float:
@@ -36,7 +40,11 @@ def solve_accelerations(ws: Any) -> int:
     if factor_equations(ws, ws.kkt_query) != 0:
         return REANALYZE
     previous, norm, size = np.inf, np.inf, 0.0
-    for _ in range(10):
+    for k in range(10):
+        if k == LOADS_KNOWN:
+            evaluate_tangent(ws, 0.0, 0.0)
+            if factor_equations(ws, ws.kkt_query) != 0:
+                return REANALYZE
         evaluate_residuals(ws)
         solve_increment(ws, ws.kkt_query)
         for i in range(n):
@@ -44,7 +52,8 @@ def solve_accelerations(ws: Any) -> int:
         for i in range(rows):
             lam[active[i]] += increment[n + i]
         norm, size = _largest(ws, increment), acceleration_level(ws)
-        if norm <= ACCELERATIONS_SOLVED * size or norm >= previous:
+        # loads that follow multipliers are those of the iteration before
+        if (k > 0 and norm <= ACCELERATIONS_SOLVED * size) or (k >= LOADS_KNOWN and norm >= previous):
             break
         previous = norm
     evaluate_residuals(ws)

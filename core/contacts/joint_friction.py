@@ -1,0 +1,204 @@
+"""Coulomb friction of joints: a contact whose normal force is given.
+
+The friction of a joint has no shapes that press. Its normal force is that of an internal coordinate w of unit mass,
+which a load N presses onto the stop w >= 0: so w = 0 and the multiplier of the gap's row is -N at all times, and an
+impact, which takes no time, finds no friction of the joint. The sliding distance is the angle or the way of the joint.
+What sticks, slips and stops there is decided as in any contact with friction.
+
+N is a constant, and a part of the force |F| that the joint carries, from its multipliers. While the contact is open, as
+at an instant whose forces are sought, N follows in `events/following_loads.py`; so the inverse masses of contacts know
+nothing of it. Friction of an angle has mu = length, a length of the model, so that N is of the size of its forces.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from ..compiled.jit import internal
+from ..compiled.kernels import RESIDUAL, TANGENT, line_of
+from ..compiled.views import imat, ivec, mat, vec
+from ..elements.base import BodyElement, Form, Numbering, Part, Row
+from ..elements.geometry2d import height_over_line
+from ..elements.measure3d import ANGLE, COLUMNS, PLACE, WHOLE_TURN, columns_of, coordinates_of, measure
+from ..laws import NewtonImpact
+from ..laws.friction import CoulombFriction
+from ..model.base import Name, NonNegative
+from ..model.markers import Marker2D, Marker3D
+from ..state.modes import CLOSED, MEMORY_SIZE, MODE
+from .element import ContactElement
+from .geometry_kinds import JOINT, are
+from .sliding2d import act_sliding
+
+LOAD, SHARE, KIND, PAIR = 16, 17, 18, 19
+"""Columns of the constant part of N, of the part of |F| in N, of the kind of the measure, and the first of the pair of
+markers."""
+OWN_ROWS = 2
+"""Of gap and sliding distance; those of the joint's force stand behind."""
+PLANAR, SPATIAL = 6, 14
+
+
+@internal
+def _rub(b: Any, job: int, e: int, s: float, tangent: Any, hessian: Any, period: float) -> None:
+    """What friction along a measure s adds for `job`, tangent (n,) and hessian, packed: those of all coordinates."""
+    par, w = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, b.ncoord)[e, 0]
+    lam, row, force = vec(b.lam, b.m_extended), imat(b.row, b.count, b.nrow)[e], 0.0
+    for k in range(OWN_ROWS, b.nrow):
+        force += lam[row[k]] ** 2
+    force = math.sqrt(force)
+    if job == RESIDUAL:
+        vec(b.r, b.n_extended)[w] += par[LOAD] + par[SHARE] * force
+    elif job == TANGENT and force > 0.0:
+        memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
+        slots, values = b.ncoord * b.nrow, vec(b.values, b.n_values)
+        of_rows = ivec(b.slot_jt + 8 * line_of(b, e) * slots, slots)
+        for k in range(OWN_ROWS, b.nrow if memory[MODE] == CLOSED else OWN_ROWS):
+            values[of_rows[b.ncoord * k]] += par[SHARE] * lam[row[k]] / force
+    act_sliding(b, job, e, vec(b.q, b.n_extended)[w], np.ones(1), vec(b.q, 0), s, tangent, hessian, period)
+
+
+@internal
+def joint_friction2d_kernel(job: int, t: float, b: Any) -> None:
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, PLANAR + 1), vec(b.q, b.n_extended)
+    tangent, hessian = np.zeros(PLANAR + 1), np.zeros((PLANAR + 1) * (PLANAR + 2) // 2)
+    for e in range(b.count):
+        p, own = par[e], coord[e, 1:]
+        if int(p[KIND]) == ANGLE:
+            s = q[own[5]] - q[own[2]]
+            tangent[:] = 0.0
+            hessian[:] = 0.0
+            tangent[3], tangent[6] = -1.0, 1.0
+        else:
+            s, gradient, bent = height_over_line(q, own, p[PAIR], p[PAIR + 1], p[PAIR + 2], p[PAIR + 3], p[PAIR + 4])
+            for i in range(PLANAR):
+                tangent[1 + i] = gradient[i]
+            for k in range(len(bent)):
+                hessian[PLANAR + 1 + k] = bent[k]
+        _rub(b, job, e, s, tangent, hessian, 0.0)
+
+
+@internal
+def joint_friction3d_kernel(job: int, t: float, b: Any) -> None:
+    par, q = mat(b.par, b.count, b.npar), vec(b.q, b.n_extended)
+    gradient, square = np.empty(SPATIAL), np.empty((SPATIAL, SPATIAL))
+    tangent, hessian = np.zeros(SPATIAL + 1), np.zeros((SPATIAL + 1) * (SPATIAL + 2) // 2)
+    for e in range(b.count):
+        kind = int(par[e, KIND])
+        own = ivec(b.coord + 8 * (e * b.ncoord + 1), SPATIAL)
+        s = measure(kind, q, own, vec(b.par + 8 * (e * b.npar + PAIR), COLUMNS), 0.0, gradient, square)
+        k = SPATIAL + 1
+        for i in range(SPATIAL):
+            tangent[1 + i] = gradient[i]
+            for j in range(i, SPATIAL):
+                hessian[k] = square[i, j]
+                k += 1
+        _rub(b, job, e, s, tangent, hessian, WHOLE_TURN if kind == ANGLE else 0.0)
+
+
+class JointFriction(ContactElement):
+    """Base of the friction of joints as contacts.
+
+    Class attributes: `kernel`; `width`, the number of coordinates of the pair of markers.
+    """
+
+    kernel: ClassVar[Any]
+    width: ClassVar[int]
+    has_shapes: ClassVar[bool] = False
+
+    law: NewtonImpact = NewtonImpact(restitution=0.0)
+    """Of the stop of w, which never opens."""
+    measured: Literal["angle", "slide"]
+    """What it works against."""
+    preload: NonNegative
+    """Friction while the joint moves without a force, N m or N."""
+    joint: Name | None
+    """The joint whose force presses too."""
+    arm: NonNegative
+    """Friction by that force, m, or without a dimension."""
+    static_ratio: float
+    """Static over kinetic friction."""
+
+    def form_with(self, felt: int) -> Form:
+        """Kernel and patterns, with so many rows of the joint."""
+        n = type(self).width + 1
+        full = tuple((i, j) for i in range(1, n) for j in range(1, n))
+        felt_rows = ((OWN_ROWS + k, 0) for k in range(felt))
+        return Form(type(self).kernel, OWN_ROWS, full, ((0, 0), *((1, j) for j in range(1, n)), *felt_rows))
+
+    def form(self) -> Form:
+        return self.form_with(0)
+
+    def parts(self, numbering: Numbering) -> Sequence[Part]:
+        felt: list[int] = []
+        if self.joint is not None:
+            rows = numbering.constraint_rows(self.joint)
+            felt = [rows[k] for k in numbering.joints[self.joint].force_rows()]
+        return (Part(self.form_with(len(felt)), (self.row(numbering),), felt),)
+
+    def internal_coordinates(self) -> Sequence[str]:
+        return ("stop",)
+
+    def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
+        return "m", "rad" if self.measured == "angle" else "m"
+
+    def row(self, numbering: Numbering) -> Row:
+        law, size = self._law_columns(numbering), self._size_in(numbering.length)
+        kind = float(ANGLE if self.measured == "angle" else PLACE)
+        columns, coordinates = self.pair(numbering)
+        parameters = (*(0.0,) * 7, *law.parameters, self.preload / size, self.arm / size, kind, *columns)
+        return Row(parameters, (*numbering.internal(self.name), *coordinates), law.extra)
+
+    def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
+        """Parameters and coordinates of its markers."""
+        raise NotImplementedError(f"{type(self).__name__} must say what its markers are")
+
+    def _size_in(self, length: float) -> float:
+        """Friction by a unit of N, in a model of this length, m."""
+        return length if self.measured == "angle" else 1.0
+
+    def friction_in(self, length: float) -> CoulombFriction:
+        size = self._size_in(length)
+        return CoulombFriction(coefficient=size, static_coefficient=size * self.static_ratio)
+
+
+class JointFriction2D(JointFriction):
+    """Friction of a joint between the bodies of planar markers."""
+
+    type: Literal["JointFriction2D"] = "JointFriction2D"
+    kernel: ClassVar[Any] = joint_friction2d_kernel
+    width: ClassVar[int] = PLANAR
+
+    a: Marker2D
+    """The first marker."""
+    b: Marker2D
+    """The second marker."""
+
+    def markers(self) -> Sequence[Marker2D]:
+        return (self.a, self.b)
+
+    def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
+        columns = (*self.a.point, *self.b.point, self.a.angle)
+        return columns, (*numbering.frame(self.a), *numbering.frame(self.b))
+
+
+class JointFriction3D(JointFriction):
+    """Friction of a joint between the bodies of markers in space, about or along the z axis of marker `a`."""
+
+    type: Literal["JointFriction3D"] = "JointFriction3D"
+    kernel: ClassVar[Any] = joint_friction3d_kernel
+    width: ClassVar[int] = SPATIAL
+
+    a: Marker3D
+    """The first marker."""
+    b: Marker3D
+    """The second marker."""
+
+    def markers(self) -> Sequence[Marker3D]:
+        return (self.a, self.b)
+
+    def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
+        return columns_of(self.a, self.b, numbering), coordinates_of(self.a, self.b, numbering)
+
+
+are(JOINT, joint_friction2d_kernel, joint_friction3d_kernel)

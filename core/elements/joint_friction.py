@@ -1,0 +1,89 @@
+"""What the dry friction of all joints has in common: Coulomb's set-valued law, or a regularised one by choice."""
+
+from collections.abc import Sequence
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from ..laws.friction.base import FrictionCoefficient
+from ..model.base import Name
+from .base import Element, Numbering, Part
+
+
+class JointFrictionForce(Element):
+    """Base of the friction of joints. The tables have it as a contact where its law is Coulomb's.
+
+    Class attribute `measured`: what it works against.
+    """
+
+    measured: ClassVar[Literal["angle", "slide"]]
+
+    joint: Name | None = None
+    """The joint whose force presses on what rubs; none: nothing but a preload does."""
+    coefficient: FrictionCoefficient = 0.0
+    """Friction over the size of that force, dimensionless."""
+    static_ratio: Annotated[float, Field(ge=1.0)] = 1.0
+    """Friction up to which it holds at rest over that while it moves."""
+
+    @property
+    def preload(self) -> float:
+        """Friction without a force of the joint, N m or N."""
+        raise NotImplementedError(f"{type(self).__name__} must say how large its friction is")
+
+    @property
+    def transition(self) -> float | None:
+        """Rate or speed at which 76 % of a regularised friction act, rad/s or m/s; None: the law is Coulomb's."""
+        raise NotImplementedError(f"{type(self).__name__} must say what its law is")
+
+    @property
+    def arm(self) -> float:
+        """Friction by a unit of the joint's force, m or dimensionless."""
+        return self.coefficient
+
+    @model_validator(mode="after")
+    def _law_fits(self) -> "JointFrictionForce":
+        if self.transition is not None and (self.joint is not None or self.static_ratio != 1.0):
+            what = "the force of a joint" if self.joint is not None else "static friction"
+            raise ValueError(
+                f"'{self.name}' has {what}, which a law regularised by a transition of {self.transition:g} does not "
+                "know: leave one of them out"
+            )
+        if self.joint is None and self.coefficient != 0.0:
+            raise ValueError(
+                f"'{self.name}' has a coefficient of {self.coefficient:g} and no force that it goes with: name the "
+                "`joint`, or give the friction itself"
+            )
+        return self
+
+    def felt_joints(self) -> Sequence[str]:
+        return () if self.joint is None else (self.joint,)
+
+    @property
+    def rubs(self) -> bool:
+        """True if a set-valued law has any friction."""
+        return self.preload > 0.0 or self.arm > 0.0
+
+    def contact_fields(self) -> dict[str, Any]:
+        """What a `contacts.joint_friction.JointFriction` takes beside its markers."""
+        return {
+            "name": self.name, "measured": type(self).measured, "preload": self.preload, "joint": self.joint,
+            "arm": self.arm, "static_ratio": self.static_ratio,
+        }  # fmt: skip
+
+    def parts(self, numbering: Numbering) -> Sequence[Part]:
+        # (a set-valued law without any friction is nothing)
+        return () if self.transition is None else super().parts(numbering)
+
+
+def check_radius(friction: JointFrictionForce, radius: float | None) -> None:
+    """Raise ValueError if a coefficient has no radius of a bearing, or a radius no coefficient."""
+    if friction.coefficient > 0.0 and radius is None:
+        raise ValueError(
+            f"'{friction.name}' has a coefficient of {friction.coefficient:g} and no radius at which the friction acts: give "
+            "`radius`, that of the bearing"
+        )
+    if radius is not None and friction.joint is None:
+        raise ValueError(
+            f"'{friction.name}' has a radius of {radius:g} m and no `joint` whose force acts there: name it, or leave "
+            "the radius out"
+        )

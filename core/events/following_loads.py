@@ -1,0 +1,84 @@
+"""Loads that follow the forces of joints (`contacts/joint_friction.py`), at an instant whose forces are sought.
+
+Inverse masses are those at fixed loads. So the loads that the forces found bring about by the joints' multipliers are
+put in their place, until they are the same: the iteration contracts by (friction/load) times (load/friction), the part
+of a friction that comes back as its own load. Where that is 1 or more the joint locks itself, and nothing is found.
+"""
+
+from typing import Any
+
+from ..assembly.compatibility import solve_equations
+from ..compiled.jit import internal
+from ..compiled.kernels import RESIDUAL, call_kernel
+from ..compiled.views import imat, ivec, mat, vec
+from ..contacts.geometry_kinds import JOINT
+from ..contacts.joint_friction import OWN_ROWS
+from ..event_detection.contact_evaluation import KERNEL, KIND, NEAR_SIZE, probe_of
+from ..rounding import LOADS_SETTLED
+from .rates import solve_cone_problem
+from .records import COUNT, whole
+
+MOST_ROUNDS = 100
+
+
+@internal
+def _follows(ev: Any, ws: Any, lc: Any, i: int) -> bool:
+    """True if the load of touching contact i follows the force of a joint."""
+    k = ivec(ev.contacts, ev.most)[i]
+    return imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KIND] == JOINT and probe_of(lc, k).nrow > OWN_ROWS
+
+
+@internal
+def _load_of(ws: Any, lc: Any, k: int, change: Any) -> float:
+    """Load of contact k, N, where the multipliers of active rows change by the second part of `change` (n + m_act,)."""
+    batch, lam, own = probe_of(lc, k), vec(ws.lam, ws.m_ext), vec(lc.probe_lam, ws.m_ext)
+    n = ws.n_ext
+    active, rows, coord = ivec(ws.active, ws.m_act), ivec(batch.row, batch.nrow), ivec(batch.coord, batch.ncoord)
+    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
+    to_q, to_v, to_a, r = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n), vec(lc.probe_r, n)
+    for i in coord:
+        to_q[i], to_v[i], to_a[i], r[i] = q[i], v[i], a[i], 0.0
+    for j in range(OWN_ROWS, batch.nrow):
+        own[rows[j]] = lam[rows[j]]
+        for i in range(ws.m_act):
+            if active[i] == rows[j]:
+                own[rows[j]] += change[ws.n + i]
+    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(ws.t, 1)[0], batch)
+    for j in range(OWN_ROWS, batch.nrow):
+        own[rows[j]] = 0.0
+    return float(r[coord[0]])
+
+
+@internal
+def solve_with_loads(
+    ev: Any, ws: Any, lc: Any, a: Any, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any
+) -> bool:
+    """`solve_cone_problem` of all touching contacts, whose loads in b follow the forces p that are found."""
+    count, n, follows = whole(ev)[COUNT], ws.n, False
+    if not solve_cone_problem(ev, a, count, part, b, mu, base, known, p):
+        return False
+    for i in range(count):
+        follows = follows or _follows(ev, ws, lc, i)
+    if not follows:
+        return True
+    directions, contacts = mat(ev.directions, 3 * count, n), ivec(ev.contacts, ev.most)
+    change = vec(ws.rhs, n + ws.m_act)
+    for _ in range(MOST_ROUNDS):
+        change[:] = 0.0
+        for i in range(3 * count):
+            if p[i] != 0.0:
+                for j in range(n):
+                    change[j] += p[i] * directions[i, j]
+        solve_equations(ws, ws.kkt_query)
+        settled = True
+        for i in range(count):
+            if _follows(ev, ws, lc, i):
+                # the coordinate that is pressed has unit mass
+                load = _load_of(ws, lc, contacts[i], change)
+                settled = settled and abs(load + b[i]) <= LOADS_SETTLED * abs(load)
+                b[i] = -load
+        if settled:
+            return True
+        if not solve_cone_problem(ev, a, count, part, b, mu, base, known, p):
+            return False
+    return False
