@@ -67,6 +67,8 @@ class ContactInfo:
     """What is known of its geometry."""
     units: tuple[str, str] = ("m", "m")
     """Of gap and sliding distance."""
+    size: float = 1.0
+    """Sliding distance in the tables by a unit of that in `units`."""
     has_shapes: bool = True
     """False: the friction of a joint, whose gap and normal force mean nothing."""
 
@@ -306,10 +308,11 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 c.extent(),
                 contact_rows[c.name][1] if len(contact_rows[c.name]) > 1 else -1,
                 max(len(contact_rows[c.name]) - 1, 1),
-                c.friction_in(numbering.length),
+                c.friction,
                 _bristles_of(c, numbering),
                 kind=kind_of(c.geometry()),
                 units=c.units_in(numbering.bodies),
+                size=c.size_in(numbering.length),
                 has_shapes=c.has_shapes,
             )
             for c in contacts

@@ -43,9 +43,9 @@ class ContactElement(Element):
     def as_contact(self) -> "ContactElement":
         return self
 
-    def friction_in(self, length: float) -> Friction | None:
-        """Its law of friction in a model of this length, m."""
-        return self.friction
+    def size_in(self, length: float) -> float:
+        """Sliding distance in the tables by a unit of that in `units_in`, in a model of this length, m."""
+        return 1.0
 
     def reach(self) -> Sequence[tuple[float, ...]]:
         """Of what is fixed to the ground only the nearest: how far a road goes on says nothing of the wheel."""

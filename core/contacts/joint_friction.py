@@ -1,13 +1,14 @@
 """Coulomb friction of joints: a contact whose normal force is given.
 
-The friction of a joint has no shapes that press. Its normal force is that of an internal coordinate w of unit mass,
-which a load N presses onto the stop w >= 0: so w = 0 and the multiplier of the gap's row is -N at all times, and an
-impact, which takes no time, finds no friction of the joint. The sliding distance is the angle or the way of the joint.
-What sticks, slips and stops there is decided as in any contact with friction.
+The friction of a joint has no shapes that press. Its gap is k w, w an internal coordinate of unit mass, which a load N
+presses onto the stop w >= 0: so w = 0 and the multiplier of the gap's row is -N at all times, and an impact, which
+takes no time, finds no friction of the joint. The sliding distance is the way of the joint, or its angle times a length
+of the model; mu is 1. What sticks, slips and stops there is decided as in any contact with friction. k^2 is the inverse
+of a mass of the model, so that gap and tangent have inverse masses of one size.
 
 N is a constant, and a part of the force |F| that the joint carries, from its multipliers. While the contact is open, as
 at an instant whose forces are sought, N follows in `events/following_loads.py`; so the inverse masses of contacts know
-nothing of it. Friction of an angle has mu = length, a length of the model, so that N is of the size of its forces.
+nothing of it.
 """
 
 import math
@@ -23,7 +24,6 @@ from ..elements.base import BodyElement, Form, Numbering, Part, Row
 from ..elements.geometry2d import height_over_line
 from ..elements.measure3d import ANGLE, COLUMNS, PLACE, WHOLE_TURN, columns_of, coordinates_of, measure
 from ..laws import NewtonImpact
-from ..laws.friction import CoulombFriction
 from ..model.base import Name, NonNegative
 from ..model.markers import Marker2D, Marker3D
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE
@@ -31,9 +31,9 @@ from .element import ContactElement
 from .geometry_kinds import JOINT, are
 from .sliding2d import act_sliding
 
-LOAD, SHARE, KIND, PAIR = 16, 17, 18, 19
-"""Columns of the constant part of N, of the part of |F| in N, of the kind of the measure, and the first of the pair of
-markers."""
+LOAD, SHARE, KIND, SIZE, GAIN, PAIR = 16, 17, 18, 19, 20, 21
+"""Columns of the constant part of N, of the part of |F| in N, of the kind of the measure, of the sliding distance by a
+unit of it, of k, and the first of the pair of markers."""
 OWN_ROWS = 2
 """Of gap and sliding distance; those of the joint's force stand behind."""
 PLANAR, SPATIAL = 6, 14
@@ -48,14 +48,17 @@ def _rub(b: Any, job: int, e: int, s: float, tangent: Any, hessian: Any, period:
         force += lam[row[k]] ** 2
     force = math.sqrt(force)
     if job == RESIDUAL:
-        vec(b.r, b.n_extended)[w] += par[LOAD] + par[SHARE] * force
+        vec(b.r, b.n_extended)[w] += par[GAIN] * (par[LOAD] + par[SHARE] * force)
     elif job == TANGENT and force > 0.0:
         memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
         slots, values = b.ncoord * b.nrow, vec(b.values, b.n_values)
         of_rows = ivec(b.slot_jt + 8 * line_of(b, e) * slots, slots)
         for k in range(OWN_ROWS, b.nrow if memory[MODE] == CLOSED else OWN_ROWS):
-            values[of_rows[b.ncoord * k]] += par[SHARE] * lam[row[k]] / force
-    act_sliding(b, job, e, vec(b.q, b.n_extended)[w], np.ones(1), vec(b.q, 0), s, tangent, hessian, period)
+            values[of_rows[b.ncoord * k]] += par[GAIN] * par[SHARE] * lam[row[k]] / force
+    gap, size = vec(b.q, b.n_extended)[w] * par[GAIN], par[SIZE]
+    act_sliding(
+        b, job, e, gap, np.full(1, par[GAIN]), vec(b.q, 0), size * s, size * tangent, size * hessian, size * period
+    )
 
 
 @internal
@@ -116,8 +119,6 @@ class JointFriction(ContactElement):
     """The joint whose force presses too."""
     arm: NonNegative
     """Friction by that force, m, or without a dimension."""
-    static_ratio: float
-    """Static over kinetic friction."""
 
     def form_with(self, felt: int) -> Form:
         """Kernel and patterns, with so many rows of the joint."""
@@ -142,24 +143,30 @@ class JointFriction(ContactElement):
     def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
         return "m", "rad" if self.measured == "angle" else "m"
 
+    def size_in(self, length: float) -> float:
+        return length if self.measured == "angle" else 1.0
+
+    def _gain(self, numbering: Numbering) -> float:
+        """k: of the masses that it is between, of the whole model's if these have none, kg^-1/2."""
+        bodies = numbering.bodies
+        own = [bodies[m.body].typical_mass() for m in self.markers() if m.body in bodies]
+        masses = [m for m in own if m > 0.0] or [m for b in bodies.values() if (m := b.typical_mass()) > 0.0] or [1.0]
+        return 1.0 / math.sqrt(min(masses))
+
     def row(self, numbering: Numbering) -> Row:
-        law, size = self._law_columns(numbering), self._size_in(numbering.length)
+        law, size = self._law_columns(numbering), self.size_in(numbering.length)
         kind = float(ANGLE if self.measured == "angle" else PLACE)
         columns, coordinates = self.pair(numbering)
-        parameters = (*(0.0,) * 7, *law.parameters, self.preload / size, self.arm / size, kind, *columns)
+        parameters = (*(0.0,) * 7, *law.parameters, *self._numbers(size), kind, size, self._gain(numbering), *columns)
         return Row(parameters, (*numbering.internal(self.name), *coordinates), law.extra)
 
     def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
         """Parameters and coordinates of its markers."""
         raise NotImplementedError(f"{type(self).__name__} must say what its markers are")
 
-    def _size_in(self, length: float) -> float:
-        """Friction by a unit of N, in a model of this length, m."""
-        return length if self.measured == "angle" else 1.0
-
-    def friction_in(self, length: float) -> CoulombFriction:
-        size = self._size_in(length)
-        return CoulombFriction(coefficient=size, static_coefficient=size * self.static_ratio)
+    def _numbers(self, size: float) -> tuple[float, float]:
+        """LOAD and SHARE."""
+        return self.preload / size, self.arm / size
 
 
 class JointFriction2D(JointFriction):

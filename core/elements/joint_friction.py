@@ -5,6 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from ..laws.friction import CoulombFriction
 from ..laws.friction.base import FrictionCoefficient
 from ..model.base import Name
 from .base import Element, Numbering, Part
@@ -67,7 +68,7 @@ class JointFrictionForce(Element):
         """What a `contacts.joint_friction.JointFriction` takes beside its markers."""
         return {
             "name": self.name, "measured": type(self).measured, "preload": self.preload, "joint": self.joint,
-            "arm": self.arm, "static_ratio": self.static_ratio,
+            "arm": self.arm, "friction": CoulombFriction(coefficient=1.0, static_coefficient=self.static_ratio),
         }  # fmt: skip
 
     def parts(self, numbering: Numbering) -> Sequence[Part]:
@@ -79,7 +80,7 @@ def check_radius(friction: JointFrictionForce, radius: float | None) -> None:
     """Raise ValueError if a coefficient has no radius of a bearing, or a radius no coefficient."""
     if friction.coefficient > 0.0 and radius is None:
         raise ValueError(
-            f"'{friction.name}' has a coefficient of {friction.coefficient:g} and no radius at which the friction acts: give "
+            f"'{friction.name}' has a coefficient of {friction.coefficient:g} and no radius that it acts at: give "
             "`radius`, that of the bearing"
         )
     if radius is not None and friction.joint is None:

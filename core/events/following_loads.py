@@ -12,7 +12,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
 from ..contacts.geometry_kinds import JOINT
-from ..contacts.joint_friction import OWN_ROWS
+from ..contacts.joint_friction import GAIN, OWN_ROWS
 from ..event_detection.contact_evaluation import KERNEL, KIND, NEAR_SIZE, probe_of
 from ..rounding import LOADS_SETTLED
 from .rates import solve_cone_problem
@@ -30,7 +30,8 @@ def _follows(ev: Any, ws: Any, lc: Any, i: int) -> bool:
 
 @internal
 def _load_of(ws: Any, lc: Any, k: int, change: Any) -> float:
-    """Load of contact k, N, where the multipliers of active rows change by the second part of `change` (n + m_act,)."""
+    """Acceleration that the load of contact k gives its gap, downwards, where the multipliers of the active rows change
+    by the second part of `change` (n + m_act,), m/s^2. The coordinate that it presses has unit mass."""
     batch, lam, own = probe_of(lc, k), vec(ws.lam, ws.m_ext), vec(lc.probe_lam, ws.m_ext)
     n = ws.n_ext
     active, rows, coord = ivec(ws.active, ws.m_act), ivec(batch.row, batch.nrow), ivec(batch.coord, batch.ncoord)
@@ -46,7 +47,7 @@ def _load_of(ws: Any, lc: Any, k: int, change: Any) -> float:
     call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(ws.t, 1)[0], batch)
     for j in range(OWN_ROWS, batch.nrow):
         own[rows[j]] = 0.0
-    return float(r[coord[0]])
+    return float(vec(batch.par, batch.npar)[GAIN] * r[coord[0]])
 
 
 @internal
@@ -73,7 +74,6 @@ def solve_with_loads(
         settled = True
         for i in range(count):
             if _follows(ev, ws, lc, i):
-                # the coordinate that is pressed has unit mass
                 load = _load_of(ws, lc, contacts[i], change)
                 settled = settled and abs(load + b[i]) <= LOADS_SETTLED * abs(load)
                 b[i] = -load

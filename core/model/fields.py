@@ -9,7 +9,8 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, get_args
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
@@ -77,6 +78,9 @@ def _written(value: Any) -> str:
 
 def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
     """A type in a few words."""
+    options = [option for option in get_args(annotation) if option is not NoneType]
+    if get_origin(annotation) in (Union, UnionType) and len(options) == 1 and get_origin(options[0]) is Annotated:
+        annotation, *metadata = get_args(options[0])
     plain = isinstance(annotation, type) and not get_args(annotation)
     text = re.sub(r"[A-Za-z_]\w*\.", "", annotation.__name__ if plain else str(annotation))
     words = {"float": "number", "int": "whole number", "bool": "true or false", "str": "text"}
@@ -91,6 +95,7 @@ def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
         if "tuple[" in text:
             return f"list of {what}{'' if records else 's'}" if what else "list"
         return what
+    metadata = [part for given in metadata for part in getattr(given, "metadata", [given])]
     bounds = [f"> {m.gt:g}" for m in metadata if getattr(m, "gt", None) is not None]
     bounds += [f">= {m.ge:g}" for m in metadata if getattr(m, "ge", None) is not None]
     bounds += [f"<= {m.le:g}" for m in metadata if getattr(m, "le", None) is not None]

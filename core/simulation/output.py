@@ -38,13 +38,15 @@ class Sum:
 
     columns: tuple[int, ...]
     less: tuple[int, ...] = ()
+    factor: float = 1.0
+    """Of all."""
 
     def __call__(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
         total = np.zeros(len(samples))
         for column in self.columns:
-            total += samples[:, column]
+            total += self.factor * samples[:, column]
         for column in self.less:
-            total -= samples[:, column]
+            total -= self.factor * samples[:, column]
         return total
 
 
@@ -120,8 +122,8 @@ class ChannelTable:
         self._derived_at, self._derived_rate = _pairs(derived)
         sums = [(k, f) for k, (_, f) in enumerate(self._formulas) if isinstance(f, Sum)]
         terms = [
-            *((k, column, 1.0) for k, f in sums for column in f.columns),
-            *((k, column, -1.0) for k, f in sums for column in f.less),
+            *((k, column, f.factor) for k, f in sums for column in f.columns),
+            *((k, column, -f.factor) for k, f in sums for column in f.less),
         ]
         # a place for every channel, so that one `take` fills all; sums and flags are put in after it
         self._places = np.zeros(len(self._formulas), dtype=np.intp)
@@ -187,40 +189,50 @@ class ChannelTable:
 
     def _add_contact(self, k: int, contact: ContactInfo) -> None:
         layout, name, (gap, slide) = self.layout, contact.name, contact.units
-        force = conjugate(gap)
-        impulse, dissipation = layout.work[f"{name}.impulse"], layout.work[f"{name}.dissipation"]
-        if contact.has_shapes:
+        force, impulse = conjugate(gap), layout.work[f"{name}.impulse"]
+        lost = Sum((layout.work[f"{name}.dissipation"], layout.loss_jump + k))
+        dissipation = Channel(f"{name}.dissipation", "J", "energy lost in the contact since the start")
+        state = Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer", CONTACT_STATE)
+        if not contact.has_shapes:
+            friction = f"{name}.{'friction_torque' if slide == 'rad' else 'friction_force'}"
             self._formulas += [
-                (Channel(f"{name}.gap", gap, "gap, negative where the shapes overlap"), layout.gap + k),
-                (Channel(f"{name}.gap_rate", per_second(gap), "rate of the gap"), layout.gap_rate + k),
-                (Channel(f"{name}.normal_force", force, "normal force, compression positive"), layout.force + k),
+                (dissipation, lost),
+                (state, layout.mode + k),
                 (
-                    Channel(f"{name}.impulse", times_second(force), "normal impulse since the start, impacts included"),
-                    Sum((impulse, layout.impulse_jump + k)),
+                    Channel(friction, conjugate(slide), "on body b, against the sliding velocity"),
+                    Sum((layout.friction + k,), factor=contact.size),
+                ),
+                (
+                    Channel(f"{name}.sliding_velocity", per_second(slide), "of body b on body a"),
+                    Sum((layout.sliding + k,), factor=1.0 / contact.size),
                 ),
             ]
+            return
         self._formulas += [
+            (Channel(f"{name}.gap", gap, "gap, negative where the shapes overlap"), layout.gap + k),
+            (Channel(f"{name}.gap_rate", per_second(gap), "rate of the gap"), layout.gap_rate + k),
+            (Channel(f"{name}.normal_force", force, "normal force, compression positive"), layout.force + k),
             (
-                Channel(f"{name}.dissipation", "J", "energy lost in the contact since the start"),
-                Sum((dissipation, layout.loss_jump + k)),
+                Channel(f"{name}.impulse", times_second(force), "normal impulse since the start, impacts included"),
+                Sum((impulse, layout.impulse_jump + k)),
             ),
+            (dissipation, lost),
             (
-                Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer", CONTACT_STATE),
-                layout.mode + k,
+                Channel(f"{name}.in_contact", "1", "true while the contact carries force", "boolean"),
+                InContact(layout.mode + k),
             ),
+            (state, layout.mode + k),
         ]
-        if contact.has_shapes:
-            carries = Channel(f"{name}.in_contact", "1", "true while the contact carries force", "boolean")
-            self._formulas.insert(-1, (carries, InContact(layout.mode + k)))
         if contact.slide_row >= 0:
-            what = "along the tangent, against the sliding velocity" if contact.has_shapes else "on body b"
-            of = "shape on the first" if contact.has_shapes else "body against the first"
-            turns = not contact.has_shapes and slide == "rad"
-            friction = f"{name}.{'friction_torque' if turns else 'friction_force'}"
             self._formulas += [
-                (Channel(friction, conjugate(slide), what), layout.friction + k),
                 (
-                    Channel(f"{name}.sliding_velocity", per_second(slide), f"of the second {of}"),
+                    Channel(
+                        f"{name}.friction_force", conjugate(slide), "along the tangent, against the sliding velocity"
+                    ),
+                    layout.friction + k,
+                ),
+                (
+                    Channel(f"{name}.sliding_velocity", per_second(slide), "of the second shape on the first"),
                     layout.sliding + k,
                 ),
             ]

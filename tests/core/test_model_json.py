@@ -398,6 +398,7 @@ ELEMENTS["forces"] += [
     st.builds(RelativeLoad2D, **ENDS, load=signal, measure=MEASURES),
     st.builds(RevoluteFriction2D, **ENDS, torque=positive, transition_rate=positive),
     st.builds(SlideFriction2D, **ENDS, force=positive, transition_speed=positive),
+    st.builds(RevoluteFriction2D, **ENDS, torque=positive, static_ratio=st.floats(1.0, 3.0)),
     st.builds(
         Servo2D, **ENDS, target=signal, measure=MEASURES, gain=positive, rate_gain=positive, of_rate=st.just(False)
     ),
@@ -418,6 +419,7 @@ ELEMENTS["forces"] += [
     st.builds(RelativeLoad3D, **ENDS3D, load=signal, measure=MEASURES),
     st.builds(RevoluteFriction3D, **ENDS3D, torque=positive, transition_rate=positive),
     st.builds(SlideFriction3D, **ENDS3D, force=positive, transition_speed=positive),
+    st.builds(SlideFriction3D, **ENDS3D, force=positive, static_ratio=st.floats(1.0, 3.0)),
     st.builds(
         Servo3D, **ENDS3D, target=signal, measure=MEASURES, gain=positive, rate_gain=positive, of_rate=st.just(False)
     ),

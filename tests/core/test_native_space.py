@@ -89,6 +89,15 @@ CASES = {
         ],
         "inputs": [Input(name="u", unit="rad", start=0.3)],
     },
+    "friction that stops": {
+        "joints": [HINGE],
+        "forces": [
+            RevoluteFriction3D(
+                name="friction", **ENDS, torque=1.2, joint="joint", coefficient=0.2, radius=0.1, static_ratio=1.1
+            ),
+            TorsionSpring3D(name="spring", **ENDS, stiffness=3.0),
+        ],
+    },
     "forces along": {
         "forces": [
             SlideFriction3D(name="friction", a=Marker3D(attitude=AXES), b=ENDS["b"], force=0.8, transition_speed=0.5),

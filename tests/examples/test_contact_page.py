@@ -44,6 +44,16 @@ def test_the_page_on_load_sharing_runs() -> None:
     assert max(event.t for event in result.events if event.kind == "stick") == pytest.approx(stops, rel=1e-4)
 
 
+def test_the_page_on_the_friction_of_joints_runs() -> None:
+    page = Path(__file__).parents[2] / "docs" / "joint-friction.md"
+    names: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", page.read_text(), re.S):
+        exec(block, names)
+    assert names["event"].t == pytest.approx(4.8, abs=1e-9)
+    held, fell = names["turned"]
+    assert abs(held) < 1e-15 and fell < -1e-6
+
+
 def test_every_kind_and_field_of_an_event_stands_in_the_table() -> None:
     table = PAGE.split("## Events")[1].split("##")[0]
     assert Event.__doc__ is not None

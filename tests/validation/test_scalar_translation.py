@@ -199,6 +199,9 @@ def test_what_flexible_points_and_three_bodies_would_need_is_refused() -> None:
     pid = PIDController2D(name="f", **MARKS, target=WAVE, gain=1.0)
     with pytest.raises(NotTranslatable, match="a Servo2D, which has no integral"):
         run_exudyn(pair(forces=(pid,)), 0.01, 1e-3)
+    for rub in (RevoluteFriction2D(name="f", **MARKS, torque=0.4), SlideFriction2D(name="f", **MARKS, force=0.4)):
+        with pytest.raises(NotTranslatable, match="friction 'f' is set-valued"):
+            run_exudyn(pair(forces=(rub,)), 0.01, 1e-3)
 
 
 SOFT = Gonthier(stiffness=1e5, restitution=0.6)

@@ -29,7 +29,9 @@ from ...core.elements import (
     TorsionSpring2D,
 )
 from ...core.elements.base import PairElement2D
+from ...core.elements.joint_friction import JointFrictionForce
 from ...core.elements.measured_force3d import CountingForce3D, MeasuredForce3D
+from ..errors import NotTranslatable
 from .measures import MEASURES, Scalar, scalar
 from .measures3d import MEASURES3D, angle_from
 from .registry import Build, no_equal, translates
@@ -91,17 +93,27 @@ def table_spring(record: TableSpring2D | TableSpring3D, build: Build) -> None:
     add_effort(record, build, measure, lambda x, rate, t: float(pull(x)) + c * rate)
 
 
+def _transition(record: JointFrictionForce) -> float:
+    """Of a regularised friction. Raises NotTranslatable for a set-valued one."""
+    if record.transition is None:
+        raise NotTranslatable(
+            f"friction '{record.name}' is set-valued, and exudyn's friction of joints is not: to compare, give it a "
+            "small transition_rate (transition_speed of a slide), and the size that the joint's force gives it"
+        )
+    return record.transition
+
+
 @translates(RevoluteFriction2D, RevoluteFriction3D)
 def revolute_friction(record: RevoluteFriction2D | RevoluteFriction3D, build: Build) -> None:
     """T tanh(phi'/w)."""
-    size, width = record.torque, record.transition_rate
+    size, width = record.torque, _transition(record)
     add_effort(record, build, "angle", lambda x, rate, t: size * math.tanh(rate / width))
 
 
 @translates(SlideFriction2D, SlideFriction3D)
 def slide_friction(record: SlideFriction2D | SlideFriction3D, build: Build) -> None:
     """F tanh(s'/v)."""
-    size, width = record.force, record.transition_speed
+    size, width = record.force, _transition(record)
     add_effort(record, build, "slide", lambda x, rate, t: size * math.tanh(rate / width))
 
 
