@@ -39,7 +39,7 @@ def _slide_row(
     b: Any, job: int, e: int, k: int, s: float, gradient: Any, hessian: Any, period: float, sticks: bool
 ) -> None:
     """The sliding distance's row: its value, rate and acceleration always; a constraint while the contact sticks."""
-    row = imat(b.row, b.count, 2)[e, 1]
+    row = imat(b.row, b.count, b.nrow)[e, 1]
     since = s - mat(b.memory, b.n_memory, MEMORY_SIZE)[k, SLIDE_START]
     if period > 0.0:
         since -= period * np.rint(since / period)
@@ -54,7 +54,7 @@ def _slide_row(
 def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -> None:
     """Friction of a closed contact in proportion to its normal force: F_T = slope lam; slope = mu s where it slides."""
     coord = imat(b.coord, b.count, b.ncoord)[e]
-    lam = vec(b.lam, b.m_extended)[imat(b.row, b.count, 2)[e, 0]]
+    lam = vec(b.lam, b.m_extended)[imat(b.row, b.count, b.nrow)[e, 0]]
     if job == RESIDUAL:
         r = vec(b.r, b.n_extended)
         for i in range(len(gradient)):
@@ -143,7 +143,7 @@ def act_sliding(
     sticks = closed and memory[SLIDE] == STICKS
     if job == RESIDUAL:
         lam = vec(b.lam, b.m_extended)
-        vec(b.monitor, b.n_monitor)[b.n_memory + k] = -lam[imat(b.row, b.count, 2)[e, 1]] if sticks else 0.0
+        vec(b.monitor, b.n_monitor)[b.n_memory + k] = -lam[imat(b.row, b.count, b.nrow)[e, 1]] if sticks else 0.0
     if job == RESIDUAL or job == TANGENT:
         _slide_row(b, job, e, k, s, gradient, hessian, period, sticks)
     if closed and memory[RATIO] != 0.0:
