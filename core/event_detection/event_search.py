@@ -72,19 +72,15 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
         for k in range(ws.n_contacts):
             if found[k, STATE] == CANDIDATE and found[k, PLACES + 4] > LATER * soonest:
                 found[k, STATE] = UNKNOWN
-        nearest, ends_before = np.inf, False
+        nearest = np.inf
         for k in range(ws.n_contacts):
-            if found[k, STATE] == CANDIDATE and ends_before:
-                # whether it has its event before that the shorter step tells
-                found[k, STATE] = UNKNOWN
-            elif found[k, STATE] == CANDIDATE:
+            if found[k, STATE] == CANDIDATE:
                 status, size, happens = event_step(dr, ws, ms, lc, k, step, found[k, PLACES:])
                 if status != OK:
                     return status
                 # where the motion has none up to next to no time, what was seen is rounding
                 found[k, SIZE] = size if happens or size > least else step
                 found[k, STATE] = HAPPENED if happens else SAFE
-                ends_before = found[k, SIZE] < min(step, nearest) and not happens
             if found[k, STATE] != UNKNOWN:
                 first = min(first, found[k, SIZE])
             if found[k, STATE] == HAPPENED:

@@ -65,62 +65,34 @@ def _bend(m0: float, m1: float, before: float, ratio: float) -> float:
 
 
 @internal
-def solve_inside(ws: Any, ms: Any, lc: Any, h: float, s: float, kept: Any) -> bool:
-    """Accelerations and multipliers at s h in the dense output of the step of size h that ends at the current point;
-    `put_back` with `kept` (point_size,) makes that the current point again."""
+def _solve_at(ws: Any, ms: Any, lc: Any, h: float, s: float, margins: Any) -> bool:
+    """The margins (n_contacts, WANT) at s h in the dense output of the step; the workspace is put back."""
     n, m = ws.n_ext, ws.m_ext
-    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, m)
-    _copy_point(ws, kept, False)
+    q, v, a, r = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.r, n)
+    lam, phi, phid, phidd = vec(ws.lam, m), vec(ws.phi, m), vec(ws.phid, m), vec(ws.phidd, m)
+    monitor, t = vec(ws.monitor, 3 * ws.n_contacts), vec(ws.t, 1)
+    states, levels, forces, now = np.empty((4, n)), np.empty((4, m)), monitor.copy(), t[0]
+    states[0], states[1], states[2], states[3] = q, v, a, r
+    levels[0], levels[1], levels[2], levels[3] = lam, phi, phid, phidd
     start = history_row(ws, ms, 0)
     for i in range(ws.n):
         q[i], v[i], a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
     for i in range(m):
         lam[i] += (1.0 - s) * (start[4 * n + i] - lam[i])
-    vec(ws.t, 1)[0] = history_time(ms, 0) + s * h
-    return bool(call_accelerations(lc.accelerations, ws) == OK)
-
-
-@internal
-def put_back(ws: Any, kept: Any) -> None:
-    """Make the point that `solve_inside` has left the current one again."""
-    _copy_point(ws, kept, True)
-
-
-@internal
-def point_size(ws: Any) -> int:
-    """Numbers of `kept`."""
-    return int(4 * ws.n_ext + 4 * ws.m_ext + 3 * ws.n_contacts + 1)
-
-
-@internal
-def _copy_point(ws: Any, kept: Any, back: bool) -> None:
-    """The current point to `kept`, or from there."""
-    n, m, at, t = ws.n_ext, ws.m_ext, 0, vec(ws.t, 1)
-    for address, size in (
-        (ws.q, n), (ws.v, n), (ws.a, n), (ws.r, n), (ws.lam, m), (ws.phi, m), (ws.phid, m), (ws.phidd, m),
-        (ws.monitor, 3 * ws.n_contacts),
-    ):  # fmt: skip
-        x, own = vec(address, size), kept[at : at + size]
-        for i in range(size):
-            if back:
-                x[i] = own[i]
-            else:
-                own[i] = x[i]
-        at += size
-    if back:
-        t[0] = kept[at]
-    else:
-        kept[at] = t[0]
-
-
-@internal
-def _solve_at(ws: Any, ms: Any, lc: Any, h: float, s: float, margins: Any) -> bool:
-    """The margins (n_contacts, WANT) at s h in the dense output of the step; the workspace is put back."""
-    kept = np.empty(point_size(ws))
-    solved = solve_inside(ws, ms, lc, h, s, kept)
+    t[0] = history_time(ms, 0) + s * h
+    solved = call_accelerations(lc.accelerations, ws) == OK
     for k in range(ws.n_contacts):
-        margins[k, 0], margins[k, 1] = _margins(ws, k, vec(ws.lam, ws.m_ext))
-    put_back(ws, kept)
+        margins[k, 0], margins[k, 1] = _margins(ws, k, lam)
+    q[:] = states[0]
+    v[:] = states[1]
+    a[:] = states[2]
+    r[:] = states[3]
+    lam[:] = levels[0]
+    phi[:] = levels[1]
+    phid[:] = levels[2]
+    phidd[:] = levels[3]
+    monitor[:] = forces
+    t[0] = now
     return solved
 
 

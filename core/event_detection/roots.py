@@ -1,11 +1,9 @@
 """Where in a step a function of one contact has its root: the sizes of steps are tried until one ends there.
 
 A root is searched by secant steps down to rounding, with a safeguard as in ITP: bisection where three trials do not
-halve the bracket. Where the gap crosses zero plainly, Newton's method from the root of the dense output is shorter.
-Where a force jumps (a corner is passed) secants lead nowhere, but the motion goes on smoothly: the place of the jump in
-the dense output of one trial is nearly that of the motion, and the next trials confirm it. The search ends on the safe
-side of a root, so that what follows does not find the same crossing again, but behind a jump of the function, since
-what it asks for is seen only there.
+halve the bracket. Where the gap crosses zero plainly, Newton's method from the root of the dense output is shorter. The
+search ends on the safe side of a root, so that what follows does not find the same crossing again, but behind a jump
+of the function, since what it asks for is seen only there.
 """
 
 from typing import Any
@@ -18,10 +16,9 @@ from ..methods.history import history_time
 from ..rounding import NO_STEP, RESOLVED_TIME, SAME_INSTANT, SAME_TRIAL
 from ..state.workspace_records import OK
 from .contact_evaluation import VIEW, look
-from .force_crossings import point_size, put_back, solve_inside
-from .trial_steps import FORCE, GAP, OVERLAP, make_trial, trial_value, value_here
+from .trial_steps import FORCE, GAP, OVERLAP, make_trial, trial_value
 
-MAX_TRIALS, MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON, MOST_DENSE = 60, 40, 60, 6, 6
+MAX_TRIALS, MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON = 60, 40, 60, 6
 JUMP = 1e-6
 """A function that is this large, relative to its largest value, right beside its root jumps there."""
 SHORT = 1e-6
@@ -30,29 +27,23 @@ FINE = 1e-2
 """Of that length: how finely the place of the jump is known then."""
 CLEARLY = 1e4
 """Of the least time: what is behind a jump by so much is not before it by rounding."""
-NEAREST = 3
-"""Sizes of steps before and beyond the last event that was searched for, and the size that ends there."""
+NEAREST = 4
+"""Sizes of steps before and beyond the last event that was searched for, the size that ends there, and 1.0; or, with
+0.0, that of the step which ends shortly before it."""
 
 
 @internal
-def _dense_jump(
-    ws: Any, ms: Any, lc: Any, k: int, sign: float, h: float, low: float, high: float, near: float
-) -> float:
-    """Size of the step, between `low` and `high`, at which the force of contact k changes its sign in the dense output
-    of the one that ends at the current point, of size h; to `near`. NaN: forces there are not found."""
-    kept = np.empty(point_size(ws))
-    while high - low > near:
-        x = 0.5 * (low + high)
-        solved = solve_inside(ws, ms, lc, h, x / h, kept)
-        f = value_here(ws, ms, lc, k, FORCE, sign, 0.0)
-        put_back(ws, kept)
-        if not solved:
-            return np.nan
-        if f > 0.0:
-            low = x
-        else:
-            high = x
-    return 0.5 * (low + high)
+def _keep_nearest(nearest: Any, low: float, high: float, size: float, happens: bool) -> None:
+    """What `find_root` has found, for the other contacts of the same step."""
+    nearest[0], nearest[1] = low * (1.0 - SAME_INSTANT), high * (1.0 + SAME_INSTANT)
+    nearest[2], nearest[3] = size, 1.0 if happens else 0.0
+
+
+@internal
+def _jumps_behind(low: float, width: float, f_low: float, f_high: float, largest: float, full: float) -> bool:
+    """True if a force jumps between steps of size `low` and `width` more, as finely as the step is to end before it."""
+    fine = low > 10.0 * SHORT * full and width <= FINE * SHORT * full
+    return bool(fine and f_low > JUMP * largest and f_high < -JUMP * largest)
 
 
 @internal
@@ -74,28 +65,23 @@ def find_root(
         if nearest[0] > low:
             status, f_low = trial_value(dr, ws, ms, lc, k, what, sign, slack, nearest[0], full)
         if status != OK or nearest[0] == low or f_low > 0.0:
-            return status, nearest[2], True
+            return status, nearest[2], nearest[3] != 0.0
         x_high, f_high, f_low = nearest[0], f_low, np.nan
     resolved = NO_STEP * abs(history_time(ms, 0))
     x, last_x, last_f = 0.5 * (x_low + x_high), np.nan, np.nan
     # widths of the bracket three, two and one trials ago
     third, second, first, trials = np.inf, np.inf, x_high - x_low, 1
-    beyond, places = np.nan, MOST_DENSE
     for _ in range(MAX_TRIALS):
         status, f = trial_value(dr, ws, ms, lc, k, what, sign, slack, x, full)
         if status != OK or abs(f) <= floor:
             return status, x, True
         largest = max(largest, abs(f))
-        stays = abs(f) > 0.5 * abs(f_low if f > 0.0 else f_high)
         if f > 0.0:
             x_low, f_low = x, f
         else:
             x_high, f_high = x, f
-        jumps = what == FORCE and f_low > JUMP * largest and f_high < -JUMP * largest
         width, least = x_high - x_low, max(RESOLVED_TIME * abs(x_high), resolved)
-        # as finely as the step is to end before it
-        enough = max(least, FINE * SHORT * full) if jumps and x_low > 10.0 * SHORT * full else least
-        if width <= enough:
+        if width <= least or (what == FORCE and _jumps_behind(x_low, width, f_low, f_high, largest, full)):
             break
         slow = trials >= 3 and width > 0.5 * third
         third, second, first = second, first, width
@@ -111,13 +97,6 @@ def find_root(
         elif abs(proposal - x) < 0.5 * least:
             # at the root: look just beyond it, so that it is between two places (Brent 1973)
             proposal = x + (0.5 * least if f > 0.0 else -0.5 * least)
-        if x_low < beyond < x_high:
-            proposal, beyond = beyond, np.nan
-        elif jumps and ms.exact != 0 and places > 0 and (stays or places < MOST_DENSE):
-            near, places = 0.25 * enough, places - 1
-            place = _dense_jump(ws, ms, lc, k, sign, x, x_low, x_high, near)
-            if x_low < place - near:
-                proposal, beyond = place - near, place + near
         last_x, last_f = x, f
         x = proposal
     # a gap below zero by rounding that nothing closes would pass the same limit again
@@ -129,6 +108,7 @@ def find_root(
         if what == FORCE and x_low > 10.0 * SHORT * full:
             # a step takes what is at its end for a part of all of it: let the one over the jump be short
             x = x_low - SHORT * full
+            _keep_nearest(nearest, x_low, x_high, x, False)
             return make_trial(dr, ws, ms, lc, x, full), x, False
         # clearly behind it: rounding must not take back what has been passed (at the row nothing has been)
         behind = CLEARLY * resolved if at_row else max(0.1 * SHORT * full, CLEARLY * resolved)
@@ -136,7 +116,7 @@ def find_root(
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low
-    nearest[0], nearest[1], nearest[2] = x_low * (1.0 - SAME_INSTANT), x_high * (1.0 + SAME_INSTANT), x
+    _keep_nearest(nearest, x_low, x_high, x, True)
     return make_trial(dr, ws, ms, lc, x, full), x, True
 
 

@@ -58,17 +58,13 @@ def trial_value(
 ) -> Any:
     """(status, value) at the end of a step of this size of what is positive before the event."""
     status = make_trial(dr, ws, ms, lc, step, full)
-    return status, value_here(ws, ms, lc, k, what, sign, slack) if status == OK else 0.0
-
-
-@internal
-def value_here(ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack: float) -> float:
-    """The value of `trial_value` at the current point."""
+    if status != OK:
+        return status, 0.0
     row = ivec(ws.contact_rows, ws.n_contacts)[k]
     if what == GAP or what == OVERLAP:
-        return float(sign * vec(ws.phi, ws.m_ext)[row] + slack)
+        return OK, sign * vec(ws.phi, ws.m_ext)[row] + slack
     if what == CLOSING:
-        return float(vec(ws.phidd, ws.m_ext)[row] + slack)
+        return OK, vec(ws.phidd, ws.m_ext)[row] + slack
     memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
     force = sign * vec(ws.monitor, ws.n_contacts)[k]
     if memory[MODE] == CLOSED and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0 and memory[SLIDE] != IDLE:
@@ -77,4 +73,4 @@ def value_here(ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack:
     margin = implied_margin(ws, k, before) if ms.exact != 0 else 1.0
     if margin < 1.0:
         force = min(force, force_level(ws) / vec(ws.row_scale, ws.m_ext)[row] * margin)
-    return float(force)
+    return OK, force

@@ -142,9 +142,8 @@ def _in_unequal_parts(ws: Any, t: float, h: float) -> int:
 @internal
 def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
     """One grid step in as many equal parts as keep the embedded error of each below one: starting values that
-    do not spoil the order of a fixed-step multistep method. Where that takes very many, or where shorter parts do not
-    make the error less by their square at least, something jumps inside."""
-    parts, before = 1, np.inf
+    do not spoil the order of a fixed-step multistep method. Where that takes very many, something jumps inside."""
+    parts = 1
     while True:
         base_from_row(ws, ms)
         t = history_time(ms, 0)
@@ -160,9 +159,8 @@ def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
             _take_over(ws)
         if worst <= 1.0:
             break
-        jumps, before = worst * parts * parts > before, worst * parts * parts
         parts = max(2 * parts, int(parts * min(worst, 1e8) ** 0.25) + 1)
-        if jumps or parts > EQUAL_PARTS:
+        if parts > EQUAL_PARTS:
             base_from_row(ws, ms)
             status = _in_unequal_parts(ws, t, h)
             if status != OK:
