@@ -196,8 +196,6 @@ CONES_NEAR = 1e-7
 CONES_GOOD = 1e-7
 """Of the largest motion: with more left at the end, there is no solution. Where contacts repeat each other nearly, a
 motion of this size would take forces beyond all measure to undo."""
-FEWEST_LEAVE = 1e-9
-"""Of the largest motion: forces that stand on no more contacts than it takes may leave this."""
 
 # ---- time -----------------------------------------------------------------------------------------------------------
 

@@ -17,8 +17,7 @@ import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, ivec, vec
-from ..rounding import CONES_CONVERGED, CONES_GOOD, CONES_NEAR, FEWEST_LEAVE, TOGETHER
-from .basic_solution import basic, basic_size
+from ..rounding import CONES_CONVERGED, CONES_GOOD, CONES_NEAR, TOGETHER
 from .conditions import NONE, PRESSING, SOLVED, STICKS, STUCK, does, largest_motion, left, move, solve_for, solving_size
 from .sweeps import sweep
 
@@ -34,7 +33,7 @@ DIRECT = 3
 
 def many_size(n: int) -> int:
     """Numbers (of 8 bytes) in the scratch of `solve_many` for n contacts."""
-    return (6 + ITERATIONS) * n + max(solving_size(n), basic_size(n))
+    return (6 + ITERATIONS) * n + solving_size(n)
 
 
 @internal
@@ -76,13 +75,7 @@ def _solve(cn: Any, mu: Any, size: float, work: int) -> bool:
             break
         _copy(other, other_friction, normal, friction)
         least = now
-    if not least <= CONES_GOOD * size:
-        return False
-    _copy(normal, friction, other, other_friction)
-    if basic(cn, mu, size, other, other_friction, work):
-        if left(cn, mu, other, other_friction, 0.0, work) <= max(least, FEWEST_LEAVE * size):
-            _copy(other, other_friction, normal, friction)
-    return True
+    return bool(least <= CONES_GOOD * size)
 
 
 @internal

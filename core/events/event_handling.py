@@ -41,15 +41,17 @@ from .records import (
     NO_IMPACT,
     NOT_MET,
     SETTLED,
+    STILL_APPROACHES,
     TOUCHED,
     TOUCHED_IN_SPACE,
+    UNSHARED,
     call_part,
     clear,
     copy,
     real,
     whole,
 )
-from .report import MOST_EVENTS, room_for
+from .report import MOST_EVENTS, report_not_found, room_for
 from .zeno import MANY_TOUCH, count_instant, may_push
 
 UNSEEN = 1e-8
@@ -105,7 +107,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
     whole(ev)[TOUCHED], pushing = 0, vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
-    whole(ev)[TOUCHED_IN_SPACE] = 0
+    whole(ev)[TOUCHED_IN_SPACE] = whole(ev)[UNSHARED] = whole(ev)[STILL_APPROACHES] = 0
     begun, status = vec(lc.clock, CLOCK_SIZE)[PUSHED_FROM] == t, SETTLED
     if _any_force(dr, ws):
         status = (
@@ -138,6 +140,7 @@ def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
     else:
         begin_anew(ws, ms, lc)
     _count(dr, t)
+    report_not_found(ev, dr, ws, t)
     crowds = False
     if not pushing:
         crowds = count_instant(ws, lc, t, touched, whole(ev)[TOUCHED_IN_SPACE] >= MANY_TOUCH)

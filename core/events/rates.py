@@ -8,11 +8,12 @@ from ..compiled.views import ivec, mat, vec
 from ..contact_solvers.directions import call_farthest
 from ..contact_solvers.friction_cones import FOUND, MOST_SWEEPS, SWEEPS, solve_friction_cones
 from ..contact_solvers.least_forces import take_least_forces
-from ..contact_solvers.projections import motion_of
-from ..rounding import STICKS_STILL
+from ..contact_solvers.planar_contacts import MANY
+from ..contact_solvers.projections import motion_left, motion_of
+from ..rounding import FRICTION_GOOD, STICKS_STILL
 from .forces import cones_at
 from .pivot_in_plane import has_one_tangent, pivot_in_plane
-from .records import COS_WAY, COUNT, LEFT_OVER, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, col, whole
+from .records import COS_WAY, COUNT, LEFT_OVER, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, UNSHARED, col, whole
 
 
 @internal
@@ -150,20 +151,24 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
                     own[block * n + i, other * n + j] = a[block * count + p_i, other * count + some[j]]
     work, least_norm = ev.space_room + 8 * (9 * n * n + 11 * n), cones_at(ev.cones).least_norm
     found, plane = False, n > 1 and has_one_tangent(n, own)
-    for most in (SWEEPS, MOST_SWEEPS):
-        if found or (most == SWEEPS and not plane):
+    # few contacts: sweeps are faster than pivoting, but for those that take many; many contacts: the other way round
+    for attempt in range(3):
+        if found or (attempt < 2 and not plane) or (attempt == 0 and n > MANY):
             continue
-        found = (
-            solve_friction_cones(least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work, most)
-            == FOUND
-        )
-        if not found and most == SWEEPS:
-            # pivoting, which sweeps over many contacts in a row take longer than
+        if attempt == 1:
             found = pivot_in_plane(ev, n, own, own_b, own_mu, own_base, own_known, way, own_p)
+            found = found and motion_left(n, own, own_b, own_mu, own_base, own_known, way, own_p) <= FRICTION_GOOD
+        else:
+            most = SWEEPS if attempt == 0 else MOST_SWEEPS
+            found = solve_friction_cones(
+                least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work, most
+            ) == FOUND  # fmt: skip
     if not found:
         return False
     if n > 1 and _repeat(ev, n, own, own_b, own_known, own_p, work):
-        take_least_forces(least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work)
+        shared = take_least_forces(least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work)
+        if not shared:
+            whole(ev)[UNSHARED] = 1 + ivec(ev.contacts, ev.most)[some[0]]
     for i in range(n):
         for block in range(3):
             p[block * count + some[i]] = own_p[block * n + i]

@@ -108,7 +108,9 @@ TOUCHED = 6  # contacts that touch, once the instant has been decided
 ALONE = 7  # 1: of the inverse masses of what is opened the diagonal alone is wanted
 TOUCHED_IN_SPACE = 8  # of TOUCHED, those with two tangents
 IN_ROUNDS = 9  # 1: the impact's contacts were struck one round after another (`impact_rounds.py`)
-WHOLES = 10
+UNSHARED = 10  # number, from 1 on, of a contact whose load has not been shared (`rates.py`); 0: none
+STILL_APPROACHES = 11  # the same where an approach has been left (`residual_approach.py`)
+WHOLES = 12
 
 # what settling an instant returns
 SETTLED = 0

@@ -5,7 +5,7 @@ import math
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import vec
+from ..compiled.views import ivec, vec
 from .rates import masses, push, solve_cone_problem
 from .records import (
     BASE,
@@ -20,6 +20,7 @@ from .records import (
     SIN_WAY,
     SLIDE_RATE,
     STATIC,
+    STILL_APPROACHES,
     SWAY_RATE,
     col,
     whole,
@@ -29,7 +30,8 @@ from .records import (
 @internal
 def take_away_left(ev: Any, ws: Any) -> None:
     """Take the approaches of all touching contacts away, by an impact without restitution that leaves what sticks as
-    it is. What it does to the energy is below rounding, as these rates are. Where no impulses are found they stay."""
+    it is. What it does to the energy is below rounding, as these rates are. Where no impulses are found they stay,
+    which STILL_APPROACHES says."""
     count, part, base, mu, known = whole(ev)[COUNT], col(ev, PART), col(ev, BASE), col(ev, MU), col(ev, KNOWN)
     b, p = vec(ev.space_b, 3 * count), vec(ev.space_p, 3 * count)
     for i in range(count):
@@ -42,3 +44,5 @@ def take_away_left(ev: Any, ws: Any) -> None:
         b[i], b[count + i], b[2 * count + i] = col(ev, RATE)[i], x if slides else 0.0, y if slides else 0.0
     if solve_cone_problem(ev, masses(ev, count), count, part, b, mu, base, known, p):
         push(ev, ws, p)
+    else:
+        whole(ev)[STILL_APPROACHES] = 1 + ivec(ev.contacts, ev.most)[0]

@@ -8,7 +8,7 @@ enum { NOW, TO, LAST_CHANGE, INTERVAL };
 enum { GOAL, LAST_STOP };
 enum { BUDGET, HANDLED, HERE, EVENTS, STATUS };
 enum { STEP_SIZE = 0, TRIAL_STEP = 4 };
-enum { STEPS = 0, COUNTERS_SIZE = 12 };
+enum { STEPS = 0, COUNTERS_SIZE = 14 };
 enum { RATE_SCALE = 15 };
 enum { T0 = 0 };
 enum { FIRST, SECOND, SINCE, RATES_SIZE };

@@ -39,6 +39,7 @@ from ..state.run_records import (
     HANDLED_AT,
     JUMPS,
     LAST_STOP,
+    LEFT_APPROACH,
     LOCATE_SIGNATURE,
     PASSED,
     ROUNDS,
@@ -47,6 +48,7 @@ from ..state.run_records import (
     SETTLE_SIGNATURE,
     STATUS,
     TRIAL_SIGNATURE,
+    UNSHARED_LOAD,
 )
 from ..time_loop.drive import (
     aim_now,
@@ -61,7 +63,7 @@ from ..time_loop.drive import (
 )
 from ..time_loop.sample import write_sample
 from ..time_loop.time_loop import accept, run, trial_step
-from .event_warnings import warn_of_gain, warn_of_jump, warn_of_rounds
+from .event_warnings import warn_of_gain, warn_of_jump, warn_of_left_approach, warn_of_rounds, warn_of_unshared_load
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -109,6 +111,9 @@ def _forces_of(contacts: Sequence[ContactInfo]) -> dict[str, NDArray[Any]]:
     }
 
 
+_TOLD_ONCE = {UNSHARED_LOAD: warn_of_unshared_load, LEFT_APPROACH: warn_of_left_approach}
+
+
 class Drive:
     """What `drive` of one run works with.
 
@@ -123,7 +128,7 @@ class Drive:
     def __init__(self, sim: "Engine", guard: Progress) -> None:
         assembly = sim.assembly
         contacts, self._names = assembly.contacts, [c.name for c in assembly.contacts]
-        self._told_of_rounds = False
+        self._told: set[int] = set()
         self._laws = {c.name: type(c.law).__name__ for c in contacts}
         count = max(len(contacts), 1)
         self.goals, self.counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
@@ -265,6 +270,10 @@ class Drive:
             name = self._names[int(k)]
             if kind == ROUNDS:
                 rounds.append((t, name))
+            elif kind in _TOLD_ONCE:
+                if kind not in self._told:
+                    self._told.add(int(kind))
+                    _TOLD_ONCE[int(kind)](t, name)
             elif kind == GAINS:
                 gains.append((t, name, -numbers[1]))
             else:
@@ -273,7 +282,7 @@ class Drive:
             warn_of_gain(t, [(name, gain) for at, name, gain in gains if at == t], self._laws)
         for t in dict.fromkeys(t for t, _, _ in jumps if self.says_jumps):
             warn_of_jump(t, [(name, jump) for at, name, jump in jumps if at == t])
-        if rounds and not self._told_of_rounds:
-            self._told_of_rounds = True
+        if rounds and ROUNDS not in self._told:
+            self._told.add(ROUNDS)
             warn_of_rounds(rounds[0][0], [name for t, name in rounds if t == rounds[0][0]])
         return found

@@ -2,6 +2,8 @@
 
 import logging
 
+from ..rounding import UNSOLVED
+
 logger = logging.getLogger(__name__)
 
 
@@ -23,6 +25,28 @@ def warn_of_rounds(t: float, names: list[str]) -> None:
         "than restitution times approach. Further ones of this run are counted in stats['impacts_in_rounds']",
         t,
         ", ".join(f"'{name}'" for name in names),
+    )
+
+
+def warn_of_unshared_load(t: float, name: str) -> None:
+    """Say that contacts that repeat each other share their load in another way than the least forces."""
+    logger.warning(
+        "at t = %.9g s the least forces of contacts that repeat each other ('%s' and others) are not found: they have "
+        "others that fulfil all conditions, and the motion of the bodies is the same unless friction depends on it. "
+        "Instants like this are counted in stats['unshared_loads']",
+        t,
+        name,
+    )
+
+
+def warn_of_left_approach(t: float, name: str) -> None:
+    """Say that an impact of many contacts has left approaches, for which no impulses are found."""
+    logger.warning(
+        "at t = %.9g s an impact leaves approaches of less than %.0e of its speeds, which no impulses are found for "
+        "('%s' and others): gaps may close by as much. Instants like this are counted in stats['left_approaches']",
+        t,
+        UNSOLVED,
+        name,
     )
 
 

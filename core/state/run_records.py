@@ -157,8 +157,9 @@ FORCE_NUMBERS = 4
 EVENT_ROWS = 1024
 EVENT_SIZE = 9
 """Time, kind, contact, and the numbers of `Event` in their order."""
-IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS, JUMPS, ROUNDS = range(10)
+IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS, JUMPS, ROUNDS, UNSHARED_LOAD, LEFT_APPROACH = range(12)
 EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
 """Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the
 energy; nor is JUMPS: the rate of a driver, with its row of Phi in place of a contact, has jumped; nor ROUNDS: a contact
-of an impact in rounds (`events/impact_rounds.py`)."""
+of an impact in rounds (`events/impact_rounds.py`); nor the last two, what an instant has not found
+(`events/report.py`)."""
