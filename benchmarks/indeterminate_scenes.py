@@ -4,9 +4,10 @@ order of the lists and of any units?
     python benchmarks/indeterminate_scenes.py [--first 0] [--scenes 1000] [--plane | --space] [--limit 60]
 
 Scenes and reference are those of `tests/core/test_random_indeterminate_scenes.py`. Each scene runs in three orders and
-in other units (lengths of 1e-3 to 1e6 per metre). A scene whose motion at the end differs by more than 1e-9 runs again
-with a tolerance of 1e-10: what differs then by ten times less is the error of integration, whose steps follow the choice of
-dependent coordinates. A worker process is ended where a scene takes longer than the limit (s).
+in other units (of 1e-6 to 1e3 for a metre, and of any mass and time). A scene whose motion at the end differs by more
+than 1e-9 runs again with a tolerance of 1e-10: what differs then by ten times less is the error of integration,
+whose steps follow the choice of dependent coordinates. A worker process is ended where a scene takes longer than
+the limit (s). "no forces" are scenes of which the reference finds none.
 """
 
 import argparse
@@ -19,46 +20,23 @@ from pathlib import Path
 from time import perf_counter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "core"))
-
-SAME, FORCES, TIGHT = 1e-9, 1e-6, 1e-10
+from scene_checks import TIGHT, wrong
 
 
 def work(scenes: Connection) -> None:
     """Examine scenes of (seed, dimension) until there are none."""
     from indeterminate_scenes import scene
-    from scene_checks import examine
+    from scene_checks import deviations
 
     logging.disable(logging.WARNING)
     while (task := scenes.recv()) is not None:
-        kind, found = "?", None
+        kind = "?"
         try:
             drawn = scene(*task)
             kind = f"{drawn.kind} {drawn.method}"
-            found = examine(drawn)
-            if max(found.order, found.units) > SAME:
-                tight = examine(drawn, rtol=TIGHT)
-                scenes.send((kind, found, tight, ""))
-            else:
-                scenes.send((kind, found, None, ""))
+            scenes.send((kind, *deviations(drawn), ""))
         except Exception as error:
-            scenes.send((kind, found, None, f"{type(error).__name__}: {error}"))
-
-
-def verdict(found, tight, error: str) -> str:
-    """What is wrong with a scene, or "same", or "steps" where the error of integration alone is another."""
-    if error:
-        return "error"
-    wrong = []
-    if found.forces > FORCES:
-        wrong.append("forces")
-    if found.motion > FORCES:
-        wrong.append("motion")
-    if tight is None:
-        return " ".join(wrong) or "same"
-    for what in ("order", "units"):
-        if getattr(tight, what) > max(SAME, 0.1 * getattr(found, what)):
-            wrong.append(what)
-    return " ".join(wrong) or "steps"
+            scenes.send((kind, None, None, f"{type(error).__name__}: {error}"))
 
 
 def main() -> None:
@@ -90,7 +68,10 @@ def main() -> None:
             except EOFError:
                 process, result = None, ("?", None, None, "the process has died")
         kind, found, tight, error = result
-        says = verdict(found, tight, error)
+        if error:
+            says = "no forces" if error.startswith("NotFound") else "error"
+        else:
+            says = " ".join(wrong(found, tight)) or ("same" if tight is None else "steps")
         counts[says] += 1
         counts[f"({kind.split()[0]})"] += 1
         for what in ("order", "units", "forces", "motion"):
@@ -99,7 +80,8 @@ def main() -> None:
                 if tight is not None and what in ("order", "units"):
                     worst[f"tight {what}"] = max(worst.get(f"tight {what}", 0.0), getattr(tight, what))
         if says != "same":
-            print(f"{seed} {kind} {perf_counter() - begun:.1f} s: {says}; {error or found}{f'; at {TIGHT:g}: {tight}' if tight else ''}", flush=True)
+            again = "" if tight is None else f"; at {TIGHT:g}: {tight}"
+            print(f"{seed} {kind} {perf_counter() - begun:.1f} s: {says}; {error or found}{again}", flush=True)
     if process is not None and end is not None:
         end.send(None)
     for name, count in sorted(counts.items()):

@@ -8,13 +8,12 @@ compliances of `regularised_contacts`.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import qr
+from extended_numbers import REAL, independent_rows, solve
 from tlismni.core import (
     AppliedForce2D,
     AppliedForce3D,
     AppliedTorque2D,
     AppliedTorque3D,
-    Box2D,
     DiskOnBox2D,
     DiskOnHalfPlane2D,
     Fixed3D,
@@ -28,11 +27,9 @@ from tlismni.core import (
 )
 from tlismni.core.model.attitude import rotation_matrix
 
-REAL = np.longdouble
 GROUND = "ground"
 TOUCHES = 1e-9
 """Gaps below this are closed, m, in a model whose bodies are about 1 m large."""
-RANK = 1e-10
 MOVES = 1e-9
 """Sliding velocities above this are some, m/s."""
 
@@ -149,7 +146,7 @@ def contact_problem(model) -> ContactProblem:
     joints, rates = _joint_rows(model, frames, planar)
     rows, names, static, kinetic, ways = _contact_rows(model, frames, planar)
     held, drift = rows.arrays()
-    keep = _independent(joints)
+    keep = independent_rows(joints)
     joints, rates = joints[keep], rates[keep]
     n, m = len(mass), len(joints)
     system = np.zeros((n + m, n + m), REAL)
@@ -273,7 +270,8 @@ def _touching(contact, frames):
         ball, box = (contact.disk, contact.shape) if planar else (contact.sphere, contact.mesh)
         a, b = frames[box.marker.body], frames[ball.marker.body]
         axes, middle = a.axes_of(box.marker), b.at(ball.marker)
-        half = _in_space((0.5 * box.width, 0.5 * box.height)) if planar else np.max(np.array(box.vertices, REAL), axis=0)
+        corners = ((0.5 * box.width, 0.5 * box.height, 0.0),) if planar else box.vertices
+        half = np.max(np.array(corners, REAL), axis=0)
         away = axes.T @ (middle - a.at(box.marker))
         beyond = np.abs(away) - half
         if planar:
@@ -293,30 +291,3 @@ def _across(normal) -> np.ndarray:
     along = np.eye(3, dtype=REAL)[int(np.argmin(np.abs(normal)))]
     found = along - (along @ normal) * normal
     return found / np.sqrt(found @ found)
-
-
-def _independent(rows) -> list[int]:
-    """Numbers of rows that are independent and span all."""
-    if len(rows) == 0:
-        return []
-    _, r, order = qr(rows.T.astype(float), mode="economic", pivoting=True)
-    diagonal = np.abs(np.diag(r))
-    return [int(k) for k in order[: int(np.sum(diagonal > RANK * diagonal[0]))]]
-
-
-def solve(matrix, right) -> np.ndarray:
-    """Solution of a linear system by elimination with pivots, of any floating type (LAPACK has no 80-bit numbers).
-    Raises LinAlgError for a singular matrix."""
-    n = len(matrix)
-    work = np.concatenate((matrix, right.reshape(n, -1)), axis=1)
-    for k in range(n):
-        p = k + int(np.argmax(np.abs(work[k:, k])))
-        if work[p, k] == 0.0:
-            raise np.linalg.LinAlgError(f"column {k} has no pivot")
-        if p != k:
-            work[[k, p]] = work[[p, k]]
-        work[k + 1 :, k:] -= np.outer(work[k + 1 :, k] / work[k, k], work[k, k:])
-    found = np.zeros((n, work.shape[1] - n), work.dtype)
-    for k in range(n - 1, -1, -1):
-        found[k] = (work[k, n:] - work[k, k + 1 : n] @ found[k + 1 :]) / work[k, k]
-    return found.reshape(right.shape)

@@ -1,7 +1,7 @@
 """Random scenes of rigid bodies on more contacts than statics can tell the forces of, in the plane and in space.
 
-A scene is drawn about the size of a metre on a horizontal floor. `turned` puts it into another attitude, `permuted` lists
-its records in another order; `units.Units` makes it smaller or larger.
+A scene is drawn about the size of a metre on a horizontal floor. `turned` puts it into another attitude, `permuted`
+lists its records in another order, and `units.Units` makes it smaller or larger.
 """
 
 import json

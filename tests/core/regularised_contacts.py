@@ -8,15 +8,20 @@ along a path on which each solution begins from the last one. It is a part of th
 from dataclasses import dataclass, replace
 
 import numpy as np
-from dense_contacts import REAL, ContactProblem, solve
+from dense_contacts import ContactProblem
+from extended_numbers import REAL, solve
 
 FIRST, LAST = 10.0, 1e-10
 FASTEST, SLOWEST = 0.1, 0.98
 """Least and largest factor from one compliance to the next."""
 MOST_STEPS = 40
-EXACT = 1e-16
+EXACT, ROUGHLY = 1e-16, 1e-13
+"""Of the largest force: what is left of the laws, and what of it rounding may leave."""
 STICKS = 1e-7
 """Of the largest free acceleration: what moves less than this, at rest, is held."""
+
+PRESSES = 1e-9
+"""Of the largest normal force: less is none."""
 
 
 class NotFoundError(Exception):
@@ -73,7 +78,15 @@ def _local(problem: ContactProblem, eps: REAL, p, mu) -> tuple[np.ndarray, np.nd
 
 
 def _newton(problem: ContactProblem, eps: REAL, start, mu, size: float) -> np.ndarray | None:
-    """Forces for one compliance, or None."""
+    """Forces for one compliance, or None: by full steps, which may pass points that are worse, or by shortened ones."""
+    for halvings in (0, 12):
+        found = _steps(problem, eps, start, mu, size, halvings)
+        if found is not None:
+            return found
+    return None
+
+
+def _steps(problem: ContactProblem, eps: REAL, start, mu, size: float, halvings: int) -> np.ndarray | None:
     p = start.copy()
     residual, jacobian = _local(problem, eps, p, mu)
     for _ in range(MOST_STEPS):
@@ -85,17 +98,17 @@ def _newton(problem: ContactProblem, eps: REAL, start, mu, size: float) -> np.nd
         except np.linalg.LinAlgError:
             return None
         part = REAL(1.0)
-        for _ in range(12):
+        for k in range(halvings + 1):
             tried = p - part * step
             new, matrix = _local(problem, eps, tried, mu)
-            if np.sqrt(new @ new) <= (1.0 - 0.1 * part) * error:
+            if halvings == 0 or np.sqrt(new @ new) <= (1.0 - 0.1 * part) * error:
                 break
+            if k == halvings:
+                # rounding is all that is left
+                return p if error <= ROUGHLY * size else None
             part *= 0.5
-        else:
-            # rounding is all that is left
-            return p if error <= 1e3 * EXACT * size else None
         p, residual, jacobian = tried, new, matrix
-    return p if np.sqrt(residual @ residual) <= 1e3 * EXACT * size else None
+    return p if np.sqrt(residual @ residual) <= ROUGHLY * size else None
 
 
 def follow(problem: ContactProblem, mu, last: float = LAST) -> np.ndarray:
@@ -134,7 +147,9 @@ def rigid_forces(problem: ContactProblem, last: float = LAST) -> Forces:
         p = follow(now, mu, last)
         w = (problem.free + problem.matrix @ p).reshape(n, 3)
         forces = p.reshape(n, 3)
-        moves = ~slides & (forces[:, 0] > 0.0) & (mu > 0.0) & (np.linalg.norm(w[:, 1:].astype(float), axis=1) > STICKS * scale)
+        presses = forces[:, 0] > PRESSES * np.max(forces[:, 0], initial=0.0)
+        fast = np.linalg.norm(w[:, 1:].astype(float), axis=1) > STICKS * scale
+        moves = ~slides & presses & (mu > 0.0) & fast
         begins |= moves
         if not (moves & (problem.static != problem.kinetic)).any():
             return Forces(forces, w, begins, changes)

@@ -9,6 +9,14 @@ from regularised_contacts import rigid_forces
 from tlismni.core import Result, simulate
 from units import Units
 
+SI = Units()
+SAME, FORCES, TIGHT = 1e-9, 1e-6, 1e-10
+"""Deviations of motions and of forces that are none; the tolerance with which motions that differ are repeated."""
+SHRINKS = 0.1
+"""By so much the difference of two motions falls at least where it is the error of integration: the choice of dependent
+coordinates, and with it the steps, may depend on the order of the list."""
+
+
 @dataclass
 class Deviations:
     """Of a scene; parts of its scales."""
@@ -28,13 +36,13 @@ class Deviations:
         return f"{', '.join(parts)}, {self.events} events"
 
 
-def at_end(result: Result, names, units: Units = Units()) -> np.ndarray:
+def at_end(result: Result, names, units: Units = SI) -> np.ndarray:
     """Places, attitudes and their rates of the bodies at the end, in m, rad and s."""
     found = []
     for name in names:
         for record in result.channel_records:
             part = record.name.removeprefix(f"{name}.")
-            if part == record.name or part.startswith(("a", "body")) and part not in ("angle", "angular_velocity"):
+            if part == record.name or (part.startswith(("a", "body")) and part not in ("angle", "angular_velocity")):
                 continue
             if part.endswith("acceleration") or part in ("ax", "ay", "az"):
                 continue
@@ -89,8 +97,26 @@ def examine(scene: Scene, orders: int = 2, rtol: float = 1e-6) -> Deviations:
     base = first if model is scene.model else simulate(model, end, scene.method, t_eval=times, rtol=rtol)
     length = 10.0 ** rng.uniform(-6.0, 3.0)
     units = Units(length, 10.0 ** rng.uniform(-6.0, 6.0), np.sqrt(length) * 10.0 ** rng.uniform(-1.0, 1.0))
-    small = simulate(permuted(units.model(model), rng), end * units.time, scene.method, t_eval=times * units.time, rtol=rtol)
+    small = simulate(
+        permuted(units.model(model), rng), end * units.time, scene.method, t_eval=times * units.time, rtol=rtol
+    )
     worst["units"] = np.max(np.abs(at_end(small, names, units) - at_end(base, names)) / scale)
     got = first_forces(small, problem.names, planar) / units.factor((1, 1, -2))
     worst["forces"] = max(worst["forces"], np.abs(wanted - got).max() / load)
     return Deviations(**worst, motion=float(motion), events=len(first.events))
+
+
+def deviations(scene: Scene, orders: int = 2) -> tuple[Deviations, Deviations | None]:
+    """Of a scene, and where its motion in other orders or units differs, those with a tight tolerance."""
+    found = examine(scene, orders)
+    return found, examine(scene, orders, TIGHT) if max(found.order, found.units) > SAME else None
+
+
+def wrong(found: Deviations, tight: Deviations | None) -> list[str]:
+    """What of a scene is not as it should be."""
+    names = [name for name in ("forces", "motion") if getattr(found, name) > FORCES]
+    if tight is not None:
+        for name in ("order", "units"):
+            if getattr(tight, name) > max(SAME, SHRINKS * getattr(found, name)):
+                names.append(name)
+    return names

@@ -14,8 +14,9 @@ from tlismni.core import Model
 POSITION, SPEED, FORCE = (1, 0, 0), (1, 0, -1), (1, 1, -2)
 # (length, mass, time) of fields that mean the same everywhere
 DIMENSIONS: dict[str, tuple[float, float, float]] = {
+    "width": POSITION, "vertices": POSITION,
     "gravity": (1, 0, -2), "point": POSITION, "radius": POSITION, "length": POSITION, "natural_length": POSITION,
-    "thickness": POSITION, "height": POSITION, "width": POSITION, "vertices": POSITION, "angular_velocity": (0, 0, -1), "mass": (0, 1, 0), "inertia": (2, 1, 0),
+    "thickness": POSITION, "height": POSITION, "angular_velocity": (0, 0, -1), "mass": (0, 1, 0), "inertia": (2, 1, 0),
     "stiffness": (0, 1, -2), "damping": (0, 1, -1), "rotational_stiffness": (2, 1, -2),
     "rotational_damping": (2, 1, -1), "mass_per_length": (-1, 1, 0), "axial_stiffness": FORCE,
     "bending_stiffness": (3, 1, -2), "bending_damping": (3, 1, -1), "axial_damping": (1, 1, -1),
