@@ -14,6 +14,7 @@ from tlismni.core import Model
 POSITION, SPEED, FORCE = (1, 0, 0), (1, 0, -1), (1, 1, -2)
 # (length, mass, time) of fields that mean the same everywhere
 DIMENSIONS: dict[str, tuple[float, float, float]] = {
+    "width": POSITION, "vertices": POSITION,
     "gravity": (1, 0, -2), "point": POSITION, "radius": POSITION, "length": POSITION, "natural_length": POSITION,
     "thickness": POSITION, "height": POSITION, "angular_velocity": (0, 0, -1), "mass": (0, 1, 0), "inertia": (2, 1, 0),
     "stiffness": (0, 1, -2), "damping": (0, 1, -1), "rotational_stiffness": (2, 1, -2),
@@ -28,7 +29,11 @@ DIMENSIONS: dict[str, tuple[float, float, float]] = {
 OWN: dict[tuple[str, str], tuple[float, float, float]] = {
     ("attachment", "position"): POSITION,
 }  # fmt: skip
-BODIES = ("PointMass2D", "RigidBody2D", "MovingFrame2D", "Cable2D", "FloatingBeam2D", "AxialRod")
+BODIES = ("PointMass2D", "RigidBody2D", "RigidBody3D", "MovingFrame2D", "Cable2D", "FloatingBeam2D", "AxialRod")
+SIGNALS = ("force_x", "force_y", "force_z", "torque", "torque_x", "torque_y", "torque_z", "motion", "load")
+LOADS = {
+    "AppliedForce2D": FORCE, "AppliedForce3D": FORCE, "AppliedTorque2D": (2, 1, -2), "AppliedTorque3D": (2, 1, -2),
+}  # fmt: skip
 COORDINATES = {"angle": (0, 0, 0), "rotation": (0, 0, 0)}
 
 
@@ -87,7 +92,7 @@ class Units:
             return self._linear_system(element, units[element["name"]])
         if kind == "CoordinateContact":
             return self._coordinate_contact(element, units)
-        signal = {"AppliedForce2D": FORCE, "AppliedTorque2D": (2, 1, -2)}.get(kind, POSITION)
+        signal = LOADS.get(kind, POSITION)
         if kind in ("CoordinateDriver", "CoordinateLoad"):
             own = units.get(element["body"], {}).get(element["coordinate"], COORDINATES.get(element["coordinate"]))
             own = POSITION if own is None else own
@@ -96,7 +101,7 @@ class Units:
 
     def _field(self, kind: str, key: str, value: Any, signal: tuple[float, float, float]) -> Any:
         if isinstance(value, dict):
-            if "type" in value and key in ("force_x", "force_y", "torque", "motion", "load"):
+            if "type" in value and key in SIGNALS:
                 return self._signal(value, signal)
             inner = value.get("type", key)
             if key == "law":
