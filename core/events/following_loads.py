@@ -1,8 +1,8 @@
 """Loads that follow the forces of joints (`contacts/joint_friction.py`), at an instant whose forces are sought.
 
 Inverse masses are those at fixed loads. So the loads that the forces found bring about by the joints' multipliers are
-put in their place, until they are the same: the iteration contracts by (friction/load) times (load/friction), the part
-of a friction that comes back as its own load. Where that is 1 or more the joint locks itself, and nothing is found.
+put in their place, until they are the same. The iteration contracts by the part of a friction that comes back as a
+load of its own. Where that is 1 or more the joint locks itself, and nothing is found.
 """
 
 from typing import Any

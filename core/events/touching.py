@@ -91,18 +91,21 @@ def refuse_immovable(ev: Any, ws: Any, count: int) -> int:
     """A contact whose shapes joints and drivers hold both takes no impulse."""
     n, values, slots = ws.n, vec(ws.values, ws.n_values), ivec(ws.mass_slot, ws.n_mass)
     entry_row, entry_col = ivec(ws.entry_row, ws.n_values), ivec(ws.entry_col, ws.n_values)
-    directions, a, largest = mat(ev.directions, 2 * count, n), delassus(ev, count), 0.0
+    directions, a, largest, scale = mat(ev.directions, 2 * count, n), delassus(ev, count), 0.0, vec(ws.scale, n)
     for e in range(ws.n_mass):
-        if entry_row[slots[e]] == entry_col[slots[e]]:
-            largest = max(largest, values[slots[e]])
+        i = entry_row[slots[e]]
+        if i == entry_col[slots[e]]:
+            largest = max(largest, values[slots[e]] * scale[i] ** 2)
     for i in range(count):
         length, of_mass = 0.0, 0.0
         for j in range(n):
-            length += directions[i, j] * directions[i, j]
+            length += (scale[j] * directions[i, j]) ** 2
         for e in range(ws.n_mass):
-            s = slots[e]
-            of_mass += directions[i, entry_row[s]] * values[s] * directions[i, entry_col[s]]
-        # without joints it is at least this (Cauchy and Schwarz)
+            s, row, column = slots[e], entry_row[slots[e]], entry_col[slots[e]]
+            sizes = (scale[row] * scale[column]) ** 2
+            of_mass += sizes * directions[i, row] * values[s] * directions[i, column]
+        # without joints it is at least this, (g . x)^2/(x . M x) for x = S^2 g with the scales S of the coordinates
+        # (Cauchy and Schwarz); whatever the unit of length, what Euler parameters add along themselves is no more
         # (a frame without mass of its own counts as the heaviest)
         free = length * length / (of_mass if of_mass != 0.0 else largest * length)
         if not a[i, i] > IMMOVABLE * free:
