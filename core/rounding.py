@@ -136,8 +136,6 @@ DIRECTION_RANK = 1e-10
 """Of a direction's inverse mass: with less left of it beside the others, it repeats them."""
 STICKING_RANK = 1e-10
 """Of the largest singular value of the friction of contacts that stick: a smaller one is zero."""
-NORMALS_RANK = 1e-11
-"""Of the largest singular value of the normals: a smaller one is zero, they repeat one another."""
 CONDITIONS_RANK = 1e-13
 """Of the largest singular value of the active conditions: a smaller one is zero."""
 TOGETHER = 1e-9

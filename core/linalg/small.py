@@ -1,4 +1,4 @@
-"""Small dense systems inside compiled code, of any rank: least solutions, null spaces, LU. Nothing is allocated.
+"""Small dense systems inside compiled code, of any rank: least solutions, LU. Nothing is allocated.
 
 Rank is told by singular values. Columns are brought in order by a QR factorisation with column pivoting (Golub & Van
 Loan, Matrix Computations, 5.4); what is left of the rows is rounding, or clearly independent, or, between the two, made
@@ -250,26 +250,3 @@ def least_norm(a: Any, b: Any, x: Any, tolerance: float, work: int) -> int:
             for k in range(p):
                 x[order[j], k] -= a[i, j] * sums[k]
     return rank
-
-
-@internal
-def null_space(a: Any, basis: Any, tolerance: float, work: int) -> int:
-    """Orthonormal vectors x with a x = 0, a (m, n): the first rows of `basis` (n, n). Returns how many there are.
-
-    `tolerance`, `work` (with p = 1) and what becomes of a as in `least_norm`.
-    """
-    m, n = a.shape
-    most = max(m, n)
-    order, corner = ivec(work, n), vec(work + 8 * most, n)
-    rank = _rows_that_count(a, mat(work, m, 0), tolerance, order, work + 8 * most)
-    _from_right(a, rank, corner)
-    for row in range(n - rank):
-        for j in range(n):
-            basis[row, order[j]] = 1.0 if j == rank + row else 0.0
-        for i in range(rank - 1, -1, -1):
-            part = 0.0
-            for j in range(i, n):
-                part += a[i, j] * basis[row, order[j]]
-            for j in range(i, n):
-                basis[row, order[j]] -= part * a[i, j]
-    return n - rank

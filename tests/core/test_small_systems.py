@@ -3,17 +3,12 @@
 import numpy as np
 import pytest
 from tlismni.core.compiled.jit import compiled
-from tlismni.core.linalg.small import least_norm, least_norm_size, null_space, solve_square
+from tlismni.core.linalg.small import least_norm, least_norm_size, solve_square
 
 
 @compiled
 def least(a, b, x, tolerance, work):
     return least_norm(a, b, x, tolerance, work.ctypes.data)
-
-
-@compiled
-def null(a, basis, tolerance, work):
-    return null_space(a, basis, tolerance, work.ctypes.data)
 
 
 @compiled
@@ -54,17 +49,6 @@ def test_least_solutions_are_those_of_numpy():
         assert found == rank
         condition = values[0] / values[rank - 1] if rank else 1.0
         assert np.max(np.abs(x - wanted)) <= 1e-13 * a.shape[1] * condition * max(np.max(np.abs(wanted)), 1e-300)
-
-
-def test_null_spaces_are_orthonormal_and_complete():
-    for a, _ in problems():
-        m, n = a.shape
-        basis, work = np.full((n, n), np.nan), scratch(m, n, 1)
-        count = null(a.copy(), basis, 1e-11, work)
-        assert count == n - np.linalg.matrix_rank(a, rtol=1e-11) and np.all(work[-20:] == 7.0)
-        basis = basis[:count]
-        assert np.max(np.abs(basis @ basis.T - np.eye(count)), initial=0.0) < 1e-13
-        assert np.max(np.abs(a @ basis.T), initial=0.0) <= 1e-13 * n * np.max(np.abs(a))
 
 
 @pytest.mark.parametrize("decades", [2, 6, 9, 14])
