@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compiled import types
 from ..compiled.jit import caller, internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import ivec, vec
 
 _MATRIX = types.Array(types.float64, 2, "C")
 LEAST_NORM_SIGNATURE = types.int64(_MATRIX, _MATRIX, _MATRIX, types.float64, types.int64)
