@@ -24,6 +24,8 @@ LARGEST_STEPS = 0.9
 """Of that factor, whose root is taken where Newton's method does not follow: beyond, there is no way."""
 NEARER, NEAREST = 0.1, 1e-10
 """Factor from the last one to the next where what a contact does changes on the way, and the least of all."""
+SETTLED = 1e-9
+"""Of the largest force: forces of two compliances that differ by less are those of the limit."""
 SWEEPS, ITERATIONS = 100, 40
 
 
@@ -75,28 +77,63 @@ def _near_the_limit(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, last: Any, work: int
 ) -> bool:
     """Forces p from those of the least compliance before, `last`: followed with less and less, until what is left of
-    the way, gone by the least increments, solves the problem; False, with p as it was, where that is never so."""
-    m, largest, part = 3 * n, 0.0, NEARER * LAST
+    the way, gone by the least increments, solves the problem and no longer changes; False, with p as it was, where that
+    is never so. Friction at its limit makes what is left a series in the compliance too, and rounding makes it grow
+    again: of two in a row those that differ least are extrapolated."""
+    m, largest, part, size = 3 * n, 0.0, NEARER * LAST, 0.0
     soft, jac_at = mat(work, m, m), work + 8 * m * m
     at = jac_at + 8 * (m * m + 2 * m)
-    left, best, own = vec(at, m), vec(at + 8 * m, m), vec(at + 16 * m, m)
+    left, best, own, before = vec(at, m), vec(at + 8 * m, m), vec(at + 16 * m, m), vec(at + 24 * m, m)
+    times, differed = 0, math.inf
     for i in range(m):
         largest = max(largest, a[i, i])
     while part >= 0.5 * NEAREST:
         _soften(m, a, part, largest, soft)
         if not _follow(n, soft, b, mu, base, known, way, last, jac_at, left, best):
-            return False
+            break
+        part *= NEARER
         for i in range(m):
             own[i] = last[i]
-        newton_on_cones(least_norm, n, a, b, mu, base, known, way, own, at + 48 * m)
-        for i in range(n):
-            own[i] = max(own[i], base[i])
-        if motion_left(n, a, b, mu, base, known, way, own) <= FRICTION_GOOD:
-            for i in range(m):
+        if not _solve_rigid(least_norm, n, a, b, mu, base, known, way, own, at + 48 * m):
+            continue
+        differs = 0.0
+        for i in range(m):
+            differs, size = max(differs, abs(own[i] - before[i])), max(size, abs(own[i]))
+        if times > 0 and differs >= differed:
+            break
+        for i in range(m):
+            if times > 0:
+                p[i] = own[i] + NEARER / (1.0 - NEARER) * (own[i] - before[i])
+            else:
                 p[i] = own[i]
-            return True
-        part *= NEARER
-    return False
+            before[i] = own[i]
+        if times > 0:
+            differed = differs
+        times += 1
+        if differed <= SETTLED * size:
+            break
+    if times == 0:
+        return False
+    for i in range(m):
+        own[i] = p[i]
+    if _solve_rigid(least_norm, n, a, b, mu, base, known, way, own, at + 48 * m):
+        for i in range(m):
+            p[i] = own[i]
+    else:
+        for i in range(m):
+            p[i] = before[i]
+    return True
+
+
+@internal
+def _solve_rigid(
+    least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
+) -> bool:
+    """Forces p of contacts that are not compliant, by the least increments; True if they solve the problem."""
+    newton_on_cones(least_norm, n, a, b, mu, base, known, way, p, work)
+    for i in range(n):
+        p[i] = max(p[i], base[i])
+    return bool(motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_GOOD)
 
 
 @internal
