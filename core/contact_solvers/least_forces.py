@@ -25,7 +25,7 @@ LARGEST_STEPS = 0.9
 NEARER, NEAREST = 0.1, 1e-10
 """Factor from the last one to the next where what a contact does changes on the way, and the least of all."""
 SETTLED = 1e-9
-"""Of the largest force: forces of two compliances that differ by less are those of the limit."""
+"""Of the largest force: forces of two compliances that differ by less are those of the limit, and less is no force."""
 SWEEPS, ITERATIONS = 100, 40
 
 
@@ -185,7 +185,27 @@ def take_least_forces(
         size = max(size, own[i])
     if not residual_of_cones(n, a, b, mu, base, known, way, own, left, mat(jac_at, m, m)) <= FRICTION_EXACT * size:
         # what a contact does changes nearer to the limit
-        return _near_the_limit(least_norm, n, a, b, mu, base, known, way, p, last, work)
-    for i in range(m):
-        p[i] = own[i]
+        if not _near_the_limit(least_norm, n, a, b, mu, base, known, way, p, last, work):
+            return False
+    else:
+        for i in range(m):
+            p[i] = own[i]
+    _drop_noise(n, a, b, mu, base, known, way, p, own)
     return True
+
+
+@internal
+def _drop_noise(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, own: Any) -> None:
+    """Forces p without those that the limit does not tell from none, if they solve the problem. `own` (3 n,): room."""
+    size, any_dropped = 0.0, False
+    for i in range(n):
+        size = max(size, p[i] - base[i])
+    for i in range(3 * n):
+        own[i] = p[i]
+    for i in range(n):
+        if 0.0 < p[i] - base[i] <= SETTLED * size and (known[i] != 0.0 or base[i] == 0.0):
+            any_dropped, own[i] = True, base[i]
+            own[n + i], own[2 * n + i] = -mu[i] * base[i] * way[0, i], -mu[i] * base[i] * way[1, i]
+    if any_dropped and motion_left(n, a, b, mu, base, known, way, own) <= FRICTION_GOOD:
+        for i in range(3 * n):
+            p[i] = own[i]

@@ -83,7 +83,8 @@ class Joint3D(JointElement):
         return [*parts, *turning]
 
     def force_rows(self) -> Sequence[int]:
-        first, found = 0, []
+        first = 0
+        found: list[int] = []
         for primitive in self.primitives():
             count = primitive.form.constraint_rows
             found += range(first, first + count) if primitive.carries_force else ()
