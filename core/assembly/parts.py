@@ -6,6 +6,7 @@ from typing import Protocol
 from ..contacts import Contact
 from ..contacts.element import ContactElement
 from ..elements.base import BodyElement, Element
+from ..elements.joint_friction import JointFrictionForce
 from ..model.channels import Input
 from ..model.outputs import MarkerOutput
 
@@ -45,14 +46,19 @@ class TabulatedElements:
     """
 
     def __init__(self, parts: Parts) -> None:
-        own = {contact.name for contact in parts.contacts}
         others: list[Element] = []
         more: list[ContactElement] = []
         for element in parts.elements():
-            contact = element.as_contact()
-            if contact is None:
+            if isinstance(element, JointFrictionForce) and element.is_contact:
+                more.append(_contact_of(element))
+            elif not isinstance(element, ContactElement):
                 others.append(element)
-            elif element.name not in own:
-                more.append(contact)
         self.contacts: tuple[ContactElement, ...] = (*parts.contacts, *more)
         self.all: tuple[Element, ...] = (*others, *self.contacts)
+
+
+def _contact_of(friction: JointFrictionForce) -> ContactElement:
+    # few models have any, and kernels take time to import
+    from ..contacts.joint_friction import contact_of
+
+    return contact_of(friction)

@@ -40,9 +40,6 @@ class ContactElement(Element):
             )
         return self
 
-    def as_contact(self) -> "ContactElement":
-        return self
-
     def size_in(self, length: float) -> float:
         """Sliding distance in the tables by a unit of that in `units_in`, in a model of this length, m."""
         return 1.0

@@ -20,10 +20,12 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT, line_of
 from ..compiled.views import imat, ivec, mat, vec
-from ..elements.base import BodyElement, Form, Numbering, Part, Row
+from ..elements.base import BodyElement, Form, Numbering, PairElement2D, Part, Row
 from ..elements.geometry2d import height_over_line
+from ..elements.joint_friction import JointFrictionForce
 from ..elements.measure3d import ANGLE, COLUMNS, PLACE, WHOLE_TURN, columns_of, coordinates_of, measure
 from ..laws import NewtonImpact
+from ..laws.friction import CoulombFriction
 from ..model.base import Name, NonNegative
 from ..model.markers import Marker2D, Marker3D
 from ..state.modes import CLOSED, MEMORY_SIZE, MODE
@@ -206,6 +208,16 @@ class JointFriction3D(JointFriction):
 
     def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
         return columns_of(self.a, self.b, numbering), coordinates_of(self.a, self.b, numbering)
+
+
+def contact_of(friction: JointFrictionForce) -> JointFriction:
+    """The contact that a set-valued friction of a joint is."""
+    kind = JointFriction2D if isinstance(friction, PairElement2D) else JointFriction3D
+    a, b = friction.markers()
+    return kind(
+        name=friction.name, a=a, b=b, measured=type(friction).measured, preload=friction.preload, joint=friction.joint,
+        arm=friction.arm, friction=CoulombFriction(coefficient=1.0, static_coefficient=friction.static_ratio),
+    )  # fmt: skip
 
 
 are(JOINT, joint_friction2d_kernel, joint_friction3d_kernel)

@@ -197,11 +197,6 @@ class Element(OpenRecord):
         """All that it brings into the tables, for elements with rows of several kernels."""
         return (Part(self.form_in(numbering.bodies), self.rows(numbering)),)
 
-    def as_contact(self) -> Any | None:
-        """The contact that stands for it in the tables, a `ContactElement`: itself if it is one, that of a force whose
-        law is set-valued; None for all others."""
-        return None
-
     def internal_coordinates(self) -> Sequence[str]:
         """Names of its internal coordinates: states z of its own, each the velocity of a coordinate of unit mass,
         1 a = z'. They come after those of the bodies; their positions mean nothing."""

@@ -1,11 +1,10 @@
 """What the dry friction of all joints has in common: Coulomb's set-valued law, or a regularised one by choice."""
 
 from collections.abc import Sequence
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ..laws.friction import CoulombFriction
 from ..laws.friction.base import FrictionCoefficient
 from ..model.base import Name
 from .base import Element, Numbering, Part
@@ -24,7 +23,7 @@ class JointFrictionForce(Element):
     coefficient: FrictionCoefficient = 0.0
     """Friction over the size of that force, dimensionless."""
     static_ratio: Annotated[float, Field(ge=1.0)] = 1.0
-    """Friction up to which it holds at rest over that while it moves."""
+    """Friction up to which it holds at rest over that while it moves, dimensionless."""
 
     @property
     def preload(self) -> float:
@@ -60,16 +59,9 @@ class JointFrictionForce(Element):
         return () if self.joint is None else (self.joint,)
 
     @property
-    def rubs(self) -> bool:
-        """True if a set-valued law has any friction."""
-        return self.preload > 0.0 or self.arm > 0.0
-
-    def contact_fields(self) -> dict[str, Any]:
-        """What a `contacts.joint_friction.JointFriction` takes beside its markers."""
-        return {
-            "name": self.name, "measured": type(self).measured, "preload": self.preload, "joint": self.joint,
-            "arm": self.arm, "friction": CoulombFriction(coefficient=1.0, static_coefficient=self.static_ratio),
-        }  # fmt: skip
+    def is_contact(self) -> bool:
+        """True if its law is set-valued, and there is any friction: the tables have it as a contact."""
+        return self.transition is None and (self.preload > 0.0 or self.arm > 0.0)
 
     def parts(self, numbering: Numbering) -> Sequence[Part]:
         # (a set-valued law without any friction is nothing)

@@ -6,7 +6,7 @@ transition rate the law is regularised: the friction falls to zero as tanh does,
 """
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -25,18 +25,7 @@ def rubbing_force(x: float, rate: float, force: float, transition_speed: float) 
     return force * math.tanh(rate / transition_speed) + 0.0 * x
 
 
-class _Friction2D(JointFrictionForce, ScalarForce2D, PairElement2D):
-    """Base of both."""
-
-    def as_contact(self) -> Any | None:
-        if self.transition is not None or not self.rubs:
-            return None
-        from ..contacts.joint_friction import JointFriction2D
-
-        return JointFriction2D(a=self.a, b=self.b, **self.contact_fields())
-
-
-class RevoluteFriction2D(_Friction2D):
+class RevoluteFriction2D(JointFrictionForce, ScalarForce2D, PairElement2D):
     """Dry friction of a revolute joint between the bodies of markers `a` and `b`: `torque`, and `coefficient` times
     `radius` times the force of the `joint`, which a bearing of that radius has (Haug 1989, Computer Aided Kinematics
     and Dynamics of Mechanical Systems, section 10.2)."""
@@ -70,7 +59,7 @@ class RevoluteFriction2D(_Friction2D):
         return self.coefficient * (self.radius or 0.0)
 
 
-class SlideFriction2D(_Friction2D):
+class SlideFriction2D(JointFrictionForce, ScalarForce2D, PairElement2D):
     """Dry friction of a prismatic joint along the first axis of marker `a`: `force`, and `coefficient` times the normal
     force of the `joint`."""
 

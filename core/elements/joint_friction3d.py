@@ -3,7 +3,7 @@
 As `joint_friction2d`: Coulomb's, or regularised by choice.
 """
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -23,13 +23,6 @@ class _Friction3D(JointFrictionForce, MeasuredForce3D):
 
     def numbers(self) -> tuple[float, float, float, float]:
         return (self.preload, self.transition or 0.0, 0.0, 0.0)
-
-    def as_contact(self) -> Any | None:
-        if self.transition is not None or not self.rubs:
-            return None
-        from ..contacts.joint_friction import JointFriction3D
-
-        return JointFriction3D(a=self.a, b=self.b, **self.contact_fields())
 
 
 class RevoluteFriction3D(_Friction3D):

@@ -101,10 +101,10 @@ def test_a_block_on_many_feet(push):
     held = min(push, mu * weight)
     assert np.sum(found.tangential) == pytest.approx(-held, rel=1e-12)
     assert np.sum(found.normal * x) == pytest.approx(0.1 * (held - push), abs=1e-11)
-    share = found.tangential + held / weight * found.normal
-    assert np.max(np.abs(share)) < 1e-11
+    if not found.sticks:
+        share = found.tangential + held / weight * found.normal
+        assert np.max(np.abs(share)) < 1e-11
+    assert np.all(np.abs(found.tangential) <= mu * found.normal * (1.0 + 1e-11))
     assert np.max(np.abs(found.normal_motion)) < 1e-11
     assert np.max(np.abs(found.tangential_motion - (push - held))) < 1e-11
     assert found.sticks == (push < mu * weight)
-    # no more feet than it takes bear the block
-    assert np.sum(found.normal > 1e-12 * weight) <= 2
