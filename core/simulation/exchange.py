@@ -22,6 +22,7 @@ from ..errors import ModelError
 from ..event_detection.dense_output import query, query_motion
 from ..events.event_handling import begin_anew
 from ..events.inconsistent_modes import find_unsettled
+from ..events.moved_surfaces import find_moved
 from ..events.records import instant_at
 from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
@@ -124,8 +125,11 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
         vec(ws.t, 1)[0] = t
     if status == OK:
         status = call_accelerations(ex.accelerations, ws)
-    unsettled = ivec(ev.unsettled, ws.n_contacts)
-    if status != OK or (find_unsettled(ev, ws, unsettled) and decline):
+    unsettled, some = ivec(ev.unsettled, ws.n_contacts), False
+    if status == OK:
+        some = find_unsettled(ev, ws, unsettled)
+        some = find_moved(ws, ms, unsettled) or some
+    if status != OK or (some and decline):
         for k in range(n):
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]
