@@ -21,7 +21,7 @@ class ContactElement(Element):
     has_shapes: ClassVar[bool] = True
     """False: the friction of a joint."""
     surface_sign: ClassVar[float] = 1.0
-    """-1 where the sliding distance in the plane grows against `surface_speed`: counter-clockwise round the first shape."""
+    """-1 where the sliding distance in the plane grows against `surface_speed`, counter-clockwise round the shape."""
 
     law: ContactLaw
     """What happens when the gap closes."""

@@ -99,8 +99,10 @@ def find_root(
             proposal = x + (0.5 * least if f > 0.0 else -0.5 * least)
         last_x, last_f = x, f
         x = proposal
-    # a gap below zero by rounding that nothing closes would pass the same limit again
+    # a gap below zero by rounding that nothing closes would pass the same limit again; what is smallest before a jump
+    # may be another margin than the one that jumps
     jumps, at_row = f_low > JUMP * largest, what == FORCE and x_low == 0.0 and np.isnan(f_low)
+    jumps = jumps or (what == FORCE and f_high < -JUMP * largest)
     if at_row:
         # right behind the newest row, whose force is none of those that have been tried
         jumps = f_high < -JUMP * largest

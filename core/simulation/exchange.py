@@ -110,6 +110,13 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
     rows, before = mat(ws.inputs, n, INPUT_SIZE), mat(ex.before, n, INPUT_SIZE)
     rates = mat(ex.rates, n, RATES_SIZE)
     t, newest = times[NOW], history_time(ms, 0)
+    # the motion up to now is that of the inputs up to now: velocities of surfaces would be met with the new ones
+    if t == newest:
+        recall(ws, ms, 0)
+        status = OK
+    else:
+        status = call_query(ex.query, ws, ms, t)
+        vec(ws.t, 1)[0] = t
     for k in range(n):
         for j in range(INPUT_SIZE):
             before[k, j] = rows[k, j]
@@ -117,12 +124,6 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
             rows[k, 0], rows[k, 1], rows[k, 2] = wanted[k], rates[k, FIRST], rates[k, SECOND]
             # since when does not matter to what stays as it is
             rows[k, INPUT_SIZE - 1] = t if rows[k, 1] != 0.0 or rows[k, 2] != 0.0 else 0.0
-    if t == newest:
-        recall(ws, ms, 0)
-        status = OK
-    else:
-        status = call_query(ex.query, ws, ms, t)
-        vec(ws.t, 1)[0] = t
     if status == OK:
         status = call_accelerations(ex.accelerations, ws)
     unsettled, some = ivec(ev.unsettled, ws.n_contacts), False

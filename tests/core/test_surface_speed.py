@@ -76,10 +76,11 @@ def test_a_block_is_carried_along(method, options, speed):
     assert result["b.vx"][-1] == pytest.approx(speed, abs=1e-9)
     assert result["b.x"][-1] == pytest.approx(math.copysign(way + SPEED * (1.0 - taken), speed), abs=1e-8)
     assert abs(result["belt.sliding_velocity"][-1]) < 1e-12
-    # the belt works mu m g over its own way: half goes into the block
-    assert result["energy.input_work"][-1] == pytest.approx(MASS * SPEED**2, rel=1e-8)
-    assert result["belt.dissipation"][-1] == pytest.approx(0.5 * MASS * SPEED**2, rel=1e-8)
-    check_energy(result, MASS * SPEED**2)
+    # the belt works mu m g over its own way: half goes into the block (HHT integrates its accounts with an error)
+    close = 1e-8 if method != "hht" else 1e-6
+    assert result["energy.input_work"][-1] == pytest.approx(MASS * SPEED**2, rel=close)
+    assert result["belt.dissipation"][-1] == pytest.approx(0.5 * MASS * SPEED**2, rel=close)
+    check_energy(result, close / 1e-9)
 
 
 def test_friction_acts_on_the_sliding_velocity():
@@ -199,13 +200,14 @@ def test_a_swinging_belt_carries_what_friction_can_hold():
     check_energy(result, 1e3)
 
 
-@pytest.mark.parametrize(("method", "order"), [("hht", 2), ("irk", 4), ("ebdf", 3), ("bdf", 2), ("adams", 3)])
+@pytest.mark.parametrize(("method", "order"), [("hht", 2), ("irk", 5), ("ebdf", 5), ("bdf", 3), ("adams", 4)])
 def test_the_place_of_what_sticks_is_found_to_the_order(method, order):
     w, amplitude, errors = 6.0, 0.6, []
-    for h in (0.02, 0.01):
+    for h in (0.04, 0.02, 0.01):
         result = simulate(block(Sine(amplitude=amplitude, angular_frequency=w)), 1.0, method, step=h)
-        errors.append(abs(result["b.x"][-1] - amplitude * (1.0 - math.cos(w * result.t[-1])) / w))
-    assert errors[1] < errors[0] * 0.5 ** (order - 0.5) or errors[1] < 1e-10
+        exact = amplitude * (1.0 - np.cos(w * result.t)) / w
+        errors.append(np.abs(result["b.x"] - exact).max())
+    assert np.log2(np.array(errors[:2]) / errors[1:]) == pytest.approx([order] * 2, abs=0.35)
 
 
 def test_an_input_is_the_speed():
@@ -327,7 +329,7 @@ def test_what_rolls_takes_a_part_of_the_speed(gyration, part):
 
 
 def test_a_box_tips_over_the_end_of_a_belt():
-    """It lies on the belt until its centre has passed the middle of the end roller, and falls off."""
+    """On two feet: it lies on the belt until the front one is at the end roller, and goes down round it."""
     length, r, half, height = 1.0, 0.05, 0.2, 0.1
     segment = Segment2D(marker=Marker2D(), length=length, radius=r)
     body = RigidBody2D(
@@ -340,9 +342,9 @@ def test_a_box_tips_over_the_end_of_a_belt():
         )
         for name, x in (("rear", -half), ("front", half))
     ]  # fmt: skip
-    result = simulate(Model(bodies=[body], contacts=feet), 1.0)
-    over = (length - 0.5) / SPEED
-    before = result.t < over - half / SPEED - 1e-3
+    result = simulate(Model(bodies=[body], contacts=feet), 1.0, rtol=1e-9, atol=1e-11)
+    # the front foot is at the end
+    before = result.t < (length - 0.5 - half) / SPEED - 1e-3
     assert np.abs(result["b.angle"][before]).max() < 1e-12
     assert result["b.x"][before] == pytest.approx(0.5 + SPEED * result.t[before], abs=1e-9)
     assert result["b.angle"][-1] < -0.5 and result["b.y"][-1] < 0.0
@@ -355,7 +357,7 @@ def test_a_box_on_a_belt_with_sharp_ends():
                         Box2D(marker=on("b"), width=0.4, height=0.2)]}  # fmt: skip
     group = ContactGroup2D(name="g", **shapes, law=DULL, friction=RUBS, surface_speed=SPEED, surface_body="ground")
     body = RigidBody2D(name="b", mass=MASS, inertia=0.05, position=(0.0, 0.1))
-    result = simulate(Model(bodies=[body], groups=[group]), 1.6)
+    result = simulate(Model(bodies=[body], groups=[group]), 1.6, rtol=1e-9, atol=1e-11)
     taken = SPEED / (MU * G)
     over = taken + (1.0 - 0.5 * SPEED * taken) / SPEED  # its centre is over the edge
     still = result.t < over - 1e-3
@@ -364,6 +366,18 @@ def test_a_box_on_a_belt_with_sharp_ends():
     assert at == pytest.approx(1.0, abs=1e-3)
     assert result["b.angle"][-1] < -0.2
     check_energy(result, 100.0)
+
+
+@pytest.mark.parametrize("speed", np.linspace(0.5, 1.5, 8))
+def test_a_corner_leaves_the_edge_of_a_belt_in_no_time(speed):
+    """The force of the rear corner, which hardly slides, jumps where the edge begins: the run gets over that."""
+    shapes = {"boxes": [Box2D(marker=Marker2D(point=(0.0, -0.1)), width=2.0, height=0.2),
+                        Box2D(marker=on("b"), width=0.4, height=0.2)]}  # fmt: skip
+    group = ContactGroup2D(name="g", **shapes, law=DULL, friction=RUBS, surface_speed=speed, surface_body="ground")
+    body = RigidBody2D(name="b", mass=MASS, inertia=0.05, position=(0.4, 0.1), velocity=(speed, 0.0))
+    result = simulate(Model(bodies=[body], groups=[group]), 0.6 / speed + 0.5)
+    assert result["b.y"][-1] < 0.0 and not result["g_ground_b_3.in_contact"][-1]
+    assert np.abs(result["energy.balance"]).max() < 1e-4
 
 
 def test_a_vehicle_on_tracks():

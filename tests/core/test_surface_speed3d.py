@@ -72,9 +72,10 @@ def test_a_block_is_carried_along(method, options):
     taken = SPEED / (MU * G)
     assert stick.t == pytest.approx(taken, abs=1e-8)
     assert place(result) == pytest.approx((SPEED - 0.5 * SPEED * taken) * WAY, abs=1e-7)
-    assert result["energy.input_work"][-1] == pytest.approx(MASS * SPEED**2, rel=1e-7)
-    assert result["belt.dissipation"][-1] == pytest.approx(0.5 * MASS * SPEED**2, rel=1e-7)
-    check_energy(result, 10.0)
+    close = 1e-7 if method != "hht" else 1e-6
+    assert result["energy.input_work"][-1] == pytest.approx(MASS * SPEED**2, rel=close)
+    assert result["belt.dissipation"][-1] == pytest.approx(0.5 * MASS * SPEED**2, rel=close)
+    check_energy(result, close / 1e-9)
 
 
 def test_a_block_that_comes_from_the_side_turns_towards_the_belt():
@@ -117,14 +118,14 @@ def test_a_belt_that_reverses():
     check_energy(result, 10.0)
 
 
-@pytest.mark.parametrize(("method", "order"), [("hht", 2), ("irk", 4), ("ebdf", 3), ("bdf", 2), ("adams", 3)])
+@pytest.mark.parametrize(("method", "order"), [("hht", 2), ("irk", 5), ("ebdf", 5), ("bdf", 3), ("adams", 4)])
 def test_the_place_of_what_sticks_is_found_to_the_order(method, order):
     w, amplitude, errors = 6.0, 0.6, []
-    for h in (0.02, 0.01):
+    for h in (0.04, 0.02, 0.01):
         result = simulate(block(Sine(amplitude=amplitude, angular_frequency=w)), 1.0, method, step=h)
-        exact = amplitude * (1.0 - math.cos(w * result.t[-1])) / w * WAY
-        errors.append(np.linalg.norm(place(result) - exact))
-    assert errors[1] < errors[0] * 0.5 ** (order - 0.5) or errors[1] < 1e-10
+        exact = amplitude * (1.0 - np.cos(w * result.t)) / w
+        errors.append(np.abs(result["b.y"] - 0.8 * exact).max())
+    assert np.log2(np.array(errors[:2]) / errors[1:]) == pytest.approx([order] * 2, abs=0.35)
 
 
 def test_an_inclined_belt_in_the_axes_of_its_marker():
