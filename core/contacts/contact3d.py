@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, cast
 
 import numpy as np
 from pydantic import model_validator
@@ -126,7 +126,7 @@ class Contact3D(ContactElement):
         bodies = [marker.body for marker in self.markers()]
         number = 0 if self.surface_body is None else bodies.index(self.surface_body)
         given = np.array(self.surface_direction, dtype=np.float64)
-        x, y, z = self.markers()[number].axes() @ (given / np.linalg.norm(given))
+        x, y, z = cast(Marker3D, self.markers()[number]).axes() @ (given / np.linalg.norm(given))
         # what moves on the second shape moves the other way past the first one
         return (1.0, FIRST, (x, y, z)) if number == 0 else (-1.0, SECOND, (x, y, z))
 

@@ -1,11 +1,13 @@
 """The moving surface of one body of a group: every contact with that body has it."""
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
 from ..errors import ModelError
 from ..model.base import Vector3
+from ..model.markers import Marker3D
 from ..model.signals import Signal
 from .contact2d import Contact2D
 from .contact3d import Contact3D
@@ -48,6 +50,6 @@ def _on_surface(
     if isinstance(contact, Contact3D):
         data["surface_body"] = body
         if direction is not None:
-            axes = contact.markers()[bodies.index(body)].axes()
+            axes = cast(Marker3D, contact.markers()[bodies.index(body)]).axes()
             data["surface_direction"] = tuple((axes.T @ np.array(direction, dtype=np.float64)).tolist())
     return type(contact)(**data)
