@@ -25,6 +25,7 @@ from tlismni.core import (
     Model,
     ModelError,
     NewtonImpact,
+    Parameter,
     PointMass2D,
     Polynomial,
     Ramp,
@@ -36,6 +37,7 @@ from tlismni.core import (
     Table,
     TanhFriction,
     simulate,
+    simulate_many,
 )
 from tlismni.core.contacts.box2d import Box2D
 from units import Units
@@ -490,6 +492,15 @@ def test_a_model_with_a_belt_is_data():
     model = block(Sine(amplitude=0.2, angular_frequency=3.0))
     assert Model.model_validate_json(model.model_dump_json()) == model
     assert block().contacts[0].surface_speed == SPEED
+
+
+def test_the_speed_is_a_parameter():
+    wanted = [Parameter(name="v", unit="m/s", targets=("belt.surface_speed",))]
+    model = block(parameters=wanted)
+    assert model.with_parameters({"v": -0.5}).contacts[0].surface_speed == -0.5
+    speeds = np.array([0.5, -0.2, 0.0])
+    runs = simulate_many(model, {"v": speeds}, 1.0, channels=["b.vx"])
+    assert runs["b.vx"] == pytest.approx(speeds, abs=1e-9)
 
 
 def test_what_makes_no_sense_is_refused():
