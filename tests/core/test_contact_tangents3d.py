@@ -143,7 +143,8 @@ def test_velocity_and_acceleration_level_are_the_derivatives_of_the_position_lev
     check()
 
 
-@pytest.mark.parametrize("case", CASES)
+# (bristles are coordinates of their own)
+@pytest.mark.parametrize("case", [case for case in CASES if not case.endswith("LuGre")])
 def test_contact_forces_really_act_in_these_tests(case):
     point, free = system(case), Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B]))
     for seed in range(5):

@@ -494,6 +494,12 @@ def test_a_model_with_a_belt_is_data():
     assert block().contacts[0].surface_speed == SPEED
 
 
+@pytest.mark.parametrize("method", ["baumgarte", "hht_i3", "hht_ggl", "generalized_alpha"])
+def test_comparison_methods_refuse_speeds_that_jump(method):
+    with pytest.raises(ModelError, match=r"may jump, and method .* take a method of the family"):
+        simulate(block(Step(time=0.5, before=SPEED, after=-SPEED)), 1.0, method)
+
+
 def test_the_speed_is_a_parameter():
     wanted = [Parameter(name="v", unit="m/s", targets=("belt.surface_speed",))]
     model = block(parameters=wanted)
