@@ -19,12 +19,14 @@ last serve to find the present ones.
 
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import compiled, internal
 from ..compiled.views import imat, ivec, mat, vec
 from ..linalg import factor, lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.solve import solve_transposed
-from ..rounding import COMPATIBLE
+from ..rounding import COMPATIBLE, STILL_COMPATIBLE
 from ..state.workspace_records import structure_at
 
 
@@ -76,6 +78,34 @@ def solve_equations(ws: Any, lu_address: int) -> None:
 
 
 @internal
+def _still_null(ws: Any, st: Any, p: int, weights: Any, sums: Any) -> bool:
+    """True if row p of compatibility, `weights` (n_sharing,), still is a null vector of the gradients evaluated last,
+    to rounding. `sums` (2, n): room. Where joints take part in it, whose multipliers are none of its entries, it is
+    not known to be one."""
+    values, n, m_act = vec(ws.values, ws.n_values), ws.n, ws.m_act
+    count, sharing, starts = ws.n_values, ivec(st.sharing, st.n_sharing), ivec(ws.gradient_start, ws.m_ext)
+    columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
+    own_start, own = ivec(st.jacobian_start, m_act + 1), st.n_jacobian
+    own_col, own_slot = ivec(st.jacobian_col, own), ivec(st.jacobian_slot, own)
+    row = ivec(ws.active, m_act + ws.n_implied)[m_act + p]
+    for i in range(n):
+        sums[0, i] = sums[1, i] = 0.0
+    for e in range(starts[row], starts[row + 1]):
+        sums[0, columns[e]] += values[slots[e]]
+        sums[1, columns[e]] += abs(values[slots[e]])
+    for j in range(st.n_sharing):
+        if sharing[j] < m_act and weights[j] != 0.0:
+            for e in range(own_start[sharing[j]], own_start[sharing[j] + 1]):
+                term = weights[j] * values[own_slot[e]]
+                sums[0, own_col[e]] += term
+                sums[1, own_col[e]] += abs(term)
+    for i in range(n):
+        if abs(sums[0, i]) > STILL_COMPATIBLE * sums[1, i]:
+            return False
+    return True
+
+
+@internal
 def _renewed(ws: Any, lu_address: int) -> bool:
     """Rows of compatibility for the gradients evaluated last, from the factors of the equations with those that were
     valid before; False if these are still valid."""
@@ -86,7 +116,11 @@ def _renewed(ws: Any, lu_address: int) -> bool:
     rhs, active, values = vec(ws.rhs, size), ivec(ws.active, m_act + ws.n_implied), vec(ws.values, ws.n_values)
     starts, count = ivec(ws.gradient_start, ws.m_ext), ws.n_values
     columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
+    sums = np.empty((2, n))
     for p in range(ws.n_implied):
+        # (most of a structure's rows are of bodies that do not move against each other)
+        if _still_null(ws, st, p, rows[p], sums):
+            continue
         row = active[m_act + p]
         for i in range(size):
             rhs[i] = 0.0
