@@ -44,7 +44,7 @@ def test_spatial_scene_is_that_of_any_order_and_units(seed):
 def test_corner_passes_an_edge_alike_in_any_order_and_units(seed):
     drawn = scene(seed)
     assert drawn.kind.startswith("stack2")
-    _examine(drawn)
+    _examine(drawn, orders=2)
 
 
 def test_forces_in_a_groove_are_those_of_any_order():
@@ -60,8 +60,8 @@ def test_forces_in_a_groove_are_those_of_any_order():
         np.testing.assert_allclose(found, wanted, atol=1e-8 * np.abs(wanted).max())
 
 
-def _examine(drawn):
-    found, tight = deviations(drawn, orders=1)
+def _examine(drawn, orders=1):
+    found, tight = deviations(drawn, orders)
     assert not wrong(found, tight), f"{drawn.kind} by {drawn.method}: {found}; {tight}"
 
 
