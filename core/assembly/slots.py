@@ -190,8 +190,8 @@ class Slots:
             built = np.flatnonzero(self.structures["built"])
             rows, new_rows = old.reshape(count, -1), self.pool.reshape(count, -1)
             for start, new_start, size in zip(starts // 4, new_starts // 4, sizes // 4, strict=True):
-                for place in built.tolist():
-                    new_rows[place, new_start : new_start + size] = rows[place, start : start + size]
+                for number in built.tolist():
+                    new_rows[number, new_start : new_start + size] = rows[number, start : start + size]
             begin, new_begin = begin_of(old), begin_of(self.pool)
             for x in (*(x for k in range(count) for x in self._words(k)), *others):
                 inside = np.flatnonzero((x >= begin) & (x < begin + old.nbytes))
