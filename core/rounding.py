@@ -36,8 +36,8 @@ CONTINUOUS = 1e-9
 thousand times smaller."""
 COMPATIBLE = 1e-12
 """Part of a force by which rows of compatibility that have not been renewed may be off."""
-STILL_COMPATIBLE = 16.0 * 2.220446049250313e-16
-"""Of the sum of the magnitudes that cancel along a null vector: a few roundings, which solving for it leaves too."""
+STILL_COMPATIBLE = 1e-13
+"""Of a row: what null vectors may leave that are not found anew, ten times what solving for them leaves."""
 RANK_TOLERANCE = 1e-9
 """Of a row: with less left of it after elimination it repeats others."""
 NOT_DEPENDENT = 1e-9

@@ -78,29 +78,27 @@ def solve_equations(ws: Any, lu_address: int) -> None:
 
 
 @internal
-def _still_null(ws: Any, st: Any, p: int, weights: Any, sums: Any) -> bool:
+def _still_null(ws: Any, st: Any, p: int, weights: Any, total: Any) -> bool:
     """True if row p of compatibility, `weights` (n_sharing,), still is a null vector of the gradients evaluated last,
-    to rounding. `sums` (2, n): room. Where joints take part in it, whose multipliers are none of its entries, it is
-    not known to be one."""
-    values, n, m_act = vec(ws.values, ws.n_values), ws.n, ws.m_act
+    as finely as it was found. `total` (n,): room. Where joints take part in it, whose multipliers are none of its
+    entries, it is not known to be one."""
+    values, scale, n, m_act, size = vec(ws.values, ws.n_values), vec(ws.scale, ws.n), ws.n, ws.m_act, 0.0
     count, sharing, starts = ws.n_values, ivec(st.sharing, st.n_sharing), ivec(ws.gradient_start, ws.m_ext)
     columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
     own_start, own = ivec(st.jacobian_start, m_act + 1), st.n_jacobian
     own_col, own_slot = ivec(st.jacobian_col, own), ivec(st.jacobian_slot, own)
     row = ivec(ws.active, m_act + ws.n_implied)[m_act + p]
     for i in range(n):
-        sums[0, i] = sums[1, i] = 0.0
+        total[i] = 0.0
     for e in range(starts[row], starts[row + 1]):
-        sums[0, columns[e]] += values[slots[e]]
-        sums[1, columns[e]] += abs(values[slots[e]])
+        total[columns[e]] += values[slots[e]]
+        size = max(size, scale[columns[e]] * abs(values[slots[e]]))
     for j in range(st.n_sharing):
         if sharing[j] < m_act and weights[j] != 0.0:
             for e in range(own_start[sharing[j]], own_start[sharing[j] + 1]):
-                term = weights[j] * values[own_slot[e]]
-                sums[0, own_col[e]] += term
-                sums[1, own_col[e]] += abs(term)
+                total[own_col[e]] += weights[j] * values[own_slot[e]]
     for i in range(n):
-        if abs(sums[0, i]) > STILL_COMPATIBLE * sums[1, i]:
+        if scale[i] * abs(total[i]) > STILL_COMPATIBLE * size:
             return False
     return True
 
@@ -116,10 +114,10 @@ def _renewed(ws: Any, lu_address: int) -> bool:
     rhs, active, values = vec(ws.rhs, size), ivec(ws.active, m_act + ws.n_implied), vec(ws.values, ws.n_values)
     starts, count = ivec(ws.gradient_start, ws.m_ext), ws.n_values
     columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
-    sums = np.empty((2, n))
+    total = np.empty(n)
     for p in range(ws.n_implied):
         # (most of a structure's rows are of bodies that do not move against each other)
-        if _still_null(ws, st, p, rows[p], sums):
+        if _still_null(ws, st, p, rows[p], total):
             continue
         row = active[m_act + p]
         for i in range(size):
