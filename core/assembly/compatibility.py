@@ -1,14 +1,16 @@
 """How rows that repeat each other share the load: rows of compatibility.
 
-Where closed contacts repeat each other (a block on four feet), the constraints of some of them are implied by those of
-the others. The motion is the same with any multipliers lambda' = lambda + n, Phi_q^T n = 0. Forces of rigid contacts
-are the limit of those of equally compliant ones, A + eps C with eps -> 0. Multiplied by a null vector n of Phi_q^T, of
-which A is made, the equations (A + eps C) lambda + b = 0 leave n^T C lambda = 0 for any eps: of all multipliers that
-give the motion these are the ones of least C-norm (Tikhonov 1963; for multibody systems Wojtyra and Fraczek 2013, who
-compare such choices). So in place of the equation of each implied row the matrix has such a row, and sliding friction
-follows the normal forces that it gives.
+Where closed contacts repeat each other (a block on four feet), or joints do (a door on two hinges), the constraints of
+some of them are implied by those of the others. The motion is the same with any multipliers lambda' = lambda + n,
+Phi_q^T n = 0. Forces of rigid contacts are the limit of those of equally compliant ones, A + eps C with eps -> 0.
+Multiplied by a null vector n of Phi_q^T, of which A is made, the equations (A + eps C) lambda + b = 0 leave
+n^T C lambda = 0 for any eps: of all multipliers that give the motion these are the ones of least C-norm (Tikhonov 1963;
+for multibody systems Wojtyra and Fraczek 2013, who compare such choices). So in place of the equation of each implied
+row the matrix has such a row, and sliding friction follows the normal forces that it gives.
 
-C is 1 for each normal and each tangent of a contact. Joints are rigid beside contacts: their compliance is 0.
+C is 1 for each normal and each tangent of a contact. Joints are rigid beside contacts, and share among themselves what
+contacts leave to them, with compliances of their own (`joint_compliance.py`). So the row of an implied contact has
+entries for contacts only, and that of an implied joint, whose null vector is of joints only, entries for joints.
 
 The null vector of an implied row g is (-w, 1), Phi_q^T w = g^T. It is found by one solution with the transposed matrix
 of the equations, whatever rows of compatibility this has: where G are the rows of Phi_q that are solved for, B those of
@@ -20,22 +22,52 @@ last serve to find the present ones.
 from typing import Any
 
 from ..compiled.jit import compiled, internal
-from ..compiled.views import imat, ivec, mat, vec
+from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.solve import solve_transposed
 from ..rounding import COMPATIBLE
-from ..state.workspace_records import structure_at
+from ..state.workspace_records import building_at, structure_at
+from .structure_switch import HELD, KINDS
+
+
+@internal
+def list_sharing(
+    ws: Any, b: Any, m_act: int, n_implied: int, active: Any, matrix_col: Any, start: Any, sharing: Any, write: bool
+) -> int:
+    """Which multipliers share the load with each of the implied rows, by their places among those of the matrix, where
+    each row of compatibility begins, and how many numbers these rows have; `write`: to `start` and `sharing`."""
+    codes, compliance, mechanism = ivec(ws.wanted, b.n_contacts), vec(b.compliance, b.m_ext), ivec(b.mechanism, b.m_ext)
+    rows, slides = ivec(b.contact_rows, b.n_contacts), ivec(b.contact_slide_rows, b.n_contacts)
+    count = 0
+    for p in range(n_implied):
+        own = active[m_act + p]
+        if write:
+            start[p] = count
+        for i in range(b.m_joints if own < b.m_joints else 0):
+            if matrix_col[i] >= 0 and mechanism[i] == mechanism[own] and compliance[i] > 0.0:
+                if write:
+                    sharing[count] = matrix_col[i] - b.n
+                count += 1
+        for k in range(b.n_contacts if own >= b.m_joints else 0):
+            for of in range(3):
+                if codes[k] % KINDS >= HELD + of:
+                    if write:
+                        sharing[count] = matrix_col[rows[k] if of == 0 else slides[k] + of - 1] - b.n
+                    count += 1
+    if write:
+        start[n_implied] = count
+    return count
 
 
 @internal
 def begin_sharing(st: Any) -> None:
     """Rows of compatibility of a structure that has just been built: each implied row carries nothing."""
-    rows = mat(st.compatibility, st.n_implied, st.n_sharing)
-    sharing = ivec(st.sharing, st.n_sharing)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
+    rows = vec(st.compatibility, st.n_sharing)
     for p in range(st.n_implied):
-        for j in range(st.n_sharing):
-            rows[p, j] = 1.0 if sharing[j] == st.m_act + p else 0.0
+        for e in range(start[p], start[p + 1]):
+            rows[e] = 1.0 if sharing[e] == st.m_act + p else 0.0
 
 
 @internal
@@ -44,11 +76,10 @@ def write_compatibility(ws: Any) -> None:
     if ws.n_implied == 0:
         return
     st = structure_at(ws.structure)
-    rows, slots = mat(st.compatibility, st.n_implied, st.n_sharing), imat(st.sharing_slot, st.n_implied, st.n_sharing)
+    rows, slots = vec(st.compatibility, st.n_sharing), ivec(st.sharing_slot, st.n_sharing)
     values = vec(ws.values, ws.n_values)
-    for p in range(st.n_implied):
-        for j in range(st.n_sharing):
-            values[slots[p, j]] = rows[p, j]
+    for e in range(st.n_sharing):
+        values[slots[e]] = rows[e]
 
 
 @internal
@@ -57,12 +88,13 @@ def left_of_sharing(ws: Any) -> None:
     if ws.n_implied == 0:
         return
     st, lam = structure_at(ws.structure), vec(ws.lam, ws.m_ext)
-    rows, sharing = mat(st.compatibility, st.n_implied, st.n_sharing), ivec(st.sharing, st.n_sharing)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
+    rows = vec(st.compatibility, st.n_sharing)
     rhs, active = vec(ws.rhs, ws.n + ws.m_act + ws.n_implied), ivec(ws.active, ws.m_act + ws.n_implied)
-    for p in range(st.n_implied):
+    for p in range(ws.n_implied):
         total = 0.0
-        for j in range(st.n_sharing):
-            total += rows[p, j] * lam[active[sharing[j]]]
+        for e in range(start[p], start[p + 1]):
+            total += rows[e] * lam[active[sharing[e]]]
         rhs[ws.n + ws.m_act + p] = -total
 
 
@@ -82,7 +114,12 @@ def _renewed(ws: Any, lu_address: int) -> bool:
     st, changed = structure_at(ws.structure), False
     n, m_act = ws.n, ws.m_act
     size = n + m_act + ws.n_implied
-    rows, sharing = mat(st.compatibility, st.n_implied, st.n_sharing), ivec(st.sharing, st.n_sharing)
+    b, start, sharing = (
+        building_at(ws.building),
+        ivec(st.sharing_start, st.n_implied + 1),
+        ivec(st.sharing, st.n_sharing),
+    )
+    rows, compliance, units = vec(st.compatibility, st.n_sharing), vec(b.compliance, b.m_ext), vec(b.units, n + b.m_ext)
     rhs, active, values = vec(ws.rhs, size), ivec(ws.active, m_act + ws.n_implied), vec(ws.values, ws.n_values)
     starts, count = ivec(ws.gradient_start, ws.m_ext), ws.n_values
     columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
@@ -93,12 +130,14 @@ def _renewed(ws: Any, lu_address: int) -> bool:
         for e in range(starts[row], starts[row + 1]):
             rhs[columns[e]] += values[slots[e]]
         solve_transposed(lu_at(lu_address), ws.rhs)
-        for j in range(st.n_sharing):
-            at = sharing[j]
+        own, unit = compliance[row] if compliance[row] > 0.0 else 1.0, units[n + row]
+        for e in range(start[p], start[p + 1]):
+            at = sharing[e]
             new = -rhs[n + at] if at < m_act else (1.0 if at == m_act + p else 0.0)
-            if abs(new - rows[p, j]) > COMPATIBLE:
+            new *= compliance[active[at]] / own
+            if abs(new - rows[e]) * units[n + active[at]] > COMPATIBLE * unit:
                 changed = True
-                rows[p, j] = new
+                rows[e] = new
     return changed
 
 
