@@ -102,12 +102,12 @@ def _build(ws: Any, b: Any, st: Any) -> int:
                 n_jacobian += 1 if last_row >= n and last_col < n else 0
         slot[e] = total - 1
     words = (
-        b.n_contacts + m_act + 2 * n_implied + 1 + 2 * n_sharing + left_out
+        b.n_contacts + m_act + 3 * n_implied + 1 + 2 * n_sharing + left_out
         + 3 * nnz + b.m_ext + 2 * (total - nnz) + n_mass + m_act + 1 + 3 * n_jacobian
         + table + 2 * words_of(full, nnz)
         + m_act + 9 * n_jacobian + words_of(m_act, n_jacobian) + words_of(m_held, n_jacobian) + 8
     )  # fmt: skip
-    reals = total + 1 + n_sharing + m_act + 6 * full + 3 * m_act + 3 * m_held + 8
+    reals = total + 1 + 2 * n_sharing + m_act + 6 * full + 3 * m_act + 3 * m_held + 8
     enough = _need(needs, WORDS, words, st.words_room)
     enough = _need(needs, REALS, reals, st.reals_room) and enough
     pt, kkt = partition_at(st.partition), lu_at(st.kkt)
@@ -145,7 +145,7 @@ def _build(ws: Any, b: Any, st: Any) -> int:
         sharing,
         first,
     )
-    begin_sharing(st)
+    begin_sharing(ws, st)
     st.built, st.serial = 1, next_serial(b)
     return OK
 

@@ -27,7 +27,7 @@ from ..linalg import factor, lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.solve import solve_transposed
 from ..rounding import COMPATIBLE
-from ..state.workspace_records import building_at, structure_at
+from ..state.workspace_records import OK, building_at, structure_at
 from .structure_switch import HELD, KINDS
 
 
@@ -61,33 +61,61 @@ def list_sharing(
 
 
 @internal
-def begin_sharing(st: Any) -> None:
-    """Rows of compatibility of a structure that has just been built: each implied row carries nothing."""
-    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
-    rows = vec(st.compatibility, st.n_sharing)
+def begin_sharing(ws: Any, st: Any) -> None:
+    """Rows of compatibility of a structure that has just been built: each implied row carries nothing. Null vectors of
+    different mechanisms have nothing in common, so one solution finds one of each of them."""
+    b, start, sharing = (
+        building_at(ws.building),
+        ivec(st.sharing_start, st.n_implied + 1),
+        ivec(st.sharing, st.n_sharing),
+    )
+    rows, color = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
+    active, mechanism = ivec(st.active, st.m_act + st.n_implied), ivec(b.mechanism, b.m_ext)
+    colors = 0
     for p in range(st.n_implied):
         for e in range(start[p], start[p + 1]):
             rows[e] = 1.0 if sharing[e] == st.m_act + p else 0.0
+        own, color[p] = active[st.m_act + p], colors
+        if own < b.m_joints:
+            color[p] = 0
+            for other in range(p):
+                color[p] += 1 if mechanism[active[st.m_act + other]] == mechanism[own] else 0
+        colors = max(colors, color[p] + 1)
 
 
 @internal
-def write_compatibility(ws: Any) -> None:
-    """The rows of compatibility, to their slots in the matrix."""
+def _first_shared(ws: Any, joints: bool) -> int:
+    """From which of the implied rows on the load is shared: `joints`, if they are asked for, stand before contacts."""
+    first, active, b = 0, ivec(ws.active, ws.m_act + ws.n_implied), building_at(ws.building)
+    if not joints and b.loads_felt == 0:
+        while first < ws.n_implied and active[ws.m_act + first] < b.m_joints:
+            first += 1
+    return first
+
+
+@internal
+def write_compatibility(ws: Any, joints: bool) -> None:
+    """The rows of compatibility, to their slots in the matrix. Those of joints only if it is asked what these carry, or
+    forces depend on it; else the implied ones carry nothing."""
     if ws.n_implied == 0:
         return
-    st = structure_at(ws.structure)
+    st, first = structure_at(ws.structure), _first_shared(ws, joints)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
     rows, slots = vec(st.compatibility, st.n_sharing), ivec(st.sharing_slot, st.n_sharing)
     values = vec(ws.values, ws.n_values)
-    for e in range(st.n_sharing):
-        values[slots[e]] = rows[e]
+    for p in range(st.n_implied):
+        for e in range(start[p], start[p + 1]):
+            alone = 1.0 if sharing[e] == st.m_act + p else 0.0
+            values[slots[e]] = rows[e] if p >= first else alone
 
 
 @internal
-def left_of_sharing(ws: Any) -> None:
-    """What the multipliers leave of the rows of compatibility, its negative, to their places in `rhs`."""
+def left_of_sharing(ws: Any, joints: bool) -> None:
+    """What the multipliers leave of the rows of compatibility as `write_compatibility` has written them, its negative,
+    to their places in `rhs`."""
     if ws.n_implied == 0:
         return
-    st, lam = structure_at(ws.structure), vec(ws.lam, ws.m_ext)
+    st, lam, first = structure_at(ws.structure), vec(ws.lam, ws.m_ext), _first_shared(ws, joints)
     start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
     rows = vec(st.compatibility, st.n_sharing)
     rhs, active = vec(ws.rhs, ws.n + ws.m_act + ws.n_implied), ivec(ws.active, ws.m_act + ws.n_implied)
@@ -95,7 +123,7 @@ def left_of_sharing(ws: Any) -> None:
         total = 0.0
         for e in range(start[p], start[p + 1]):
             total += rows[e] * lam[active[sharing[e]]]
-        rhs[ws.n + ws.m_act + p] = -total
+        rhs[ws.n + ws.m_act + p] = -total if p >= first else -lam[active[ws.m_act + p]]
 
 
 @internal
@@ -108,36 +136,46 @@ def solve_equations(ws: Any, lu_address: int) -> None:
 
 
 @internal
-def _renewed(ws: Any, lu_address: int) -> bool:
+def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
     """Rows of compatibility for the gradients evaluated last, from the factors of the equations with those that were
     valid before; False if these are still valid."""
-    st, changed = structure_at(ws.structure), False
-    n, m_act = ws.n, ws.m_act
+    st, b = structure_at(ws.structure), building_at(ws.building)
+    n, m_act, changed = ws.n, ws.m_act, False
     size = n + m_act + ws.n_implied
-    b, start, sharing = (
-        building_at(ws.building),
-        ivec(st.sharing_start, st.n_implied + 1),
-        ivec(st.sharing, st.n_sharing),
-    )
-    rows, compliance, units = vec(st.compatibility, st.n_sharing), vec(b.compliance, b.m_ext), vec(b.units, n + b.m_ext)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
+    rows, color = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
+    compliance, units = vec(b.compliance, b.m_ext), vec(b.units, n + b.m_ext)
     rhs, active, values = vec(ws.rhs, size), ivec(ws.active, m_act + ws.n_implied), vec(ws.values, ws.n_values)
     starts, count = ivec(ws.gradient_start, ws.m_ext), ws.n_values
     columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
-    for p in range(ws.n_implied):
-        row = active[m_act + p]
+    first, end = _first_shared(ws, joints), ws.n_implied
+    now = color[first] if first < end else 0
+    while first < end:
         for i in range(size):
             rhs[i] = 0.0
-        for e in range(starts[row], starts[row + 1]):
-            rhs[columns[e]] += values[slots[e]]
+        left = False
+        for p in range(first, end):
+            left = left or color[p] > now
+            if color[p] == now:
+                row = active[m_act + p]
+                for e in range(starts[row], starts[row + 1]):
+                    rhs[columns[e]] += values[slots[e]]
         solve_transposed(lu_at(lu_address), ws.rhs)
-        own, unit = compliance[row] if compliance[row] > 0.0 else 1.0, units[n + row]
-        for e in range(start[p], start[p + 1]):
-            at = sharing[e]
-            new = -rhs[n + at] if at < m_act else (1.0 if at == m_act + p else 0.0)
-            new *= compliance[active[at]] / own
-            if abs(new - rows[e]) * units[n + active[at]] > COMPATIBLE * unit:
-                changed = True
-                rows[e] = new
+        for p in range(first, end):
+            if color[p] != now:
+                continue
+            row = active[m_act + p]
+            own, unit = compliance[row] if compliance[row] > 0.0 else 1.0, units[n + row]
+            for e in range(start[p], start[p + 1]):
+                at = sharing[e]
+                new = -rhs[n + at] if at < m_act else (1.0 if at == m_act + p else 0.0)
+                new *= compliance[active[at]] / own
+                if abs(new - rows[e]) * units[n + active[at]] > COMPATIBLE * unit:
+                    changed = True
+                    rows[e] = new
+        if not left:
+            break
+        now += 1
     return changed
 
 
@@ -145,9 +183,9 @@ def _renewed(ws: Any, lu_address: int) -> bool:
 def factor_equations(ws: Any, lu_address: int) -> int:
     """Factor the matrix of the equations evaluated last, with rows of compatibility of its gradients: as `factor`."""
     status = factor(lu_at(lu_address), ws.values)
-    if status != 0 or ws.n_implied == 0 or not _renewed(ws, lu_address):
+    if status != 0 or ws.n_implied == 0 or not _renewed(ws, lu_address, False):
         return int(status)
-    write_compatibility(ws)
+    write_compatibility(ws, False)
     return int(factor(lu_at(lu_address), ws.values))
 
 
@@ -156,10 +194,35 @@ def analyze_equations(ws: Any, lu_address: int) -> int:
     """Pivots for the matrix of the equations evaluated last, with rows of compatibility of its gradients: as
     `linalg.analyze`."""
     status = call_analyze(ws.analyze, lu_at(lu_address), ws.values)
-    if status != 0 or ws.n_implied == 0 or factor(lu_at(lu_address), ws.values) != 0 or not _renewed(ws, lu_address):
+    if status != 0 or ws.n_implied == 0 or factor(lu_at(lu_address), ws.values) != 0:
         return int(status)
-    write_compatibility(ws)
+    if not _renewed(ws, lu_address, False):
+        return OK
+    write_compatibility(ws, False)
     return int(call_analyze(ws.analyze, lu_at(lu_address), ws.values))
+
+
+@internal
+def factor_shared(ws: Any, lu_address: int) -> int:
+    """The same as `factor_equations` where it is asked what joints carry."""
+    status = factor(lu_at(lu_address), ws.values)
+    if status != 0:
+        return int(status)
+    _renewed(ws, lu_address, True)
+    write_compatibility(ws, True)
+    return int(factor(lu_at(lu_address), ws.values))
+
+
+@internal
+def keep_sharing(ws: Any, back: bool) -> None:
+    """Keep the rows of compatibility while a point is asked for, or put them `back`: to ask changes nothing."""
+    st = structure_at(ws.structure)
+    rows, kept = vec(st.compatibility, st.n_sharing), vec(st.sharing_kept, st.n_sharing)
+    for e in range(st.n_sharing):
+        if back:
+            rows[e] = kept[e]
+        else:
+            kept[e] = rows[e]
 
 
 @compiled

@@ -25,7 +25,8 @@ def write_structure(
     st.n_implied, st.n_sharing = n_implied, n_sharing
     st.codes, st.active, st.redundant = at, at + 8 * b.n_contacts, at + 8 * (b.n_contacts + m_act + n_implied)
     at += 8 * (b.n_contacts + m_act + n_implied + left_out)
-    st.sharing_start, st.sharing = at, at + 8 * (n_implied + 1)
+    st.sharing_start, st.sharing_color = at, at + 8 * (n_implied + 1)
+    st.sharing = st.sharing_color + 8 * n_implied
     st.sharing_slot = st.sharing + 8 * n_sharing
     at = st.sharing_slot + 8 * n_sharing
     st.entry_row, st.entry_col, everything = at, at + 8 * nnz, at + 16 * nnz
@@ -66,7 +67,8 @@ def write_structure(
     reals, many = st.reals, words_of(full, nnz)
     st.values, st.probe = reals, reals + 8 * (total + 1)
     st.compatibility = reals + 8 * (total + 1 + m_act)
-    reals += 8 * (total + 1 + m_act + n_sharing)
+    st.sharing_kept = st.compatibility + 8 * n_sharing
+    reals += 8 * (total + 1 + m_act + 2 * n_sharing)
     probe = vec(st.probe, m_act)
     for i in range(m_act):
         probe[i] = 0.0

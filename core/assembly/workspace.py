@@ -11,6 +11,7 @@ from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record, words_of
 from ..compiled.weakly import Weakly
+from ..contacts.geometry_kinds import JOINT
 from ..linalg import DENSE_LIMIT
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
 from ..linalg.memory import addresses
@@ -289,7 +290,7 @@ class Workspace:
             {
                 "n": a.n, "m": a.m, "m_joints": a.m_joints, "m_ext": a.m + 1, "n_contacts": len(a.contacts),
                 "n_kernels": len(a.batches), "n_replaced": len(rows),
-                "two_partitions": int(bool(a.rate_rows)),
+                "two_partitions": int(bool(a.rate_rows)), "loads_felt": int(any(c.kind == JOINT for c in a.contacts)),
                 "dropped": 0, "dense_limit": DENSE_LIMIT, "scratch": slots.scratch.cell.ctypes.data,
                 "n_slots": len(slots.structures), "serial": 0,
             },
